@@ -1,0 +1,1 @@
+"""SymPy side: from a model specification to the text of a NumPy module."""

@@ -1,0 +1,103 @@
+"""Which modules are packaged and where each is derived.  Standard library only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .spec import Choices, ModelSpec
+
+_MODELS = Path(__file__).parent / "models"
+
+
+@dataclass(frozen=True)
+class CatalogueEntry:
+    """One model file: the mechanism and formulations that it derives, and the packaged specs.
+
+    Attributes
+    ----------
+    mechanism : str
+        Name that specs use.
+    formulations : tuple of str
+        Named sets of assumptions that the file knows.
+    module : str
+        Importable name of the file, relative to ``elastolink.derive``; its ``MODEL`` is used.
+    sources : tuple of str
+        Files in ``models`` that the derivation reads, for the content hash.
+    specs : tuple of ModelSpec
+        Packaged modules.
+    closed_in_modes : bool
+        True where one module serves any number of modes.
+    choices : Choices
+        Names that specs may use.
+    """
+
+    mechanism: str
+    formulations: tuple[str, ...]
+    module: str
+    sources: tuple[str, ...]
+    specs: tuple[ModelSpec, ...]
+    closed_in_modes: bool = False
+    choices: Choices = field(default_factory=Choices)
+
+    def paths(self) -> tuple[Path, ...]:
+        """Return the source files."""
+        return tuple(_MODELS / name for name in self.sources)
+
+
+_COUPLER = ("complete", "printed", "reduced")
+
+CATALOGUE = (
+    CatalogueEntry(
+        mechanism="four_bar",
+        formulations=("kinematics",),
+        module=".models.four_bar",
+        sources=("four_bar.py",),
+        specs=(ModelSpec("four_bar", "kinematics"),),
+    ),
+    CatalogueEntry(
+        mechanism="four_bar",
+        formulations=_COUPLER,
+        module=".models.coupler",
+        sources=("four_bar.py", "coupler.py"),
+        specs=tuple(ModelSpec("four_bar", name, flexible=("coupler",)) for name in _COUPLER),
+        closed_in_modes=True,
+        choices=Choices(
+            flexible=("coupler",),
+            drop=("axial_inertia", "spin", "coupler_end_load", "follower_end_load"),
+            balanced=("coupler",),
+        ),
+    ),
+    CatalogueEntry(
+        mechanism="hill",
+        formulations=("plain",),
+        module=".models.hill",
+        sources=("hill.py",),
+        specs=(ModelSpec("hill", "plain"),),
+    ),
+    CatalogueEntry(
+        mechanism="hill",
+        formulations=("boundaries_first_order",),
+        module=".models.hill_boundaries",
+        sources=("hill_boundaries.py",),
+        specs=(ModelSpec("hill", "boundaries_first_order"),),
+    ),
+)
+
+
+def find(spec: ModelSpec) -> CatalogueEntry:
+    """Return the entry that derives ``spec``.
+
+    Raises
+    ------
+    LookupError
+        If no packaged model does; the message lists what there is.
+    """
+    for entry in CATALOGUE:
+        if entry.mechanism == spec.mechanism and spec.formulation in entry.formulations:
+            return entry
+    known = sorted(f"{e.mechanism}/{f}" for e in CATALOGUE for f in e.formulations)
+    raise LookupError(
+        f"no packaged model derives {spec.mechanism}/{spec.formulation}; expected one of {known}, "
+        "or give your own with --model FILE.py"
+    )

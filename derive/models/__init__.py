@@ -1,0 +1,1 @@
+"""The packaged models, one file each."""

@@ -1,0 +1,89 @@
+"""Closed forms as named steps: how an expression too long for one line stays readable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import sympy as sp
+
+Step: TypeAlias = tuple[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Named intermediate quantities, each a function of the inputs and of earlier steps.
+
+    Attributes
+    ----------
+    steps : tuple of (Symbol, Expr)
+        In order of dependence.
+    """
+
+    steps: tuple[Step, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse a name that is defined twice."""
+        names = [symbol for symbol, _ in self.steps]
+        twice = sorted({str(name) for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"steps defined twice: {twice}")
+
+    def then(self, *more: Step) -> Steps:
+        """Return these steps followed by more."""
+        return Steps(self.steps + more)
+
+    def needed(self, outputs: Iterable[sp.Expr]) -> Steps:
+        """Return only the steps on which ``outputs`` depend."""
+        wanted = set().union(*(sp.sympify(output).free_symbols for output in outputs), set())
+        kept: list[Step] = []
+        for symbol, expression in reversed(self.steps):
+            if symbol in wanted:
+                kept.append((symbol, expression))
+                wanted |= expression.free_symbols
+        return Steps(tuple(reversed(kept)))
+
+    def inline(self, expression: sp.Expr) -> sp.Expr:
+        """Return ``expression`` in terms of the inputs alone."""
+        for symbol, value in reversed(self.steps):
+            expression = expression.xreplace({symbol: value})
+        return expression
+
+    def mapping(self) -> Mapping[sp.Symbol, sp.Expr]:
+        """Return the steps as a mapping in their order."""
+        return dict(self.steps)
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """Outputs as functions of inputs through named steps.
+
+    Attributes
+    ----------
+    inputs : tuple of Symbol
+        Arguments, in order; the first one is the array that sets the namespace.
+    steps : Steps
+        Intermediate quantities.
+    outputs : tuple of (str, Expr)
+        What is returned, by name.
+    exact : tuple of (str, Expr), optional
+        The same outputs before any rewriting for safety, in the inputs alone; what the emitted
+        numbers are compared with at 50 digits.
+    """
+
+    inputs: tuple[sp.Symbol, ...]
+    steps: Steps
+    outputs: tuple[tuple[str, sp.Expr], ...]
+    exact: tuple[tuple[str, sp.Expr], ...] = ()
+
+    def only(self, names: Iterable[str]) -> ClosedForm:
+        """Return the closed form with some of its outputs, and no step that they do not need."""
+        chosen = set(names)
+        unknown = sorted(chosen - {name for name, _ in self.outputs})
+        if unknown:
+            raise ValueError(f"unknown outputs {unknown}")
+        outputs = tuple(item for item in self.outputs if item[0] in chosen)
+        exact = tuple(item for item in self.exact if item[0] in chosen)
+        steps = self.steps.needed(expression for _, expression in outputs)
+        return ClosedForm(self.inputs, steps, outputs, exact)

@@ -1,0 +1,1 @@
+"""Emitted NumPy modules; rewritten by ``regenerate-equations``, never by hand."""

@@ -1,0 +1,571 @@
+"""Flexible coupler of a four-bar linkage, printed equation.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism four_bar, formulation printed, flexible coupler, any number of modes.
+Equations: Smith (6.14); Smith (6.17).
+
+Coordinates are Y_m / l3 in y = sum Y_m sin(m pi x / l3); arrays are divided by the modal mass mu
+l3^3 / 2.
+
+Left out of the energies: axial_inertia.
+
+Cost per evaluation:
+    scales: 8 operations
+    angle_functions: 154 operations
+    acceleration_functions: 119 operations
+    forcing_functions: 126 operations
+    acceleration_forcing_functions: 96 operations
+    modal_matrices: 10 operations
+    modal_vectors: 7 operations
+Content hash c212d2861392011491837fb0337131d0; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = [
+    "acceleration_forcing_functions",
+    "acceleration_functions",
+    "angle_functions",
+    "forcing_functions",
+    "modal_matrices",
+    "modal_vectors",
+    "scales",
+]
+
+FAMILY = "linear_periodic"
+SPEC = '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"printed","mechanism":"four_bar","modes":null,"outputs":[]}'
+CONTENT = "c212d2861392011491837fb0337131d0"
+
+# Parameters: name, unit, meaning.
+PARAMETERS = (
+    ("bending_stiffness", "N m^2", "EI of the coupler"),
+    ("mass_per_length", "kg/m", "mu of the coupler"),
+    ("damping", "N s/m^2", "Viscous damping of the coupler per length"),
+    ("coupler_inertia", "kg m^2", "I3 of the coupler about the crank pin B"),
+    ("coupler_first_moment", "kg m", "m3 r3 of the coupler about B"),
+    ("follower_inertia", "kg m^2", "I4 of the follower about D"),
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "scales": (
+        "coupler_first_moment_over_mass_per_length",
+        "coupler_inertia_over_mass_per_length",
+        "follower_inertia_over_mass_per_length",
+        "damping_over_mass_per_length",
+        "bending_stiffness_over_mass_per_length",
+    ),
+    "angle_functions": (
+        "angle_omega3",
+        "angle_end_load_coupler_first_moment_speed",
+        "angle_end_load_coupler_inertia_speed",
+        "angle_end_load_follower_inertia_speed",
+    ),
+    "acceleration_functions": (
+        "acceleration_end_load_coupler_first_moment_acceleration",
+        "acceleration_end_load_coupler_inertia_acceleration",
+        "acceleration_end_load_follower_inertia_acceleration",
+    ),
+    "forcing_functions": (
+        "forcing_alpha3",
+        "forcing_sin23",
+    ),
+    "acceleration_forcing_functions": (
+        "acceleration_forcing_omega3",
+        "acceleration_forcing_cos23",
+    ),
+    "modal_matrices": (
+        "modal_1",
+        "modal_2",
+        "modal_3",
+    ),
+    "modal_vectors": (
+        "modal_4",
+        "modal_5",
+    ),
+}
+
+# Separated terms: array, extra power of the crank speed, scale, function of angle, modal array.
+TERMS = (
+    ("M", 0, None, None, "modal_1"),
+    ("B", 0, None, "angle_omega3", "modal_1"),
+    ("B", 0, "coupler_first_moment_over_mass_per_length", "angle_end_load_coupler_first_moment_speed", "modal_2"),
+    ("B", 0, "coupler_inertia_over_mass_per_length", "angle_end_load_coupler_inertia_speed", "modal_2"),
+    ("B", 0, "follower_inertia_over_mass_per_length", "angle_end_load_follower_inertia_speed", "modal_2"),
+    ("S", 0, "coupler_first_moment_over_mass_per_length", "acceleration_end_load_coupler_first_moment_acceleration", "modal_2"),
+    ("S", 0, "coupler_inertia_over_mass_per_length", "acceleration_end_load_coupler_inertia_acceleration", "modal_2"),
+    ("S", 0, "follower_inertia_over_mass_per_length", "acceleration_end_load_follower_inertia_acceleration", "modal_2"),
+    ("C", 0, "damping_over_mass_per_length", None, "modal_1"),
+    ("K", 0, "bending_stiffness_over_mass_per_length", None, "modal_3"),
+    ("f", 0, None, "forcing_alpha3", "modal_4"),
+    ("f", 0, None, "forcing_sin23", "modal_5"),
+    ("g", 0, None, "acceleration_forcing_omega3", "modal_4"),
+    ("g", 0, None, "acceleration_forcing_cos23", "modal_5"),
+)
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def scales(
+    bending_stiffness, mass_per_length, damping, coupler_inertia, coupler_first_moment,
+    follower_inertia, coupler,
+):
+    """Return the factors made of parameters.
+
+    Parameters
+    ----------
+    bending_stiffness : float
+        EI of the coupler [N m^2].
+    mass_per_length : float
+        mu of the coupler [kg/m].
+    damping : float
+        Viscous damping of the coupler per length [N s/m^2].
+    coupler_inertia : float
+        I3 of the coupler about the crank pin B [kg m^2].
+    coupler_first_moment : float
+        m3 r3 of the coupler about B [kg m].
+    follower_inertia : float
+        I4 of the follower about D [kg m^2].
+    coupler : float
+        Length of the coupler BC [m].
+
+    Returns
+    -------
+    coupler_first_moment_over_mass_per_length : float or ndarray
+        Factor coupler_first_moment/mass_per_length.
+    coupler_inertia_over_mass_per_length : float or ndarray
+        Factor coupler_inertia/mass_per_length.
+    follower_inertia_over_mass_per_length : float or ndarray
+        Factor follower_inertia/mass_per_length.
+    damping_over_mass_per_length : float or ndarray
+        Factor damping/mass_per_length.
+    bending_stiffness_over_mass_per_length : float or ndarray
+        Factor bending_stiffness/(coupler**4*mass_per_length).
+    """
+    x0 = 1 / mass_per_length
+    return (
+        x0 * coupler_first_moment,
+        x0 * coupler_inertia,
+        x0 * follower_inertia,
+        x0 * damping,
+        x0 * bending_stiffness / coupler**4,
+    )
+
+
+def angle_functions(theta2, frame, crank, coupler, follower, assembly):
+    """Return the functions of angle in the matrices.
+
+    Parameters
+    ----------
+    theta2 : array_like, shape (...)
+        Crank angle [rad].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+
+    Returns
+    -------
+    angle_omega3 : ndarray, shape (...)
+        Function of angle omega3**2.
+    angle_end_load_coupler_first_moment_speed : ndarray, shape (...)
+        Function of angle -end_load_coupler_first_moment_speed/coupler**2.
+    angle_end_load_coupler_inertia_speed : ndarray, shape (...)
+        Function of angle -end_load_coupler_inertia_speed/coupler**2.
+    angle_end_load_follower_inertia_speed : ndarray, shape (...)
+        Function of angle -end_load_follower_inertia_speed/coupler**2.
+
+    Notes
+    -----
+    Smith (6.14); Smith (6.17).
+    """
+    xp = _namespace(theta2)
+    near = -crank + frame
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    x1 = half_sine**2
+    x2 = half_cosine**2
+    diagonal_x = x1 * far + x2 * near
+    x3 = sin2 * crank
+    diagonal_y = -x3
+    diagonal2 = x1 * far**2 + x2 * near**2
+    x4 = folded * straight
+    p = diagonal2 + x4
+    q = diagonal2 - x4
+    x5 = -straight
+    stretch = -x1 * (far + x5) * (far + straight) - x2 * (near + x5) * (near + straight)
+    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    root = xp.sqrt(fold * stretch)
+    sine_transmission = 2 * assembly * root / (fold + stretch)
+    area = 2 * sine_transmission * coupler * follower
+    x6 = area * diagonal_y
+    x7 = 1 / coupler
+    x8 = 1 / (2 * diagonal2)
+    x9 = x7 * x8
+    cos3 = x9 * (diagonal_x * p - x6)
+    x10 = area * diagonal_x
+    sin3 = x9 * (diagonal_y * p + x10)
+    x11 = 1 / follower
+    x12 = x11 * x8
+    cos4 = -x12 * (diagonal_x * q + x6)
+    sin4 = -x12 * (diagonal_y * q - x10)
+    cosine_transmission = cos3 * cos4 + sin3 * sin4
+    sin23 = -cos2 * sin3 + cos3 * sin2
+    cos23 = cos2 * cos3 + sin2 * sin3
+    sin24 = -cos2 * sin4 + cos4 * sin2
+    cos24 = cos2 * cos4 + sin2 * sin4
+    x13 = 1 / far
+    share = x13 * crank
+    reduced = share * frame
+    x14 = 1 / sine_transmission
+    x15 = x14 * x7
+    excess3 = -x15 * (-sin24 + sin4)
+    x16 = excess3 * reduced
+    omega3 = share + x16
+    x17 = -x13 * frame
+    slip3 = -x16 - x17
+    x18 = x11 * x14
+    excess4 = -x18 * (-sin23 + sin3)
+    x19 = excess4 * reduced
+    omega4 = share + x19
+    slip4 = -x17 - x19
+    spread = x11 * x15 * x3 * frame
+    x20 = x14 * cosine_transmission * spread
+    alpha3 = reduced * (x14 * x7 * cos24 * slip4 - x15 * cos4 * omega4 - x20 * excess3)
+    alpha4 = reduced * (x11 * x14 * cos23 * slip3 - x18 * cos3 * omega3 - x20 * excess4)
+    x21 = x15 * cosine_transmission
+    end_load_coupler_inertia_speed = x21 * alpha3
+    end_load_coupler_first_moment_speed = -x21 * sin23 * crank
+    end_load_follower_inertia_speed = x18 * alpha4
+    x22 = 1 / coupler**2
+    return (
+        omega3**2,
+        -x22 * end_load_coupler_first_moment_speed,
+        -x22 * end_load_coupler_inertia_speed,
+        -x22 * end_load_follower_inertia_speed,
+    )
+
+
+def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
+    """Return the functions of angle that act while the crank accelerates.
+
+    Parameters
+    ----------
+    theta2 : array_like, shape (...)
+        Crank angle [rad].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+
+    Returns
+    -------
+    acceleration_end_load_coupler_first_moment_acceleration : ndarray, shape (...)
+        Function of angle -end_load_coupler_first_moment_acceleration/coupler**2.
+    acceleration_end_load_coupler_inertia_acceleration : ndarray, shape (...)
+        Function of angle -end_load_coupler_inertia_acceleration/coupler**2.
+    acceleration_end_load_follower_inertia_acceleration : ndarray, shape (...)
+        Function of angle -end_load_follower_inertia_acceleration/coupler**2.
+
+    Notes
+    -----
+    Smith (6.14); Smith (6.17).
+    """
+    xp = _namespace(theta2)
+    near = -crank + frame
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    x1 = half_sine**2
+    x2 = half_cosine**2
+    diagonal_x = x1 * far + x2 * near
+    diagonal_y = -sin2 * crank
+    diagonal2 = x1 * far**2 + x2 * near**2
+    x3 = folded * straight
+    p = diagonal2 + x3
+    q = diagonal2 - x3
+    x4 = -straight
+    stretch = -x1 * (far + x4) * (far + straight) - x2 * (near + x4) * (near + straight)
+    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    root = xp.sqrt(fold * stretch)
+    sine_transmission = 2 * assembly * root / (fold + stretch)
+    area = 2 * sine_transmission * coupler * follower
+    x5 = area * diagonal_y
+    x6 = 1 / coupler
+    x7 = 1 / (2 * diagonal2)
+    x8 = x6 * x7
+    cos3 = x8 * (diagonal_x * p - x5)
+    x9 = area * diagonal_x
+    sin3 = x8 * (diagonal_y * p + x9)
+    x10 = 1 / follower
+    x11 = x10 * x7
+    cos4 = -x11 * (diagonal_x * q + x5)
+    sin4 = -x11 * (diagonal_y * q - x9)
+    cosine_transmission = cos3 * cos4 + sin3 * sin4
+    sin23 = -cos2 * sin3 + cos3 * sin2
+    cos23 = cos2 * cos3 + sin2 * sin3
+    sin24 = -cos2 * sin4 + cos4 * sin2
+    share = crank / far
+    reduced = share * frame
+    x12 = 1 / sine_transmission
+    x13 = x12 * x6
+    excess3 = -x13 * (-sin24 + sin4)
+    omega3 = excess3 * reduced + share
+    x14 = x10 * x12
+    excess4 = -x14 * (-sin23 + sin3)
+    omega4 = excess4 * reduced + share
+    x15 = x13 * cosine_transmission
+    end_load_coupler_inertia_acceleration = x15 * omega3
+    end_load_coupler_first_moment_acceleration = x15 * cos23 * crank
+    end_load_follower_inertia_acceleration = x14 * omega4
+    x16 = 1 / coupler**2
+    return (
+        -x16 * end_load_coupler_first_moment_acceleration,
+        -x16 * end_load_coupler_inertia_acceleration,
+        -x16 * end_load_follower_inertia_acceleration,
+    )
+
+
+def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
+    """Return the functions of angle in the forcing.
+
+    Parameters
+    ----------
+    theta2 : array_like, shape (...)
+        Crank angle [rad].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+
+    Returns
+    -------
+    forcing_alpha3 : ndarray, shape (...)
+        Function of angle 2*alpha3.
+    forcing_sin23 : ndarray, shape (...)
+        Function of angle -2*crank*sin23/coupler.
+
+    Notes
+    -----
+    Smith (6.14); Smith (6.17).
+    """
+    xp = _namespace(theta2)
+    near = -crank + frame
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    x1 = half_sine**2
+    x2 = half_cosine**2
+    diagonal_x = x1 * far + x2 * near
+    x3 = sin2 * crank
+    diagonal_y = -x3
+    diagonal2 = x1 * far**2 + x2 * near**2
+    x4 = folded * straight
+    p = diagonal2 + x4
+    q = diagonal2 - x4
+    x5 = -straight
+    stretch = -x1 * (far + x5) * (far + straight) - x2 * (near + x5) * (near + straight)
+    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    root = xp.sqrt(fold * stretch)
+    sine_transmission = 2 * assembly * root / (fold + stretch)
+    area = 2 * sine_transmission * coupler * follower
+    x6 = area * diagonal_y
+    x7 = 1 / coupler
+    x8 = 1 / (2 * diagonal2)
+    x9 = x7 * x8
+    cos3 = x9 * (diagonal_x * p - x6)
+    x10 = area * diagonal_x
+    sin3 = x9 * (diagonal_y * p + x10)
+    x11 = 1 / follower
+    x12 = x11 * x8
+    cos4 = -x12 * (diagonal_x * q + x6)
+    sin4 = -x12 * (diagonal_y * q - x10)
+    cosine_transmission = cos3 * cos4 + sin3 * sin4
+    sin23 = -cos2 * sin3 + cos3 * sin2
+    sin24 = -cos2 * sin4 + cos4 * sin2
+    cos24 = cos2 * cos4 + sin2 * sin4
+    x13 = 1 / far
+    share = x13 * crank
+    reduced = share * frame
+    x14 = 1 / sine_transmission
+    x15 = x14 * x7
+    excess3 = -x15 * (-sin24 + sin4)
+    excess4 = -x11 * x14 * (-sin23 + sin3)
+    x16 = excess4 * reduced
+    omega4 = share + x16
+    slip4 = x13 * frame - x16
+    spread = x11 * x15 * x3 * frame
+    alpha3 = (
+        reduced * (x14 * x7 * cos24 * slip4 - x15 * cos4 * omega4 - x14 * cosine_transmission *
+        excess3 * spread)
+    )
+    return (
+        2 * alpha3,
+        -2 * x7 * sin23 * crank,
+    )
+
+
+def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, assembly):
+    """Return the functions of angle in the forcing while the crank accelerates.
+
+    Parameters
+    ----------
+    theta2 : array_like, shape (...)
+        Crank angle [rad].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+
+    Returns
+    -------
+    acceleration_forcing_omega3 : ndarray, shape (...)
+        Function of angle 2*omega3.
+    acceleration_forcing_cos23 : ndarray, shape (...)
+        Function of angle 2*cos23*crank/coupler.
+
+    Notes
+    -----
+    Smith (6.14); Smith (6.17).
+    """
+    xp = _namespace(theta2)
+    near = -crank + frame
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    x1 = half_sine**2
+    x2 = half_cosine**2
+    diagonal_x = x1 * far + x2 * near
+    diagonal_y = -sin2 * crank
+    diagonal2 = x1 * far**2 + x2 * near**2
+    x3 = folded * straight
+    p = diagonal2 + x3
+    q = diagonal2 - x3
+    x4 = -straight
+    stretch = -x1 * (far + x4) * (far + straight) - x2 * (near + x4) * (near + straight)
+    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    root = xp.sqrt(fold * stretch)
+    sine_transmission = 2 * assembly * root / (fold + stretch)
+    area = 2 * sine_transmission * coupler * follower
+    x5 = area * diagonal_y
+    x6 = 1 / coupler
+    x7 = 1 / (2 * diagonal2)
+    x8 = x6 * x7
+    cos3 = x8 * (diagonal_x * p - x5)
+    x9 = area * diagonal_x
+    sin3 = x8 * (diagonal_y * p + x9)
+    x10 = x7 / follower
+    cos4 = -x10 * (diagonal_x * q + x5)
+    sin4 = -x10 * (diagonal_y * q - x9)
+    cos23 = cos2 * cos3 + sin2 * sin3
+    sin24 = -cos2 * sin4 + cos4 * sin2
+    share = crank / far
+    reduced = share * frame
+    excess3 = -x6 * (-sin24 + sin4) / sine_transmission
+    omega3 = excess3 * reduced + share
+    return (
+        2 * omega3,
+        2 * x6 * cos23 * crank,
+    )
+
+
+def modal_matrices(m, n):
+    """Return the modal arrays of the matrices.
+
+    Parameters
+    ----------
+    m : ndarray, shape (N, 1)
+        Mode numbers of the rows, from 1.
+    n : ndarray, shape (1, N)
+        Mode numbers of the columns, from 1.
+
+    Returns
+    -------
+    modal_1 : ndarray, shape (N, N)
+        Diagonal 1.
+    modal_2 : ndarray, shape (N, N)
+        Diagonal pi**2*m**2.
+    modal_3 : ndarray, shape (N, N)
+        Diagonal pi**4*m**4.
+    """
+    xp = _namespace(m)
+    x0 = (m == n)
+    return (
+        xp.where(x0, 1, 0),
+        xp.where(x0, 3.141592653589793**2 * m**2, 0),
+        xp.where(x0, 3.141592653589793**4 * m**4, 0),
+    )
+
+
+def modal_vectors(m):
+    """Return the modal arrays of the forcing.
+
+    Parameters
+    ----------
+    m : ndarray, shape (N,)
+        Mode numbers, from 1.
+
+    Returns
+    -------
+    modal_4 : ndarray, shape (N,)
+        Entries (-1)**m/(pi*m).
+    modal_5 : ndarray, shape (N,)
+        Entries ((-1)**m - 1)/(pi*m).
+    """
+    x0 = (1 - 2 * ((m) % 2))
+    x1 = 1 / (3.141592653589793 * m)
+    return (
+        x0 * x1,
+        x1 * (x0 - 1),
+    )

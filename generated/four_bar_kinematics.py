@@ -1,0 +1,169 @@
+"""Kinematics of the four-bar linkage in closed form.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism four_bar, formulation kinematics.
+Equations: Smith (2.1)-(2.10); Smith (A.1)-(A.8).
+
+The squares of the diagonal and of the area are sums of like-signed terms for every crank that
+turns fully, so that no digit is lost near a dead centre.
+
+Cost per evaluation:
+    motion: 163 operations
+Content hash 406996d1d894b41695aee68d89e95ba9; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = [
+    "motion",
+]
+
+FAMILY = "closed_form"
+SPEC = '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","modes":null,"outputs":[]}'
+CONTENT = "406996d1d894b41695aee68d89e95ba9"
+
+# Parameters: name, unit, meaning.
+PARAMETERS = (
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "motion": (
+        "theta3",
+        "theta4",
+        "omega3",
+        "omega4",
+        "alpha3",
+        "alpha4",
+        "transmission_angle",
+    ),
+}
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def motion(theta2, frame, crank, coupler, follower, assembly, winding):
+    """Return angles, speeds and accelerations of coupler and follower.
+
+    Parameters
+    ----------
+    theta2 : array_like, shape (...)
+        Crank angle [rad].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    winding : float
+        1 where the crank is longer than the frame (drag link), else 0.
+
+    Returns
+    -------
+    theta3 : ndarray, shape (...)
+        Coupler angle, continuous over any number of turns [rad].
+    theta4 : ndarray, shape (...)
+        Follower angle, continuous over any number of turns [rad].
+    omega3 : ndarray, shape (...)
+        Coupler speed over crank speed, d theta3 / d theta2.
+    omega4 : ndarray, shape (...)
+        Follower speed over crank speed, d theta4 / d theta2.
+    alpha3 : ndarray, shape (...)
+        Coupler acceleration over crank speed squared, at constant crank speed.
+    alpha4 : ndarray, shape (...)
+        Follower acceleration over crank speed squared, at constant crank speed.
+    transmission_angle : ndarray, shape (...)
+        Angle between coupler and follower at C, from 0 to pi [rad].
+
+    Notes
+    -----
+    Smith (2.1)-(2.10); Smith (A.1)-(A.8).
+    """
+    xp = _namespace(theta2)
+    near = -crank + frame
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    x1 = half_sine**2
+    x2 = x1 * far
+    x3 = half_cosine**2
+    x4 = x3 * near
+    diagonal_x = x2 + x4
+    x5 = sin2 * crank
+    diagonal_y = -x5
+    diagonal2 = x1 * far**2 + x3 * near**2
+    x6 = folded * straight
+    p = diagonal2 + x6
+    q = diagonal2 - x6
+    x7 = -straight
+    stretch = -x1 * (far + x7) * (far + straight) - x3 * (near + x7) * (near + straight)
+    fold = x1 * (far + folded) * (far - folded) - x3 * (folded + near) * (folded - near)
+    root = xp.sqrt(fold * stretch)
+    x8 = 2 * root
+    sine_transmission = x8 * assembly / (fold + stretch)
+    area = 2 * sine_transmission * coupler * follower
+    x10 = 1 / coupler
+    x11 = 1 / (2 * diagonal2)
+    x12 = x10 * x11
+    x9 = area * diagonal_y
+    cos3 = x12 * (diagonal_x * p - x9)
+    x13 = area * diagonal_x
+    sin3 = x12 * (diagonal_y * p + x13)
+    x14 = 1 / follower
+    x15 = x11 * x14
+    cos4 = -x15 * (diagonal_x * q + x9)
+    sin4 = -x15 * (diagonal_y * q - x13)
+    cosine_transmission = cos3 * cos4 + sin3 * sin4
+    sin23 = -cos2 * sin3 + cos3 * sin2
+    cos23 = cos2 * cos3 + sin2 * sin3
+    sin24 = -cos2 * sin4 + cos4 * sin2
+    cos24 = cos2 * cos4 + sin2 * sin4
+    x16 = 1 / far
+    share = x16 * crank
+    reduced = share * frame
+    x17 = 1 / sine_transmission
+    x18 = x10 * x17
+    excess3 = -x18 * (-sin24 + sin4)
+    x19 = excess3 * reduced
+    omega3 = share + x19
+    x20 = -x16 * frame
+    slip3 = -x19 - x20
+    x21 = x14 * x17
+    excess4 = -x21 * (-sin23 + sin3)
+    x22 = excess4 * reduced
+    omega4 = share + x22
+    slip4 = -x20 - x22
+    spread = x14 * x18 * x5 * frame
+    x23 = x17 * cosine_transmission * spread
+    alpha3 = reduced * (x10 * x17 * cos24 * slip4 - x18 * cos4 * omega4 - x23 * excess3)
+    alpha4 = reduced * (x14 * x17 * cos23 * slip3 - x21 * cos3 * omega3 - x23 * excess4)
+    x24 = 2 * winding - 1
+    x25 = -x24
+    phi = (
+        theta2 * winding + xp.atan2(x24 * sin2 * (crank * (1 - winding) + winding * frame), x2 +
+        x25 * x4)
+    )
+    return (
+        phi + x25 * xp.atan2(area, x25 * p),
+        phi + x25 * xp.atan2(area, x24 * q),
+        omega3,
+        omega4,
+        alpha3,
+        alpha4,
+        xp.atan2(x8, -fold + stretch),
+    )

@@ -1,0 +1,1 @@
+"""Run-time side: scenes, solvers, charts, results, plots and the command line."""

@@ -1,0 +1,7 @@
+"""Run time and error beside what a user would pick instead, measured in one run."""
+
+from .chart import benchmark_chart
+from .records import Benchmark, Row
+from .slices import benchmark_slices
+
+__all__ = ["Benchmark", "Row", "benchmark_chart", "benchmark_slices"]

@@ -1,0 +1,138 @@
+"""Benchmark of stability boundaries: regions 1-6 of slices of the chart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eig_banded
+
+from ..errors import bad
+from ..hill_matrix import Boundaries, hill_boundaries
+from ..periodic import PeriodicFunction
+from ..results import Check
+from .records import Benchmark, Contender, Row, compare, functions, one_thread
+from .reference import half_traces
+
+Array = NDArray[np.float64]
+
+_REGIONS = (1, 2, 3, 4, 5, 6)
+_WANTED = 1e-12
+_MU = 1.0
+_OURS = "elastolink"
+_RIVAL = "ten lines with eig_banded"
+
+
+def benchmark_slices(slices: int = 1000, rounds: int = 25) -> Benchmark:
+    """Time the boundaries of regions 1-6 of one slice, and of many, beside ten lines of SciPy.
+
+    Parameters
+    ----------
+    slices : int
+        Number of slices in the batch, mu from 1/slices to 1.
+    rounds : int
+        How often each contender runs, in turn (the batch: a fifth as often).
+
+    Returns
+    -------
+    Benchmark
+        ``error`` is the largest deviation of our boundaries from the reference.
+
+    Raises
+    ------
+    BadInput
+        If a number is less than 1.
+
+    Notes
+    -----
+    The ten lines build the banded Hermitian matrix in exp(i k theta), cut at the smallest harmonic
+    that gives 1e-12 (found beforehand, not timed), and give no error figure.  Their batch is a loop
+    over a sample of the slices.  The reference corrects the eigenvalues of a much larger matrix by
+    a Newton step on half traces in extended precision wherever the boundary is a simple root.
+    """
+    if slices < 1 or rounds < 1:
+        raise bad("benchmark_slices", f"{slices}, {rounds}", "at least 1 each", "take more")
+    return one_thread(_measure, slices, rounds)
+
+
+def _measure(slices: int, rounds: int) -> Benchmark:
+    rows: list[Row] = []
+    worst = 0.0
+    for name, f in functions().items():
+        one = _Slices(f, np.array([_MU]))
+        worst = max(worst, one.error(one.ours()))
+        rows += compare(f"{name}, one slice", [one.contender(), one.rival()], rounds)
+        many = _Slices(f, np.linspace(1.0 / slices, _MU, slices))
+        contenders = [many.contender(), many.rival(1 + slices // 20)]
+        rows += compare(f"{name}, {slices} slices", contenders, max(1, rounds // 5))
+    return Benchmark(
+        method="interleaved timing",
+        error=worst,
+        error_norm="boundaries in lam2, absolute, against extended precision",
+        checks={"error of the boundaries": Check(worst, _WANTED)},
+        title=f"Boundaries of regions 1-6, |mu| <= {_MU:g}",
+        rows=tuple(rows),
+    )
+
+
+class _Slices:
+    """The boundaries at some mu; the last one, mu = 1, is compared with the reference."""
+
+    def __init__(self, f: PeriodicFunction, mu: Array) -> None:
+        self.f, self.mu = f, mu
+        self.truth = _reference(f)
+        self.harmonic = next(
+            n
+            for n in range(7, 200)
+            if np.abs(banded_boundaries(f, _MU, n) - self.truth).max() < 0.9 * _WANTED
+        )
+
+    def ours(self) -> Boundaries:
+        return hill_boundaries(self.f, self.mu, _REGIONS)
+
+    def error(self, found: Boundaries) -> float:
+        both = np.stack([found.lower[:, -1], found.upper[:, -1]])
+        return float(np.abs(both - self.truth).max())
+
+    def contender(self) -> Contender:
+        return Contender(_OURS, self.ours, self.error, note=f"figure {self.ours().error.max():.1e}")
+
+    def rival(self, count: int | None = None) -> Contender:
+        some = self.mu if count is None else self.mu[:: -max(1, self.mu.size // count)][::-1]
+        run: Callable[[], Array] = lambda: [  # noqa: E731 - the loop is the rival
+            banded_boundaries(self.f, float(mu), self.harmonic) for mu in some
+        ][-1]
+        return Contender(
+            _RIVAL,
+            run,
+            lambda found: float(np.abs(found - self.truth).max()),
+            some.size / self.mu.size,
+            f"cut at k = {self.harmonic}",
+        )
+
+
+def banded_boundaries(f: PeriodicFunction, mu: float, harmonic: int) -> Array:
+    """Return the ends of regions 1-6, shape ``(2, 6)``: what a user would write with SciPy."""
+    width, ends = min(f.harmonics, 2 * harmonic - 1), np.empty((2, 6))
+    for odd in (0, 1):
+        k = np.arange(-harmonic, harmonic + 1 - odd) + 0.5 * odd
+        bands = np.empty((width + 1, k.size), dtype=complex)
+        bands[0] = k * k - mu * f.a[0]
+        bands[1:] = (-0.5 * mu) * (f.a[1 : width + 1] - 1j * f.b[1 : width + 1])[:, None]
+        values = eig_banded(bands, lower=True, eigvals_only=True, check_finite=False)
+        first = 1 - odd
+        ends[:, first::2] = values[first : first + 6].reshape(3, 2).T
+    return ends
+
+
+def _reference(f: PeriodicFunction) -> Array:
+    """Return the ends of regions 1-6 at mu = 1 to about 1e-15."""
+    found = banded_boundaries(f, _MU, f.harmonics + 30)
+    # Half traces in extended precision at three points give value, slope and curvature.
+    h = 1e-5
+    left, middle, right = half_traces(f, found + h * np.array([-1.0, 0.0, 1.0])[:, None, None], _MU)
+    level = np.array([-1.0 if n % 2 else 1.0 for n in _REGIONS])
+    slope = ((right - left) / (2.0 * h)).astype(float)
+    step = ((middle - level).astype(float)) / np.where(np.abs(slope) < 1e-3, np.inf, slope)
+    return np.asarray(found - step)

@@ -1,0 +1,130 @@
+"""Entry of the ``elastolink`` command: the parser, and what becomes of errors and interrupts.
+
+Exit status: 0 where all is well, 1 where a self-check failed, 2 on bad input, 130 when
+interrupted.  Bad input gives one line per problem, never a traceback; an unexpected exception is
+a bug of this toolkit and keeps its traceback.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NoReturn
+
+from ..errors import BadInput, ElastolinkError, ElastolinkWarning, bad
+from . import linkages, proofs, scenes, stability
+from .options import HelpFormatter
+
+_BAD_INPUT = 2
+_INTERRUPTED = 130
+_MODULES = "ELASTOLINK_GENERATED"
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, like every other complaint of the command."""
+
+    def error(self, message: str) -> NoReturn:
+        """Write the complaint and leave with status 2."""
+        self.exit(_BAD_INPUT, f"{self.prog}: {message}; `{self.prog} --help` explains\n")
+
+
+class _Version(argparse.Action):
+    """Print the version; the package is asked only then."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print and leave."""
+        import elastolink
+
+        print(f"elastolink {elastolink.__version__}")
+        parser.exit(0)
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command; nothing but the standard library is imported."""
+    parser = _Parser(
+        prog="elastolink",
+        description="Dynamics of elastic linkages: motion, vibration and stability, each checked.",
+        epilog=(
+            "example: elastolink chart smith_1972_5152_sixteenth_inch --plot chart.png\n"
+            "Each command explains itself and gives an example: elastolink chart --help"
+        ),
+        formatter_class=HelpFormatter,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and leave")
+    commands = parser.add_subparsers(
+        title="commands", metavar="COMMAND", required=True, parser_class=_Parser
+    )
+    for group in (scenes, linkages, stability, proofs):
+        group.add(commands)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command and return its exit status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Command line without the program's name; ``sys.argv`` by default.
+    """
+    options = build_parser().parse_args(arguments)
+    prefix = f"elastolink {options.command}"
+    try:
+        with _module_folder(getattr(options, "modules", None)), _short_warnings(prefix):
+            status: int = options.run(options)
+            sys.stdout.flush()
+            return status
+    except BadInput as error:
+        for problem in error.problems:
+            _complain(prefix, str(problem))
+    except BrokenPipeError:
+        # The reader of our output has left; a second attempt at exit would complain again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except (ElastolinkError, OSError) as error:
+        _complain(prefix, str(error))
+    except KeyboardInterrupt:
+        _complain(prefix, "interrupted; no file is left half written")
+        return _INTERRUPTED
+    return _BAD_INPUT
+
+
+def _complain(prefix: str, message: str) -> None:
+    print(f"{prefix}: {' '.join(message.split())}", file=sys.stderr)
+
+
+@contextmanager
+def _module_folder(folder: str | None) -> Iterator[None]:
+    """Let emitted modules be sought in a folder first, for the time of one command."""
+    if folder is None:
+        yield
+        return
+    if not Path(folder).is_dir():
+        raise bad("--modules", repr(folder), "a folder with a manifest", "check the path")
+    before = os.environ.get(_MODULES)
+    os.environ[_MODULES] = folder
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_MODULES]
+        else:
+            os.environ[_MODULES] = before
+
+
+@contextmanager
+def _short_warnings(prefix: str) -> Iterator[None]:
+    """Show the toolkit's warnings as one line each, without the place in the source."""
+
+    def show(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+        _complain(prefix, f"warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", ElastolinkWarning)
+        warnings.showwarning = show
+        yield

@@ -1,0 +1,140 @@
+"""``elastolink kinematics`` and ``elastolink simulate``: how a linkage moves and vibrates."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+
+if TYPE_CHECKING:
+    from ..scenes import Scene
+
+_ROWS = 13
+
+
+def add(commands: Any) -> None:
+    """Add the two subcommands."""
+    kinematics = opt.command(
+        commands,
+        "kinematics",
+        _kinematics,
+        summary="Angles, speeds and accelerations of coupler and follower, in closed form.",
+        example=(
+            "elastolink kinematics smith_1972_2122 --angles 0:360:13deg\n"
+            "  elastolink kinematics smith_1972_2122 --set links.assembly=crossed --plot motion.png"
+        ),
+    )
+    opt.scene_options(kinematics)
+    kinematics.add_argument(
+        "--angles",
+        default="0:360:361deg",
+        metavar="START:STOP:COUNT[UNIT]",
+        help="crank angles; default %(default)s",
+    )
+    simulate = opt.command(
+        commands,
+        "simulate",
+        _simulate,
+        summary="Vibration of a flexible link in the time domain.",
+        example=(
+            "elastolink simulate smith_1972_5152_sixteenth_inch --speed '195 rpm'"
+            " --revolutions 3 --method magnus4 --plot wave.png"
+        ),
+    )
+    opt.scene_options(simulate)
+    simulate.add_argument(
+        "--speed", metavar="SPEED", help="crank speed, e.g. '195 rpm'; default operation.speed"
+    )
+    simulate.add_argument(
+        "--revolutions", type=float, default=2.0, metavar="N", help="default %(default)s"
+    )
+    simulate.add_argument(
+        "--method",
+        metavar="NAME",
+        help="gauss_legendre, magnus4, rk4, de_vogelaere, kutta_merson, or one of SciPy's",
+    )
+    simulate.add_argument(
+        "--initial",
+        type=_pair,
+        metavar="Q,QD",
+        help="coordinates and their rates [1/s] at the start, e.g. 0.001,0; default at rest",
+    )
+    simulate.add_argument(
+        "--steps", type=int, metavar="N", help="fixed steps per revolution; default by the method"
+    )
+
+
+def _pair(text: str) -> tuple[float, float]:
+    q, comma, qd = text.partition(",")
+    if not comma:
+        raise argparse.ArgumentTypeError(f"found {text!r}; expected two numbers, such as 0.001,0")
+    return float(q), float(qd)
+
+
+def _kinematics(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    opt.picture(options)
+    theta = np.array(opt.values(options.angles, "angle", "--angles"))
+    motion = opt.load(options).mechanism().motion(theta)
+    chosen = np.unique(np.linspace(0, len(theta) - 1, min(_ROWS, len(theta))).round().astype(int))
+    angles = ("theta2", "theta3", "theta4", "transmission_angle")
+    rates = ("omega3", "omega4", "alpha3", "alpha4")
+    header = [f"{name} [deg]" for name in angles] + list(rates)
+    rows = [
+        [f"{np.degrees(getattr(motion, name)[i]):.4f}" for name in angles]
+        + [f"{getattr(motion, name)[i]:.6f}" for name in rates]
+        for i in chosen
+    ]
+    low, high = np.degrees([motion.transmission_angle.min(), motion.transmission_angle.max()])
+    lines = [
+        *opt.table(header, rows),
+        "",
+        f"transmission angle from {low:.4f} to {high:.4f} deg over {len(theta)} angles;"
+        " speeds over omega2, accelerations over omega2^2",
+    ]
+    return opt.finish(options, motion, lines)
+
+
+def speed_of(options: argparse.Namespace, scene: Scene) -> float:
+    """Return the crank speed [rad/s]: the option, or ``operation.speed`` of the scene.
+
+    Raises
+    ------
+    BadInput
+        If neither is given, or the speed is not positive.
+    """
+    given = options.speed
+    speed = scene.get("operation.speed", None) if given is None else None
+    if given is not None:
+        speed = opt.quantity(given, "frequency", "--speed")
+    if speed is None:
+        raise bad("--speed", "nothing", "a crank speed", "give --speed '500 rpm'")
+    if not speed > 0:
+        raise bad("--speed", repr(given), "a positive crank speed", "correct the sign")
+    return float(speed)
+
+
+def _simulate(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    if not 0 < options.revolutions <= 1e6:
+        found = f"{options.revolutions:g}"
+        raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")
+    scene = opt.load(options)
+    speed = 1.0 if _without_crank(scene, options) else speed_of(options, scene)
+    system = scene.system()
+    from ..simulation import simulate
+
+    chosen = {name: getattr(options, name) for name in ("method", "initial", "steps")}
+    given = {name: value for name, value in chosen.items() if value is not None}
+    shown = sys.stderr.isatty()
+    result = simulate(system, speed, options.revolutions, **given, progress=shown)
+    return opt.finish(options, result, [*opt.ranges(result), "", f"status: {result.message}"])
+
+
+def _without_crank(scene: Scene, options: argparse.Namespace) -> bool:
+    """Return True for a plain Hill equation, whose variable is the angle itself."""
+    return scene.model["mechanism"] == "hill" and options.speed is None

@@ -1,0 +1,298 @@
+"""Options that the subcommands share, and the way each one finishes: text, JSON and a picture."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import re
+import sys
+import tomllib
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..results import Result
+    from ..scenes import Scene
+
+_SELF_CHECK_FAILED = 1
+_COUNT = re.compile(r"\s*(\d{1,7})\s*(.*)")
+
+
+class HelpFormatter(argparse.RawDescriptionHelpFormatter):
+    """Keep line breaks, and leave room for the longest command's name."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, max_help_position=28, width=96)
+
+
+def command(
+    commands: Any,
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    *,
+    summary: str,
+    example: str,
+) -> argparse.ArgumentParser:
+    """Add a subcommand with a worked example at the end of its help.
+
+    Parameters
+    ----------
+    commands : object
+        What ``add_subparsers`` returned.
+    name : str
+        As it is typed.
+    run : callable
+        Does the work and returns the exit status.
+    summary : str
+        One sentence.
+    example : str
+        Command lines and what they give.
+    """
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=summary,
+        description=summary,
+        epilog=f"example:\n  {example}",
+        formatter_class=HelpFormatter,
+    )
+    parser.set_defaults(run=run, command=name)
+    parser.add_argument("--json", action="store_true", help="print JSON instead of text")
+    parser.add_argument("--plot", metavar="FILE", help="draw it: a .png, .svg or .pdf file")
+    return parser
+
+
+def scene_options(parser: argparse.ArgumentParser) -> None:
+    """Add the scene, overrides of its keys, and the folder of emitted modules."""
+    parser.add_argument("scene", metavar="SCENE", help="a built-in name or a .toml file")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="override a key, e.g. --set links.crank='0.12 m'; may be repeated",
+    )
+    parser.add_argument(
+        "--modules", metavar="DIR", help="look for emitted modules in this folder first"
+    )
+
+
+def load(options: argparse.Namespace) -> Scene:
+    """Return the scene that the options name, with its overrides.
+
+    Raises
+    ------
+    BadInput
+        If there is no such scene, or anything in it or in an override is wrong.
+    """
+    from ..scenes import load_scene
+
+    return load_scene(options.scene, overrides=settings(options.set))
+
+
+def settings(pairs: Sequence[str]) -> dict[str, Any]:
+    """Turn ``KEY=VALUE`` texts into overrides.
+
+    A value that TOML can read (``3``, ``[1, 2]``, ``"15 in"``) is taken as such, any other one
+    (``15 in``) as text.
+
+    Raises
+    ------
+    BadInput
+        If one of them has no equals sign or no key.
+    """
+    overrides = {}
+    for pair in pairs:
+        key, sign, value = pair.partition("=")
+        if not sign or not key.strip():
+            raise bad("--set", repr(pair), "KEY=VALUE", "write --set links.crank='0.12 m'")
+        overrides[key.strip()] = _value(value.strip())
+    return overrides
+
+
+def quantity(text: str, dimension: str, where: str) -> float:
+    """Return one quantity of the command line in SI units."""
+    from ..units import to_si
+
+    return to_si(text, dimension, where)
+
+
+def values(text: str, dimension: str, where: str) -> list[float]:
+    """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
+
+    The unit may also stand with the ends: ``100rpm:900rpm:200``.
+
+    Raises
+    ------
+    BadInput
+        If the text has another form, an end is no such quantity, or the values do not increase.
+    """
+    parts = text.split(":")
+    match = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
+    if match is None:
+        raise bad(where, repr(text), "START:STOP:COUNT[UNIT]", "write it like 100:900:201rpm")
+    count, unit = int(match.group(1)), match.group(2)
+    ends = [part if not unit else f"{part} {unit}" for part in parts[:2]]
+    start, stop = (quantity(end, dimension, where) for end in ends)
+    if not (stop > start and 2 <= count <= 100_000):
+        raise bad(where, repr(text), "rising ends and a count from 2 to 100000", "correct it")
+    return spaced(start, stop, count)
+
+
+def spaced(start: float, stop: float, count: int) -> list[float]:
+    """Return evenly spaced values, both ends included."""
+    import numpy as np
+
+    return [float(value) for value in np.linspace(start, stop, count)]
+
+
+def picture(options: argparse.Namespace) -> Path | None:
+    """Return the path of the wanted picture, refused here if it cannot be written.
+
+    Raises
+    ------
+    BadInput
+        If the ending is unknown, or the folder is missing or read-only.
+    """
+    if options.plot is None:
+        return None
+    from ..plotting import check_picture_path
+
+    return check_picture_path(options.plot)
+
+
+def finish(
+    options: argparse.Namespace,
+    result: Result,
+    lines: Sequence[str],
+    draw: Callable[[Axes], Any] | None = None,
+) -> int:
+    """Write what was asked for and return the exit status: 1 where a self-check failed.
+
+    Parameters
+    ----------
+    options : Namespace
+        With ``json`` and ``plot``.
+    result : Result
+        What was found.
+    lines : sequence of str
+        The same for people; the error figure and the checks are added.
+    draw : callable, optional
+        Draws into axes; ``result.plot`` by default.
+    """
+    path = picture(options)
+    if path is not None:
+        from ..plotting import new_figure
+
+        figure = new_figure()
+        (draw or result.plot)(figure.add_subplot())
+        save(figure, path)
+    if options.json:
+        print_json(result.to_dict())
+    else:
+        print("\n".join([*lines, *_verdict(result)]))
+    failed = [name for name, check in result.checks.items() if not check.passed]
+    for name in failed:
+        check = result.checks[name]
+        text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
+        print(f"elastolink {options.command}: {text}", file=sys.stderr)
+    return _SELF_CHECK_FAILED if failed else 0
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure, whole or not at all."""
+    from ..plotting import save_figure
+
+    save_figure(figure, path)
+
+
+def print_json(content: Any) -> None:
+    """Print JSON with sorted keys; what is not finite becomes null, for JSON has no word for it."""
+    print(json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False))
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table, columns aligned, the first to the left."""
+    columns = list(zip(header, *rows, strict=True))
+    widths = [max(len(cell) for cell in column) for column in columns]
+    lines = []
+    for row in (header, *rows):
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        lines.append("  ".join(cells).rstrip())
+    return lines
+
+
+def ranges(result: Result) -> list[str]:
+    """Return one line per array of a result: shape, least and greatest value."""
+    import numpy as np
+
+    rows = []
+    for name, value in sorted(result.arrays().items()):
+        if name == "error" or value.dtype.kind not in "fiu" or value.size == 0:
+            continue
+        finite = value[np.isfinite(value)]
+        ends = ("", "") if finite.size == 0 else (f"{finite.min():.6g}", f"{finite.max():.6g}")
+        rows.append((name, "x".join(map(str, value.shape)) or "-", *ends))
+    return table(("quantity", "shape", "least", "greatest"), rows) if rows else []
+
+
+def _verdict(result: Result) -> list[str]:
+    import numpy as np
+
+    error = np.asarray(result.error, dtype=float)
+    finite = error[np.isfinite(error)]
+    worst = f"{finite.max():.2g}" if finite.size else "not known"
+    lines = [
+        f"method: {result.method}",
+        f"error:  {worst} ({result.error_kind}; {result.error_norm})",
+    ]
+    lines += [
+        f"check:  {name}: {check.value:.2g} (limit {check.limit:.2g})"
+        for name, check in sorted(result.checks.items())
+    ]
+    return lines
+
+
+def _value(text: str) -> Any:
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    # A text with line breaks could smuggle in more keys than one.
+    return parsed["value"] if set(parsed) == {"value"} else text
+
+
+def _finite(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {str(key): _finite(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_finite(value) for value in content]
+    if isinstance(content, float) and not math.isfinite(content):
+        return None
+    return content
+
+
+__all__ = [
+    "HelpFormatter",
+    "command",
+    "finish",
+    "load",
+    "picture",
+    "print_json",
+    "quantity",
+    "ranges",
+    "save",
+    "scene_options",
+    "settings",
+    "spaced",
+    "table",
+    "values",
+]

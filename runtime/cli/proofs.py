@@ -1,0 +1,67 @@
+"""``elastolink reproduce`` and ``elastolink benchmark``: what shows that the answers are right."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+from ..errors import bad
+from . import options as opt
+
+_BENCHMARKS = ("chart",)
+
+
+def add(commands: Any) -> None:
+    """Add the two subcommands."""
+    reproduce = opt.command(
+        commands,
+        "reproduce",
+        _reproduce,
+        summary="Redraw the computed figures of a document, and check the numbers that it quotes.",
+        example="elastolink reproduce smith --figure 84 --out gallery",
+    )
+    reproduce.add_argument(
+        "document", nargs="?", metavar="DOCUMENT", help="smith; all documents by default"
+    )
+    reproduce.add_argument("--figure", metavar="N", help="one figure, for example 27 or 84")
+    reproduce.add_argument(
+        "--out", default="gallery", metavar="DIR", help="folder to write; default %(default)s"
+    )
+    benchmark = opt.command(
+        commands,
+        "benchmark",
+        _benchmark,
+        summary="Time this toolkit beside its peers, in one run, one thread each.",
+        example="elastolink benchmark chart --json",
+    )
+    benchmark.add_argument("subject", choices=_BENCHMARKS, help="what is timed")
+
+
+def _writable_folder(name: str) -> Path:
+    """Return a folder that can be made or written, refused here before any work starts."""
+    folder = Path(name)
+    existing = folder
+    while not existing.exists() and existing.parent != existing:
+        existing = existing.parent
+    if not existing.is_dir() or not os.access(existing, os.W_OK):
+        raise bad("--out", repr(name), "a folder that can be written", "choose another place")
+    return folder
+
+
+def _reproduce(options: argparse.Namespace) -> int:
+    folder = _writable_folder(options.out)
+    opt.picture(options)
+    from ..gallery import reproduce
+
+    result = reproduce(options.document, options.figure, folder)
+    return opt.finish(options, result, opt.ranges(result))
+
+
+def _benchmark(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    from ..benchmarking.chart import benchmark_chart
+
+    result = benchmark_chart()
+    return opt.finish(options, result, opt.ranges(result))

@@ -1,0 +1,163 @@
+"""``elastolink scenes`` and ``elastolink show``: what there is, and the numbers of one scene."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from . import options as opt
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..scenes import Scene
+
+
+def add(commands: Any) -> None:
+    """Add the two subcommands."""
+    listing = opt.command(
+        commands,
+        "scenes",
+        _scenes,
+        summary="List the built-in scenes.",
+        example="elastolink scenes\n  elastolink scenes --plot scenes.pdf   (each one drawn)",
+    )
+    listing.add_argument("--long", action="store_true", help="with the source of each")
+    showing = opt.command(
+        commands,
+        "show",
+        _show,
+        summary="Show a scene: every number in SI units, with what follows from the given ones.",
+        example="elastolink show smith_1972_5152_sixteenth_inch --set coupler.damping_ratio=0.01",
+    )
+    opt.scene_options(showing)
+
+
+def _scenes(options: argparse.Namespace) -> int:
+    from ..scenes import list_scenes, load_scene, scene_titles
+
+    path = opt.picture(options)
+    if path is not None:
+        from ..plotting import new_figure
+
+        names = list_scenes()
+        rows = -(-len(names) // 3)
+        figure = new_figure(12.0, 3.0 * rows)
+        for place, name in enumerate(names, start=1):
+            draw_scene(load_scene(name), figure.add_subplot(rows, 3, place))
+        opt.save(figure, path)
+    titles = scene_titles()
+    if options.json:
+        opt.print_json(
+            [{"name": name, "title": t, "source": s} for name, (t, s) in sorted(titles.items())]
+        )
+        return 0
+    width = max(map(len, titles))
+    for name, (title, source) in sorted(titles.items()):
+        print(f"{name.ljust(width)}  {title}" + (f"\n{' ' * width}  {source}" * options.long))
+    return 0
+
+
+def _show(options: argparse.Namespace) -> int:
+    path = opt.picture(options)
+    scene = opt.load(options)
+    if path is not None:
+        from ..plotting import new_figure
+
+        figure = new_figure()
+        draw_scene(scene, figure.add_subplot())
+        opt.save(figure, path)
+    if options.json:
+        opt.print_json(scene.to_dict())
+    else:
+        print("\n".join(_lines(scene)))
+    return 0
+
+
+def _lines(scene: Scene) -> list[str]:
+    from ..units import describe
+
+    lines = [scene.title, f"source: {scene.source}", f"module: {scene.model_spec().name()}"]
+    for name, table in scene.tables.items():
+        layout = scene.layout.table(name)
+        lines += ["", f"[{name}]" + (f"  {layout.meaning}" if layout else "")]
+        for key, value in table.items():
+            dimension = scene.dimension(f"{name}.{key}")
+            known = layout.key(key) if layout else None
+            if isinstance(value, float) and dimension is not None:
+                text = describe(value, dimension)
+            elif isinstance(value, tuple) and dimension is not None:
+                text = _several(value, dimension)
+            else:
+                text = ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)
+            meaning = f"  ({known.meaning})" if known else ""
+            lines.append(f"  {key} = {text or 'none'}{meaning}")
+    return lines
+
+
+def _several(numbers: tuple[float, ...], dimension: str) -> str:
+    from ..units import DIMENSIONS
+
+    listed = ", ".join(f"{number:.6g}" for number in numbers)
+    return f"[{listed}] {DIMENSIONS[dimension].si}".rstrip()
+
+
+def draw_scene(scene: Scene, ax: Axes) -> Axes:
+    """Draw the linkage of a scene at several crank angles, or the function of a Hill equation.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a ``[links]`` or a ``[function]`` table.
+    ax : Axes
+        Where to draw.
+
+    Returns
+    -------
+    Axes
+        The same axes.
+    """
+    ax.set_title(scene.name, fontsize="medium")
+    if "links" in scene and scene.model["mechanism"] == "four_bar":
+        return _draw_linkage(scene, ax)
+    if "function" in scene:
+        return _draw_function(scene, ax)
+    ax.set_axis_off()
+    return ax
+
+
+def _draw_linkage(scene: Scene, ax: Axes) -> Axes:
+    import numpy as np
+
+    linkage = scene.mechanism()
+    turns = linkage.crank_turns
+    start, stop = (0.0, 2 * np.pi) if turns else (0.45 * np.pi, 0.55 * np.pi)
+    theta = np.linspace(start, stop, 13)[:-1]
+    motion = linkage.motion(theta)
+    pin = linkage.crank * np.exp(1j * theta)
+    joint = linkage.frame + linkage.follower * np.exp(1j * motion.theta4)
+    for i in range(len(theta)):
+        chain = np.array([0.0, pin[i], joint[i], linkage.frame])
+        first = i == 2
+        (line,) = ax.plot(chain.real, chain.imag, "-o", color="0.75", linewidth=0.7, markersize=3)
+        if first:
+            line.set(color="C0", linewidth=1.8, zorder=3)
+    ax.plot([0.0, linkage.frame], [0.0, 0.0], "^", color="black", markersize=7, zorder=4)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+    return ax
+
+
+def _draw_function(scene: Scene, ax: Axes) -> Axes:
+    import numpy as np
+
+    theta = np.linspace(0.0, 2 * np.pi, 361)
+    a, b = scene.get("function.a"), scene.get("function.b")
+    value = sum(
+        a[m] * np.cos(m * theta) + b[m] * np.sin(m * theta) for m in range(len(a))
+    ) * np.ones_like(theta)
+    ax.plot(np.degrees(theta), value)
+    ax.set_xlabel("theta [deg]")
+    ax.set_ylabel("f(theta)")
+    return ax

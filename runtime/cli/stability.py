@@ -1,0 +1,206 @@
+"""``elastolink stability`` and ``elastolink chart``: where the motion is stable."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+from .linkages import speed_of
+
+if TYPE_CHECKING:
+    from ..charts import StabilityChart
+    from ..floquet import FloquetMultipliers
+    from ..scenes import Scene
+
+_POINTS = 201
+
+
+def add(commands: Any) -> None:
+    """Add the two subcommands."""
+    stability = opt.command(
+        commands,
+        "stability",
+        _stability,
+        summary="Floquet multipliers at one crank speed or over a range of them.",
+        example=(
+            "elastolink stability smith_1972_5152_sixteenth_inch --speed '500 rpm'\n"
+            "  elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm"
+        ),
+    )
+    opt.scene_options(stability)
+    stability.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="'500 rpm', or START:STOP:COUNT[UNIT]; default operation.speed, 1 without crank",
+    )
+    chart = opt.command(
+        commands,
+        "chart",
+        _chart,
+        summary="Stability chart over two parameters, with exact and first-order boundaries.",
+        example=(
+            "elastolink chart smith_1972_5152_sixteenth_inch --plot chart.png\n"
+            "  elastolink chart mathieu --x lam2=-0.5:10:400 --y mu=0:4:300 --plot mathieu.svg"
+        ),
+    )
+    opt.scene_options(chart)
+    for axis in ("x", "y"):
+        chart.add_argument(
+            f"--{axis}",
+            metavar="NAME=START:STOP:COUNT[UNIT]",
+            help=f"parameter along {axis}; default from the scene's [chart] and [operation]",
+        )
+
+
+def _stability(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    scene = opt.load(options)
+    speeds = _speeds(options, scene)
+    system = scene.system()
+    from ..floquet import floquet_multipliers
+
+    result = floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
+    return opt.finish(options, result, _multiplier_lines(result, scene))
+
+
+def _speeds(options: argparse.Namespace, scene: Scene) -> list[float]:
+    if scene.model["mechanism"] == "hill" and options.speed is None:
+        return [1.0]
+    if options.speed is not None and ":" in options.speed:
+        speeds = opt.values(options.speed, "frequency", "--speed")
+        if speeds[0] <= 0:
+            raise bad("--speed", repr(options.speed), "positive speeds", "raise the lower end")
+        return speeds
+    return [speed_of(options, scene)]
+
+
+def _multiplier_lines(result: FloquetMultipliers, scene: Scene) -> list[str]:
+    import numpy as np
+
+    speeds = np.atleast_1d(result.speed)
+    multipliers = result.multipliers.reshape(len(speeds), -1)
+    stable = np.atleast_1d(result.stable)
+    if len(speeds) == 1:
+        rows = [
+            (f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}")
+            for value in multipliers[0]
+        ]
+        lines = opt.table(("multiplier", "modulus"), rows)
+        verdict = "stable" if stable[0] else "unstable"
+        return [*lines, "", f"{verdict} at {_crank(float(speeds[0]), scene)}"]
+    lines = [f"{int(stable.sum())} of {len(speeds)} speeds stable; unstable ones:"]
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], (~stable).astype(int), [0]))))
+    for first, last in edges.reshape(-1, 2):
+        ends = _crank(float(speeds[first]), scene), _crank(float(speeds[last - 1]), scene)
+        worst = float(np.abs(multipliers[first:last]).max())
+        lines.append(f"  {ends[0]} to {ends[1]}, largest modulus {worst:.6g}")
+    return lines if len(edges) else [f"all {len(speeds)} speeds stable"]
+
+
+def _crank(speed: float, scene: Scene) -> str:
+    if scene.model["mechanism"] == "hill":
+        return f"{speed:g}"
+    from ..units import describe
+
+    return describe(speed, "frequency")
+
+
+def _chart(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    scene = opt.load(options)
+    system = scene.system()
+    x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
+    if x[0] == y[0]:
+        raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
+    from ..charts import stability_chart
+
+    chart = stability_chart(system, x=x, y=y, marks=_marks(scene, y))
+    return opt.finish(options, chart, _chart_lines(chart, scene))
+
+
+def _marks(scene: Scene, y: tuple[str, list[float]]) -> dict[str, tuple[float, ...]]:
+    """Return the measured follower inertias within the chart, where they lie along y."""
+    measured = scene.get("measured.follower_inertias", ())
+    shown = tuple(value for value in measured if y[1][0] <= value <= y[1][-1])
+    return {"measured follower inertias": shown} if y[0] == "follower_inertia" and shown else {}
+
+
+def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
+    """Return the unstable share, and the ends of each region at the ends of the other axis."""
+    import numpy as np
+
+    nx, ny = len(chart.x), len(chart.y)
+    share = 100.0 * float(np.mean(~chart.stable))
+    lines = [
+        f"{chart.x_name} x {chart.y_name}: {nx} x {ny} points, {share:.3g} % unstable",
+        f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes",
+    ]
+    curves = chart.exact
+    if curves is None:
+        return lines
+    other = chart.y_name if curves.along == chart.x_name else chart.x_name
+    dimensions = scene.layout.parameters
+    values = chart.x if curves.along == chart.x_name else chart.y
+    rows = []
+    for i, region in enumerate(curves.regions):
+        pairs = [sorted((curves.lower[i, j], curves.upper[i, j])) for j in (0, -1)]
+        ends = [end for pair in pairs for end in pair]
+        known = [end for end in ends if math.isfinite(end)]
+        if known and min(known) <= values[-1] and max(known) >= values[0]:
+            rows.append((str(region), *(_end(end, dimensions[curves.along]) for end in ends)))
+    low, high = (_brief(curves.at[i], dimensions[other]) for i in (0, -1))
+    header = ("region", f"from, at {low}", "to", f"from, at {high}", "to")
+    return [*lines, "", f"boundaries along {curves.along}:", *opt.table(header, rows), ""]
+
+
+def _end(value: float, dimension: str) -> str:
+    return _brief(value, dimension) if math.isfinite(value) else "-"
+
+
+def _brief(value: float, dimension: str) -> str:
+    """Return a value with its unit; a crank speed in rpm alone, as in the picture."""
+    from ..units import describe
+
+    text = describe(float(value), dimension)
+    return text.partition("(")[2].rstrip(")") or text
+
+
+def _axis(given: str | None, axis: str, scene: Scene) -> tuple[str, list[float]]:
+    """Return the name and the values of one axis, from the option or from the scene."""
+    known = scene.layout.parameters
+    if given is None:
+        return _default_axis(axis, scene)
+    name, sign, text = given.partition("=")
+    name = name.strip()
+    if name not in known:
+        from ..scenes.validation import nearest
+
+        fix = nearest(name, known, "use one of these")
+        raise bad(f"--{axis}", repr(name), f"a parameter of {sorted(known)}", fix)
+    if not sign:
+        raise bad(f"--{axis}", repr(given), "NAME=START:STOP:COUNT[UNIT]", "add the values")
+    return name, opt.values(text, known[name], f"--{axis}")
+
+
+def _default_axis(axis: str, scene: Scene) -> tuple[str, list[float]]:
+    """Return the axis of ``[chart]``, or of the speed range and the measured inertias."""
+    name = scene.get(f"chart.{axis}", None)
+    ends = scene.get(f"chart.{axis}_range", None)
+    points = scene.get(f"chart.{axis}_points", _POINTS)
+    if name is not None and ends is not None:
+        return name, opt.spaced(ends[0], ends[1], max(points, 2))
+    speeds = scene.get("operation.speed_range", None)
+    if axis == "x" and name in {None, "speed"} and speeds:
+        return "speed", opt.spaced(speeds[0], speeds[1], max(points, 2))
+    inertias = scene.get("measured.follower_inertias", None)
+    if axis == "y" and name in {None, "follower_inertia"} and inertias:
+        return "follower_inertia", opt.spaced(0.9 * min(inertias), 1.1 * max(inertias), points)
+    raise bad(
+        f"--{axis}",
+        f"no chart.{axis}_range in scene {scene.name}",
+        "a parameter and its values",
+        f"give --{axis} NAME=START:STOP:COUNT",
+    )

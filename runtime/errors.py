@@ -1,0 +1,70 @@
+"""Errors and warnings of the toolkit, each saying what is wrong and how to mend it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+class ElastolinkError(Exception):
+    """Base of every error that elastolink raises on purpose."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with an input.
+
+    Attributes
+    ----------
+    where : str
+        The object or key concerned, for example ``links.crank``.
+    found : str
+        What was given.
+    expected : str
+        What would have been accepted.
+    fix : str
+        The likely remedy, in one sentence.
+    """
+
+    where: str
+    found: str
+    expected: str
+    fix: str
+
+    def __str__(self) -> str:
+        """Return the one-line form shown to the user."""
+        return f"{self.where}: found {self.found}; expected {self.expected}; {self.fix}"
+
+
+class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
+    """An input is unusable; every problem with it is listed.
+
+    Parameters
+    ----------
+    *problems : Problem
+        At least one problem.
+    """
+
+    def __init__(self, *problems: Problem) -> None:
+        self.problems = problems
+        super().__init__("\n".join(str(problem) for problem in problems))
+
+
+class SelfCheckFailed(ElastolinkError):  # noqa: N818
+    """A result does not pass its own checks."""
+
+
+class ElastolinkWarning(UserWarning):
+    """Base of every warning that elastolink issues."""
+
+
+class StepTooLongWarning(ElastolinkWarning):
+    """A fixed step is longer than the rule ``h < 18/lambda`` of Smith section 6.2.3.1 allows."""
+
+
+class LinearRangeWarning(ElastolinkWarning):
+    """A deflection left the range in which the linear equations hold."""
+
+
+def bad(where: str, found: object, expected: str, fix: str) -> BadInput:
+    """Return a :class:`BadInput` with one problem."""
+    return BadInput(Problem(where, str(found), expected, fix))

@@ -1,0 +1,19 @@
+"""System families at run time.  A solver accepts a family, never a particular mechanism."""
+
+from __future__ import annotations
+
+from .constrained import Constrained
+from .emitted import array_function
+from .linear_periodic import MATRICES, VECTORS, Array, LinearPeriodic, Term
+from .transcendental import Transcendental
+
+__all__ = [
+    "MATRICES",
+    "VECTORS",
+    "Array",
+    "Constrained",
+    "LinearPeriodic",
+    "Term",
+    "Transcendental",
+    "array_function",
+]

@@ -1,0 +1,124 @@
+"""From an emitted module to what the families are made of: checked parameters, named arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import bad
+from .linear_periodic import Array
+
+Places: TypeAlias = Mapping[str, tuple[tuple[int, int], tuple[tuple[int, int, int], ...]]]
+Values: TypeAlias = Mapping[str, ArrayLike]
+
+
+def check_module(module: ModuleType, family: str, given: Values) -> tuple[str, ...]:
+    """Return the parameter names of a module, having checked its family and that none is missing.
+
+    Parameters
+    ----------
+    module : module
+        Emitted.
+    family : str
+        The family that is wanted.
+    given : mapping
+        Values by name.
+
+    Raises
+    ------
+    BadInput
+        If the family differs or a parameter has no value.
+    """
+    found = getattr(module, "FAMILY", None)
+    if found != family:
+        raise bad(module.__name__, f"family {found}", family, "ask for a model of that family")
+    names = tuple(name for name, _, _ in module.PARAMETERS)
+    missing = sorted(set(names) - set(given))
+    if missing:
+        raise bad("parameters", f"none for {missing}", "a value each", "supply them")
+    return names
+
+
+def parameter_values(module: ModuleType, family: str, given: Values) -> dict[str, Any]:
+    """Return the module's parameters as floats, or as arrays where a sweep gives arrays.
+
+    Raises
+    ------
+    BadInput
+        As :func:`check_module`.
+    """
+    names = check_module(module, family, given)
+    arrays = {name: np.asarray(given[name], dtype=float) for name in names}
+    return {name: value if value.ndim else float(value) for name, value in arrays.items()}
+
+
+def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Array]]:
+    """Return an emitted function of explicit entries as one that returns arrays.
+
+    Parameters
+    ----------
+    module : module
+        Emitted, with ``ARRAYS``.
+    name : str
+        Name of the function; where it is not emitted because all its entries are zero, the
+        arrays are zero.
+
+    Returns
+    -------
+    callable
+        Takes the arguments of the emitted function, which broadcast, and returns the arrays by
+        name, each of shape ``(*batch, rows, columns)``.
+
+    Raises
+    ------
+    BadInput
+        If the module has no such function.
+    """
+    known = getattr(module, "ARRAYS", {})
+    if name not in known:
+        raise bad(
+            module.__name__, f"no function {name} of arrays", f"one of {sorted(known)}", "correct it"
+        )
+    places: Places = known[name]
+    function: Callable[..., object] = getattr(module, name, _nothing)
+
+    def arrays(*arguments: ArrayLike, **named: ArrayLike) -> dict[str, Array]:
+        batch = np.broadcast_shapes(*map(np.shape, arguments), *map(np.shape, named.values()))
+        return stacked(places, function(*arguments, **named), batch)
+
+    return arrays
+
+
+def _nothing(*arguments: object, **named: object) -> tuple[()]:
+    return ()
+
+
+def stacked(places: Places, returned: object, batch: tuple[int, ...] = ()) -> dict[str, Array]:
+    """Return the arrays of an emitted function, entries that it leaves out being zero.
+
+    Parameters
+    ----------
+    places : mapping
+        Array name to shape and to ``(row, column, position in the returned tuple)``.
+    returned : tuple or array
+        What the function returned; each entry broadcasts to ``batch``.
+    batch : tuple of int
+        Shape in front of the arrays' own.
+
+    Returns
+    -------
+    dict of ndarray
+        Shape ``(*batch, rows, columns)`` each.
+    """
+    entries = returned if isinstance(returned, tuple) else (returned,)
+    arrays = {}
+    for name, (shape, filled) in places.items():
+        array: Array = np.zeros((*batch, *shape))
+        for row, column, position in filled:
+            array[..., row, column] = entries[position]
+        arrays[name] = array
+    return arrays

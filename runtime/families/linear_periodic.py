@@ -1,0 +1,210 @@
+"""Linear systems with periodic coefficients, from a quadratic Lagrangian."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+
+Array = NDArray[np.float64]
+MATRICES = ("M", "A", "B", "S", "C", "K", "Kg")
+VECTORS = ("f", "h", "g", "p")
+
+
+@dataclass(frozen=True)
+class Term:
+    """One separated term ``scale * speed**power * function(theta)`` of a linear-periodic system.
+
+    Attributes
+    ----------
+    array : str
+        Which array of the quadratic Lagrangian or of the forcing it belongs to:
+        ``M A B S C K Kg`` (matrices) or ``f h g p`` (vectors).
+    power : int
+        Extra power of the crank speed, beyond the one that the array itself carries.
+    scale : str or None
+        Name of the parameter monomial that multiplies it; None means 1.
+    function : callable or ndarray
+        Array of shape ``(n, n)`` (or ``(n,)``) where the term is constant, else a function of the
+        crank angle: theta ``(nt,)`` [rad] to ``(nt, n, n)`` (or ``(nt, n)``).
+    """
+
+    array: str
+    scale: str | None
+    function: Callable[[Array], Array] | Array
+    power: int = 0
+
+    @property
+    def constant(self) -> bool:
+        """True where the term does not depend on the crank angle."""
+        return not callable(self.function)
+
+    def __call__(self, theta: Array) -> Array:
+        """Evaluate at crank angles ``(nt,)``; a constant term is broadcast, not copied."""
+        if callable(self.function):
+            return self.function(theta)
+        return np.broadcast_to(self.function, (*theta.shape, *self.function.shape))
+
+
+@dataclass(frozen=True)
+class LinearPeriodic:
+    """A linear system with periodic coefficients, from a quadratic Lagrangian.
+
+    With the prescribed crank angle theta(t), td = d theta/dt and tdd = d2 theta/dt2,
+
+        L2 = 1/2 qd^T M qd + td qd^T A q + 1/2 td^2 q^T B q + 1/2 tdd q^T S q
+             - 1/2 q^T (K + Kg) q
+
+    and generalised forces ``-C qd + td^2 f + td h + tdd g + p``.  The equation of motion is
+
+        M qdd + (C + td G) qd + (K + Kg + td^2 H + tdd E) q = td^2 f + td h + tdd g + p,
+        G = M' + A - A^T,  H = A' - B,  E = A - S,  ' = d/d theta.
+
+    At constant speed w, with theta as independent variable and p = M q' + A q,
+
+        q' = M^-1 (p - A q)
+        p' = A^T q' + B q - (K + Kg) q / w^2 - C q' / w + f + h / w + p_ext / w^2.
+
+    Attributes
+    ----------
+    size : int
+        Number n of degrees of freedom.
+    terms : tuple of Term
+        The separated terms.
+    parameters : mapping
+        Values of the named parameters, in SI units.
+    scales : callable
+        From parameter values (floats or arrays that broadcast) to the values of the monomials
+        that the terms name.
+    period : float
+        Period of the coefficients in theta [rad].
+    labels : tuple of str
+        One name per degree of freedom.
+    reference_length : float
+        Length [m] that turns the coordinates into deflections; 1 where they are lengths.
+    shape : callable or None
+        Mode shapes for plotting: x/length ``(nx,)`` to ``(nx, n)``.
+    provenance : mapping
+        Scene, module and options that the system was made from.
+    """
+
+    size: int
+    terms: tuple[Term, ...]
+    parameters: Mapping[str, float]
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]]
+    period: float = 2.0 * np.pi
+    labels: tuple[str, ...] = ()
+    reference_length: float = 1.0
+    shape: Callable[[Array], Array] | None = None
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check that every term names a known array and has the system's size."""
+        for term in self.terms:
+            if term.array not in MATRICES + VECTORS:
+                raise bad(
+                    "Term.array", repr(term.array), f"one of {MATRICES + VECTORS}", "rename it"
+                )
+            sample = term(np.zeros(1))
+            expected = (1,) + (self.size,) * (2 if term.array in MATRICES else 1)
+            if sample.shape != expected:
+                raise bad(
+                    f"term {term.array} ({term.scale})",
+                    f"shape {sample.shape} at one angle",
+                    f"{expected}",
+                    "make the function return one array per angle",
+                )
+        if not self.labels:
+            object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
+
+    def has(self, array: str) -> bool:
+        """Return True where some term belongs to ``array``."""
+        return any(term.array == array for term in self.terms)
+
+    def is_constant(self, array: str) -> bool:
+        """Return True where no term of ``array`` depends on the crank angle."""
+        return all(term.constant for term in self.terms if term.array == array)
+
+    def scale_values(self, **changes: ArrayLike) -> Mapping[str, Array]:
+        """Return the parameter monomials at the system's parameters, some of them changed.
+
+        Parameters
+        ----------
+        **changes : float or array_like
+            New values by parameter name; arrays broadcast.
+
+        Raises
+        ------
+        BadInput
+            If a name is not one of the system's parameters.
+        """
+        unknown = sorted(set(changes) - set(self.parameters))
+        if unknown:
+            raise bad(
+                "parameters", unknown, f"some of {sorted(self.parameters)}", "correct the name"
+            )
+        return self.scales({**self.parameters, **changes})
+
+    def array(self, name: str, theta: ArrayLike, speed: float = 1.0, **changes: float) -> Array:
+        """Evaluate one array at crank angles.
+
+        Parameters
+        ----------
+        name : str
+            ``M A B S C K Kg f h g p``.
+        theta : array_like
+            Crank angles [rad], shape ``(nt,)``.
+        speed : float
+            Crank speed [rad/s]; matters only for terms with an extra power of it.
+        **changes : float
+            Parameter values that replace the system's own.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(nt, n, n)``, or ``(nt, n)`` for a vector; zeros where no term belongs to it.
+        """
+        angles = np.atleast_1d(np.asarray(theta, dtype=float))
+        shape = (self.size,) * (2 if name in MATRICES else 1)
+        total = np.zeros((*angles.shape, *shape))
+        scales = self.scale_values(**changes)
+        for term in self.terms:
+            if term.array == name:
+                factor = 1.0 if term.scale is None else scales[term.scale]
+                total = total + factor * speed**term.power * term(angles)
+        return total
+
+    def with_parameters(self, **changes: float) -> LinearPeriodic:
+        """Return the same system with other parameter values."""
+        self.scale_values(**changes)
+        return replace(self, parameters={**self.parameters, **changes})
+
+    def with_terms(self, *terms: Term, scales: Mapping[str, float] | None = None) -> LinearPeriodic:
+        """Return the system with more terms, for example modal damping.
+
+        Parameters
+        ----------
+        *terms : Term
+            Terms to add.
+        scales : mapping, optional
+            Values of monomials that the new terms name and the system does not know; they become
+            parameters of the new system.
+        """
+        extra = dict(scales or {})
+        old = self.scales
+
+        def merged(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
+            own = {name: values[name] for name in self.parameters}
+            new = {name: np.asarray(values[name], dtype=float) for name in extra}
+            return {**old(own), **new}
+
+        return replace(
+            self,
+            terms=self.terms + terms,
+            parameters={**self.parameters, **extra},
+            scales=merged if extra else old,
+        )

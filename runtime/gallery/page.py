@@ -1,0 +1,107 @@
+"""The page of the gallery: one HTML file, its pictures beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+
+from .records import Quoted, Shown, Table
+
+_CSS = """
+body { font: 15px/1.5 Georgia, serif; color: #222; max-width: 62rem; margin: 2rem auto;
+  padding: 0 1rem; }
+h1, h2, h3, th, .note { font-family: Helvetica, Arial, sans-serif; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.15rem; margin-top: 3rem; }
+h3 { font-size: 1rem; }
+img { max-width: 100%; height: auto; display: block; }
+table { border-collapse: collapse; font-size: 0.85rem; margin: 0.8rem 0; }
+th, td { border-bottom: 1px solid #ddd; padding: 0.25rem 0.6rem; text-align: left;
+  vertical-align: top; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.agrees { color: #2c6b37; } .known { color: #a3480f; } .differs { color: #b00020; font-weight: bold; }
+.note { font-size: 0.85rem; color: #444; }
+""".strip()
+
+_HEADER = ("what the text says", "section", "printed", "computed", "deviation", "tolerance", "verdict")
+
+
+def page(title: str, shown: Sequence[Shown]) -> str:
+    """Return the whole page.
+
+    Parameters
+    ----------
+    title : str
+        Heading.
+    shown : sequence of Shown
+        The figures in order.
+    """
+    rows = [row for item in shown for row in item.drawn.quoted]
+    agree = sum(row.agrees for row in rows)
+    known = sum(bool(row.differs) and not row.agrees for row in rows)
+    parts = [
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+        f"<title>{escape(title)}</title>\n<style>\n{_CSS}\n</style>\n</head>\n<body>",
+        f"<h1>{escape(title)}</h1>",
+        f"<p>{len(shown)} figures redrawn. Of {len(rows)} quoted numbers and statements, {agree} "
+        f"agree with what is computed here, {known} are known to differ for the reason given, and "
+        f"{len(rows) - agree - known} differ without one.</p>",
+        _summary(shown),
+        *(_figure(item) for item in shown),
+        "</body>\n</html>\n",
+    ]
+    return "\n".join(parts)
+
+
+def _summary(shown: Sequence[Shown]) -> str:
+    lines = ['<table>\n<tr><th>figure</th><th class="left">title</th><th>quoted</th>']
+    lines.append("<th>agree</th></tr>")
+    for item in shown:
+        quoted = item.drawn.quoted
+        agree = sum(row.agrees for row in quoted)
+        lines.append(
+            f'<tr><td><a href="#{item.entry.stem}">{escape(item.entry.label)}</a></td>'
+            f"<td>{escape(item.entry.title)}</td>"
+            f'<td class="number">{len(quoted)}</td><td class="number">{agree}</td></tr>'
+        )
+    return "\n".join([*lines, "</table>"])
+
+
+def _figure(item: Shown) -> str:
+    entry = item.entry
+    heading = f"{entry.document.capitalize()}, {entry.label}: {entry.title}"
+    lines = [
+        f'<h2 id="{entry.stem}">{escape(heading)}</h2>',
+        f'<p><img src="{entry.stem}.png" alt="{escape(entry.title, quote=True)}"></p>',
+    ]
+    lines += [f'<p class="note">{escape(note)}</p>' for note in item.drawn.notes]
+    if item.drawn.quoted:
+        lines.append(_quoted(item.drawn.quoted))
+    lines += [_table(table) for table in item.drawn.tables]
+    return "\n".join(lines)
+
+
+def _quoted(rows: Sequence[Quoted]) -> str:
+    lines = ["<table>\n<tr>" + "".join(f"<th>{name}</th>" for name in _HEADER) + "</tr>"]
+    for row in rows:
+        sign = "" if row.relation == "=" else f"{escape(row.relation)} "
+        unit = f" {escape(row.unit)}" if row.unit else ""
+        kind = "agrees" if row.agrees else "known" if row.differs else "differs"
+        remark = f": {escape(row.differs)}" if row.differs else ""
+        cells = [
+            f"<td>{escape(row.number)}</td><td>{escape(row.where)}</td>",
+            f'<td class="number">{sign}{row.printed:.4g}{unit}</td>',
+            f'<td class="number">{row.computed:.4g}{unit}</td>',
+            f'<td class="number">{row.deviation:+.2g}{unit}</td>',
+            f"<td>{row.tolerance:.2g}{unit} ({escape(row.meaning)})</td>",
+            f'<td class="{kind}">{row.verdict}{remark}</td>',
+        ]
+        lines.append("<tr>" + "".join(cells) + "</tr>")
+    return "\n".join([*lines, "</table>"])
+
+
+def _table(table: Table) -> str:
+    lines = [f"<h3>{escape(table.title)}</h3>", "<table>"]
+    lines.append("<tr>" + "".join(f"<th>{escape(name)}</th>" for name in table.header) + "</tr>")
+    for row in table.rows:
+        lines.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>")
+    return "\n".join([*lines, "</table>"])

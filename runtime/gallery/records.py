@@ -1,0 +1,272 @@
+"""Records of the gallery: a quoted number, a table, what a figure gives, and the whole of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+from ..results import Check, Result
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Relation = Literal["=", "<", ">"]
+
+
+@dataclass(frozen=True)
+class Quoted:
+    """One number that a document quotes, beside the one that is computed here.
+
+    Attributes
+    ----------
+    number : str
+        What is quoted, in a few words.
+    printed : float
+        The value in the text; for words such as "an order of magnitude" the value they stand for.
+    computed : float
+        The value found here.
+    tolerance : float
+        Largest deviation at which the two agree, in the same unit.
+    meaning : str
+        Where the tolerance comes from, or how words were read as a number.
+    where : str
+        Section of the document.
+    relation : {"=", "<", ">"}
+        Whether the text says that the value is ``printed``, is below it, or is above it.
+    unit : str
+        Unit of the values; empty for a ratio.
+    differs : str
+        Why the two are known to differ; empty where they should agree.
+    """
+
+    number: str
+    printed: float
+    computed: float
+    tolerance: float
+    meaning: str
+    where: str
+    relation: Relation = "="
+    unit: str = ""
+    differs: str = ""
+
+    @property
+    def deviation(self) -> float:
+        """Computed less printed; for an inequality, by how much it is missed."""
+        gap = self.computed - self.printed
+        if self.relation == "<":
+            return max(gap, 0.0)
+        if self.relation == ">":
+            return min(gap, 0.0)
+        return gap
+
+    @property
+    def agrees(self) -> bool:
+        """True where the deviation is within the tolerance."""
+        return bool(abs(self.deviation) <= self.tolerance)
+
+    @property
+    def share(self) -> float:
+        """Size of the deviation over the tolerance; infinite where none is allowed."""
+        if self.deviation == 0.0:
+            return 0.0
+        return abs(self.deviation) / self.tolerance if self.tolerance > 0.0 else float("inf")
+
+    @property
+    def check(self) -> Check:
+        """The self-check: agreement, or, where a difference is known, that it is still there."""
+        if self.differs:
+            return Check(float(self.agrees), 0.5)
+        return Check(abs(self.deviation), self.tolerance)
+
+    @property
+    def verdict(self) -> str:
+        """The outcome in a word or two."""
+        if self.agrees:
+            return "agrees, against the remark" if self.differs else "agrees"
+        return "known to differ" if self.differs else "DIFFERS"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the row as plain numbers and texts."""
+        return {
+            "number": self.number,
+            "where": self.where,
+            "relation": self.relation,
+            "printed": float(self.printed),
+            "computed": float(self.computed),
+            "deviation": float(self.deviation),
+            "tolerance": float(self.tolerance),
+            "meaning": self.meaning,
+            "unit": self.unit,
+            "agrees": self.agrees,
+            "differs": self.differs,
+        }
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of finished texts.
+
+    Attributes
+    ----------
+    title : str
+        One line.
+    header : tuple of str
+        Column headings.
+    rows : tuple of tuple of str
+        As many cells each as the header has.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What drawing a figure gives beside the picture.
+
+    Attributes
+    ----------
+    quoted : tuple of Quoted
+        Numbers of the text that the figure bears on.
+    notes : tuple of str
+        What the document leaves open and what was chosen for it.
+    tables : tuple of Table
+        Numbers behind the picture.
+    """
+
+    quoted: tuple[Quoted, ...] = ()
+    notes: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+
+@dataclass(frozen=True)
+class FigureEntry:
+    """One figure or table of a document.
+
+    Attributes
+    ----------
+    document : str
+        Short name of the document.
+    label : str
+        The figure's number there, for example ``27(c)``; a name for a table of our own.
+    title : str
+        What it shows.
+    draw : callable
+        From the axes, in the order of rows and columns, to a :class:`Drawn`.
+    panels : tuple of int
+        Rows and columns of axes.
+    size : tuple of float
+        Width and height of the picture [in].
+    """
+
+    document: str
+    label: str
+    title: str
+    draw: Callable[[Sequence[Axes]], Drawn]
+    panels: tuple[int, int] = (1, 1)
+    size: tuple[float, float] = (7.2, 4.6)
+
+    @property
+    def stem(self) -> str:
+        """Name of the picture's file, without its ending."""
+        plain = "".join(c for c in self.label if c.isalnum() or c == "_")
+        digits = len(plain) - len(plain.lstrip("0123456789"))
+        return f"{self.document}_{plain[:digits].zfill(2) if digits else ''}{plain[digits:]}"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A figure that was drawn.
+
+    Attributes
+    ----------
+    entry : FigureEntry
+        Which one.
+    drawn : Drawn
+        Quoted numbers, notes and tables.
+    """
+
+    entry: FigureEntry
+    drawn: Drawn
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gallery(Result):
+    """Figures that were redrawn, and every number of the text beside the computed one.
+
+    The ``error`` is the largest deviation over its tolerance among the numbers that should agree.
+
+    Attributes
+    ----------
+    shown : tuple of Shown
+        The figures in order.
+    folder : str
+        Where the pictures and ``index.html`` were written; empty where nothing was.
+    files : tuple of str
+        Names of the files in that folder.
+    """
+
+    shown: tuple[Shown, ...] = field(default=(), repr=False)
+    folder: str = ""
+    files: tuple[str, ...] = ()
+
+    @property
+    def rows(self) -> tuple[tuple[FigureEntry, Quoted], ...]:
+        """All quoted numbers, each with its figure."""
+        return tuple((item.entry, row) for item in self.shown for row in item.drawn.quoted)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the checks and all rows, ready for JSON."""
+        out = super().to_dict()
+        out["figures"] = [
+            {
+                "document": item.entry.document,
+                "figure": item.entry.label,
+                "title": item.entry.title,
+                "notes": list(item.drawn.notes),
+                "quoted": [row.to_dict() for row in item.drawn.quoted],
+            }
+            for item in self.shown
+        ]
+        return out
+
+    def lines(self) -> list[str]:
+        """Return the rows as lines of text, one for each quoted number."""
+        out = []
+        for item in self.shown:
+            out.append(f"{item.entry.document} {item.entry.label}: {item.entry.title}")
+            for row in item.drawn.quoted:
+                sign = "" if row.relation == "=" else f"{row.relation} "
+                unit = f" {row.unit}" if row.unit else ""
+                out.append(
+                    f"  {row.number}: {sign}{row.printed:.4g}{unit} printed, "
+                    f"{row.computed:.4g} computed: {row.verdict}"
+                )
+        if self.folder:
+            out += ["", f"{len(self.files)} files in {self.folder}, first index.html"]
+        return out
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the deviation of each quoted number over its tolerance and return the axes."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        rows = self.rows
+        places = range(len(rows))
+        sizes = [row.share for _, row in rows]
+        known = [bool(row.differs) for _, row in rows]
+        for flag, colour, label in (
+            (False, "#1f5a8c", "should agree"),
+            (True, "#b5541c", "known to differ"),
+        ):
+            chosen = [i for i in places if known[i] is flag]
+            ax.plot([sizes[i] for i in chosen], chosen, "o", color=colour, ms=4, label=label)
+        ax.axvline(1.0, color="0.5", lw=0.8)
+        ax.set_xscale("symlog", linthresh=0.1)
+        ax.set_yticks(list(places), [f"{entry.label}" for entry, _ in rows], fontsize=6)
+        ax.invert_yaxis()
+        ax.set_xlabel("deviation over tolerance")
+        ax.legend(loc="best")
+        return ax

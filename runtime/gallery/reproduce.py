@@ -1,0 +1,174 @@
+"""Redraw the figures of the documents and check the numbers that they quote."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import bad
+from ..progress import bar
+from ..results import Check
+from .records import Drawn, FigureEntry, Gallery, Shown
+from .registry import DOCUMENTS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_DPI = 150
+
+
+def figures(document: str | None = None, figure: str | None = None) -> tuple[FigureEntry, ...]:
+    """Return the figures that a document's name and a label choose.
+
+    Parameters
+    ----------
+    document : str, optional
+        Short name; all documents by default.
+    figure : str, optional
+        A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its
+        parts.  All figures by default.
+
+    Raises
+    ------
+    BadInput
+        If there is no such document or figure.
+    """
+    if document is not None and document not in DOCUMENTS:
+        raise bad("document", repr(document), f"one of {sorted(DOCUMENTS)}", "correct the name")
+    names = list(DOCUMENTS) if document is None else [document]
+    entries = tuple(entry for name in names for entry in DOCUMENTS[name])
+    if figure is None:
+        return entries
+    wanted = _plain(figure)
+    exact = tuple(entry for entry in entries if _plain(entry.label) == wanted)
+    parts = tuple(entry for entry in entries if _number(entry.label) == wanted)
+    if not (exact or parts):
+        labels = ", ".join(entry.label for entry in entries)
+        raise bad("figure", repr(figure), f"one of {labels}", "correct the label")
+    return exact or parts
+
+
+def reproduce(
+    document: str | None = None,
+    figure: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    progress: bool = False,
+) -> Gallery:
+    """Redraw figures and compare every number that the text quotes with the computed one.
+
+    Parameters
+    ----------
+    document : str, optional
+        Short name of a document; all of them by default.
+    figure : str, optional
+        One figure, see :func:`figures`.
+    out : path, optional
+        Folder for the pictures (PNG) and ``index.html``: all appear, or none.  The same input
+        gives the same bytes.  By default nothing is written.
+    progress : bool
+        Whether to show a progress bar.
+
+    Returns
+    -------
+    Gallery
+        One check per quoted number: agreement, or, for a number known to differ, that it still
+        does.
+
+    Raises
+    ------
+    BadInput
+        If there is no such document or figure, or the folder cannot be written.
+    """
+    chosen = figures(document, figure)
+    shown, files = [], {}
+    with bar(progress, len(chosen)) as tick:
+        for done, entry in enumerate(chosen, start=1):
+            drawn, picture = render(entry, picture=out is not None)
+            shown.append(Shown(entry, drawn))
+            if picture is not None:
+                files[f"{entry.stem}.png"] = picture
+            if tick is not None:
+                tick(done)
+    if out is not None:
+        from .page import page
+        from .writing import write_together
+
+        files = {"index.html": page(_title(chosen), shown).encode(), **files}
+        write_together(Path(out), files)
+    return _gallery(shown, "" if out is None else str(out), tuple(files))
+
+
+def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Drawn, bytes | None]:
+    """Draw one figure.
+
+    Parameters
+    ----------
+    entry : FigureEntry
+        Which one.
+    picture : bool
+        Whether the picture is wanted, not the numbers alone.
+
+    Returns
+    -------
+    tuple
+        The numbers, and the PNG file's bytes or None.
+    """
+    import matplotlib as mpl
+
+    from ..plotting import new_figure
+    from .style import SETTINGS
+
+    with mpl.rc_context():
+        # The user's own settings must not change the pictures.
+        mpl.rcdefaults()
+        mpl.rcParams.update(SETTINGS)
+        canvas = new_figure(*entry.size)
+        axes = canvas.subplots(*entry.panels, squeeze=False)
+        drawn = entry.draw(list(np.ravel(axes)))
+        return drawn, _png(canvas) if picture else None
+
+
+def _png(canvas: Figure) -> bytes:
+    buffer = io.BytesIO()
+    canvas.savefig(buffer, format="png", dpi=_DPI, metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gallery:
+    checks: dict[str, Check] = {}
+    worst = 0.0
+    for item in shown:
+        for row in item.drawn.quoted:
+            name = f"{item.entry.document} {item.entry.label}: {row.number}"
+            checks[name if not row.differs else f"{name} (known to differ)"] = row.check
+            if not row.differs:
+                worst = max(worst, row.share)
+    return Gallery(
+        method="figures redrawn from built-in scenes",
+        error=worst,
+        error_norm="largest deviation of a quoted number over its tolerance",
+        checks=checks,
+        shown=tuple(shown),
+        folder=folder,
+        files=files,
+    )
+
+
+def _title(chosen: Sequence[FigureEntry]) -> str:
+    names = sorted({entry.document.capitalize() for entry in chosen})
+    return f"Figures of {', '.join(names)}, redrawn and checked"
+
+
+def _plain(label: str) -> str:
+    return "".join(c for c in label.lower() if c.isalnum() or c == "_")
+
+
+def _number(label: str) -> str:
+    plain = _plain(label)
+    return plain.rstrip("abcdefghijklmnopqrstuvwxyz") if plain[:1].isdigit() else plain

@@ -1,0 +1,199 @@
+"""Smith's linkages and rigs as the gallery uses them: end-load functions, Hill equations, units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..families import LinearPeriodic
+from ..hill_form import HillForm, hill_form
+from ..hill_matrix import hill_boundaries
+from ..mechanisms import FourBar
+from ..periodic import PeriodicFunction
+from ..scenes import load_scene
+
+Array = NDArray[np.float64]
+
+RPM = pi / 30.0
+# 1 lbf in s^2 in kg m^2, from the exact pound, standard gravity and the exact inch.
+LBF_IN_S2 = 0.45359237 * 9.80665 * 0.0254
+PROPORTIONS = {
+    "(2,1,2,2)": "smith_1972_2122",
+    "(4,1,4,4)": "smith_1972_4144",
+    "(5,1,5,2)": "smith_1972_5152_sixteenth_inch",
+    "(10,1,10,4)": "smith_1972_101104_sixteenth_inch",
+    "(54,0.4,54,3)": "smith_1972_54_04_54_3",
+}
+EQUATIONS = ("reduced", "printed", "complete")
+
+
+@dataclass(frozen=True)
+class EndLoad:
+    """Functions of the coupler equation at crank angles; every array has their shape.
+
+    Attributes
+    ----------
+    phi, f1, f2, f3 : ndarray
+        As defined under Smith (6.17).
+    cos23 : ndarray
+        ``cos(theta2 - theta3)``, the shape of the tension that (6.17) leaves out.
+    """
+
+    phi: Array
+    f1: Array
+    f2: Array
+    f3: Array
+    cos23: Array
+
+
+def end_load(linkage: FourBar, theta: ArrayLike) -> EndLoad:
+    """Return the functions phi, f1, f2, f3 of Smith (6.17).
+
+    Parameters
+    ----------
+    linkage : FourBar
+        Lengths in any one unit.
+    theta : array_like
+        Crank angles [rad].
+    """
+    motion = linkage.motion(theta)
+    between = motion.theta3 - motion.theta4
+    crank = motion.theta2 - motion.theta3
+    return EndLoad(
+        phi=motion.omega3**2,
+        f1=-motion.alpha3 / np.tan(between),
+        f2=np.sin(crank) / np.tan(between),
+        f3=-motion.alpha4 / np.sin(between),
+        cos23=np.cos(crank),
+    )
+
+
+def linkage_of(proportions: str) -> FourBar:
+    """Return the linkage that the thesis names by its proportions."""
+    return load_scene(PROPORTIONS[proportions]).mechanism()
+
+
+@lru_cache(maxsize=8)
+def f3_series(proportions: str) -> PeriodicFunction:
+    """Return the Fourier series of f3, Smith (6.17), for a linkage named by its proportions."""
+    linkage = linkage_of(proportions)
+    return PeriodicFunction.from_callable(lambda theta: end_load(linkage, theta).f3)
+
+
+@dataclass(frozen=True)
+class Rig:
+    """One linkage and coupler of chapter 9.
+
+    Attributes
+    ----------
+    scene : str
+        Name of the built-in scene.
+    linkage : str
+        Proportions, as the thesis writes them.
+    thickness : str
+        Of the coupler, likewise.
+    figure : str
+        The stability chart's number.
+    """
+
+    scene: str
+    linkage: str
+    thickness: str
+    figure: str
+
+    @property
+    def name(self) -> str:
+        """Linkage and coupler in a few words."""
+        return f"{self.linkage}, {self.thickness} in"
+
+    def get(self, key: str) -> object:
+        """Return a value of the scene."""
+        return load_scene(self.scene).get(key)
+
+    @property
+    def frequency(self) -> float:
+        """Natural frequency of the coupler [rad/s]."""
+        return float(load_scene(self.scene)["coupler"]["natural_frequency"])
+
+    @property
+    def inertias(self) -> Array:
+        """The eight measured follower inertias [kg m^2]."""
+        return np.array(load_scene(self.scene).get("measured.follower_inertias"))
+
+    def system(self, equation: str, modes: int = 1) -> LinearPeriodic:
+        """Return the coupler's vibration by one of the :data:`EQUATIONS`."""
+        return _system(self.scene, equation, modes)
+
+    def form(self, equation: str) -> HillForm:
+        """Return the first mode's Hill equation."""
+        return _form(self.scene, equation)
+
+    def function(self, equation: str, inertia: float) -> PeriodicFunction:
+        """Return the periodic coefficient at a follower inertia [kg m^2]."""
+        return self.form(equation).function(1.0, follower_inertia=inertia)
+
+    def ends(self, equation: str, inertia: ArrayLike, regions: tuple[int, ...]) -> Array:
+        """Return the crank speeds that bound unstable regions of the first mode.
+
+        Parameters
+        ----------
+        equation : str
+            One of :data:`EQUATIONS`.
+        inertia : array_like
+            Follower inertias [kg m^2], shape ``(k,)``.
+        regions : tuple of int
+            Region n starts at the speed 2 Omega / n.
+
+        Returns
+        -------
+        ndarray, shape (2, len(regions), k)
+            Lower and upper speed [rad/s]; infinite where lambda^2 would be negative.
+        """
+        values = np.atleast_1d(np.asarray(inertia, dtype=float))
+        if equation == "reduced":
+            # Its coefficient is proportional to the inertia.
+            found = hill_boundaries(self.function(equation, 1.0), values, regions)
+            lam2 = np.stack([found.upper, found.lower])
+        else:
+            each = [hill_boundaries(self.function(equation, v), 1.0, regions) for v in values]
+            upper = np.stack([one.upper for one in each], axis=-1)
+            lam2 = np.stack([upper, np.stack([one.lower for one in each], axis=-1)])
+        positive = lam2 > 0.0
+        roots = np.sqrt(np.where(positive, lam2, 1.0))
+        return np.asarray(np.where(positive, self.frequency / roots, np.inf))
+
+
+RIGS = tuple(
+    Rig(f"smith_1972_{plain}_{inch}_inch", linkage, thickness, figure)
+    for plain, linkage, first in (("5152", "(5,1,5,2)", 82), ("101104", "(10,1,10,4)", 85))
+    for figure, inch, thickness in (
+        (str(first), "thirtysecond", "1/32"),
+        (str(first + 1), "threesixtyfourths", "3/64"),
+        (str(first + 2), "sixteenth", "1/16"),
+    )
+)
+RIG: Mapping[str, Rig] = {rig.figure: rig for rig in RIGS}
+
+
+@lru_cache(maxsize=64)
+def _system(scene: str, equation: str, modes: int) -> LinearPeriodic:
+    return load_scene(
+        scene, overrides={"model.formulation": equation, "model.modes": modes}
+    ).system()
+
+
+@lru_cache(maxsize=64)
+def _form(scene: str, equation: str) -> HillForm:
+    return hill_form(_system(scene, equation, 1))
+
+
+def region_name(n: int) -> str:
+    """Return the speed at which region n starts, as the thesis writes it."""
+    if n == 2:
+        return "Ω"
+    return f"Ω/{n // 2}" if n % 2 == 0 else f"2Ω/{n}"

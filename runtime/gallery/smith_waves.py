@@ -1,0 +1,195 @@
+"""Smith's Figs. 45 and 47 to 51: mode shapes of the calibration, wave-forms of the coupler."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import LinearRangeWarning
+from ..families import LinearPeriodic
+from ..hill import discriminant
+from ..scenes import load_scene
+from ..simulation import simulate
+from .records import Drawn, Quoted
+from .smith_linkages import RIG, Array
+from .style import COLOURS, crank_axis, legend_below
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_RIG = RIG["84"]
+# Between the least and the greatest logarithmic decrement measured at 1/16 in (section 9.5.5).
+_DECREMENT = 0.075
+_NOTE = (
+    "Which coupler and which follower inertia is not said: the 1/16 in coupler and the least "
+    f"inertia are taken. Periodic response with viscous damping of logarithmic decrement {_DECREMENT:g} "
+    "at rest, the middle of the range measured for this coupler; the deflection is that of the "
+    "middle, positive towards +y of the coupler's axes."
+)
+
+
+@lru_cache(maxsize=8)
+def _system(equation: str, damped: bool) -> LinearPeriodic:
+    ratio = _DECREMENT / (2 * pi) if damped else 0.0
+    scene = load_scene(
+        _RIG.scene,
+        overrides={"model.formulation": equation, "coupler.damping_ratio": ratio},
+    )
+    return scene.system()
+
+
+def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Array]:
+    """Return crank angles and the first mode's periodic motion at them, by shooting.
+
+    The end of one turn depends linearly on its start, so that three turns fix the periodic start.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        One mode, damped and forced.
+    speed : float
+        Crank speed [rad/s].
+    """
+    size = 1e-3
+
+    def end(q: float, qd: float) -> Array:
+        run = _quiet(system, speed, (q, qd))
+        return np.array([run[1][-1], run[2][-1] / speed])
+
+    rest = end(0.0, 0.0)
+    columns = [(end(*start) - rest) / size for start in ((size, 0.0), (0.0, size * speed))]
+    start = np.linalg.solve(np.eye(2) - np.array(columns).T, rest)
+    theta, q, _ = _quiet(system, speed, (float(start[0]), float(start[1] * speed)))
+    return theta, q
+
+
+def _quiet(
+    system: LinearPeriodic, speed: float, start: tuple[float, float]
+) -> tuple[Array, Array, Array]:
+    with warnings.catch_warnings():
+        # Resonant amplitudes may pass the linear range; the figure's own note says so.
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        run = simulate(system, speed, 1.0, initial=start, samples=720)
+    return run.theta, run.q[:, 0], run.qd[:, 0]
+
+
+def wave_figure(divisor: float) -> Callable[[Sequence[Axes]], Drawn]:
+    """Return the function that draws the wave-form at the speed Omega/divisor."""
+
+    def draw(axes: Sequence[Axes]) -> Drawn:
+        ax = axes[0]
+        speed = _RIG.frequency / divisor
+        length = 1e3 * _system("complete", True).reference_length
+        waves = {}
+        for equation, label, colour in (
+            ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
+            ("complete", "complete equation", COLOURS[1]),
+        ):
+            theta, q = periodic_response(_system(equation, True), speed)
+            waves[equation] = q
+            ax.plot(np.degrees(theta), length * q, color=colour, label=f"{label}, damped")
+        if divisor != round(divisor):
+            run = simulate(_system("reduced", False), speed, 1.0, samples=720)
+            ax.plot(
+                np.degrees(run.theta),
+                length * run.q[:, 0],
+                "--",
+                color=COLOURS[4],
+                label="(6.18), undamped, from rest",
+            )
+        crank_axis(ax)
+        ax.set_ylabel("deflection of the middle [mm]")
+        legend_below([ax], columns=3)
+        return Drawn(tuple(_rows(divisor, speed, waves)), (_NOTE, *_WAVE_NOTES.get(divisor, ())))
+
+    return draw
+
+
+_WAVE_NOTES = {
+    3.0: (
+        "The list of figures and the captions give Omega/3 for Fig. 49 and Omega/4 for Fig. 50; "
+        "section 9.5.2 speaks of a quarter of the frequency in Fig. 49.",
+    ),
+    4.0: (
+        "Section 9.5.2 calls Fig. 49 the one at a quarter of the frequency, and this one the next "
+        "resonant speed.",
+    ),
+    4.7: (
+        "The undamped curve starts from rest: a periodic one would hold whole numbers of "
+        "vibrations alone.",
+    ),
+}
+
+
+def _rows(divisor: float, speed: float, waves: dict[str, Array]) -> list[Quoted]:
+    if divisor == round(divisor):
+        return [
+            Quoted(
+                f"largest harmonic above the second, {name} equation",
+                divisor,
+                float(_fast_harmonic(q)),
+                0.0,
+                "exact: resonance at Omega/n has n vibrations in a cycle",
+                "9.5.2",
+            )
+            for name, q in waves.items()
+        ]
+    return [
+        Quoted(
+            f"vibrations in one crank cycle, {name} equation",
+            divisor,
+            _vibrations(name, speed),
+            0.05,
+            "half of the last digit",
+            "9.5.2",
+        )
+        for name in waves
+    ]
+
+
+def _fast_harmonic(q: Array) -> int:
+    sizes = np.abs(np.fft.rfft(q[:-1]))
+    return 3 + int(np.argmax(sizes[3:24]))
+
+
+def _vibrations(equation: str, speed: float) -> float:
+    """Return the undamped characteristic exponent: free vibrations in one crank cycle."""
+    f = _RIG.form(equation).function(speed)
+    lam2 = (_RIG.frequency / speed) ** 2
+    half = float(discriminant(f, lam2, 1.0).value)
+    part = float(np.arccos(half)) / (2 * pi)
+    # The half trace fixes it up to sign and whole numbers; the mean stiffness says which.
+    near = float(np.sqrt(lam2 + f.mean))
+    candidates = [whole + sign * part for whole in range(int(near) + 3) for sign in (-1, 1)]
+    return min(candidates, key=lambda value: abs(value - near))
+
+
+def figure_45(axes: Sequence[Axes]) -> Drawn:
+    """Draw the sine and the shape under a central load over half the coupler."""
+    x = np.linspace(0.0, 0.5, 251)
+    sine, load = np.sin(pi * x), 3 * x - 4 * x**3
+    ax = axes[0]
+    ax.plot(x, sine, color=COLOURS[0], label=r"$\sin(\pi x/l)$")
+    ax.plot(x, load, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
+    ax.set_xlim(0.0, 0.5)
+    ax.set_xlabel("x/l")
+    ax.set_ylabel("y")
+    legend_below([ax])
+    at = 0.1
+    gap = 100.0 * (1.0 - (3 * at - 4 * at**3) / np.sin(pi * at))
+    row = Quoted(
+        "difference of the shapes at the gauges, x/l = 0.1",
+        5.0,
+        float(gap),
+        0.0,
+        "'less than 5 %' of the sine, the greater",
+        "9.4.3",
+        relation="<",
+        unit="%",
+    )
+    return Drawn((row,))

@@ -1,0 +1,97 @@
+"""A single vibrating mode as Hill's equation: which part is constant, which is periodic."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import bad
+from .families import Array, LinearPeriodic
+from .periodic import PeriodicFunction
+
+
+@dataclass(frozen=True)
+class HillForm:
+    """``q'' + (c/w) q' + (k/w^2 + f(theta) + g(theta)/w^2) q = 0`` at crank speed w.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        The system with one degree of freedom.
+    inertial : tuple of (str or None, PeriodicFunction)
+        Parts of f with the parameter monomial that multiplies each.
+    elastic : tuple of (str or None, PeriodicFunction)
+        Parts of g, likewise.
+    """
+
+    system: LinearPeriodic
+    inertial: tuple[tuple[str | None, PeriodicFunction], ...]
+    elastic: tuple[tuple[str | None, PeriodicFunction], ...]
+
+    def stiffness(self, **changes: float) -> float:
+        """Return k [1/s^2], the square of the natural frequency without the periodic parts."""
+        return self._constant("K", changes)
+
+    def damping(self, **changes: float) -> float:
+        """Return c [1/s]; K of Smith (7.38) is ``c / (2 w)``."""
+        return self._constant("C", changes)
+
+    def _constant(self, array: str, changes: Mapping[str, float]) -> float:
+        value = self.system.array(array, 0.0, **changes)[0, 0, 0]
+        return float(value / self.system.array("M", 0.0, **changes)[0, 0, 0])
+
+    def function(self, speed: float, **changes: float) -> PeriodicFunction:
+        """Return ``f + g / w^2`` at a speed [rad/s] and parameter values."""
+        scales = self.system.scale_values(**changes)
+        total = PeriodicFunction()
+        for parts, divisor in ((self.inertial, 1.0), (self.elastic, speed**2)):
+            for scale, part in parts:
+                factor = 1.0 if scale is None else float(scales[scale])
+                total = total + part * (factor / divisor)
+        return total
+
+
+def is_hill(system: LinearPeriodic) -> bool:
+    """Return True where the system is one mode with constant mass, damping and stiffness."""
+    return (
+        system.size == 1
+        and not system.has("A")
+        and all(system.is_constant(name) for name in ("M", "C", "K"))
+        and all(term.power == 0 for term in system.terms)
+        and abs(system.period - 2 * np.pi) < 1e-15
+    )
+
+
+def hill_form(system: LinearPeriodic) -> HillForm:
+    """Return the Hill form of a system with one mode (Smith 7.11, 7.38).
+
+    Raises
+    ------
+    BadInput
+        If the system has several modes, or a mass or damping that changes over the cycle.
+    """
+    if not is_hill(system):
+        raise bad(
+            "system",
+            f"{system.size} degrees of freedom",
+            "one mode with constant mass, damping and stiffness",
+            "use floquet_multipliers or speed_boundaries",
+        )
+    mass = float(system.array("M", 0.0)[0, 0, 0])
+    parts: dict[str, list[tuple[str | None, PeriodicFunction]]] = {"B": [], "Kg": []}
+    for term in system.terms:
+        if term.array in parts:
+            sign = -1.0 if term.array == "B" else 1.0
+            series = _series(lambda theta, t=term: t(theta)[..., 0, 0])  # type: ignore[misc]
+            parts[term.array].append((term.scale, series * (sign / mass)))
+    return HillForm(system, tuple(parts["B"]), tuple(parts["Kg"]))
+
+
+def _series(function: object) -> PeriodicFunction:
+    def flat(theta: Array) -> Array:
+        values: Array = function(np.ravel(theta))  # type: ignore[operator]
+        return values.reshape(np.shape(theta))
+
+    return PeriodicFunction.from_callable(flat)

@@ -1,0 +1,70 @@
+"""Plots: one place for axes, colours and files.  matplotlib loads when the first one is drawn."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .errors import bad
+from .results import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FORMATS = (".png", ".svg", ".pdf")
+_METADATA: dict[str, dict[str, Any]] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None, "Creator": "elastolink"},
+    ".pdf": {"CreationDate": None, "Creator": "elastolink", "Producer": None},
+}
+
+
+def new_figure(width: float = 8.0, height: float = 5.5) -> Figure:
+    """Return an empty figure that no window manager knows of, inches by inches."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def axes_or_new(ax: Axes | None) -> Axes:
+    """Return ``ax``, or the axes of a new figure where it is None."""
+    return new_figure().add_subplot() if ax is None else ax
+
+
+def check_picture_path(path: str | Path) -> Path:
+    """Return the path of a picture that can be written; refuse it before any work starts.
+
+    Raises
+    ------
+    BadInput
+        If the ending is unknown or the folder does not exist or is read-only.
+    """
+    import os
+
+    target = Path(path)
+    if target.suffix not in FORMATS:
+        raise bad(str(target), repr(target.suffix), f"an ending of {FORMATS}", "rename the file")
+    if not target.parent.is_dir() or not os.access(target.parent, os.W_OK) or target.is_dir():
+        raise bad(
+            str(target), "a place that cannot be written", "a writable folder", "choose another"
+        )
+    return target
+
+
+def save_figure(figure: Figure, path: str | Path) -> Path:
+    """Write a figure as PNG, SVG or PDF, whole or not at all, the same bytes each time.
+
+    Raises
+    ------
+    BadInput
+        If the ending is unknown or the folder cannot be written.
+    """
+    import matplotlib as mpl
+
+    target = check_picture_path(path)
+    buffer = io.BytesIO()
+    with mpl.rc_context({"svg.hashsalt": "elastolink"}):
+        figure.savefig(buffer, format=target.suffix[1:], dpi=150, metadata=_METADATA[target.suffix])
+    return write_whole(target, buffer.getvalue())

@@ -1,0 +1,81 @@
+"""A scene of the user's own mechanism to its system: names in the file are names in the module."""
+
+from __future__ import annotations
+
+import inspect
+from collections import Counter
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from ..errors import BadInput, Problem
+from ..families import LinearPeriodic
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+_NOT_PHYSICS = ("model", "operation", "chart")
+
+
+def own_system(scene: Scene) -> LinearPeriodic:
+    """Return the linear-periodic system of a scene that declares its own tables.
+
+    Every parameter and every argument of the emitted module is looked up among the scene's
+    numbers, as ``KEY`` or as ``TABLE_KEY``; where two tables share a key, only the latter names
+    it.  A module that takes something else needs a builder of its own around
+    :func:`elastolink.runtime.assembly.assemble`.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a ``[schema]`` table.
+
+    Raises
+    ------
+    BadInput
+        If no module was emitted for the scene's model, or the scene lacks one of its numbers.
+    """
+    from ..assembly import assemble
+    from ..modules import find_module
+
+    emitted = find_module(scene.model_spec())
+    numbers = _numbers(scene)
+    parameters = [name for name, _, _ in emitted.module.PARAMETERS]
+    arguments = _arguments(emitted.module) - set(parameters)
+    missing = sorted((set(parameters) | arguments) - set(numbers))
+    if missing:
+        known = f"one of {sorted(numbers)}"
+        fix = f"module {emitted.entry.module} takes it: declare it in [schema] and give it"
+        raise BadInput(*(Problem(name, "nothing", known, fix) for name in missing))
+    return assemble(
+        emitted.module,
+        geometry={name: numbers[name] for name in sorted(arguments)},
+        parameters={name: numbers[name] for name in parameters},
+        modes=scene.model.get("modes"),
+        provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
+    )
+
+
+def _numbers(scene: Scene) -> dict[str, float]:
+    """Return the scene's numbers by key, where it is unique, and by table and key."""
+    tables = {name: table for name, table in scene.tables.items() if name not in _NOT_PHYSICS}
+    shared = Counter(key for table in tables.values() for key in table)
+    found: dict[str, float] = {}
+    for name, table in tables.items():
+        for key, value in table.items():
+            if isinstance(value, (int, float)):
+                found[f"{name}_{key}"] = float(value)
+                if shared[key] == 1:
+                    found[key] = float(value)
+    return found
+
+
+def _arguments(module: ModuleType) -> set[str]:
+    """Return what the emitted functions of angle and of parameters take, beside the angle."""
+    found: set[str] = set()
+    for kernel in module.RETURNS:
+        names = list(inspect.signature(getattr(module, kernel)).parameters)
+        if kernel.endswith("_functions"):
+            found.update(names[1:])
+        elif kernel == "scales":
+            found.update(names)
+    return found

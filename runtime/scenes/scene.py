@@ -1,0 +1,233 @@
+"""A scene: the numbers of one machine, checked, in SI units, and read-only."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ...derive.spec import ModelSpec
+from ..errors import bad
+from .schema import Layout
+from .validation import nearest
+
+if TYPE_CHECKING:
+    from ..families import LinearPeriodic
+    from ..mechanisms import FourBar
+
+# Where each mechanism's equations become a family object; imported when one is asked for.
+_BUILDERS = {
+    "four_bar": ("..couplers", "coupler_system"),
+    "hill": ("..hill_system", "hill_system"),
+}
+_OWN_BUILDER = (".own", "own_system")
+# Keys that no file gives and that follow from the others.
+_DERIVED = {"mass": "mass"}
+_MISSING = object()
+
+
+class ReadOnlyTable(Mapping[str, Any]):
+    """A table of a scene that cannot be changed.
+
+    Parameters
+    ----------
+    name : str
+        Name of the table, for messages.
+    values : mapping
+        By key: floats in SI units, tuples of them, whole numbers and texts.
+    """
+
+    __slots__ = ("_name", "_values")
+
+    def __init__(self, name: str, values: Mapping[str, Any]) -> None:
+        self._name = name
+        self._values = dict(values)
+
+    def __getitem__(self, key: str) -> Any:
+        """Return one value; a wrong key is refused with the ones that there are."""
+        if key not in self._values:
+            known = sorted(self._values)
+            raise MissingKeyError(f"{self._name}.{key}", known)
+        return self._values[key]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the keys in the order of the schema."""
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        """Return the number of keys."""
+        return len(self._values)
+
+    def __contains__(self, key: object) -> bool:
+        """Return True where the table holds the key."""
+        return key in self._values
+
+    def __eq__(self, other: object) -> bool:
+        """Compare by content."""
+        return isinstance(other, Mapping) and self._values == dict(other)
+
+    def __hash__(self) -> int:
+        """Hash by content."""
+        return hash((self._name, tuple(sorted(self._values.items(), key=lambda item: item[0]))))
+
+    def __repr__(self) -> str:
+        """Show the values."""
+        return f"ReadOnlyTable({self._name!r}, {self._values!r})"
+
+
+class MissingKeyError(KeyError):
+    """A scene holds no such key."""
+
+    def __init__(self, where: str, known: list[str]) -> None:
+        super().__init__(where)
+        self.where, self.known = where, known
+
+    def __str__(self) -> str:
+        """Say what was asked for and what there is."""
+        fix = nearest(self.where.rpartition(".")[2], self.known, "use one of these")
+        return f"{self.where}: found nothing; expected one of {self.known}; {fix}"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The numbers of one machine, validated and in SI units.
+
+    Made by :func:`load_scene`.  ``scene["links"]["crank"]`` and ``scene.get("links.crank")`` are
+    the same float in metres.
+
+    Attributes
+    ----------
+    name : str
+        Built-in name, or the file's name without its ending.
+    title : str
+        One line.
+    source : str
+        Where the numbers come from.
+    tables : mapping of str to ReadOnlyTable
+        By name; what follows from the given quantities is filled in.
+    layout : Layout
+        What the scene's mechanism and formulation call for.
+    """
+
+    name: str
+    title: str
+    source: str
+    tables: ReadOnlyTable
+    layout: Layout
+
+    def __getitem__(self, table: str) -> ReadOnlyTable:
+        """Return one table."""
+        found: ReadOnlyTable = self.tables[table]
+        return found
+
+    def __contains__(self, table: object) -> bool:
+        """Return True where the scene has that table."""
+        return table in self.tables
+
+    def __hash__(self) -> int:
+        """Hash by content."""
+        return hash(self.digest())
+
+    @property
+    def model(self) -> ReadOnlyTable:
+        """The ``[model]`` table, defaults filled in."""
+        return self["model"]
+
+    def get(self, key: str, default: Any = _MISSING) -> Any:
+        """Return the value of a dotted key, in SI units.
+
+        Parameters
+        ----------
+        key : str
+            Table and key, for example ``"links.crank"``.
+        default : object, optional
+            Returned where the scene holds no such key.
+
+        Raises
+        ------
+        KeyError
+            If the scene holds no such key and no default is given.
+        """
+        table, _, name = key.partition(".")
+        try:
+            return self.tables[table][name] if name else self.tables[table]
+        except MissingKeyError:
+            if default is _MISSING:
+                raise
+            return default
+
+    def dimension(self, key: str) -> str | None:
+        """Return the dimension of a dotted key, or None where it is no quantity."""
+        table, _, name = key.partition(".")
+        if table == "chart" and name.endswith("_range"):
+            return self.layout.parameters.get(self.get(f"chart.{name[0]}"))
+        known = self.layout.table(table)
+        found = known.key(name) if known else None
+        if found is None:
+            return _DERIVED.get(name)
+        return found.dimension if found.kind in {"quantity", "quantities"} else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain dicts, lists, numbers and strings, ready for JSON."""
+        tables = {
+            name: {key: list(v) if isinstance(v, tuple) else v for key, v in table.items()}
+            for name, table in self.tables.items()
+        }
+        return {"name": self.name, "title": self.title, "source": self.source, **tables}
+
+    def digest(self) -> str:
+        """Return 16 hexadecimal digits that stand for every number of the scene."""
+        text = json.dumps(self.to_dict(), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def model_spec(self) -> ModelSpec:
+        """Return what is to be derived for this scene.
+
+        The number of modes is left open where one emitted module serves any number.
+        """
+        table = {key: list(v) if isinstance(v, tuple) else v for key, v in self.model.items()}
+        spec = ModelSpec.from_mapping(table)
+        return spec.with_(modes=None) if self.layout.closed_in_modes else spec
+
+    def system(self) -> LinearPeriodic:
+        """Return the family object that the solvers accept.
+
+        Raises
+        ------
+        BadInput
+            If the scene is about kinematics alone, or its module was not emitted yet.
+        """
+        mechanism = self.model["mechanism"]
+        if mechanism == "four_bar" and not self.layout.flexible:
+            raise bad(
+                f"scene {self.name}",
+                f"formulation '{self.model['formulation']}', in which nothing vibrates",
+                "a scene with a flexible link",
+                "use kinematics, or choose one of `elastolink scenes` with a flexible coupler",
+            )
+        module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
+        builder = getattr(importlib.import_module(module, __package__), function)
+        built: LinearPeriodic = builder(self)
+        return built
+
+    def mechanism(self) -> FourBar:
+        """Return the four-bar linkage of the scene.
+
+        Raises
+        ------
+        BadInput
+            If the scene has no linkage.
+        """
+        if self.model["mechanism"] != "four_bar":
+            raise bad(
+                f"scene {self.name}",
+                f"mechanism '{self.model['mechanism']}'",
+                "a linkage",
+                "choose a scene with a [links] table",
+            )
+        from ..mechanisms import FourBar
+
+        return FourBar(**self["links"])

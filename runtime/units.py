@@ -1,0 +1,312 @@
+"""Quantities at the edge: numbers in SI units, or text such as ``"15 in"``, to SI floats.
+
+Two rules go beyond a table of units, both about rates of rotation (dimension ``"frequency"``):
+
+- a number of hertz means cycles per second, so that ``"26 Hz"`` becomes ``2 pi 26`` rad/s, and a
+  unit that names an angle (``rad/s``, ``deg/s``, ``turn/s``, ``rpm``) is converted as it stands;
+- a bare ``"1/s"`` says neither, and is refused.
+
+Pint is imported only when a text with a unit is met.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+from .errors import BadInput, Problem, bad
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """What kind of quantity is expected.
+
+    Attributes
+    ----------
+    words : str
+        The noun with its article, for messages.
+    si : str
+        The SI unit, in a spelling that this module reads.
+    example : str
+        A quantity as a user may write it.
+    """
+
+    words: str
+    si: str
+    example: str
+
+
+DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
+    {
+        "dimensionless": Dimension("a plain number", "", "0.02"),
+        "length": Dimension("a length", "m", "15 in"),
+        "area": Dimension("an area", "m**2", "3 mm**2"),
+        "second_moment": Dimension("a second moment of area", "m**4", "2 mm**4"),
+        "time": Dimension("a time", "s", "0.5 s"),
+        "angle": Dimension("an angle", "rad", "30 deg"),
+        "frequency": Dimension("a rate of rotation or a frequency", "rad/s", "500 rpm"),
+        "mass": Dimension("a mass", "kg", "0.4 kg"),
+        "mass_per_length": Dimension("a mass per length", "kg/m", "0.31 kg/m"),
+        "density": Dimension("a density", "kg/m**3", "7850 kg/m**3"),
+        "first_moment": Dimension("a first moment of mass", "kg*m", "0.02 kg*m"),
+        "inertia": Dimension("a moment of inertia", "kg*m**2", "0.0058 lbf*in*s**2"),
+        "force": Dimension("a force", "N", "1 lbf"),
+        "moment": Dimension("a moment", "N*m", "3 N*m"),
+        "stress": Dimension("a stress or a modulus", "Pa", "207 GPa"),
+        "bending_stiffness": Dimension("a bending stiffness", "N*m**2", "171.5 lbf*in**2"),
+        "stiffness": Dimension("a spring stiffness", "N/m", "200 N/m"),
+        "damping_per_length": Dimension("a damping per length", "N*s/m**2", "0.1 N*s/m**2"),
+        "damping": Dimension("a viscous damping", "N*s/m", "0.1 N*s/m"),
+        "acceleration": Dimension("an acceleration", "m/s**2", "384 in/s**2"),
+    }
+)
+
+# What a misspelt unit is compared with.
+_COMMON = (
+    "m mm cm km um in inch ft yd kg g lb lbm slug oz tonne N kN lbf kgf dyn s ms min minute hour "
+    "Hz kHz rpm rad deg degree turn rev cycle Pa kPa MPa GPa psi ksi J W percent"
+)
+_ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond", "revolutions_per")
+_CYCLE = Decimal("6.283185307179586476925286766559")
+_OPEN = frozenset("*/·(")
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)")
+_TOKEN = re.compile(r"\s*(?:(\*\*|\^)\s*([+-]?\d{1,2})(?!\d)|([*/()·])|([^\W\d_]\w*|1(?!\d)))")
+
+
+def to_si(value: object, dimension: str = "dimensionless", where: str = "quantity") -> float:
+    """Convert a quantity to a float in SI units.
+
+    Parameters
+    ----------
+    value : float, int or str
+        A number in SI units, or text: a number, a space, and a unit.  A unit is made of names,
+        ``*``, ``/``, ``**`` (or ``^``) with whole exponents, parentheses and blanks, which
+        multiply: ``"171.5 lbf*in**2"``, ``"0.31 kg/m"``, ``"0.0058 lbf in s^2"``.
+    dimension : str
+        One of :data:`DIMENSIONS`.  A ``"frequency"`` comes back in rad/s.
+    where : str
+        The key concerned, for the message.
+
+    Returns
+    -------
+    float
+        The value in the SI unit of the dimension.
+
+    Raises
+    ------
+    BadInput
+        If the value is no finite quantity, a unit is unknown, or the dimension is another one.
+
+    Examples
+    --------
+    >>> to_si("15 in", "length")
+    0.381
+    >>> round(to_si("60 rpm", "frequency"), 6), round(to_si("1 Hz", "frequency"), 6)
+    (6.283185, 6.283185)
+    """
+    if dimension not in DIMENSIONS:
+        raise bad(where, repr(dimension), f"a dimension of {sorted(DIMENSIONS)}", "rename it")
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise _not_a_quantity(value, dimension, where)
+    if isinstance(value, str):
+        number, unit = _split(value, dimension, where)
+        # A product of decimals is rounded once, so that 3 in is 0.0762 m to the last digit.
+        result = _float(
+            Fraction(number) * Fraction(_factor(unit, dimension, where, value)) if unit else number
+        )
+    else:
+        result = _float(value)
+    if not math.isfinite(result):
+        raise bad(where, _show(value), "a finite quantity", _write_like(dimension))
+    return result
+
+
+def describe(value: float, dimension: str) -> str:
+    """Return a value in SI units as text with its unit, and rpm beside rad/s.
+
+    Parameters
+    ----------
+    value : float
+        Value in the SI unit of the dimension.
+    dimension : str
+        One of :data:`DIMENSIONS`.
+    """
+    unit = DIMENSIONS[dimension].si
+    text = f"{value:.6g} {unit}".rstrip()
+    if dimension == "frequency":
+        text += f" ({value * 30.0 / math.pi:.6g} rpm)"
+    return text
+
+
+def expected(dimension: str) -> str:
+    """Return in words what a key of this dimension takes, with an example."""
+    kind = DIMENSIONS[dimension]
+    if not kind.si:
+        return f"{kind.words}, such as {kind.example}"
+    return f"{kind.words} in {kind.si}, or text such as '{kind.example}'"
+
+
+def _split(text: str, dimension: str, where: str) -> tuple[str, str]:
+    match = _NUMBER.match(text)
+    rest = text[match.end() :] if match else ""
+    if match is None or rest.strip()[:1] in {"+", "-", ",", "."} or len(text) > 200:
+        raise _not_a_quantity(text, dimension, where)
+    return match.group(1), rest.strip()
+
+
+def _float(value: float | str | Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def _factors(unit: str, where: str, text: str) -> list[tuple[str, int]]:
+    """Read a unit as names with exponents; parentheses group a denominator."""
+    found: list[tuple[str, int]] = []
+    outer = [1]
+    sign, position, last = 1, 0, "*"
+    while position < len(unit):
+        match = _TOKEN.match(unit, position)
+        if match is None:
+            raise _unreadable(unit, where, text)
+        _, power, operator, name = match.groups()
+        kind = "power" if power else operator or "name"
+        misplaced = last in _OPEN and kind in {"*", "/", "·", ")", "power"} and position > 0
+        if misplaced or (kind == "power" and last != "name") or (kind == ")" and len(outer) == 1):
+            raise _unreadable(unit, where, text)
+        if kind == "power":
+            found[-1] = (found[-1][0], found[-1][1] * int(power))
+        elif kind == "(":
+            outer.append(outer[-1] * sign)
+        elif kind == ")":
+            outer.pop()
+        elif kind == "name":
+            found.append((name, outer[-1] * sign))
+        sign = -1 if kind == "/" else 1
+        position, last = match.end(), kind
+    if len(outer) != 1 or last in _OPEN or not found:
+        raise _unreadable(unit, where, text)
+    return found
+
+
+def _factor(unit: str, dimension: str, where: str, text: str) -> Decimal:
+    """Return the factor from a unit to the SI unit of a dimension."""
+    factors = tuple(item for item in _factors(unit, where, text) if item[0] != "1")
+    unknown = [name for name, _ in factors if not _known(name)]
+    if unknown:
+        raise BadInput(*(_unknown_unit(name, where, text) for name in dict.fromkeys(unknown)))
+    factor, found, cycles, angle = _convert(factors, dimension)
+    if factor is None:
+        raise _wrong_dimension(found, dimension, where, text)
+    if dimension == "frequency" and not angle:
+        if not cycles:
+            raise bad(
+                where,
+                repr(text),
+                "a rate that says whether it counts cycles or radians",
+                "write Hz, rpm or rad/s instead of 1/s",
+            )
+        return factor * _CYCLE
+    return factor
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    registry = pint.UnitRegistry(cache_folder=None, non_int_type=Decimal)
+    registry.define("@alias pound = lbm")
+    registry.define("@alias turn = rev")
+    return registry
+
+
+@lru_cache(maxsize=512)
+def _known(name: str) -> bool:
+    import pint
+
+    try:
+        _registry().parse_units(name)
+    except (pint.errors.PintError, AttributeError, ValueError):
+        return False
+    return True
+
+
+@lru_cache(maxsize=512)
+def _convert(
+    factors: tuple[tuple[str, int], ...], dimension: str
+) -> tuple[Decimal | None, str, bool, bool]:
+    """Return factor (None where the dimension differs), dimension found, and rate markers."""
+    import pint
+
+    registry = _registry()
+    unit = registry.Unit("")
+    for name, power in factors:
+        unit = unit * registry.parse_units(name) ** power
+    target = registry.parse_units(DIMENSIONS[dimension].si)
+    names = dict(unit._units)
+    cycles = any(name.endswith("hertz") for name in names)
+    angle = any(mark in name for name in names for mark in _ANGLES)
+    if unit.dimensionality != target.dimensionality:
+        weight = target.dimensionality * registry.parse_units("m/s**2").dimensionality
+        kind = "weight" if unit.dimensionality == weight else str(unit.dimensionality)
+        return None, kind, cycles, angle
+    try:
+        factor = Decimal(registry.Quantity(Decimal(1), unit).to(target).magnitude)
+    except (pint.errors.PintError, ArithmeticError):
+        return None, str(unit.dimensionality), cycles, angle
+    return factor, str(unit.dimensionality), cycles, angle
+
+
+def _write_like(dimension: str) -> str:
+    return f"write it like '{DIMENSIONS[dimension].example}'"
+
+
+def _show(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _not_a_quantity(value: object, dimension: str, where: str) -> BadInput:
+    return bad(where, _show(value), expected(dimension), _write_like(dimension))
+
+
+def _unreadable(unit: str, where: str, text: str) -> BadInput:
+    return bad(
+        where,
+        _show(text),
+        "one number and one unit",
+        f"spell the unit {_show(unit)} with names, *, / and ** alone",
+    )
+
+
+def _unknown_unit(name: str, where: str, text: str) -> Problem:
+    lowered: dict[str, str] = {}
+    for unit in _COMMON.split():
+        lowered.setdefault(unit.lower(), unit)
+    close = difflib.get_close_matches(name.lower(), list(lowered), n=3, cutoff=0.55)
+    fix = "check the spelling and the capitals"
+    if close:
+        fix = "did you mean " + " or ".join(lowered[match] for match in close) + "?"
+    return Problem(where, f"unknown unit '{name}' in {_show(text)}", "a unit that pint knows", fix)
+
+
+def _wrong_dimension(found: str, dimension: str, where: str, text: str) -> BadInput:
+    if found == "weight":
+        return bad(
+            where,
+            f"{_show(text)}, which is a weight",
+            expected(dimension),
+            "a weight divided by gravity is a mass: write lb instead of lbf, or divide by g",
+        )
+    return bad(
+        where, f"{_show(text)}, of dimension {found}", expected(dimension), _write_like(dimension)
+    )

@@ -1,0 +1,152 @@
+"""Integral table against quadrature and against SymPy's own integrator."""
+
+from __future__ import annotations
+
+import itertools
+import random
+
+import mpmath
+import pytest
+import sympy as sp
+from elastolink.derive.integrals import (
+    UnknownIntegrand,
+    antiderivative,
+    definite,
+    mode_integral,
+    mode_vector,
+)
+
+x = sp.Symbol("x")
+a, b, L = sp.symbols("a b L", positive=True)
+m, n = sp.symbols("m n", integer=True, positive=True)
+VALUES = {a: sp.Rational(13, 10), b: sp.Rational(7, 10), L: sp.Rational(9, 5)}
+
+
+def quadrature(integrand: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> mpmath.mpf:
+    function = sp.lambdify(x, integrand.subs(VALUES), "mpmath")
+    ends = [mpmath.mpf(sp.N(sp.sympify(e).subs(VALUES), 40)) for e in (lower, upper)]
+    points = mpmath.linspace(*ends, 9)
+    return mpmath.quad(function, points)
+
+
+def close(value: sp.Expr, reference: mpmath.mpf) -> bool:
+    found = mpmath.mpf(sp.N(sp.sympify(value).subs(VALUES), 40))
+    return abs(found - reference) <= mpmath.mpf(10) ** -25 * (1 + abs(reference))
+
+
+INTEGRANDS = [
+    sp.S.One,
+    x**3 - 2 * x + a,
+    x**4 * sp.sin(a * x),
+    x**2 * sp.cos(a * x + b) * sp.sin(3 * x),
+    sp.sin(a * x) ** 2 * sp.cos(a * x),
+    sp.sin(a * x) * sp.sin(2 * a * x) * sp.cos(b * x) * x,
+    x**3 * sp.exp(-a * x),
+    sp.exp(a * x) * sp.cos(b * x) * x**2,
+    sp.sinh(a * x) * sp.cosh(b * x) * x,
+    sp.cosh(a * x) ** 2,
+    sp.sinh(a * x) * sp.sin(a * x) * x,
+    sp.cosh(a * x + b) * sp.cos(a * x - 1) ** 2,
+    (1 + x) ** 2 * (sp.sin(x) + sp.exp(x)) ** 2,
+    sp.cos(b) * x,
+]
+
+
+@pytest.mark.parametrize("integrand", INTEGRANDS, ids=str)
+def test_table_against_quadrature(integrand):
+    with mpmath.workdps(40):
+        reference = quadrature(integrand, b, L)
+        assert close(definite(integrand, x, b, L), reference)
+        primitive = antiderivative(integrand, x)
+        assert close(primitive.subs(x, L) - primitive.subs(x, b), reference)
+
+
+def test_random_products_against_quadrature():
+    draw = random.Random(20240611)
+    waves = [sp.sin, sp.cos, sp.sinh, sp.cosh, sp.exp]
+    with mpmath.workdps(40):
+        for _ in range(25):
+            integrand = sp.Integer(1)
+            for _ in range(draw.randint(1, 3)):
+                slope = sp.Rational(draw.randint(-9, 9), 4)
+                integrand *= draw.choice(waves)(slope * x + draw.randint(-1, 1))
+            integrand *= (x + draw.randint(-2, 2)) ** draw.randint(0, 4)
+            assert close(definite(integrand, x, 0, b), quadrature(integrand, sp.S.Zero, b))
+
+
+def test_against_sympy_integrate():
+    for integrand in (x**2 * sp.sin(3 * x), sp.cos(x) ** 2 * x, x * sp.exp(2 * x)):
+        ours = definite(integrand, x, 0, 1)
+        theirs = sp.integrate(integrand, (x, 0, 1))
+        assert sp.simplify(ours - theirs) == 0
+
+
+MODAL = [
+    sp.sin(m * sp.pi * x) * sp.sin(n * sp.pi * x),
+    x * sp.sin(m * sp.pi * x) * sp.sin(n * sp.pi * x),
+    (1 - x**2) * sp.cos(m * sp.pi * x) * sp.cos(n * sp.pi * x),
+    (1 - x) * sp.cos(m * sp.pi * x) * sp.sin(n * sp.pi * x),
+    x**3 * sp.cos(n * sp.pi * x) * sp.sin(m * sp.pi * x),
+    sp.exp(a * x) * sp.sin(m * sp.pi * x) * sp.sin(n * sp.pi * x),
+]
+
+
+@pytest.mark.parametrize("integrand", MODAL, ids=str)
+def test_mode_integrals_for_all_small_mode_numbers(integrand):
+    entries = mode_integral(integrand, x, m, n).matrix(4)
+    with mpmath.workdps(40):
+        for i, j in itertools.product(range(4), repeat=2):
+            explicit = integrand.subs({m: i + 1, n: j + 1})
+            assert close(entries[i, j], quadrature(explicit, sp.S.Zero, sp.S.One))
+
+
+def test_mode_integral_on_a_link_of_symbolic_length():
+    wave = sp.sin(m * sp.pi * x / L) * sp.sin(n * sp.pi * x / L)
+    found = mode_integral(wave, x, m, n, sp.S.Zero, L)
+    assert (found.diagonal, found.off_diagonal) == (L / 2, 0)
+    # up to an interior point nothing simplifies, but the value is right
+    part = mode_integral(wave * x, x, m, n, sp.S.Zero, L / 3).matrix(3)
+    with mpmath.workdps(40):
+        for i, j in itertools.product(range(3), repeat=2):
+            explicit = (wave * x).subs({m: i + 1, n: j + 1})
+            assert close(part[i, j], quadrature(explicit, sp.S.Zero, L / 3))
+
+
+def test_mode_vector():
+    found = mode_vector(x * sp.sin(m * sp.pi * x), x, m)
+    assert sp.simplify(found.entry + (-1) ** m / (m * sp.pi)) == 0
+    assert not found.entry.has(sp.sin, sp.cos)
+
+
+def test_results_hold_no_case_distinction():
+    for integrand in MODAL:
+        found = mode_integral(integrand, x, m, n)
+        assert not found.diagonal.has(sp.Piecewise, sp.Integral)
+        assert not found.off_diagonal.has(sp.Piecewise, sp.Integral)
+
+
+@pytest.mark.parametrize(
+    "integrand",
+    [sp.tan(x), 1 / x, sp.sqrt(x), sp.sin(x**2), sp.exp(-(x**2)), sp.sin(x) ** a, sp.log(x)],
+    ids=str,
+)
+def test_unknown_integrands_are_errors(integrand):
+    with pytest.raises(UnknownIntegrand):
+        definite(integrand, x, 1, 2)
+
+
+def test_a_frequency_that_may_vanish_is_an_error():
+    wave = sp.sin(m * sp.pi * x)
+    with pytest.raises(UnknownIntegrand, match="may vanish"):
+        mode_vector(wave * sp.cos(2 * sp.pi * x), x, m)
+    with pytest.raises(UnknownIntegrand, match="may vanish"):
+        definite(wave * sp.sin(n * sp.pi * x), x)
+    with pytest.raises(UnknownIntegrand, match="may vanish"):
+        mode_integral(wave * sp.sin(2 * n * sp.pi * x), x, m, n)
+    # with explicit numbers the same integrals exist
+    assert definite(wave.subs(m, 2) * sp.sin(2 * sp.pi * x), x) == sp.Rational(1, 2)
+
+
+def test_mode_numbers_must_be_integers():
+    with pytest.raises(ValueError, match="not declared integer"):
+        mode_vector(sp.sin(a * x), x, a)

@@ -1,0 +1,242 @@
+"""Lagrange's equations by machine against published and independently derived equations."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from elastolink.derive.lagrange import (
+    NotRepresentable,
+    euler_lagrange,
+    quadratic_form,
+    variational_equations,
+)
+from elastolink.derive.records import CrankMotion, DiscreteSystem, Lagrangian
+
+t = sp.Symbol("t")
+m1, m2, l1, l2, g, k, w, c = sp.symbols("m1 m2 l1 l2 g k w c", positive=True)
+theta, td, tdd = sp.symbols("theta td tdd")
+CRANK = CrankMotion(theta, td, tdd)
+
+
+def functions(names: str) -> tuple[sp.Expr, ...]:
+    return tuple(sp.Function(name)(t) for name in names.split())
+
+
+def test_double_pendulum_against_the_textbook():
+    a, b = functions("a b")
+    x1, y1 = l1 * sp.sin(a), -l1 * sp.cos(a)
+    x2, y2 = x1 + l2 * sp.sin(b), y1 - l2 * sp.cos(b)
+    energy = m1 / 2 * (x1.diff(t) ** 2 + y1.diff(t) ** 2) - m1 * g * y1
+    energy += m2 / 2 * (x2.diff(t) ** 2 + y2.diff(t) ** 2) - m2 * g * y2
+    found = euler_lagrange(Lagrangian((a, b), t, energy))
+    (qa, qb), (va, vb) = found.coordinates, found.velocities
+    # Goldstein, Classical Mechanics: the equations of the plane double pendulum
+    cos, sin = sp.cos(qa - qb), sp.sin(qa - qb)
+    mass = sp.Matrix([[(m1 + m2) * l1**2, m2 * l1 * l2 * cos], [m2 * l1 * l2 * cos, m2 * l2**2]])
+    rest = sp.Matrix(
+        [
+            m2 * l1 * l2 * vb**2 * sin + (m1 + m2) * g * l1 * sp.sin(qa),
+            -m2 * l1 * l2 * va**2 * sin + m2 * g * l2 * sp.sin(qb),
+        ]
+    )
+    assert sp.simplify(found.mass - mass) == sp.zeros(2, 2)
+    assert sp.simplify(found.rest - rest) == sp.zeros(2, 1)
+    assert found.constraints.shape == (0, 1)
+
+
+def sliding_pendulum(with_multiplier: bool) -> Lagrangian:
+    """Block m1 on a spring, bob m2 on a rod l2; friction on the block."""
+    if not with_multiplier:
+        s, a = functions("s a")
+        px, py = s + l2 * sp.sin(a), -l2 * sp.cos(a)
+        energy = m1 / 2 * s.diff(t) ** 2 + m2 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
+        energy += -k / 2 * s**2 - m2 * g * py
+        return Lagrangian((s, a), t, energy, forces={s: -c * s.diff(t)})
+    s, px, py = functions("s px py")
+    energy = m1 / 2 * s.diff(t) ** 2 + m2 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
+    energy += -k / 2 * s**2 - m2 * g * py
+    rod = (px - s) ** 2 + py**2 - l2**2
+    return Lagrangian((s, px, py), t, energy, (rod,), forces={s: -c * s.diff(t)})
+
+
+VALUES = {m1: 1.3, m2: 0.7, l2: 0.9, g: 9.81, k: 12.0, c: 0.4}
+
+
+def test_sliding_pendulum_with_and_without_multiplier():
+    short = euler_lagrange(sliding_pendulum(False))
+    state = dict(zip((*short.coordinates, *short.velocities), (0.2, 0.7, -0.5, 1.9), strict=True))
+    numbers = {**VALUES, **state}
+    right = (short.forces - short.rest).subs(numbers)
+    sdd, add = short.mass.subs(numbers).LUsolve(right)
+    s, a, sd, ad = (state[q] for q in (*short.coordinates, *short.velocities))
+
+    full = euler_lagrange(sliding_pendulum(True))
+    l = VALUES[l2]  # noqa: E741
+    sin, cos = sp.sin(a), sp.cos(a)
+    place = (s, s + l * sin, -l * cos)
+    speed = (sd, sd + l * cos * ad, l * sin * ad)
+    names = (*full.coordinates, *full.velocities)
+    numbers = {**VALUES, **dict(zip(names, (*place, *speed), strict=True))}
+    assert abs(full.constraints.subs(numbers)[0]) < 1e-14
+    jacobian = full.jacobian.subs(numbers)
+    assert abs((jacobian * sp.Matrix(speed) - full.velocity_rhs.subs(numbers))[0]) < 1e-14
+    saddle = sp.Matrix(
+        sp.BlockMatrix(
+            [[full.mass.subs(numbers), -jacobian.T], [jacobian, sp.zeros(1, 1)]]
+        ).as_explicit()
+    )
+    right = sp.Matrix.vstack((full.forces - full.rest).subs(numbers), full.gamma.subs(numbers))
+    solution = saddle.LUsolve(right)
+    expected = (
+        sdd,
+        sdd + l * (cos * add - sin * ad**2),
+        l * (sin * add + cos * ad**2),
+    )
+    for found, wanted in zip(solution, expected, strict=False):
+        assert abs(found - wanted) < 1e-12 * max(1, abs(wanted))
+
+
+def test_explicit_time_dependence_of_a_constraint():
+    px, py = functions("px py")
+    energy = m1 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
+    rod = py * sp.cos(w * t) - px * sp.sin(w * t)
+    found = euler_lagrange(Lagrangian((px, py), t, energy, (rod,)))
+    # a bead on a rotating rod runs out as cosh
+    motion = sp.Matrix([sp.cosh(w * t) * sp.cos(w * t), sp.cosh(w * t) * sp.sin(w * t)])
+    speed, acceleration = motion.diff(t), motion.diff(t, 2)
+    names = (*found.coordinates, *found.velocities)
+    numbers = dict(zip(names, (*motion, *speed), strict=True))
+    on_rod = (found.jacobian * speed - found.velocity_rhs).subs(numbers)
+    bent = (found.jacobian * acceleration - found.gamma).subs(numbers)
+    residual = found.mass * acceleration + found.rest
+    assert sp.simplify(found.constraints.subs(numbers)) == sp.zeros(1, 1)
+    assert sp.simplify(on_rod) == sp.zeros(1, 1)
+    assert sp.simplify(bent) == sp.zeros(1, 1)
+    assert sp.simplify(found.gamma.subs(numbers)) != sp.zeros(1, 1)
+    # the reaction is normal to the rod, so along the rod nothing is left
+    rod_direction = sp.Matrix([sp.cos(w * t), sp.sin(w * t)])
+    assert sp.simplify((rod_direction.T * residual)[0]) == 0
+
+
+def test_prescribed_motion_is_differentiated():
+    (a,) = functions("a")
+    z = sp.Function("z")(t)
+    px, py = l1 * sp.sin(a), z - l1 * sp.cos(a)
+    energy = m1 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2) - m1 * g * py
+    symbolic = euler_lagrange(Lagrangian((a,), t, energy))
+    (q,) = symbolic.coordinates
+    # pendulum with a vibrating pivot: gravity becomes g + z''
+    by_hand = m1 * l1 * (g + z.diff(t, 2)) * sp.sin(q)
+    assert sp.simplify(symbolic.rest[0] - by_hand) == 0
+    given = euler_lagrange(Lagrangian((a,), t, energy, prescribed={z: sp.cos(w * t)}))
+    by_hand = m1 * l1 * (g - w**2 * sp.cos(w * t)) * sp.sin(q)
+    assert sp.simplify(given.rest[0] - by_hand) == 0
+
+
+def test_variational_equations_are_the_derivative_of_the_residual():
+    found = euler_lagrange(sliding_pendulum(True))
+    varied = variational_equations(found)
+    qdd = sp.Matrix(varied.accelerations)
+    lam = sp.Matrix(found.multipliers)
+    residual = found.mass * qdd + found.rest - found.forces - found.jacobian.T * lam
+    for j, q in enumerate(found.coordinates):
+        column = residual.diff(q)
+        assert sp.expand(column - varied.stiffness[:, j]) == sp.zeros(3, 1)
+    assert varied.damping == sp.diag(c, 0, 0)
+    # the rod's force stiffens: its multiplier stands in the stiffness
+    assert varied.stiffness.has(*found.multipliers)
+
+
+def equation_of_motion(system: DiscreteSystem, q: sp.Matrix, qd: sp.Matrix, qdd: sp.Matrix):
+    """The family's equation of motion, everything on one side."""
+    crank = system.crank
+    array = system.matrix
+    slope = {name: array(name).applyfunc(crank.derivative) for name in ("M", "A")}
+    G = slope["M"] + array("A") - array("A").T
+    H, E = slope["A"] - array("B"), array("A") - array("S")
+    left = array("M") * qdd + (array("C") + td * G) * qd
+    left += (array("K") + array("Kg") + td**2 * H + tdd * E) * q
+    return left - td**2 * array("f") - td * array("h") - tdd * array("g") - array("p")
+
+
+def test_quadratic_form_of_a_spinning_frame():
+    p, q = functions("p q")
+    energy = m1 / 2 * ((p.diff(t) - td * q) ** 2 + (q.diff(t) + td * p) ** 2)
+    energy -= k / 2 * (p**2 + q**2) + w / 2 * p**2
+    system = quadratic_form(energy, (p, q), CRANK, t, forces={p: -c * p.diff(t)}, geometric=(w,))
+    assert system.matrix("M") == m1 * sp.eye(2)
+    assert system.matrix("A") == sp.Matrix([[0, -m1], [m1, 0]])
+    assert system.matrix("B") == m1 * sp.eye(2)
+    assert system.matrix("C") == sp.diag(c, 0)
+    assert system.matrix("K") == k * sp.eye(2)
+    assert system.matrix("Kg") == sp.diag(w, 0)
+    assert sorted(system.arrays) == ["A", "B", "C", "K", "Kg", "M"]
+
+
+def test_quadratic_form_gives_the_equations_that_lagrange_gives():
+    p, q = functions("p q")
+    angle = sp.Function("angle")(t)
+    pd, qd = p.diff(t), q.diff(t)
+
+    def energy(th: sp.Expr, rate: sp.Expr, acceleration: sp.Expr) -> sp.Expr:
+        kinetic = m1 / 2 * (2 + sp.cos(th)) * pd**2 + m2 * sp.sin(th) * pd * qd + m1 * qd**2
+        gyro = rate * (sp.cos(th) * pd * q + 2 * sp.sin(2 * th) * qd * q + pd * p)
+        frame = rate**2 * (sp.sin(th) * p**2 + p * q) + acceleration * sp.cos(th) * q**2
+        linear = rate * sp.sin(th) * pd + rate**2 * sp.cos(th) * q + acceleration * l1 * p
+        linear += sp.cos(3 * th) * qd + rate * l2 * q + g * sp.sin(th) * p
+        return kinetic + gyro + frame + linear - k / 2 * (p - sp.cos(th) * q) ** 2
+
+    forces = {p: -c * pd + k * q * td**2 + g, q: tdd * sp.sin(theta) * p - c * td * qd}
+    system = quadratic_form(energy(theta, td, tdd), (p, q), CRANK, t, forces=forces)
+    rates = {theta: angle, td: angle.diff(t), tdd: angle.diff(t, 2)}
+    in_time = {c_: f.subs(rates) for c_, f in forces.items()}
+    full = energy(angle, angle.diff(t), angle.diff(t, 2))
+    lagrange = euler_lagrange(Lagrangian((p, q), t, full, forces=in_time))
+    qdd = sp.Matrix(sp.symbols("add bdd"))
+    left = lagrange.mass * qdd + lagrange.rest - lagrange.forces
+    own = equation_of_motion(
+        system, sp.Matrix(lagrange.coordinates), sp.Matrix(lagrange.velocities), qdd
+    )
+    assert sp.expand(left - own.subs(rates)) == sp.zeros(2, 1)
+
+
+def test_terms_outside_the_family_are_reported():
+    (p, q) = functions("p q")
+    with pytest.raises(NotRepresentable, match=r"p\*\*3"):
+        quadratic_form(p.diff(t) ** 2 + p**3, (p,), CRANK, t)
+    with pytest.raises(NotRepresentable, match="td"):
+        quadratic_form(td * p.diff(t) ** 2, (p,), CRANK, t)
+    with pytest.raises(NotRepresentable, match=r"td\*\*3"):
+        quadratic_form(p.diff(t) ** 2 + td**3 * p**2, (p,), CRANK, t)
+    with pytest.raises(NotRepresentable, match="forces"):
+        quadratic_form(p.diff(t) ** 2, (p,), CRANK, t, forces={p: -c * p.diff(t) ** 2})
+    with pytest.raises(NotRepresentable, match="q_dot"):
+        quadratic_form(p.diff(t) * q - q.diff(t) * p, (p, q), CRANK, t)
+
+
+def test_bad_input_is_refused():
+    (p, q) = functions("p q")
+    with pytest.raises(ValueError, match="first time derivatives"):
+        euler_lagrange(Lagrangian((p,), t, p.diff(t, 2) * p))
+    with pytest.raises(ValueError, match="holonomic"):
+        euler_lagrange(Lagrangian((p, q), t, p.diff(t) ** 2, (p.diff(t) - q,)))
+    with pytest.raises(ValueError, match="unknown coordinates"):
+        Lagrangian((p,), t, p, forces={q: k})
+    with pytest.raises(ValueError, match="multipliers"):
+        Lagrangian((p,), t, p, (p,), multipliers=sp.symbols("a b"))
+    with pytest.raises(ValueError, match="not an applied function"):
+        Lagrangian((k,), t, k)
+    with pytest.raises(ValueError, match="present time"):
+        euler_lagrange(Lagrangian((p,), t, p.diff(t) ** 2 + p.subs(t, t - 1)))
+
+
+def test_system_records_refuse_nonsense():
+    with pytest.raises(ValueError, match="unknown array"):
+        DiscreteSystem(CRANK, 1, {"X": sp.ImmutableDenseMatrix([[1]])})
+    with pytest.raises(ValueError, match="shape"):
+        DiscreteSystem(CRANK, 2, {"M": sp.ImmutableDenseMatrix([[1]])})
+    system = DiscreteSystem(CRANK, 1, {"M": sp.ImmutableDenseMatrix([[1]])})
+    with pytest.raises(ValueError, match="1 modes"):
+        system.matrix("M", 2)
+    with pytest.raises(ValueError, match="no derivative"):
+        CrankMotion(theta, td, tdd, {theta: k}, open=(w,)).derivative(w * theta)

@@ -1,0 +1,351 @@
+"""A change of the Lagrangian alone moves equations, end conditions and matrices to a hand case."""
+
+from __future__ import annotations
+
+import itertools
+
+import mpmath
+import pytest
+import sympy as sp
+from elastolink.derive.lagrange import euler_lagrange, quadratic_form
+from elastolink.derive.projection import (
+    FiniteBasis,
+    mass_normalised,
+    project,
+    project_action,
+    sine_basis,
+)
+from elastolink.derive.records import (
+    ActionDensity,
+    CrankMotion,
+    DiscreteSystem,
+    EndForce,
+    Essential,
+    Lagrangian,
+    PointTerm,
+    Support,
+)
+from elastolink.derive.variational import (
+    hamilton,
+    order_part,
+    quadratic_action,
+    solve_end_value,
+    solve_tension,
+)
+
+x, t = sp.symbols("x t")
+L, mu, EI, tip, k, a, g, l2 = sp.symbols("L mu EI tip k a g l2", positive=True)
+beta = sp.Symbol("beta")
+theta, theta3, omega3, alpha3, td, tdd = sp.symbols("theta theta3 omega3 alpha3 td tdd")
+y, u, N = (sp.Function(name)(x, t) for name in ("y", "u", "N"))
+th2, th3, Fx = (sp.Function(name)(t) for name in ("th2", "th3", "Fx"))
+CRANK = CrankMotion(theta, td, tdd, {theta3: omega3, omega3: alpha3})
+FOLLOWERS = {th2: theta, th3: theta3, Fx: sp.Symbol("F")}
+CLAMPED = (Essential(0, y, 0), Essential(0, y, 1))
+PINNED = (Essential(0, y, 0), Essential(L, y, 0))
+
+
+def beam(**changes: object) -> ActionDensity:
+    density = mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2
+    return ActionDensity(x, t, L, (y,), density).with_(**changes)
+
+
+def zero(expression: sp.Expr) -> bool:
+    return sp.expand(expression.doit()) == 0
+
+
+def frequencies(system: DiscreteSystem, values: dict[sp.Expr, float], spin: float = 0.0) -> list:
+    """Natural frequencies [rad/s] of M and K + Kg - spin^2 B, in 40 digits, lowest first."""
+
+    def number(name: str) -> mpmath.matrix:
+        rows = system.matrix(name).subs(values).tolist()
+        return mpmath.matrix([[mpmath.mpf(sp.N(entry, 40)) for entry in row] for row in rows])
+
+    with mpmath.workdps(40):
+        stiff = number("K") + number("Kg") - spin**2 * number("B")
+        root = mpmath.inverse(mpmath.cholesky(number("M")))
+        squares = mpmath.eigsy(root * stiff * root.T, eigvals_only=True)
+        return sorted(mpmath.sqrt(value) for value in squares)
+
+
+UNIT = {mu: 1, EI: 1, L: 1}
+
+
+def clamped_polynomials(count: int) -> FiniteBasis:
+    return FiniteBasis(x, L, tuple((x / L) ** (i + 2) for i in range(count)))
+
+
+# ---------------------------------------------------------------- tip mass
+
+
+def tip_massed() -> ActionDensity:
+    return beam(essential=CLAMPED, point_terms=(PointTerm(L, tip / 2 * y.diff(t) ** 2),))
+
+
+def test_tip_mass_changes_only_the_shear_condition_and_the_mass_matrix():
+    plain, loaded = hamilton(beam(essential=CLAMPED)), hamilton(tip_massed())
+    assert loaded.equations[y] == plain.equations[y]
+    moved = loaded.condition(L, y, 0) - plain.condition(L, y, 0)
+    assert zero(moved + tip * y.diff(t, 2))
+    assert zero(loaded.condition(L, y, 1) - plain.condition(L, y, 1))
+    basis = clamped_polynomials(3)
+    before = project(plain, y, basis, CRANK)
+    after = project(loaded, y, basis, CRANK)
+    assert after.matrix("M") - before.matrix("M") == tip * sp.ones(3, 3)
+    assert after.matrix("K") == before.matrix("K")
+    assert before.matrix("M")[0, 1] == mu * L / 6
+    assert before.matrix("K")[0, 1] == 6 * EI / L**3
+
+
+@pytest.mark.parametrize("ratio", [0, 1])
+def test_tip_mass_frequencies_against_the_transcendental_equation(ratio):
+    """1 + cos b cosh b + ratio b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
+    system = project_action(tip_massed(), y, clamped_polynomials(9), CRANK)
+    found = frequencies(system, {**UNIT, tip: ratio})
+
+    def characteristic(b):
+        bend = mpmath.cos(b) * mpmath.sinh(b) - mpmath.sin(b) * mpmath.cosh(b)
+        return 1 + mpmath.cos(b) * mpmath.cosh(b) + ratio * b * bend
+
+    for guess, frequency in zip(
+        (1.875, 4.694) if not ratio else (1.248, 4.031), found, strict=False
+    ):
+        exact = mpmath.findroot(characteristic, guess) ** 2
+        assert abs(frequency - exact) < 1e-6 * exact
+
+
+def test_tip_mass_on_the_coupler_raises_its_tension():
+    """A mass at the sliding pin pulls on the whole link with its centripetal force."""
+    plain, _ = rotating()
+    loaded, _ = rotating(tip_mass=tip)
+    w2, w3, psi = th2.diff(t), th3.diff(t), th2 - th3
+    pull = l2 * (w2**2 * sp.cos(psi) + th2.diff(t, 2) * sp.sin(psi)) + L * w3**2
+    assert zero(loaded - plain - tip * pull)
+
+
+# ---------------------------------------------------------------- spring at x = a
+
+
+def test_spring_at_an_interior_point():
+    sprung = beam(essential=PINNED, point_terms=(PointTerm(a, -k / 2 * y**2),))
+    equations = hamilton(sprung)
+    assert equations.equations[y] == hamilton(beam(essential=PINNED)).equations[y]
+    shear = next(j for j in equations.jumps if j.order == 0)
+    assert zero(shear.value - EI * y.diff(x, 3))
+    assert zero(shear.applied + k * y)
+    basis = sine_basis(x, L, sp.S.One)
+    before = project(hamilton(beam(essential=PINNED)), y, basis, CRANK)
+    for after in (project(equations, y, basis, CRANK), project_action(sprung, y, basis, CRANK)):
+        added = after.matrix("K", 3) - before.matrix("K", 3)
+        shape = sp.Matrix([sp.sin(i * sp.pi * a / L) for i in (1, 2, 3)])
+        assert sp.simplify(added - k * shape * shape.T).is_zero_matrix
+        assert after.matrix("M", 3) == before.matrix("M", 3)
+        odd = added.subs(a, L / 2)
+        assert (odd[0, 0], odd[0, 1], odd[0, 2]) == (k, 0, -k)
+
+
+# ---------------------------------------------------------------- varying mass per length
+
+
+def test_varying_mass_per_length():
+    linear = mu * (1 + beta * x / L)
+    tapered = beam(
+        essential=PINNED, density=linear / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2
+    )
+    equations = hamilton(tapered)
+    assert zero(equations.equations[y] + linear * y.diff(t, 2) + EI * y.diff(x, 4))
+    system = project(equations, y, sine_basis(x, L, sp.S.One), CRANK)
+    mass = system.matrix("M", 3)
+    for i, j in itertools.product((1, 2, 3), repeat=2):
+        if i == j:
+            by_hand = mu * L / 2 * (1 + beta / 2)
+        else:
+            odd = 1 - (-1) ** (i + j)
+            by_hand = -mu * L * beta * odd * sp.Rational(2 * i * j, (i**2 - j**2) ** 2) / sp.pi**2
+        assert sp.simplify(mass[i - 1, j - 1] - by_hand) == 0
+    plain = project(hamilton(beam(essential=PINNED)), y, sine_basis(x, L, sp.S.One), CRANK)
+    assert system.matrix("K", 3) == plain.matrix("K", 3)
+
+
+def test_varying_mass_changes_the_tension_of_the_coupler():
+    force, _ = rotating(mass=mu * (1 + beta * x / L), crank=False)
+    w3 = th3.diff(t)
+    by_hand = Fx + mu * w3**2 * ((L**2 - x**2) / 2 + beta * (L**3 - x**3) / (3 * L))
+    assert zero(force - by_hand)
+
+
+# ---------------------------------------------------------------- rotation
+
+
+def rotating(
+    *,
+    mass: sp.Expr = mu,
+    foreshortening: bool = True,
+    crank: bool = True,
+    gravity: bool = False,
+    tip_mass: sp.Expr = sp.S.Zero,
+    essential: tuple[Essential, ...] = PINNED,
+    out_of_plane: bool = False,
+) -> tuple[sp.Expr, ActionDensity]:
+    """Tension and quadratic action of a beam that turns with th3 and rides on a crank pin."""
+    w2, w3 = (th2.diff(t) if crank else sp.S.Zero), th3.diff(t)
+    along = l2 * w2 * sp.sin(th3 - th2) + u.diff(t)
+    across = l2 * w2 * sp.cos(th3 - th2) + w3 * (x + u)
+    if not out_of_plane:
+        along, across = along - w3 * y, across + y.diff(t)
+    kinetic = along**2 + across**2 + (y.diff(t) ** 2 if out_of_plane else 0)
+    density = mass / 2 * kinetic - EI / 2 * y.diff(x, 2) ** 2
+    if gravity:
+        density -= mass * g * ((x + u) * sp.sin(th3) + y * sp.cos(th3))
+    shortening = y.diff(x) ** 2 / 2 if foreshortening else 0
+    density -= N * (u.diff(x) + shortening)
+    at_end = (along**2 + across**2) * tip_mass / 2
+    action = ActionDensity(
+        x,
+        t,
+        L,
+        (u, y, N),
+        density,
+        point_terms=(PointTerm(L, at_end),) if tip_mass != 0 else (),
+        end_forces=(EndForce(L, u, 0, Fx),),
+        essential=(Essential(0, u, 0), *essential),
+        orders={u: 2, y: 1, N: 0},
+    )
+    equations = hamilton(action)
+    end = order_part(equations.condition(L, u, 0), action.orders, 0)
+    leading = order_part(equations.equations[u], action.orders, 0)
+    force = solve_tension(leading, N, x, L, solve_end_value(end, N))
+    return force, quadratic_action(action, {N: force}, (u,))
+
+
+def test_without_foreshortening_only_the_spin_softening_is_left():
+    _, full = rotating()
+    _, none = rotating(foreshortening=False)
+    basis = sine_basis(x, L)
+    kept = mass_normalised(project_action(none, y, basis, CRANK, followers=FOLLOWERS))
+    whole = mass_normalised(project_action(full, y, basis, CRANK, followers=FOLLOWERS))
+    assert sp.simplify(kept.matrix("B", 3) - omega3**2 * sp.eye(3)).is_zero_matrix
+    assert not kept.has("S")
+    assert not kept.matrix("K", 3).has(sp.Symbol("F"))
+    assert whole.has("S")
+    assert whole.matrix("K", 3).has(sp.Symbol("F"))
+    assert kept.matrix("f", 3) == whole.matrix("f", 3)
+    y_equation = hamilton(none).equations[y]
+    assert not y_equation.has(y.diff(x), y.diff(x, 2))
+
+
+def test_constant_rotation_alone():
+    """In the plane of rotation: mu y_tt + EI y'''' - mu w^2 ((L^2 - x^2) y'/2)' - mu w^2 y."""
+    _, action = rotating(crank=False)
+    w = sp.Symbol("w")
+    found = hamilton(action).equations[y].subs({th3: w * t, Fx: 0}).doit()
+    by_hand = mu * y.diff(t, 2) + EI * y.diff(x, 4) - mu * w**2 * y
+    by_hand -= mu * w**2 * sp.diff((L**2 - x**2) / 2 * y.diff(x), x)
+    assert zero(found + by_hand)
+
+
+@pytest.mark.parametrize(("spin", "first"), [(2, 4.1373), (12, 13.1702)])
+def test_rotating_cantilever_against_the_published_table(spin, first):
+    """Flapping frequencies of Wright, Smith, Thresher and Wang (1982), given to 4 decimals."""
+    _, action = rotating(crank=False, essential=CLAMPED, out_of_plane=True)
+    system = project_action(
+        action, y, clamped_polynomials(9), CRANK, followers={**FOLLOWERS, Fx: 0, th3: theta}
+    )
+    flap = frequencies(system, UNIT, spin)[0]
+    assert abs(flap - first) < 1e-4
+    # in the plane of rotation the square is smaller by the square of the spin
+    _, action = rotating(crank=False, essential=CLAMPED)
+    system = project_action(
+        action, y, clamped_polynomials(9), CRANK, followers={**FOLLOWERS, Fx: 0, th3: theta}
+    )
+    lag = frequencies(system, UNIT, spin)[0]
+    assert abs(lag**2 - (flap**2 - spin**2)) < 1e-12
+
+
+def test_gravity_adds_a_load_and_a_tension_by_weight():
+    force, action = rotating(gravity=True, crank=False)
+    plain_force, plain = rotating(crank=False)
+    assert zero(force - plain_force + mu * g * (L - x) * sp.sin(th3))
+    added = hamilton(action).equations[y] - hamilton(plain).equations[y]
+    weight = -mu * g * sp.cos(th3) - sp.diff(mu * g * (L - x) * sp.sin(th3) * y.diff(x), x)
+    assert zero(added - weight)
+    options = {"followers": FOLLOWERS, "geometric": (g,)}
+    system = project(hamilton(action), y, sine_basis(x, L, sp.S.One), CRANK, **options)
+    assert sp.simplify(system.matrix("p", 1)[0] + 2 * mu * g * L * sp.cos(theta3) / sp.pi) == 0
+    sag = system.matrix("Kg", 1)[0, 0]
+    assert sp.simplify(sag + mu * g * sp.pi**2 * sp.sin(theta3) / 4) == 0
+
+
+# ---------------------------------------------------------------- interior support
+
+
+def test_interior_support_of_a_static_beam():
+    """Pinned beam with a third support in the middle under uniform load: R = 5 q L / 4 on L."""
+    q, R = sp.symbols("q R")
+    half = L / 2
+    action = beam(
+        density=-EI / 2 * y.diff(x, 2) ** 2 + q * y,
+        essential=PINNED,
+        supports=(Support(half, y, R),),
+    )
+    equations = hamilton(action)
+    spans = [sp.symbols("c0:4"), sp.symbols("d0:4")]
+    left, right = (
+        q * x**4 / (24 * EI) + sum(c * x**i for i, c in enumerate(span)) for span in spans
+    )
+
+    def on(expression: sp.Expr, curve: sp.Expr, at: sp.Expr) -> sp.Expr:
+        return expression.subs(y, curve).doit().subs(x, at)
+
+    assert zero(on(equations.equations[y], left, x))
+    conditions = [left.subs(x, 0), right.subs(x, L), left.subs(x, half), right.subs(x, half)]
+    conditions.append((left - right).diff(x).subs(x, half))
+    for condition in equations.natural:
+        curve = left if condition.position == 0 else right
+        conditions.append(on(condition.expression, curve, condition.position))
+    for jump in equations.jumps:
+        step = on(jump.value, right, half) - on(jump.value, left, half)
+        conditions.append(step - jump.applied - jump.reaction)
+    solution = sp.solve(conditions, [*spans[0], *spans[1], R], dict=True)
+    assert len(solution) == 1
+    assert sp.simplify(solution[0][R] + sp.Rational(5, 8) * q * L) == 0
+
+
+# ---------------------------------------------------------------- discrete systems
+
+
+def pendulum(*, spring: bool = False, vibrating: bool = False) -> Lagrangian:
+    angle = sp.Function("q")(t)
+    lift = sp.cos(th2) if vibrating else sp.S.Zero
+    px, py = L * sp.sin(angle), lift - L * sp.cos(angle)
+    energy = tip / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2) - tip * g * py
+    return Lagrangian((angle,), t, energy - (k / 2 * angle**2 if spring else 0))
+
+
+def test_a_spring_in_the_lagrangian_reaches_the_rest_alone():
+    plain, sprung = euler_lagrange(pendulum()), euler_lagrange(pendulum(spring=True))
+    (q,) = plain.coordinates
+    assert sprung.mass == plain.mass
+    assert sp.expand(sprung.rest[0] - plain.rest[0] - k * q) == 0
+    assert sp.simplify(plain.rest[0] - tip * g * L * sp.sin(q)) == 0
+
+
+def test_a_shaken_pivot_becomes_a_mathieu_equation():
+    """q'' + (g/L - td^2 cos(theta)/L ...) q = 0 for small angles, from the linear arrays."""
+    angle = sp.Function("q")(t)
+    lift = -sp.sin(theta) * td
+    quadratic = tip / 2 * (L**2 * angle.diff(t) ** 2 + 2 * L * lift * angle * angle.diff(t))
+    system = quadratic_form(quadratic - tip * g * L * angle**2 / 2, (angle,), CRANK, t)
+    array = {name: system.matrix(name)[0, 0] for name in ("M", "A", "B", "S", "K")}
+    H = CRANK.derivative(array["A"]) - array["B"]
+    E = array["A"] - array["S"]
+    assert array["M"] == tip * L**2
+    assert sp.expand(H + tip * L * sp.cos(theta)) == 0
+    assert sp.expand(E + tip * L * sp.sin(theta)) == 0
+    assert array["K"] == tip * g * L
+    full = euler_lagrange(pendulum(vibrating=True))
+    (q,) = full.coordinates
+    stiff = sp.diff(full.rest[0], q).subs(q, 0)
+    rates = {th2.diff(t, 2): tdd, th2.diff(t): td, th2: theta}
+    own = array["K"] + td**2 * H + tdd * E
+    assert sp.simplify(stiff.subs(rates) - own) == 0

@@ -1,0 +1,297 @@
+"""Galerkin projection: two independent routes agree, and hand cases come out."""
+
+from __future__ import annotations
+
+import itertools
+
+import mpmath
+import pytest
+import sympy as sp
+from elastolink.derive.lagrange import NotRepresentable
+from elastolink.derive.projection import (
+    FiniteBasis,
+    antisymmetric_gauge,
+    mass_normalised,
+    modal_terms,
+    project,
+    project_action,
+    sine_basis,
+)
+from elastolink.derive.records import (
+    ActionDensity,
+    CrankMotion,
+    DiscreteSystem,
+    EndForce,
+    Essential,
+    IndexedEntry,
+    PointTerm,
+    Support,
+)
+from elastolink.derive.variational import (
+    hamilton,
+    order_part,
+    quadratic_action,
+    solve_end_value,
+    solve_tension,
+)
+
+x, t = sp.symbols("x t")
+l2, l3, mu, EI, c, tip, k, T = sp.symbols("l2 l3 mu EI c tip k T", positive=True)
+theta, theta3, omega3, alpha3, td, tdd = sp.symbols("theta theta3 omega3 alpha3 td tdd")
+push, load = sp.symbols("push load")
+y, u, N = (sp.Function(name)(x, t) for name in ("y", "u", "N"))
+th2, th3, Fx = (sp.Function(name)(t) for name in ("th2", "th3", "Fx"))
+CRANK = CrankMotion(theta, td, tdd, {theta3: omega3, omega3: alpha3})
+FOLLOWERS = {th2: theta, th3: theta3, Fx: push * td**2 + load}
+PINNED = (Essential(0, y, 0), Essential(l3, y, 0))
+
+
+def reduced_coupler() -> ActionDensity:
+    """Quadratic action of the rotating, translating pinned beam with end load and damping."""
+    w2, w3 = th2.diff(t), th3.diff(t)
+    along = l2 * w2 * sp.sin(th3 - th2) + u.diff(t) - w3 * y
+    across = l2 * w2 * sp.cos(th3 - th2) + y.diff(t) + w3 * (x + u)
+    density = (
+        mu / 2 * (along**2 + across**2)
+        - EI / 2 * y.diff(x, 2) ** 2
+        - N * (u.diff(x) + y.diff(x) ** 2 / 2)
+    )
+    action = ActionDensity(
+        x,
+        t,
+        l3,
+        (u, y, N),
+        density,
+        force_density={y: -c * y.diff(t)},
+        end_forces=(EndForce(l3, u, 0, Fx),),
+        essential=(Essential(0, u, 0), *PINNED),
+        orders={u: 2, y: 1, N: 0},
+    )
+    equations = hamilton(action)
+    end = solve_end_value(equations.condition(l3, u, 0), N)
+    force = solve_tension(order_part(equations.equations[u], action.orders, 0), N, x, l3, end)
+    return quadratic_action(action, {N: force}, (u,))
+
+
+@pytest.fixture(scope="module")
+def routes() -> tuple[DiscreteSystem, DiscreteSystem]:
+    action = reduced_coupler()
+    basis = sine_basis(x, l3)
+    options = {"followers": FOLLOWERS, "geometric": (load,)}
+    return (
+        mass_normalised(project(hamilton(action), y, basis, CRANK, **options)),
+        mass_normalised(project_action(action, y, basis, CRANK, **options)),
+    )
+
+
+def same(first: DiscreteSystem, second: DiscreteSystem, modes: int) -> bool:
+    names = {*first.arrays, *second.arrays}
+    return all(
+        sp.simplify(first.matrix(name, modes) - second.matrix(name, modes)).is_zero_matrix
+        for name in names
+    )
+
+
+def test_two_routes_agree(routes):
+    strong, weak = routes
+    assert strong.modes is None
+    assert same(strong, weak, 3)
+    assert list(strong.arrays) == ["M", "B", "S", "C", "K", "Kg", "f", "g"]
+
+
+VALUES = {l2: 0.3, l3: 1.7, mu: 2.1, EI: 5.0, c: 0.2, push: 0.8, load: 0.4}
+VALUES |= {theta: 0.6, theta3: 1.9, omega3: -0.7, alpha3: 0.35}
+
+
+def quadrature_entries(i: int, j: int) -> dict[str, mpmath.mpf]:
+    """Integrals of the complete equation for mode numbers i, j, by quadrature."""
+    span, mass, spin = VALUES[l3], VALUES[mu], VALUES[omega3]
+    psi = VALUES[theta] - VALUES[theta3]
+
+    def mode(number: int, order: int = 0):
+        return lambda s: mpmath.diff(lambda r: mpmath.sin(number * mpmath.pi * r / span), s, order)
+
+    def n_speed(s):
+        pull = VALUES[l2] * (span - s) * mpmath.cos(psi) + (span**2 - s**2) * spin**2 / 2
+        return VALUES[push] + mass * pull
+
+    def n_acceleration(s):
+        return mass * VALUES[l2] * (span - s) * mpmath.sin(psi)
+
+    def integral(function):
+        return 2 / (mass * span) * mpmath.quad(function, mpmath.linspace(0, span, 4))
+
+    p, q, dp, dq, ddp, ddq = (mode(number, order) for order in (0, 1, 2) for number in (i, j))
+    sine, cosine = VALUES[l2] * mpmath.sin(psi), VALUES[l2] * mpmath.cos(psi)
+    return {
+        "M": integral(lambda s: mass * p(s) * q(s)),
+        "B": integral(lambda s: mass * spin**2 * p(s) * q(s) - n_speed(s) * dp(s) * dq(s)),
+        "S": integral(lambda s: -n_acceleration(s) * dp(s) * dq(s)),
+        "K": integral(lambda s: VALUES[EI] * ddp(s) * ddq(s)),
+        "Kg": integral(lambda s: VALUES[load] * dp(s) * dq(s)),
+        "C": integral(lambda s: VALUES[c] * p(s) * q(s)),
+        "f": integral(lambda s: mass * (sine - s * VALUES[alpha3]) * p(s) / span),
+        "g": integral(lambda s: mass * (-cosine - s * spin) * p(s) / span),
+    }
+
+
+def test_coupler_arrays_by_hand(routes):
+    system = routes[0]
+    for i, j in itertools.product((1, 2, 3), repeat=2):
+        for name, value in quadrature_entries(i, j).items():
+            array = system.matrix(name, 3)
+            entry = array[i - 1] if array.shape[1] == 1 else array[i - 1, j - 1]
+            assert abs(sp.N(entry.subs(VALUES)) - value) < 1e-9 * (1 + abs(value)), name
+
+
+def test_printed_coefficients_are_part_of_the_complete_ones(routes):
+    """Smith (6.11): its diagonal terms are there; errata: others are there too, and coupling."""
+    system = routes[0]
+    entry = system.arrays["B"]
+    assert isinstance(entry, IndexedEntry)
+    m = entry.m
+    stiffness = sp.expand(-entry.diagonal)
+    printed = push * (m * sp.pi / l3) ** 2 / mu - omega3**2
+    extra = sp.expand(stiffness - printed)
+    by_hand = l2 * sp.cos(theta - theta3) * (m * sp.pi) ** 2 / (2 * l3)
+    by_hand += omega3**2 * ((m * sp.pi) ** 2 / 3 - sp.Rational(1, 4))
+    assert sp.expand(extra - by_hand) == 0
+    assert sp.simplify(entry.matrix(2)[0, 1]) != 0
+
+
+def test_modal_terms_reassemble(routes):
+    for name in ("B", "S", "K", "f", "g"):
+        entry = routes[0].arrays[name]
+        parts = modal_terms(entry)
+        summed = parts[0][0] * parts[0][1].matrix(3)
+        for factor, part in parts[1:]:
+            summed += factor * part.matrix(3)
+        assert sp.simplify(summed - entry.matrix(3)).is_zero_matrix
+        for factor, part in parts:
+            symbols = part.matrix(3).free_symbols
+            assert symbols == set(), (name, factor)
+    with pytest.raises(TypeError, match="no mode indices"):
+        modal_terms(sp.ImmutableDenseMatrix([[1]]))
+
+
+def test_finite_basis_equals_indexed_basis():
+    action = reduced_coupler()
+    shapes = tuple(sp.sin(i * sp.pi * x / l3) for i in (1, 2))
+    finite = project_action(action, y, FiniteBasis(x, l3, shapes, l3), CRANK, followers=FOLLOWERS)
+    indexed = project_action(action, y, sine_basis(x, l3), CRANK, followers=FOLLOWERS)
+    assert finite.modes == 2
+    assert finite.labels == ("q1", "q2")
+    assert same(finite, indexed, 2)
+
+
+def beam_with_everything() -> ActionDensity:
+    """Clamped beam whose polynomial basis violates every natural condition."""
+    R = sp.Symbol("R")
+    return ActionDensity(
+        x,
+        t,
+        l3,
+        (y,),
+        mu / 2 * (1 + x / l3) * y.diff(t) ** 2
+        + mu / 7 * y.diff(x, t) ** 2
+        - EI / 2 * (2 - x / l3) * y.diff(x, 2) ** 2,
+        point_terms=(
+            PointTerm(l3, tip / 2 * (y.diff(t) + l2 * th2.diff(t)) ** 2 - k / 2 * y.diff(x) ** 2),
+            PointTerm(l3 / 3, tip / 3 * y.diff(t) ** 2 - k / 5 * y**2),
+        ),
+        force_density={y: -c * y.diff(t) + push * th2.diff(t) ** 2},
+        end_forces=(
+            EndForce(l3, y, 1, load - c * y.diff(x, t)),
+            EndForce(l3 / 4, y, 0, Fx),
+        ),
+        essential=(Essential(0, y, 0), Essential(0, y, 1)),
+        supports=(Support(l3 / 2, y, R),),
+    )
+
+
+def test_two_routes_agree_where_the_basis_violates_natural_conditions():
+    action = beam_with_everything()
+    half = l3 / 2
+    shapes = tuple(x ** (2 + i) * (x - half) for i in range(2))
+    basis = FiniteBasis(x, l3, shapes)
+    options = {"followers": FOLLOWERS}
+    strong = project(hamilton(action), y, basis, CRANK, **options)
+    weak = project_action(action, y, basis, CRANK, **options)
+    assert same(strong, weak, 2)
+    assert {"M", "C", "K", "f", "g", "p"} <= set(strong.arrays)
+
+
+def test_two_routes_agree_for_a_travelling_string():
+    """Coriolis terms: A is not zero, and follows the crank."""
+    speed = sp.Function("v")(t)
+    action = ActionDensity(
+        x,
+        t,
+        l3,
+        (y,),
+        mu / 2 * (1 + x / l3) * (y.diff(t) + speed * y.diff(x)) ** 2 - T / 2 * y.diff(x) ** 2,
+        essential=PINNED,
+    )
+    gear = sp.Symbol("gear") * sp.sin(theta)
+    # the speed is the rate of a position that follows the crank
+    position = sp.Function("s")(t)
+    moved = action.with_(density=action.density.subs(speed, position.diff(t)))
+    options = {"followers": {position: -sp.Symbol("gear") * sp.cos(theta)}}
+    basis = sine_basis(x, l3)
+    strong = project(hamilton(moved), y, basis, CRANK, **options)
+    weak = project_action(moved, y, basis, CRANK, **options)
+    assert weak.has("A")
+    assert not same(strong, weak, 2)
+    assert same(antisymmetric_gauge(strong), antisymmetric_gauge(weak), 3)
+    skew = antisymmetric_gauge(weak).matrix("A", 3)
+    assert sp.simplify(skew + skew.T).is_zero_matrix
+    direct = weak.matrix("A", 2)[0, 1]
+    by_hand = sp.integrate(
+        mu * (1 + x / l3) * sp.sin(sp.pi * x / l3) * sp.diff(sp.sin(2 * sp.pi * x / l3), x),
+        (x, 0, l3),
+    )
+    assert sp.simplify(direct - by_hand * gear * l3**2) == 0
+
+
+def test_basis_must_satisfy_essential_conditions():
+    action = beam_with_everything()
+    with pytest.raises(ValueError, match="does not vanish at l3/2"):
+        project_action(action, y, FiniteBasis(x, l3, (x**2,)), CRANK, followers=FOLLOWERS)
+    with pytest.raises(ValueError, match="derivative 1"):
+        project(hamilton(action), y, sine_basis(x, l3), CRANK, followers=FOLLOWERS)
+
+
+def test_terms_outside_the_family_are_errors():
+    basis = sine_basis(x, l3)
+    base = mu / 2 * y.diff(t) ** 2
+    for density in (base + sp.Symbol("td") ** 3 * y**2, base + sp.sqrt(td) * y):
+        action = ActionDensity(x, t, l3, (y,), density, essential=PINNED)
+        with pytest.raises(NotRepresentable):
+            project(hamilton(action), y, basis, CRANK)
+        with pytest.raises(NotRepresentable):
+            project_action(action, y, basis, CRANK)
+    cubic = ActionDensity(x, t, l3, (y,), base - k * y**4, essential=PINNED)
+    with pytest.raises(ValueError, match="not linear"):
+        project(hamilton(cubic), y, basis, CRANK)
+    with pytest.raises(ValueError, match="not quadratic"):
+        project_action(cubic, y, basis, CRANK)
+    quick = ActionDensity(x, t, l3, (y,), base + y.diff(t, 2) * y, essential=PINNED)
+    with pytest.raises(NotRepresentable, match="second time"):
+        project_action(quick, y, basis, CRANK)
+
+
+def test_mass_normalisation_needs_equal_modal_masses():
+    action = ActionDensity(x, t, l3, (y,), mu * x * y.diff(t) ** 2, essential=PINNED)
+    system = project_action(action, y, sine_basis(x, l3), CRANK)
+    with pytest.raises(ValueError, match="not a multiple of the identity"):
+        mass_normalised(system)
+
+
+def test_mass_normalisation_of_a_finite_basis():
+    action = reduced_coupler()
+    shapes = tuple(sp.sin(i * sp.pi * x / l3) for i in (1, 2))
+    finite = project_action(action, y, FiniteBasis(x, l3, shapes, l3), CRANK, followers=FOLLOWERS)
+    system = mass_normalised(finite)
+    assert system.matrix("M") == sp.eye(2)
+    ratio = mu * l3**3 / 2
+    assert sp.simplify(system.matrix("B") * ratio - finite.matrix("B")).is_zero_matrix

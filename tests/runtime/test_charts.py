@@ -1,0 +1,152 @@
+"""Stability charts: interpolated invariants against direct ones, boundaries against both."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import elastolink as el
+from elastolink.runtime.stability_polynomial import characteristic, largest_modulus
+
+RIG = "smith_1972_5152_sixteenth_inch"
+SPEEDS = np.linspace(40.0, 99.0, 61)
+INERTIAS = np.linspace(6e-4, 2.2e-3, 31)
+
+
+def rig(**overrides):
+    return el.load_scene(RIG, overrides=overrides).system()
+
+
+@pytest.fixture(scope="module")
+def undamped():
+    return el.stability_chart(rig(), ("speed", SPEEDS), ("follower_inertia", INERTIAS))
+
+
+def direct_half_trace(system, speed, inertia):
+    result = el.monodromy(system, speed, follower_inertia=inertia)
+    return np.trace(result.matrix) / 2
+
+
+def test_half_traces_agree_with_monodromy_matrices(undamped):
+    """The monodromy matrices come from collocation, the chart from transfer polynomials."""
+    system = rig()
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        i, j = rng.integers(len(INERTIAS)), rng.integers(len(SPEEDS))
+        found = undamped.invariants[i, j, 0]
+        wanted = direct_half_trace(system, SPEEDS[j], INERTIAS[i])
+        assert abs(found - wanted) <= undamped.error + 1e-10 * max(1.0, abs(wanted))
+    assert undamped.error < 1e-9
+    assert undamped.passed
+
+
+def test_exact_boundaries_lie_where_the_half_trace_is_one(undamped):
+    system = rig()
+    curves = undamped.exact
+    checked = 0
+    for j in (0, 15, 30):
+        for row in (*curves.lower[:, j], *curves.upper[:, j]):
+            if np.isfinite(row) and SPEEDS[0] < row < SPEEDS[-1]:
+                half = direct_half_trace(system, row, curves.at[j])
+                assert abs(abs(half) - 1.0) < 1e-9
+                checked += 1
+    assert checked >= 12
+
+
+def test_shading_agrees_with_exact_boundaries(undamped):
+    """A point is unstable if and only if it lies between the ends of some region."""
+    curves = undamped.exact
+    for i, inertia in enumerate(INERTIAS):
+        j = int(np.argmin(np.abs(curves.at - inertia)))
+        assert abs(curves.at[j] - inertia) < 1e-12
+        # lower in lam2 is the higher speed
+        inside = (SPEEDS < curves.lower[:, j, None]) & (SPEEDS > curves.upper[:, j, None])
+        assert np.array_equal(~undamped.stable[i], np.any(inside, axis=0))
+
+
+def test_first_order_boundaries_meet_the_exact_ones_for_light_loads():
+    """Where the periodic part is small, the first-order error is of its square."""
+    system = el.load_scene("mathieu").system()
+    mu = np.array([0.01, 0.02])
+    chart = el.stability_chart(system, ("lam2", np.linspace(0.1, 0.6, 11)), ("mu", mu))
+    at = chart.exact.regions.index(1)
+    gap = np.abs(chart.exact.lower[at] - chart.first_order.lower[at])
+    assert np.all(gap < mu**2)
+    assert gap[1] / gap[0] == pytest.approx(4.0, rel=0.05)
+
+
+def test_damped_boundaries_lie_where_a_multiplier_is_one():
+    system = rig(**{"coupler.damping_ratio": 0.01})
+    chart = el.stability_chart(system, ("speed", SPEEDS), ("follower_inertia", INERTIAS))
+    curves = chart.exact
+    checked = 0
+    for j in (10, 30):
+        for row in (*curves.lower[:, j], *curves.upper[:, j]):
+            if np.isfinite(row) and SPEEDS[0] < row < SPEEDS[-1]:
+                found = el.floquet_multipliers(system, row, follower_inertia=curves.at[j])
+                assert np.min(np.abs(np.abs(found.multipliers) - 1.0)) < 1e-7
+                checked += 1
+    assert checked >= 4
+    assert chart.stable.mean() > undamped_share()
+
+
+def undamped_share():
+    chart = el.stability_chart(rig(), ("speed", SPEEDS), ("follower_inertia", INERTIAS))
+    return chart.stable.mean()
+
+
+def test_two_modes_agree_with_multipliers():
+    system = rig(**{"model.modes": 2})
+    speeds = np.linspace(55.0, 99.0, 23)
+    chart = el.stability_chart(system, ("speed", speeds), ("follower_inertia", INERTIAS[::10]))
+    direct = el.floquet_multipliers(
+        system, speeds[None, :], follower_inertia=INERTIAS[::10][:, None]
+    )
+    largest = np.max(np.abs(direct.multipliers), axis=-1)
+    clear = np.abs(largest - 1.0) > 1e-5
+    assert np.array_equal(chart.stable[clear], largest[clear] < 1.0 + 1e-5)
+    assert np.allclose(chart.largest[clear], largest[clear], rtol=1e-5)
+
+
+def test_reduced_polynomial_gives_the_multipliers():
+    """Hand case: multipliers exp(+-i a), r exp(+-i b)/... of a block-diagonal symplectic matrix."""
+    turn = np.array([[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]])
+    grow = np.diag([1.3, 1 / 1.3])
+    third = np.array([[np.cos(2.0), np.sin(2.0)], [-np.sin(2.0), np.cos(2.0)]])
+    matrix = np.zeros((6, 6))
+    matrix[:2, :2], matrix[2:4, 2:4], matrix[4:, 4:] = turn, grow, third
+    largest, stable = largest_modulus(characteristic(matrix, reduced=True), reduced=True)
+    assert largest == pytest.approx(1.3, rel=1e-12)
+    assert not stable
+    full, _ = largest_modulus(characteristic(matrix, reduced=False), reduced=False)
+    assert full == pytest.approx(1.3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "words"),
+    [
+        (("speeed", SPEEDS), ("follower_inertia", INERTIAS), "speeed"),
+        (("speed", SPEEDS), ("speed", SPEEDS), "another parameter"),
+        (("speed", SPEEDS - 50.0), ("follower_inertia", INERTIAS), "positive speeds"),
+        (("speed", SPEEDS[::-1]), ("follower_inertia", INERTIAS), "rising"),
+        (("speed", [np.nan, 2.0]), ("follower_inertia", INERTIAS), "finite"),
+        (("speed", [2.0]), ("follower_inertia", INERTIAS), "at least two"),
+    ],
+)
+def test_bad_axes_are_refused(x, y, words):
+    with pytest.raises(el.BadInput, match=words):
+        el.stability_chart(rig(), x, y)
+
+
+def test_picture_shows_what_it_promises(undamped, tmp_path):
+    axes = undamped.plot()
+    labels = {text.get_text() for text in axes.get_legend().get_texts()}
+    assert {"exact boundary (Hill matrix)", "first-order boundary"} <= labels
+    assert any("error of the discriminant" in text.get_text() for text in axes.texts)
+    assert "rpm" in axes.get_xlabel()
+
+
+def test_dictionary_holds_the_boundaries(undamped):
+    table = undamped.to_dict()
+    assert table["exact"]["regions"] == list(undamped.exact.regions)
+    assert len(table["exact"]["lower"]) == len(undamped.exact.regions)

@@ -1,0 +1,202 @@
+"""Numeric truth that no printed formula enters: loop closure by search, derivatives by FFT.
+
+Angles and derivatives come from the closure of the four bars alone, forces from the motion of
+point masses, boundaries from the Fourier matrix of Hill's equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+TURN = 2.0 * np.pi
+CRANK_ROCKERS = {
+    "5,1,5,2": (5.0, 1.0, 5.0, 2.0),
+    "10,1,10,4": (10.0, 1.0, 10.0, 4.0),
+    "2,1,2,2": (2.0, 1.0, 2.0, 2.0),
+    "4,1,4,4": (4.0, 1.0, 4.0, 4.0),
+    "12,6,12,12": (12.0, 6.0, 12.0, 12.0),
+}
+LONG_CRANK = (10.0, 8.0, 10.0, 10.0)
+DRAG_LINK = (2.0, 4.0, 5.0, 4.5)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Angles [rad] and their first and second derivatives, one value per sample of one turn."""
+
+    theta2: np.ndarray
+    theta3: np.ndarray
+    theta4: np.ndarray
+    omega2: np.ndarray
+    omega3: np.ndarray
+    omega4: np.ndarray
+    alpha2: np.ndarray
+    alpha3: np.ndarray
+    alpha4: np.ndarray
+
+
+def closure(lengths, theta2, assembly="open"):
+    """Solve the loop closure for coupler and follower angle at each crank angle by bisection.
+
+    The coupler angle is searched on a fine grid for the two places where C is one follower length
+    away from D; the open assembly is the one with sin(theta4 - theta3) > 0.
+    """
+    l1, l2, l3, l4 = lengths
+    theta2 = np.atleast_1d(np.asarray(theta2, dtype=float))
+    grid = np.linspace(0.0, TURN, 721)
+
+    def residual(angle):
+        pin = l2 * np.exp(1j * theta2[:, None]) + l3 * np.exp(1j * angle) - l1
+        return np.abs(pin) - l4
+
+    values = residual(grid[None, :])
+    change = np.signbit(values[:, :-1]) != np.signbit(values[:, 1:])
+    assert np.all(change.sum(axis=1) == 2), "the grid must see both assemblies at every angle"
+    places = np.argwhere(change)[:, 1].reshape(-1, 2)
+    low, high = grid[places], grid[places + 1]
+    sign = np.signbit(residual(low))
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        same = np.signbit(residual(middle)) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    coupler = 0.5 * (low + high)
+    pin = l2 * np.exp(1j * theta2[:, None]) + l3 * np.exp(1j * coupler) - l1
+    follower = np.angle(pin)
+    is_open = np.sin(follower - coupler) > 0
+    assert np.all(is_open.sum(axis=1) == 1)
+    pick = is_open if assembly == "open" else ~is_open
+    return coupler[pick], follower[pick]
+
+
+def spectral_derivative(samples, order=1, growth=0.0):
+    """Differentiate ``growth * t + periodic`` sampled evenly over one period 2 pi of t."""
+    count = samples.size
+    time = TURN * np.arange(count) / count
+    number = np.fft.fftfreq(count, 1.0 / count)
+    if order % 2:
+        number[count // 2] = 0.0
+    periodic = np.fft.fft(samples - growth * time)
+    result = np.fft.ifft((1j * number) ** order * periodic).real
+    return result + growth if order == 1 else result
+
+
+def motion(lengths, assembly="open", count=512, unsteady=0.0):
+    """Return one turn of the linkage; theta2 = t + unsteady * sin(t), t sampled evenly."""
+    time = TURN * np.arange(count) / count
+    theta2 = time + unsteady * np.sin(time)
+    theta3, theta4 = (np.unwrap(angle) for angle in closure(lengths, theta2, assembly))
+    rates = [theta2, theta3, theta4]
+    for order in (1, 2):
+        for angle in (theta2, theta3, theta4):
+            last_step = np.angle(np.exp(1j * (angle[0] - angle[-1])))
+            growth = np.round((angle[-1] + last_step - angle[0]) / TURN)
+            rates.append(spectral_derivative(angle, order, growth))
+    return Motion(*rates)
+
+
+def pin_force_on_coupler(lengths, inertia4, masses, places, speed=1.0, assembly="open"):
+    """Return the force (complex, fixed axes) that the follower exerts on the coupler at C.
+
+    The coupler consists of point masses at the given distances from B.  Its moment about B and
+    the follower's moment about D are the only equations used.
+    """
+    _, l2, l3, l4 = lengths
+    m = motion(lengths, assembly)
+    crank_pin = l2 * np.exp(1j * m.theta2)
+    along = np.exp(1j * m.theta3)
+    moment = np.zeros(m.theta2.size)
+    for mass, place in zip(masses, places, strict=True):
+        position = crank_pin + place * along
+        acceleration = spectral_derivative(position.real, 2) + 1j * spectral_derivative(
+            position.imag, 2
+        )
+        moment += mass * speed**2 * np.imag(np.conj(place * along) * acceleration)
+    arm3, arm4 = l3 * along, l4 * np.exp(1j * m.theta4)
+    matrix = np.stack([[-arm3.imag, arm3.real], [arm4.imag, -arm4.real]]).transpose(2, 0, 1)
+    right = np.stack([moment, inertia4 * speed**2 * m.alpha4], axis=-1)
+    solution = np.linalg.solve(matrix, right[..., None])[..., 0]
+    return solution[:, 0] + 1j * solution[:, 1], m
+
+
+@dataclass(frozen=True)
+class Rig:
+    """One of Smith's rigs with the 1/16 in coupler: inches, lbf, seconds (his chapter 9).
+
+    The mass per length follows from the stiffness and the frequency of 26 Hz that he observed.
+    """
+
+    lengths: tuple[float, float, float, float]
+    stiffness: float = 171.5
+    frequency: float = TURN * 26.0
+    inertias: tuple[float, float] = (0.0058, 0.0190)
+
+    @property
+    def mass_per_length(self):
+        """Return the mass per length [lbf s^2 / in^2]."""
+        return self.stiffness * (np.pi / self.lengths[2]) ** 4 / self.frequency**2
+
+    def epsilon(self, inertia4):
+        """Return (epsilon1, epsilon2, epsilon3) of a uniform coupler, by their dimensions."""
+        _, l2, l3, l4 = self.lengths
+        scale = np.pi**2 / l3**2
+        return (
+            scale * l3**2 / 3.0,
+            scale * (l3 / 2.0) * l2,
+            scale * inertia4 / (self.mass_per_length * l4),
+        )
+
+
+RIGS = {
+    "5,1,5,2": Rig((15.0, 3.0, 15.0, 6.0)),
+    "10,1,10,4": Rig((15.0, 1.5, 15.0, 6.0)),
+}
+
+
+def coupler_functions(m):
+    """Return phi, f1, f2, f3 by their definitions from a motion at unit crank speed."""
+    between = m.theta3 - m.theta4
+    return (
+        m.omega3**2,
+        -m.alpha3 / np.tan(between),
+        np.sin(m.theta2 - m.theta3) / np.tan(between),
+        -m.alpha4 / np.sin(between),
+    )
+
+
+def fourier(samples):
+    """Return complex coefficients c[k], f = sum c[k] exp(i k theta), k as in numpy.fft."""
+    return np.fft.fft(samples) / samples.size
+
+
+def boundaries(samples, region, harmonics=40):
+    """Return both values of lambda^2 that bound a region of y'' + (lambda^2 + f) y = 0.
+
+    ``samples`` are even samples of f over 2 pi.  Eigenvalues of the Fourier matrix of -y'' - f y
+    over the periodic (even region) or antiperiodic (odd region) exponentials.
+    """
+    shift = 0.5 * (region % 2)
+    number = np.arange(-harmonics, harmonics + 1) + shift
+    coefficients = fourier(samples)
+    index = np.arange(number.size)
+    difference = (index[:, None] - index[None, :]) % samples.size
+    matrix = np.diag(number**2).astype(complex) - coefficients[difference]
+    values = np.sort(np.linalg.eigvalsh(matrix))
+    first = region - 1
+    return values[first], values[first + 1]
+
+
+def normalised_solutions(coefficient: Callable[[float], float], end):
+    """Return [[y1, y2], [y1', y2']] at ``end`` of y'' + coefficient(x) y = 0."""
+
+    def rates(x, state):
+        factor = -coefficient(x)
+        return [state[2], state[3], factor * state[0], factor * state[1]]
+
+    solution = solve_ivp(
+        rates, (0.0, end), [1.0, 0.0, 0.0, 1.0], method="DOP853", rtol=1e-12, atol=1e-13
+    )
+    return solution.y[:, -1].reshape(2, 2)

@@ -1,0 +1,232 @@
+"""Monodromy matrices and motions under strain: fast waves, growth, defects, jumps, size, units."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.floquet import floquet_multipliers, monodromy
+from elastolink.runtime.simulation import simulate
+from elastolink.runtime.speed_boundaries import speed_boundaries
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+
+def _named(names):
+    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
+
+
+def _mathieu(period: float = 2 * np.pi) -> LinearPeriodic:
+    numbers = {"lam2": 1.0, "mu": 0.0, "K2": 0.0}
+    rate = 2 * np.pi / period
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", "lam2", np.eye(1), power=2),
+        Term("Kg", "mu", lambda theta: np.cos(rate * theta)[:, None, None], power=2),
+        Term("C", "K2", np.eye(1), power=1),
+    )
+    return LinearPeriodic(1, terms, numbers, _named(numbers), period=period)
+
+
+@pytest.mark.parametrize("waves", [100.25, 1000.1, 5000.3])
+def test_thousands_of_oscillations_per_revolution(waves):
+    found = monodromy(_mathieu(), 1.0, lam2=waves**2)
+    phase = 8 * np.arctan(np.longdouble(1)) * np.longdouble(waves)
+    c, s = float(np.cos(phase)), float(np.sin(phase))
+    exact = np.array([[c, s / waves], [-s * waves, c]])
+    scaled = exact / found.scale[:, None] * found.scale
+    actual = np.max(np.abs(found.scaled - scaled)) / np.max(np.abs(scaled))
+    # waves**2 is rounded, so the answer itself is open to half of 2 pi waves eps.
+    assert actual < 20 * waves * np.finfo(float).eps
+    assert actual <= found.error
+    assert found.passed
+
+
+def test_fast_waves_over_many_revolutions():
+    system = _mathieu().with_parameters(lam2=500.5**2)
+    run = simulate(system, 1.0, 20.0, initial=(0.01, 0.0), samples=36)
+    exact = 0.01 * np.cos(500.5 * run.theta)
+    actual = np.max(np.abs(run.q[:, 0] - exact)) / 0.01
+    assert actual <= run.error[0] < 1e-9
+
+
+@pytest.mark.parametrize("power", [2, 20, 100, 200, 300])
+def test_growth_by_powers_of_ten(power):
+    rate = power * np.log(10.0) / (2 * np.pi)
+    found = floquet_multipliers(_mathieu(), 1.0, lam2=-(rate**2))
+    np.testing.assert_allclose(found.multipliers.real, [10.0**power, 10.0**-power], rtol=1e-11)
+    assert np.all(np.abs(found.multipliers - [10.0**power, 10.0**-power]) <= found.error)
+    assert found.passed
+
+
+@pytest.mark.parametrize("rate", [1.0, 5.0, 30.0, 110.0])
+def test_growth_does_not_hide_the_quiet_modes(rate):
+    # Three modes, one repelled, and a rotation of the coordinates that mixes all of them.
+    basis, _ = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))
+    springs = basis @ np.diag([-(rate**2), 0.83**2, 2.71**2]) @ basis.T
+    terms = (Term("M", None, np.eye(3)), Term("K", None, springs))
+    found = floquet_multipliers(LinearPeriodic(3, terms, {}, lambda v: {}), 1.0)
+    exact = np.exp(2j * np.pi * np.array([0.83, -0.83, 2.71, -2.71]))
+    for value in exact:
+        gap = np.abs(found.multipliers - value)
+        nearest = int(np.argmin(gap))
+        # Springs of size rate^2 are rounded; the slow modes carry that.
+        assert gap[nearest] < 1e-13 * max(1.0, rate**2)
+    np.testing.assert_allclose(found.exponents[0].real, 2 * np.pi * rate, rtol=1e-11)
+    assert found.passed, found.checks
+
+
+def test_marginal_multipliers_stay_on_the_circle_within_their_error():
+    # Through a tongue in steps of 1e-9 of its width: inside off the circle, outside on it.
+    low, high = speed_boundaries(
+        LinearPeriodic(
+            1,
+            (
+                Term("M", None, np.eye(1)),
+                Term("K", None, np.eye(1)),
+                Term("Kg", None, lambda theta: 0.1 * np.cos(theta)[:, None, None]),
+            ),
+            {},
+            lambda values: {},
+        ),
+        -1,
+        speed_range=(1.5, 3.0),
+    ).speed
+    system = _mathieu()
+    offsets = np.concatenate([-np.logspace(-12, -2, 40), np.logspace(-12, -2, 40)])
+    for edge, inward in ((low, 1.0), (high, -1.0)):
+        speed = edge + offsets * (high - low)
+        found = floquet_multipliers(system, 1.0, lam2=1 / speed**2, mu=0.1 / speed**2)
+        outside = offsets * inward < 0
+        distance = np.abs(np.abs(found.multipliers) - 1)
+        assert np.all(distance[outside] <= found.error[outside])
+        assert np.all(found.stable[outside])
+        # Well inside the answer is a clear no.
+        deep = offsets * inward > 1e-9
+        assert not np.any(found.stable[deep])
+
+
+@pytest.mark.parametrize("jump", [np.pi, 2.0])
+def test_coefficients_with_a_jump(jump):
+    """Meissner's equation: the spring switches; exact by two exponentials."""
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term(
+            "K",
+            None,
+            lambda theta: np.where(np.mod(theta, 2 * np.pi) < jump, 3.0, 1.0)[:, None, None],
+        ),
+    )
+    found = monodromy(LinearPeriodic(1, terms, {}, lambda v: {}), 1.0)
+
+    def piece(square, length):
+        w = np.sqrt(square)
+        return np.array(
+            [
+                [np.cos(w * length), np.sin(w * length) / w],
+                [-w * np.sin(w * length), np.cos(w * length)],
+            ]
+        )
+
+    exact = piece(1.0, 2 * np.pi - jump) @ piece(3.0, jump)
+    exact = exact / found.scale[:, None] * found.scale
+    actual = np.max(np.abs(found.scaled - exact)) / np.max(np.abs(exact))
+    assert actual <= found.error
+    assert found.error < (1e-11 if jump == np.pi else 1e-2)
+
+
+def test_many_degrees_of_freedom():
+    n = 8
+    rng = np.random.default_rng(11)
+    basis, _ = np.linalg.qr(rng.standard_normal((n, n)))
+    springs = basis @ np.diag(np.arange(1, n + 1.0) ** 2) @ basis.T
+    wave = basis @ np.diag(rng.uniform(-0.5, 0.5, n)) @ basis.T
+    skew = rng.standard_normal((n, n))
+    terms = (
+        Term("M", None, np.eye(n)),
+        Term("A", None, 0.1 * (skew - skew.T)),
+        Term("K", None, springs),
+        Term("Kg", None, lambda theta: np.cos(theta)[:, None, None] * wave),
+    )
+    system = LinearPeriodic(n, terms, {}, lambda values: {})
+    found = floquet_multipliers(system, np.array([1.1, 3.3]))
+    assert found.multipliers.shape == (2, 2 * n)
+    assert found.passed, found.checks
+    run = simulate(system, 3.3, 2.0, initial=(rng.standard_normal(n), 0.0), samples=72)
+    assert run.passed, run.checks
+    assert np.max(run.error) < 1e-10
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e6])
+@pytest.mark.parametrize("mass", [1e-9, 1e9])
+def test_units_do_not_matter(length, mass):
+    def system(unit, weight):
+        scale = np.array([1.0, unit])
+        outer = weight * scale[:, None] * scale
+
+        def term(array, matrix, wave=None):
+            matrix = outer * np.array(matrix)
+            if wave is None:
+                return Term(array, None, matrix)
+            return Term(array, None, lambda theta: np.cos(wave * theta)[:, None, None] * matrix)
+
+        terms = (
+            term("M", [[2.0, 0.3], [0.3, 1.0]]),
+            term("A", [[0.0, -0.4], [0.5, 0.0]]),
+            term("K", [[20.0, 3.0], [3.0, 9.0]]),
+            term("Kg", [[2.0, 1.0], [1.0, 3.0]], 1),
+        )
+        return LinearPeriodic(2, terms, {}, lambda values: {})
+
+    speeds = np.linspace(0.8, 6.0, 15)
+    plain = floquet_multipliers(system(1.0, 1.0), speeds)
+    other = floquet_multipliers(system(length, mass), speeds)
+    gap = np.abs(plain.multipliers - other.multipliers)
+    assert np.all(gap <= plain.error + other.error)
+    assert np.max(other.error) < 1e3 * np.max(plain.error)
+    found = speed_boundaries(system(length, mass), speed_range=(1.0, 12.0))
+    expected = speed_boundaries(system(1.0, 1.0), speed_range=(1.0, 12.0))
+    np.testing.assert_allclose(found.speed, expected.speed, rtol=1e-11)
+
+
+@pytest.mark.parametrize("turns", [0.5, 2.0, 1 / 3])
+def test_other_periods(turns):
+    period = 2 * np.pi * turns
+    found = monodromy(_mathieu(period), 1.0, lam2=2.0, mu=0.5)
+    # Scale the angle: y'' + (lam2 turns^2 + mu turns^2 cos x) y over 2 pi.
+    other = monodromy(_mathieu(), 1.0, lam2=2.0 * turns**2, mu=0.5 * turns**2)
+    units = np.array([[1.0, turns], [1 / turns, 1.0]])
+    np.testing.assert_allclose(found.matrix, other.matrix * units, atol=1e-12)
+
+
+matrices = st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24)
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(numbers=matrices, speed=st.floats(0.3, 20.0), damping=st.floats(0.0, 0.5))
+def test_random_systems_pass_their_own_checks(numbers, speed, damping):
+    mass, gyro, spring, wave, other, skew = np.array(numbers).reshape(6, 2, 2)
+
+    def symmetric(matrix):
+        return matrix + matrix.T
+
+    terms = (
+        Term("M", None, 3 * np.eye(2) + 0.4 * symmetric(mass)),
+        Term("M", None, lambda t: 0.2 * np.cos(2 * t)[:, None, None] * symmetric(other)),
+        Term("A", None, lambda t: np.sin(t)[:, None, None] * gyro + skew),
+        Term("B", None, lambda t: np.cos(t)[:, None, None] * symmetric(wave)),
+        Term("K", None, 9 * np.eye(2) + 2 * symmetric(spring)),
+        Term("C", "C", np.eye(2)),
+    )
+    system = LinearPeriodic(2, terms, {"C": damping}, _named(("C",)))
+    found = floquet_multipliers(system, speed)
+    assert found.passed, found.checks
+    assert np.all(np.isfinite(found.error))
+    matrix = monodromy(system, speed)
+    coarse = monodromy(system, speed, rtol=1e-6)
+    top = np.max(np.abs(matrix.scaled))
+    assert np.max(np.abs(coarse.scaled - matrix.scaled)) / top <= coarse.error + matrix.error
+    run = simulate(system, speed, 1.0, initial=([0.1, -0.2], 0.0), samples=60)
+    assert run.passed, run.checks
+    state = matrix.matrix @ np.concatenate([run.q[0], system.array("A", [0.0])[0] @ run.q[0]])
+    np.testing.assert_allclose(run.q[-1], state[:2], atol=1e-10 * np.max(np.abs(run.q)))

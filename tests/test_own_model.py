@@ -1,0 +1,215 @@
+"""The worked example of a user's own mechanism: its page runs, its numbers are found by hand."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.derive.regenerate import main
+from numpy.polynomial.legendre import leggauss
+from scipy.integrate import solve_ivp
+
+DOCS = Path(__file__).parents[1] / "docs"
+EXAMPLE = DOCS / "examples"
+FILES = ("slider_crank_rod.py", "slider_crank_example.toml")
+SPEED = 900.0 * 2.0 * np.pi / 60.0
+# As in slider_crank_example.toml, in SI units.
+CRANK, ROD, OFFSET, EI, MU, DAMPING, SLIDER = 0.06, 0.3, 0.01, 4.2, 0.471, 0.6, 0.2
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Return a working folder with the example's files and its emitted module."""
+    place = tmp_path_factory.mktemp("example")
+    for name in FILES:
+        shutil.copy(EXAMPLE / name, place)
+    assert main(["--model", str(place / FILES[0]), "--out", str(place / "modules")]) == 0
+    return place
+
+
+@pytest.fixture
+def scene(folder, monkeypatch):
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(folder / "modules"))
+    return el.load_scene(folder / FILES[1])
+
+
+def _rod_angle(theta):
+    """Angle of the rod and its two derivatives by the crank angle, from crank sin + rod sin = e."""
+    sine = (OFFSET - CRANK * np.sin(theta)) / ROD
+    angle = np.arcsin(sine)
+    slope = -CRANK * np.cos(theta) / (ROD * np.cos(angle))
+    bend = (CRANK * np.sin(theta) / ROD + sine * slope**2) / np.cos(angle)
+    return angle, slope, bend
+
+
+def _end_load(theta, slider):
+    """Force on the rod's end C along the rod over omega2^2: slider, guide, moments about B."""
+    angle, slope, bend = _rod_angle(theta)
+    pin = -CRANK * np.sin(theta - angle)  # acceleration of B across the rod
+    slide = -CRANK * np.cos(theta) - ROD * (np.cos(angle) * slope**2 + np.sin(angle) * bend)
+    across = MU * ROD**2 / 3.0 * bend + MU * ROD / 2.0 * pin
+    return -slider * slide / np.cos(angle) + across * np.tan(angle)
+
+
+def _projected(theta, modes, slider):
+    """Arrays H and f over omega2^2 at one angle, by quadrature, divided by the modal mass."""
+    nodes, weights = leggauss(60)
+    x, weights = ROD * (nodes + 1.0) / 2.0, ROD * weights / 2.0
+    angle, slope, bend = _rod_angle(theta)
+    m = np.arange(1, modes + 1)[:, None]
+    shape = ROD * np.sin(m * np.pi * x / ROD)
+    rise = m * np.pi * np.cos(m * np.pi * x / ROD)
+    carried = CRANK * np.cos(theta - angle) * (ROD - x)
+    tension = _end_load(theta, slider) + MU * (carried + slope**2 * (ROD**2 - x**2) / 2.0)
+    modal_mass = MU * ROD**3 / 2.0
+    stiffness = (weights * tension * rise) @ rise.T - MU * slope**2 * (weights * shape) @ shape.T
+    load = MU * (CRANK * np.sin(theta - angle) - x * bend)
+    return stiffness / modal_mass, shape @ (weights * load) / modal_mass
+
+
+def test_the_hand_kinematics_close_and_differentiate():
+    theta = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    angle, slope, bend = _rod_angle(theta)
+    assert CRANK * np.sin(theta) + ROD * np.sin(angle) == pytest.approx(OFFSET, abs=1e-16)
+    wave = 1j * np.fft.fftfreq(64, 1.0 / 64.0)
+    for function, derivative in ((angle, slope), (slope, bend)):
+        assert np.fft.ifft(wave * np.fft.fft(function)).real == pytest.approx(derivative, abs=1e-12)
+
+
+@pytest.mark.parametrize("modes", [1, 3, 6])
+@pytest.mark.parametrize("slider", [0.0, 0.2, 3.0])
+def test_the_emitted_arrays_are_those_of_the_hand_derivation(folder, monkeypatch, modes, slider):
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(folder / "modules"))
+    changes = {"model.modes": modes, "slider.slider_mass": slider}
+    scene = el.load_scene(folder / FILES[1], overrides=changes)
+    system = scene.system()
+    theta = np.random.default_rng(5).uniform(-7.0, 7.0, 20)
+    hand = [_projected(angle, modes, slider) for angle in theta]
+    assert not system.has("A")
+    softening, load = np.array([h for h, _ in hand]), np.array([f for _, f in hand])
+    size = np.abs(softening).max()  # quadrature rounds relative to the largest entry
+    assert -system.array("B", theta) == pytest.approx(softening, rel=0.0, abs=1e-13 * size)
+    assert system.array("f", theta) == pytest.approx(load, rel=0.0, abs=1e-13)
+    wave = np.arange(1, modes + 1) * np.pi / ROD
+    assert system.array("M", theta)[0] == pytest.approx(np.eye(modes), abs=0)
+    assert system.array("K", theta)[0] == pytest.approx(np.diag(EI * wave**4 / MU), rel=1e-14)
+    assert system.array("C", theta)[0] == pytest.approx(np.eye(modes) * DAMPING / MU, rel=1e-15)
+
+
+def test_the_simulated_motion_is_that_of_the_hand_derivation(folder, monkeypatch):
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(folder / "modules"))
+    scene = el.load_scene(folder / FILES[1], overrides={"model.modes": 2})
+    motion = el.simulate(scene.system(), speed=SPEED, revolutions=1, samples=40)
+    stiffness = EI * (np.arange(1, 3) * np.pi / ROD) ** 4 / MU
+
+    def rhs(time, state):
+        softening, load = _projected(SPEED * time, 2, SLIDER)
+        q, qd = state[:2], state[2:]
+        force = SPEED**2 * (load - softening @ q) - stiffness * q - DAMPING / MU * qd
+        return np.concatenate([qd, force])
+
+    span = (0.0, motion.time[-1])
+    hand = solve_ivp(rhs, span, np.zeros(4), "DOP853", motion.time, rtol=1e-10, atol=1e-13).y[:2].T
+    peak = np.abs(hand).max(axis=0)
+    assert 1e-4 < peak[0] < 0.1  # it bends, within the linear range
+    difference = np.abs(motion.q - hand).max(axis=0) / peak
+    assert difference.max() < 1e-7
+    assert (difference < motion.error + 1e-8).all()
+
+
+def test_the_slider_matters_and_is_a_parameter(scene):
+    system = scene.system()
+    heavier = el.load_scene(EXAMPLE / FILES[1], overrides={"slider.slider_mass": "800 g"}).system()
+    angles = np.linspace(0.0, 6.0, 7)
+    changed = system.with_parameters(slider_mass=0.8).array("B", angles)
+    assert changed == pytest.approx(heavier.array("B", angles), rel=1e-15)
+    assert not np.allclose(changed, system.array("B", angles), rtol=0.1)
+
+
+def test_a_stability_only_scene_needs_no_forcing(folder, monkeypatch, tmp_path):
+    modules = tmp_path / "modules"
+    table = '{"mechanism": "slider_crank", "formulation": "complete", "flexible": ["rod"]'
+    table += ', "outputs": ["stability"]}'
+    assert main(["--model", str(folder / FILES[0]), "--spec", table, "--out", str(modules)]) == 0
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(modules))
+    overrides = {"model.outputs": ["stability"]}
+    system = el.load_scene(folder / FILES[1], overrides=overrides).system()
+    assert not any(system.has(name) for name in ("f", "g", "h", "p"))
+    assert "forcing" not in (modules / "slider_crank_rod_complete_for_stability.py").read_text()
+    assert el.floquet_multipliers(system, speed=SPEED).stable
+
+
+def test_the_example_is_short():
+    lines = (EXAMPLE / FILES[0]).read_text().splitlines()
+    assert len(lines) < 95
+
+
+def _blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", (DOCS / "own_model.md").read_text(), re.S)
+
+
+def _command_folder(place):
+    """Make the two commands as an installation does, for this interpreter."""
+    place.mkdir()
+    for name, module in (
+        ("elastolink", "elastolink.runtime.cli"),
+        ("regenerate-equations", "elastolink.derive.regenerate"),
+    ):
+        script = place / name
+        call = f"import sys; from {module} import main; sys.exit(main())"
+        script.write_text(f"#!{sys.executable}\n{call}\n")
+        script.chmod(script.stat().st_mode | stat.S_IXUSR)
+    return place
+
+
+def test_the_page_shows_the_files_as_they_are():
+    sources = (EXAMPLE / FILES[0]).read_text()
+    shown = [line for line in _blocks("python")[0].splitlines()[1:] if line.strip() != "..."]
+    assert len(shown) == 4
+    assert all(f"{line}\n" in sources for line in shown)
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_page_run_literally(tmp_path):
+    for name in FILES:
+        shutil.copy(EXAMPLE / name, tmp_path)
+    commands = _command_folder(tmp_path / "bin")
+    environment = {
+        **os.environ,
+        "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}",
+        "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        "MPLBACKEND": "Agg",
+    }
+    outputs = []
+    for command in "".join(_blocks("sh")).splitlines():
+        done = subprocess.run(
+            command, shell=True, cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
+        assert done.returncode == 0, (command, done.stdout, done.stderr)
+        outputs.append(done.stdout)
+    assert "slider_crank_rod_complete" in outputs[1]
+    assert outputs[2].split() == ["current", "slider_crank_rod_complete"]
+    assert json.loads(outputs[4])
+    assert (tmp_path / "slider_crank.png").stat().st_size > 5000
+    assert (tmp_path / "slider_crank.tex").read_text().startswith("\\documentclass")
+    program = _blocks("python")[1]
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    printed = done.stdout.splitlines()
+    assert printed[0].startswith("True 0.9")
+    assert 1e-4 < float(printed[1].split()[0]) < 0.01

@@ -10,6 +10,8 @@ with the exact value and its gradient in many digits at the doubles that were pa
 
 from __future__ import annotations
 
+import inspect
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -19,7 +21,7 @@ import sympy as sp
 
 from .staged import Steps
 
-DIGITS = 100
+DIGITS = 80
 ROUNDOFF = 2.0**-53
 ALLOWED = 32.0
 
@@ -77,10 +79,11 @@ class Judgement:
 
     @property
     def measure(self) -> float:
-        """Error over ``u`` times the fair size; infinite where that is zero and the error not."""
+        """Error over ``u`` times the fair size; infinite where there is no finite one."""
         if self.error == 0.0:
             return 0.0
-        return self.error / (ROUNDOFF * self.fair) if self.fair else float("inf")
+        ratio = self.error / (ROUNDOFF * self.fair) if self.fair else math.inf
+        return math.inf if math.isnan(ratio) else ratio
 
     @property
     def passed(self) -> bool:
@@ -122,73 +125,93 @@ def reference_of(
     return evaluate
 
 
-def judge(
-    function: Callable[..., Any],
-    names: Sequence[str],
-    reference: Reference,
-    point: Point,
-    digits: int = DIGITS,
-) -> list[Judgement]:
-    """Compare one call of an emitted function with its exact value.
+@dataclass(frozen=True)
+class Exact:
+    """Exact outputs at one point.
+
+    Attributes
+    ----------
+    point : Point
+        Where.
+    values : mapping
+        Output name to mpmath number.
+    fair : mapping
+        Output name to ``|f| + sum_i |x_i df/dx_i|``.
+    """
+
+    point: Point
+    values: Numbers
+    fair: Numbers
+
+
+def exact_at(reference: Reference, point: Point, digits: int = DIGITS) -> Exact:
+    """Evaluate a reference and its gradient.
 
     Parameters
     ----------
-    function : callable
-        Emitted; called with the point's arguments by name.
-    names : sequence of str
-        Names of what it returns, in order; only those that the reference gives are judged.
     reference : callable
         Exact values by name from mpmath numbers by name.
     point : Point
         Where.
     digits : int
-        Decimal digits of the reference; its gradient is a forward difference with a relative step
-        of ``10**(-0.4 digits)``.
+        Decimal digits; the gradient is a forward difference with a relative step of
+        ``10**(-0.4 digits)``, so that it keeps as many digits itself.
+    """
+    with mpmath.workdps(digits):
+        numbers = {name: mpmath.mpf(value) for name, value in point.arguments.items()}
+        values = dict(reference(numbers))
+        step = mpmath.mpf(10) ** (-(2 * digits) // 5)
+        fair = {name: abs(value) for name, value in values.items()}
+        for name in point.inputs:
+            if numbers[name] == 0:
+                continue
+            moved = reference({**numbers, name: numbers[name] * (1 + step)})
+            for key, value in values.items():
+                fair[key] += abs((moved[key] - value) / step)
+        return Exact(point, values, fair)
+
+
+def judge(function: Callable[..., Any], names: Sequence[str], exact: Exact) -> list[Judgement]:
+    """Compare one call of an emitted function with exact values.
+
+    Parameters
+    ----------
+    function : callable
+        Emitted; called with those of the point's arguments that it takes, by name.
+    names : sequence of str
+        Names of what it returns, in order.
+    exact : Exact
+        Values of at least these names.
 
     Raises
     ------
     ValueError
         If the function does not return what ``names`` says.
     """
-    returned = function(**point.arguments)
+    taken = inspect.signature(function).parameters
+    arguments = {name: value for name, value in exact.point.arguments.items() if name in taken}
+    returned = function(**arguments)
     values = returned if isinstance(returned, tuple) else (returned,)
     if len(values) != len(names):
         raise ValueError(f"{len(values)} values returned for {len(names)} names {list(names)}")
-    with mpmath.workdps(digits):
-        exact, sizes = _with_sizes(reference, point, digits)
+    with mpmath.workdps(DIGITS):
         return [
             Judgement(
                 output=name,
-                point=point,
+                point=exact.point,
                 value=float(value),
-                error=float(abs(mpmath.mpf(float(value)) - exact[name])),
-                fair=float(sizes[name]),
+                error=float(abs(mpmath.mpf(float(value)) - exact.values[name])),
+                fair=float(exact.fair[name]),
             )
             for name, value in zip(names, values, strict=True)
-            if name in exact
         ]
 
 
-def _with_sizes(reference: Reference, point: Point, digits: int) -> tuple[Numbers, Numbers]:
-    """Return exact values and ``|f| + sum_i |x_i df/dx_i|``."""
-    numbers = {name: mpmath.mpf(value) for name, value in point.arguments.items()}
-    exact = reference(numbers)
-    step = mpmath.mpf(10) ** (-(2 * digits) // 5)
-    sizes = {name: abs(value) for name, value in exact.items()}
-    for name in point.inputs:
-        if numbers[name] == 0:
-            continue
-        moved = reference({**numbers, name: numbers[name] * (1 + step)})
-        for key, value in exact.items():
-            sizes[key] += abs((moved[key] - value) / step)
-    return exact, sizes
-
-
 def worst(judgements: Iterable[Judgement]) -> dict[str, Judgement]:
-    """Return, for each output, the judgement with the largest measure (NaN counts as largest)."""
+    """Return, for each output, the judgement with the largest measure."""
     found: dict[str, Judgement] = {}
     for judgement in judgements:
         known = found.get(judgement.output)
-        if known is None or not judgement.measure <= known.measure:
+        if known is None or judgement.measure > known.measure:
             found[judgement.output] = judgement
     return found

@@ -95,9 +95,7 @@ def _keys(module: ModuleSpec, content: str) -> Mapping[str, Any]:
     }
     if module.family == "linear_periodic":
         keys["terms"] = [
-            _row(
-                _literal(t.array), str(t.power), *map(_literal, (t.scale, t.angle, t.modal))
-            )
+            _row(_literal(t.array), str(t.power), *map(_literal, (t.scale, t.angle, t.modal)))
             for t in module.terms
         ]
     return keys

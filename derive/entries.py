@@ -148,7 +148,8 @@ def lower_constrained(
         more = [_argument(a, "Acceleration", outer) for a in v.accelerations]
         more += [_argument(lam, "Multiplier", outer) for lam in e.multipliers]
         states["variations"] = [*positions, *velocities, *more]
-    values = external_values(m for group in arrays.values() for m in group.values())
+    forms = [matrix for group in arrays.values() for matrix in group.values()]
+    values = external_values([*forms, *(value for _, value in system.steps.steps)])
     passed = [_argument(s, "Passed in", outer) for s in values.symbols]
     kernels = [
         _ArrayKernel(

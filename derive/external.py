@@ -52,7 +52,8 @@ def external_values(forms: Iterable[sp.Basic]) -> ExternalValues:
     """
     table: dict[sp.Expr, sp.Symbol] = {}
     arguments: dict[str, sp.Expr] = {}
-    for form in forms:
+    known = tuple(forms)
+    for form in known:
         found = list(sp.ordered(form.atoms(AppliedUndef, sp.Derivative, sp.Subs)))
         bound = {v for item in found if isinstance(item, sp.Subs) for v in item.bound_symbols}
         for item in found:
@@ -65,7 +66,11 @@ def external_values(forms: Iterable[sp.Basic]) -> ExternalValues:
                     "give the two applications different names"
                 )
             table[item] = sp.Symbol(f"{name}_d{order}" if order else name)
-    return ExternalValues(MappingProxyType(table))
+    # A function that occurs only inside its derivatives need not be passed in itself.
+    used = set().union(*(form.xreplace(table).free_symbols for form in known))
+    return ExternalValues(
+        MappingProxyType({item: symbol for item, symbol in table.items() if symbol in used})
+    )
 
 
 def _parts(item: sp.Expr) -> tuple[str, sp.Expr, int]:

@@ -83,9 +83,8 @@ class Job:
         try:
             return module_text(self.spec, model, self.content)
         except (ValueError, CannotPrint, TemplateKeys) as problem:
-            raise UsageError(
-                f"{self.name}: {_one_line(problem)}{_where(problem, self.module)}"
-            ) from problem
+            message = f"model {self.name}: {_one_line(problem)}{_where(problem, self.module)}"
+            raise UsageError(message) from problem
 
 
 def jobs_of(
@@ -145,7 +144,7 @@ def _own_jobs(file: Path, names: Sequence[str], specs: Sequence[ModelSpec]) -> l
             raise UsageError(f"model file {file}: defines no {wanted}")
     model: Model = module.MODEL
     offered = {spec.name(): spec for spec in module.SPECS}
-    chosen = [*specs, *_chosen(names, offered, f"{file} defines")] or list(offered.values())
+    chosen = [*specs, *_chosen(names, offered, f"{file} defines")] or module.SPECS
     jobs = []
     for spec in chosen:
         if spec.mechanism != model.mechanism or spec.formulation not in model.formulations:

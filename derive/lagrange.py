@@ -102,6 +102,7 @@ def euler_lagrange(lagrangian: Lagrangian) -> EquationsOfMotion:
         jacobian=sp.ImmutableDenseMatrix(len(phi), len(q), lambda i, j: sp.diff(phi[i], q[j])),
         velocity_rhs=_column([-sp.diff(constraint, t) for constraint in phi]),
         gamma=_column(gamma),
+        lagrangian=lagrangian,
     )
 
 

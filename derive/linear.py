@@ -2,31 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
 from .arrays import CrankMotion, DiscreteSystem
 from .lagrange import NotRepresentable
 from .records import EquationsOfMotion
+from .variational import in_crank_angle
 
 _STIFFNESS = {"K": (0, 0), "H": (2, 0), "E": (0, 1)}
 _FORCING = {"f": (2, 0), "h": (1, 0), "g": (0, 1), "p": (0, 0)}
 
 
 def linear_periodic(
-    equations: EquationsOfMotion, crank: CrankMotion, geometric: Iterable[sp.Symbol] = ()
+    equations: EquationsOfMotion,
+    crank: CrankMotion,
+    geometric: Iterable[sp.Symbol] = (),
+    *,
+    followers: Mapping[sp.Expr, sp.Expr] | None = None,
 ) -> DiscreteSystem:
     """Return the arrays of equations that are linear in the coordinates and velocities.
 
     Parameters
     ----------
     equations : EquationsOfMotion
-        Without constraints; prescribed motion in plain symbols of the crank.
+        Without constraints.
     crank : CrankMotion
         Crank angle and rates.
     geometric : iterable of Symbol
         Stiffness terms that contain one of these symbols go to Kg instead of K.
+    followers : mapping, optional
+        Prescribed function of time to its value in plain symbols of the crank.
 
     Returns
     -------
@@ -41,7 +48,39 @@ def linear_periodic(
     if equations.constraints.rows:
         raise NotRepresentable("constrained equations are not a linear periodic system")
     q, qd = list(equations.coordinates), list(equations.velocities)
-    residual = (equations.rest - equations.forces).applyfunc(sp.expand)
+
+    def plain(matrix: sp.Matrix) -> sp.Matrix:
+        return matrix.applyfunc(
+            lambda e: sp.expand(in_crank_angle(e, crank, equations.t, followers or {}))
+        )
+
+    mass, residual = plain(equations.mass), plain(equations.rest - equations.forces)
+    found, forcing, damping, turning = _read_off(residual, q, qd, crank)
+    slope = mass.applyfunc(crank.derivative)
+    gyroscopic = turning - slope
+    a = (gyroscopic - gyroscopic.T) / 4
+    marks = set(geometric)
+    stressed = found["K"].applyfunc(
+        lambda e: sp.Add(*(i for i in sp.Add.make_args(e) if i.free_symbols & marks))
+    )
+    arrays = {
+        "M": mass,
+        "A": a,
+        "B": a.applyfunc(crank.derivative) - found["H"],
+        "S": a - found["E"],
+        "C": damping + (gyroscopic + gyroscopic.T) * crank.rate / 2,
+        "K": found["K"] - stressed,
+        "Kg": stressed,
+        **forcing,
+    }
+    frozen = {name: sp.ImmutableDenseMatrix(m.applyfunc(sp.expand)) for name, m in arrays.items()}
+    return DiscreteSystem(crank, len(q), frozen, tuple(symbol.name for symbol in q))
+
+
+def _read_off(
+    residual: sp.Matrix, q: list[sp.Symbol], qd: list[sp.Symbol], crank: CrankMotion
+) -> tuple[dict[str, sp.Matrix], dict[str, sp.Matrix], sp.Matrix, sp.Matrix]:
+    """Return stiffness and forcing arrays by name, damping, and the factor of ``td qd``."""
     rates = (crank.rate, crank.acceleration)
     velocity, position = residual.jacobian(qd), residual.jacobian(q)
     at_rest = residual.subs(dict.fromkeys([*q, *qd], 0))
@@ -56,25 +95,7 @@ def linear_periodic(
     lost = (residual - back).applyfunc(sp.expand)
     if any(item != 0 for item in lost):
         raise NotRepresentable(f"these terms have no place in the arrays: {list(lost)}")
-    slope = equations.mass.applyfunc(crank.derivative)
-    gyroscopic = turning - slope
-    a = (gyroscopic - gyroscopic.T) / 4
-    marks = set(geometric)
-    stressed = found["K"].applyfunc(
-        lambda e: sp.Add(*(i for i in sp.Add.make_args(e) if i.free_symbols & marks))
-    )
-    arrays = {
-        "M": equations.mass,
-        "A": a,
-        "B": a.applyfunc(crank.derivative) - found["H"],
-        "S": a - found["E"],
-        "C": damping + (gyroscopic + gyroscopic.T) * crank.rate / 2,
-        "K": found["K"] - stressed,
-        "Kg": stressed,
-        **forcing,
-    }
-    frozen = {name: sp.ImmutableDenseMatrix(m.applyfunc(sp.expand)) for name, m in arrays.items()}
-    return DiscreteSystem(crank, len(q), frozen, tuple(symbol.name for symbol in q))
+    return found, forcing, damping, turning
 
 
 def _part(

@@ -17,6 +17,7 @@ _FUNCTIONS: dict[type[sp.Function], str] = {
     sp.cos: "cos",
     sp.tan: "tan",
     sp.exp: "exp",
+    sp.atan: "atan",
     sp.atan2: "atan2",
     sp.Abs: "abs",
     sp.sinh: "sinh",
@@ -137,13 +138,23 @@ def _print_choice(e: sp.Piecewise) -> str:
     if first.is_number and second.is_number:
         # The standard's ``where`` wants an array among its choices.
         switch = f"xp.asarray({_print(condition)[0]}, dtype=xp.float64)"
-        return f"({_print(second)[0]} + {_wrap(first - second, _POWER)} * {switch})"
+        scaled = switch if first - second == 1 else f"{_wrap(first - second, _POWER)} * {switch}"
+        return scaled if scaled == switch and second == 0 else f"({_print(second)[0]} + {scaled})"
     return f"xp.where({', '.join(_print(part)[0] for part in (condition, first, second))})"
 
 
 def count_operations(expressions: Sequence[sp.Expr]) -> int:
-    """Return the number of arithmetic operations, a function call counting as one."""
-    return int(sum(sp.count_ops(expression) for expression in expressions))
+    """Return the number of arithmetic operations, a function call counting as one.
+
+    A number costs nothing, however it is written: it is worked out when the line is printed.
+    """
+    return int(sum(sp.count_ops(_rounded(expression)) for expression in expressions))
+
+
+def _rounded(expression: sp.Expr) -> sp.Expr:
+    return expression.replace(
+        lambda e: e.is_number and not e.is_Atom and not e.is_Rational, lambda e: sp.N(e, 40)
+    )
 
 
 def lower_kernel(
@@ -179,6 +190,7 @@ def lower_kernel(
     """
     finals = [sp.sympify(expression) for _, expression in outputs]
     kept = steps.needed(finals)
+    _require_parity([*finals, *(expression for _, expression in kept.steps)])
     named = [symbol for symbol, _ in kept.steps]
     replacements, reduced = sp.cse(
         [expression for _, expression in kept.steps] + finals,
@@ -200,6 +212,14 @@ def lower_kernel(
         references=tuple(references),
         operations=count_operations([values[s] for s in ordered] + list(returned)),
     )
+
+
+def _require_parity(expressions: Iterable[sp.Expr]) -> None:
+    """Refuse ``(-1)**k`` unless k is an integer: it is printed as a parity."""
+    for expression in expressions:
+        for power in expression.atoms(sp.Pow):
+            if power.base == -1 and not power.exp.is_integer:
+                raise CannotPrint(f"power {power} is real for integers alone")
 
 
 def _in_order_of_need(

@@ -338,6 +338,8 @@ class EquationsOfMotion:
         ``Phi_q qd = velocity_rhs``, which is minus the partial time derivative of Phi.
     gamma : Matrix, (k, 1)
         ``Phi_q qdd = gamma``.
+    lagrangian : Lagrangian or None
+        What the equations were derived from.
     """
 
     t: sp.Symbol
@@ -351,6 +353,7 @@ class EquationsOfMotion:
     jacobian: sp.ImmutableDenseMatrix
     velocity_rhs: sp.ImmutableDenseMatrix
     gamma: sp.ImmutableDenseMatrix
+    lagrangian: Lagrangian | None = None
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,6 @@ from .lowering import lower_kernel
 from .spec import ModelSpec
 from .staged import Steps
 
-
 _Value = TypeVar("_Value")
 
 
@@ -136,20 +135,29 @@ def _closed_groups(
     else:
         stages = _Stages.of(staged, (entry.m, entry.n))
         diagonal, off = _collect(stages, entry.diagonal), _collect(stages, entry.off_diagonal)
-    found: dict[tuple[sp.Expr, _Modal], sp.Expr] = {}
+    found: dict[tuple[sp.Expr, _Modal, bool], sp.Expr] = {}
     for scale, angle in _ordered({**diagonal, **off}):
         on, beside = diagonal.get((scale, angle), 0), off.get((scale, angle), 0)
-        modal, factor = _normalised(sp.sympify(on), sp.sympify(beside))
-        key = (scale, modal)
+        if on == beside == 0:
+            continue
+        modal, factor = _normalised(sp.sympify(on), sp.sympify(beside), constant=angle == 1)
+        key = (scale, modal, angle == 1)
         found[key] = found.get(key, sp.Integer(0)) + factor * angle
     return [
-        _Group(name, scale, angle, modal) for (scale, modal), angle in found.items() if angle != 0
+        _Group(name, scale, angle, modal)
+        for (scale, modal, _), angle in found.items()
+        if angle != 0
     ]
 
 
-def _normalised(diagonal: sp.Expr, off: sp.Expr) -> tuple[_Modal, sp.Expr]:
-    """Return the modal array without its number and sign, and that number."""
+def _normalised(diagonal: sp.Expr, off: sp.Expr, *, constant: bool) -> tuple[_Modal, sp.Expr]:
+    """Return the modal array without its number and sign, and that number.
+
+    A constant term keeps its number: as a function of angle it would no longer be constant.
+    """
     diagonal, off = _tidy(diagonal), _tidy(off)
+    if constant:
+        return _Modal(diagonal, off), sp.Integer(1)
     lead = diagonal if diagonal != 0 else off
     factor, _ = lead.as_coeff_Mul()
     if not factor.is_Rational:
@@ -173,15 +181,16 @@ def _explicit_groups(
         for j in range(matrix.cols):
             for key, number in _collect(stages, matrix[i, j]).items():
                 parts.setdefault(key, sp.zeros(*matrix.shape))[i, j] += number
-    found: dict[tuple[sp.Expr, sp.ImmutableDenseMatrix], sp.Expr] = {}
+    found: dict[tuple[sp.Expr, sp.ImmutableDenseMatrix, bool], sp.Expr] = {}
     for scale, angle in _ordered(parts):
         numbers = sp.ImmutableDenseMatrix(parts[scale, angle])
-        # One sign of each matrix, so that terms which differ in sign alone share it.
-        sign = -1 if next(item for item in numbers if item != 0) < 0 else 1
-        key = (scale, sign * numbers)
+        # One sign of each matrix, so that functions of angle which differ in sign alone share it.
+        negative = angle != 1 and next(item for item in numbers if item != 0) < 0
+        sign = -1 if negative else 1
+        key = (scale, sign * numbers, angle == 1)
         found[key] = found.get(key, sp.Integer(0)) + sign * angle
     zero = sp.Integer(0)
-    return [_Group(name, s, angle, _Modal(zero, zero, e)) for (s, e), angle in found.items()]
+    return [_Group(name, s, angle, _Modal(zero, zero, e)) for (s, e, _), angle in found.items()]
 
 
 def _ordered(keys: Iterable[tuple[sp.Expr, sp.Expr]]) -> list[tuple[sp.Expr, sp.Expr]]:
@@ -212,9 +221,12 @@ class _Names(Generic[_Value]):
         if value in self.external:
             return str(value)
         upper, lower = sp.fraction(sp.together(value))
-        parts = [_words(side.free_symbols & self.telling) for side in (upper, lower)]
+        telling = value.free_symbols & self.telling or value.free_symbols
+        parts = [_words(side.free_symbols & telling) for side in (upper, lower)]
         name = self.prefix + "_over_".join(part for part in parts if part)
-        return name if name not in self.table.values() else f"{name}_{count}"
+        while name in self.table.values():
+            name = f"{name}_{count}"
+        return name
 
 
 def _words(symbols: Iterable[sp.Symbol]) -> str:
@@ -285,7 +297,7 @@ def lower_linear_periodic(
         kernels=(*(k for k in kernels if k.results), *modal_kernels),
         terms=tuple(rows),
         parameters=description.parameters,
-        tables=tables,
+        tables=(("EXTERNAL", repr(tuple(symbol.name for symbol in staged.external))), *tables),
     )
 
 

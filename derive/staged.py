@@ -67,15 +67,11 @@ class ClosedForm:
         Intermediate quantities.
     outputs : tuple of (str, Expr)
         What is returned, by name.
-    exact : tuple of (str, Expr), optional
-        The same outputs before any rewriting for safety, in the inputs alone; what the emitted
-        numbers are compared with at 50 digits.
     """
 
     inputs: tuple[sp.Symbol, ...]
     steps: Steps
     outputs: tuple[tuple[str, sp.Expr], ...]
-    exact: tuple[tuple[str, sp.Expr], ...] = ()
 
     def only(self, names: Iterable[str]) -> ClosedForm:
         """Return the closed form with some of its outputs, and no step that they do not need."""
@@ -84,6 +80,5 @@ class ClosedForm:
         if unknown:
             raise ValueError(f"unknown outputs {unknown}")
         outputs = tuple(item for item in self.outputs if item[0] in chosen)
-        exact = tuple(item for item in self.exact if item[0] in chosen)
         steps = self.steps.needed(expression for _, expression in outputs)
-        return ClosedForm(self.inputs, steps, outputs, exact)
+        return ClosedForm(self.inputs, steps, outputs)

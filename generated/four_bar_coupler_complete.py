@@ -14,9 +14,9 @@ Cost per evaluation:
     acceleration_functions: 123 operations
     forcing_functions: 126 operations
     acceleration_forcing_functions: 96 operations
-    modal_matrices: 34 operations
-    modal_vectors: 7 operations
-Content hash 54d7fdaa7215873504d96710a548b483; derived with SymPy 1.14.0.
+    modal_matrices: 32 operations
+    modal_vectors: 6 operations
+Content hash 5969f0dd5c0eba7b2d4c7e61d67f3548; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,8 +32,12 @@ __all__ = [
 ]
 
 FAMILY = "linear_periodic"
-SPEC = '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"complete","mechanism":"four_bar","modes":null,"outputs":[]}'
-CONTENT = "54d7fdaa7215873504d96710a548b483"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"complete","mechanism":"four_ba'
+    'r","modes":null,"outputs":[]}'
+)
+CONTENT = "5969f0dd5c0eba7b2d4c7e61d67f3548"
+EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -93,13 +97,49 @@ TERMS = (
     ("M", 0, None, None, "modal_1"),
     ("B", 0, None, "angle_omega3", "modal_2"),
     ("B", 0, None, "angle_cos23", "modal_3"),
-    ("B", 0, "coupler_first_moment_over_mass_per_length", "angle_end_load_coupler_first_moment_speed", "modal_4"),
-    ("B", 0, "coupler_inertia_over_mass_per_length", "angle_end_load_coupler_inertia_speed", "modal_4"),
-    ("B", 0, "follower_inertia_over_mass_per_length", "angle_end_load_follower_inertia_speed", "modal_4"),
+    (
+        "B",
+        0,
+        "coupler_first_moment_over_mass_per_length",
+        "angle_end_load_coupler_first_moment_speed",
+        "modal_4",
+    ),
+    (
+        "B",
+        0,
+        "coupler_inertia_over_mass_per_length",
+        "angle_end_load_coupler_inertia_speed",
+        "modal_4",
+    ),
+    (
+        "B",
+        0,
+        "follower_inertia_over_mass_per_length",
+        "angle_end_load_follower_inertia_speed",
+        "modal_4",
+    ),
     ("S", 0, None, "acceleration_sin23", "modal_3"),
-    ("S", 0, "coupler_first_moment_over_mass_per_length", "acceleration_end_load_coupler_first_moment_acceleration", "modal_4"),
-    ("S", 0, "coupler_inertia_over_mass_per_length", "acceleration_end_load_coupler_inertia_acceleration", "modal_4"),
-    ("S", 0, "follower_inertia_over_mass_per_length", "acceleration_end_load_follower_inertia_acceleration", "modal_4"),
+    (
+        "S",
+        0,
+        "coupler_first_moment_over_mass_per_length",
+        "acceleration_end_load_coupler_first_moment_acceleration",
+        "modal_4",
+    ),
+    (
+        "S",
+        0,
+        "coupler_inertia_over_mass_per_length",
+        "acceleration_end_load_coupler_inertia_acceleration",
+        "modal_4",
+    ),
+    (
+        "S",
+        0,
+        "follower_inertia_over_mass_per_length",
+        "acceleration_end_load_follower_inertia_acceleration",
+        "modal_4",
+    ),
     ("C", 0, "damping_over_mass_per_length", None, "modal_1"),
     ("K", 0, "bending_stiffness_over_mass_per_length", None, "modal_5"),
     ("f", 0, None, "forcing_alpha3", "modal_6"),
@@ -167,7 +207,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -276,7 +316,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -370,7 +410,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -460,7 +500,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -545,7 +585,8 @@ def modal_matrices(m, n):
     modal_1 : ndarray, shape (N, N)
         Diagonal 1.
     modal_2 : ndarray, shape (N, N)
-        Diagonal -pi**2*m**2/3 + 5/4, else 2*(-1)**(m + n)*m*n*(m**2 + n**2)/((m - n)**2*(m + n)**2).
+        Diagonal -pi**2*m**2/3 + 5/4, else 2*(-1)**(m + n)*m*n*(m**2 + n**2)/((m - n)**2*(m +
+        n)**2).
     modal_3 : ndarray, shape (N, N)
         Diagonal pi**2*m**2, else -4*m*n*((-1)**(m + n) - 1)*(m**2 + n**2)/((m - n)**2*(m + n)**2).
     modal_4 : ndarray, shape (N, N)
@@ -557,16 +598,16 @@ def modal_matrices(m, n):
     x0 = (m == n)
     apart = xp.where(x0, 1, m - n)
     x1 = m**2
-    x2 = x1 * 3.141592653589793**2
+    x2 = 9.869604401089358 * x1
     x3 = m + n
     x4 = (1 - 2 * ((x3) % 2))
     x5 = m * n * (n**2 + x1) / (apart**2 * x3**2)
     return (
-        xp.where(x0, 1, 0),
+        xp.asarray(x0, dtype=xp.float64),
         xp.where(x0, 5 / 4 - x2 / 3, 2 * x4 * x5),
         xp.where(x0, x2, -4 * x5 * (x4 - 1)),
         xp.where(x0, x2, 0),
-        xp.where(x0, 3.141592653589793**4 * m**4, 0),
+        xp.where(x0, 97.40909103400244 * m**4, 0),
     )
 
 
@@ -586,7 +627,7 @@ def modal_vectors(m):
         Entries ((-1)**m - 1)/(pi*m).
     """
     x0 = (1 - 2 * ((m) % 2))
-    x1 = 1 / (3.141592653589793 * m)
+    x1 = 0.3183098861837907 / m
     return (
         x0 * x1,
         x1 * (x0 - 1),

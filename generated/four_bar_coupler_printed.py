@@ -16,9 +16,9 @@ Cost per evaluation:
     acceleration_functions: 119 operations
     forcing_functions: 126 operations
     acceleration_forcing_functions: 96 operations
-    modal_matrices: 10 operations
-    modal_vectors: 7 operations
-Content hash c212d2861392011491837fb0337131d0; derived with SymPy 1.14.0.
+    modal_matrices: 8 operations
+    modal_vectors: 6 operations
+Content hash bce21be612a81ea50d8fdbafd8cd15a6; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -34,8 +34,12 @@ __all__ = [
 ]
 
 FAMILY = "linear_periodic"
-SPEC = '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"printed","mechanism":"four_bar","modes":null,"outputs":[]}'
-CONTENT = "c212d2861392011491837fb0337131d0"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"printed","mechanism":"four_bar'
+    '","modes":null,"outputs":[]}'
+)
+CONTENT = "bce21be612a81ea50d8fdbafd8cd15a6"
+EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -90,12 +94,48 @@ RETURNS = {
 TERMS = (
     ("M", 0, None, None, "modal_1"),
     ("B", 0, None, "angle_omega3", "modal_1"),
-    ("B", 0, "coupler_first_moment_over_mass_per_length", "angle_end_load_coupler_first_moment_speed", "modal_2"),
-    ("B", 0, "coupler_inertia_over_mass_per_length", "angle_end_load_coupler_inertia_speed", "modal_2"),
-    ("B", 0, "follower_inertia_over_mass_per_length", "angle_end_load_follower_inertia_speed", "modal_2"),
-    ("S", 0, "coupler_first_moment_over_mass_per_length", "acceleration_end_load_coupler_first_moment_acceleration", "modal_2"),
-    ("S", 0, "coupler_inertia_over_mass_per_length", "acceleration_end_load_coupler_inertia_acceleration", "modal_2"),
-    ("S", 0, "follower_inertia_over_mass_per_length", "acceleration_end_load_follower_inertia_acceleration", "modal_2"),
+    (
+        "B",
+        0,
+        "coupler_first_moment_over_mass_per_length",
+        "angle_end_load_coupler_first_moment_speed",
+        "modal_2",
+    ),
+    (
+        "B",
+        0,
+        "coupler_inertia_over_mass_per_length",
+        "angle_end_load_coupler_inertia_speed",
+        "modal_2",
+    ),
+    (
+        "B",
+        0,
+        "follower_inertia_over_mass_per_length",
+        "angle_end_load_follower_inertia_speed",
+        "modal_2",
+    ),
+    (
+        "S",
+        0,
+        "coupler_first_moment_over_mass_per_length",
+        "acceleration_end_load_coupler_first_moment_acceleration",
+        "modal_2",
+    ),
+    (
+        "S",
+        0,
+        "coupler_inertia_over_mass_per_length",
+        "acceleration_end_load_coupler_inertia_acceleration",
+        "modal_2",
+    ),
+    (
+        "S",
+        0,
+        "follower_inertia_over_mass_per_length",
+        "acceleration_end_load_follower_inertia_acceleration",
+        "modal_2",
+    ),
     ("C", 0, "damping_over_mass_per_length", None, "modal_1"),
     ("K", 0, "bending_stiffness_over_mass_per_length", None, "modal_3"),
     ("f", 0, None, "forcing_alpha3", "modal_4"),
@@ -163,7 +203,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -269,7 +309,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -360,7 +400,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -450,7 +490,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -542,9 +582,9 @@ def modal_matrices(m, n):
     xp = _namespace(m)
     x0 = (m == n)
     return (
-        xp.where(x0, 1, 0),
-        xp.where(x0, 3.141592653589793**2 * m**2, 0),
-        xp.where(x0, 3.141592653589793**4 * m**4, 0),
+        xp.asarray(x0, dtype=xp.float64),
+        xp.where(x0, 9.869604401089358 * m**2, 0),
+        xp.where(x0, 97.40909103400244 * m**4, 0),
     )
 
 
@@ -564,7 +604,7 @@ def modal_vectors(m):
         Entries ((-1)**m - 1)/(pi*m).
     """
     x0 = (1 - 2 * ((m) % 2))
-    x1 = 1 / (3.141592653589793 * m)
+    x1 = 0.3183098861837907 / m
     return (
         x0 * x1,
         x1 * (x0 - 1),

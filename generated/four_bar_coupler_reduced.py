@@ -14,11 +14,11 @@ Cost per evaluation:
     scales: 6 operations
     angle_functions: 125 operations
     acceleration_functions: 83 operations
-    forcing_functions: 129 operations
+    forcing_functions: 126 operations
     acceleration_forcing_functions: 96 operations
-    modal_matrices: 10 operations
-    modal_vectors: 7 operations
-Content hash f74d856b7becf462b96c215d02515ba2; derived with SymPy 1.14.0.
+    modal_matrices: 8 operations
+    modal_vectors: 6 operations
+Content hash 4ce9525e1a3029b8f057f4a07dcc98c4; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -34,8 +34,12 @@ __all__ = [
 ]
 
 FAMILY = "linear_periodic"
-SPEC = '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"reduced","mechanism":"four_bar","modes":null,"outputs":[]}'
-CONTENT = "f74d856b7becf462b96c215d02515ba2"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"reduced","mechanism":"four_bar'
+    '","modes":null,"outputs":[]}'
+)
+CONTENT = "4ce9525e1a3029b8f057f4a07dcc98c4"
+EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -62,7 +66,7 @@ RETURNS = {
     ),
     "forcing_functions": (
         "forcing_alpha3",
-        "forcing_omega3_sin23",
+        "forcing_sin23",
     ),
     "acceleration_forcing_functions": (
         "acceleration_forcing_omega3",
@@ -82,12 +86,24 @@ RETURNS = {
 # Separated terms: array, extra power of the crank speed, scale, function of angle, modal array.
 TERMS = (
     ("M", 0, None, None, "modal_1"),
-    ("B", 0, "follower_inertia_over_mass_per_length", "angle_end_load_follower_inertia_speed", "modal_2"),
-    ("S", 0, "follower_inertia_over_mass_per_length", "acceleration_end_load_follower_inertia_acceleration", "modal_2"),
+    (
+        "B",
+        0,
+        "follower_inertia_over_mass_per_length",
+        "angle_end_load_follower_inertia_speed",
+        "modal_2",
+    ),
+    (
+        "S",
+        0,
+        "follower_inertia_over_mass_per_length",
+        "acceleration_end_load_follower_inertia_acceleration",
+        "modal_2",
+    ),
     ("C", 0, "damping_over_mass_per_length", None, "modal_1"),
     ("K", 0, "bending_stiffness_over_mass_per_length", None, "modal_3"),
     ("f", 0, None, "forcing_alpha3", "modal_4"),
-    ("f", 0, None, "forcing_omega3_sin23", "modal_5"),
+    ("f", 0, None, "forcing_sin23", "modal_5"),
     ("g", 0, None, "acceleration_forcing_omega3", "modal_4"),
     ("g", 0, None, "acceleration_forcing_cos23", "modal_5"),
 )
@@ -145,7 +161,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -232,7 +248,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -294,7 +310,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -311,8 +327,8 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     -------
     forcing_alpha3 : ndarray, shape (...)
         Function of angle 2*alpha3.
-    forcing_omega3_sin23 : ndarray, shape (...)
-        Function of angle 2*crank*omega3*sin23/coupler - 2*crank*sin23/coupler.
+    forcing_sin23 : ndarray, shape (...)
+        Function of angle -2*crank*sin23/coupler.
 
     Notes
     -----
@@ -364,7 +380,6 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     x14 = 1 / sine_transmission
     x15 = x14 * x7
     excess3 = -x15 * (-sin24 + sin4)
-    omega3 = excess3 * reduced + share
     excess4 = -x11 * x14 * (-sin23 + sin3)
     x16 = excess4 * reduced
     omega4 = share + x16
@@ -374,10 +389,9 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
         reduced * (x14 * x7 * cos24 * slip4 - x15 * cos4 * omega4 - x14 * cosine_transmission *
         excess3 * spread)
     )
-    x17 = 2 * x7 * sin23 * crank
     return (
         2 * alpha3,
-        x17 * omega3 - x17,
+        -2 * x7 * sin23 * crank,
     )
 
 
@@ -386,7 +400,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -478,9 +492,9 @@ def modal_matrices(m, n):
     xp = _namespace(m)
     x0 = (m == n)
     return (
-        xp.where(x0, 1, 0),
-        xp.where(x0, 3.141592653589793**2 * m**2, 0),
-        xp.where(x0, 3.141592653589793**4 * m**4, 0),
+        xp.asarray(x0, dtype=xp.float64),
+        xp.where(x0, 9.869604401089358 * m**2, 0),
+        xp.where(x0, 97.40909103400244 * m**4, 0),
     )
 
 
@@ -500,7 +514,7 @@ def modal_vectors(m):
         Entries ((-1)**m - 1)/(pi*m).
     """
     x0 = (1 - 2 * ((m) % 2))
-    x1 = 1 / (3.141592653589793 * m)
+    x1 = 0.3183098861837907 / m
     return (
         x0 * x1,
         x1 * (x0 - 1),

@@ -10,7 +10,7 @@ turns fully, so that no digit is lost near a dead centre.
 
 Cost per evaluation:
     motion: 163 operations
-Content hash 406996d1d894b41695aee68d89e95ba9; derived with SymPy 1.14.0.
+Content hash 2b028d9fa01c3c23a47ae69d2f9f085d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -20,8 +20,11 @@ __all__ = [
 ]
 
 FAMILY = "closed_form"
-SPEC = '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","modes":null,"outputs":[]}'
-CONTENT = "406996d1d894b41695aee68d89e95ba9"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
+    'es":null,"outputs":[]}'
+)
+CONTENT = "2b028d9fa01c3c23a47ae69d2f9f085d"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -53,7 +56,7 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
 
     Parameters
     ----------
-    theta2 : array_like, shape (...)
+    theta2 : ndarray or float, shape (...)
         Crank angle [rad].
     frame : float
         Length of the fixed link AD [m].
@@ -117,10 +120,10 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     x8 = 2 * root
     sine_transmission = x8 * assembly / (fold + stretch)
     area = 2 * sine_transmission * coupler * follower
+    x9 = area * diagonal_y
     x10 = 1 / coupler
     x11 = 1 / (2 * diagonal2)
     x12 = x10 * x11
-    x9 = area * diagonal_y
     cos3 = x12 * (diagonal_x * p - x9)
     x13 = area * diagonal_x
     sin3 = x12 * (diagonal_y * p + x13)

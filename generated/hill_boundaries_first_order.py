@@ -7,7 +7,7 @@ Equations: Smith (7.23), (7.25); Smith (7.46), (7.49).
 
 Cost per evaluation:
     first_order: 14 operations
-Content hash a612dc174f28921be6fa74aa91aca0e7; derived with SymPy 1.14.0.
+Content hash a5f93871a941c5c6e50ea412d63ca4ca; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -17,8 +17,11 @@ __all__ = [
 ]
 
 FAMILY = "closed_form"
-SPEC = '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hill","modes":null,"outputs":[]}'
-CONTENT = "a612dc174f28921be6fa74aa91aca0e7"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hi'
+    'll","modes":null,"outputs":[]}'
+)
+CONTENT = "a5f93871a941c5c6e50ea412d63ca4ca"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -45,9 +48,9 @@ def first_order(n, mu, a0, an, bn, damping):
 
     Parameters
     ----------
-    n : array_like, shape (...)
+    n : ndarray or float, shape (...)
         Number of the region, from 1.
-    mu : array_like, shape (...)
+    mu : ndarray or float, shape (...)
         Parameter that multiplies f.
     a0 : float or ndarray
         Mean of f.

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 6edb38b0dd6897274adef9a3a0990f2d; derived with SymPy 1.14.0.
+Content hash 47fc84268157fbd6966f790fde83f429; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -19,8 +19,12 @@ __all__ = [
 ]
 
 FAMILY = "linear_periodic"
-SPEC = '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,"outputs":[]}'
-CONTENT = "6edb38b0dd6897274adef9a3a0990f2d"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
+    '"outputs":[]}'
+)
+CONTENT = "47fc84268157fbd6966f790fde83f429"
+EXTERNAL = ('f',)
 MODAL_1 = ((1.0,),)
 MODAL_2 = ((2.0,),)
 

@@ -98,7 +98,11 @@ def adaptive_march(
             tick=tick,
         )
         states, steps = run.states, run.accepted
-        status, message = int(outside(states[-1])), ""
+        status, message = 0, ""
+        if outside(states[-1]):
+            status = 1
+        elif len(states) < len(grid.theta):
+            status, message = 2, "the step shrank to nothing: the motion grows or jumps too fast"
     else:
         states, steps, status, message = _scipy(
             method, generator, grid.theta, state, rtol, atol, bound / scale[:n], tick

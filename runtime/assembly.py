@@ -49,9 +49,12 @@ def assemble(
     Raises
     ------
     BadInput
-        If the module is of another family or a parameter is missing.
+        If the module is of another family, or a parameter, argument or function is missing.
     """
     check_module(module, "linear_periodic", parameters)
+    missing = sorted(set(module.EXTERNAL) - set(external or {}))
+    if missing:
+        raise bad("external", f"none for {missing}", "a function of angle each", "pass them")
     modal = _modal_arrays(module, modes)
     shared = _angle_kernels(module, geometry, external or {})
     terms = []
@@ -60,6 +63,8 @@ def assemble(
             function = _function(angle, modal[mode], shared, external or {})
             terms.append(Term(array, scale, function, power))
     size = next(iter(modal.values())).shape[0]
+    if modes is not None and modes != size:
+        raise bad("modes", modes, f"{size}, the module's own", "ask for a module of that number")
     if "scales" in module.RETURNS:
         used = inspect.signature(module.scales).parameters
         fixed = {name: geometry[name] for name in used if name in geometry}
@@ -152,7 +157,10 @@ def _angle_kernels(
         if not kernel.endswith("_functions"):
             continue
         function = getattr(module, kernel)
-        wanted = inspect.signature(function).parameters
+        wanted = list(inspect.signature(function).parameters)[1:]
+        missing = sorted(set(wanted) - set(geometry) - set(external))
+        if missing:
+            raise bad("geometry", f"none for {missing}", "a value each", "supply them")
         fixed = {name: geometry[name] for name in wanted if name in geometry}
         passed = {name: external[name] for name in wanted if name in external}
         found |= dict.fromkeys(names, _Shared(function, names, fixed, passed))

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .families import Array, LinearPeriodic
+from .hill_form import HillForm, hill_form, is_stiffness
+from .hill_matrix import Boundaries, hill_boundaries
 from .hill_perturbation import perturbation_boundaries
 from .periodic import PeriodicFunction
-from .hill_form import HillForm, hill_form
-from .hill_matrix import Boundaries, hill_boundaries
 
 _MOST_ROWS = 121
 _MOST_DAMPED_ROWS = 41
@@ -109,8 +109,8 @@ class _Point:
         error = np.zeros(len(regions))
         for _ in range(1 if self.damping == 0.0 else _MOST_ROUNDS):
             before = speeds
-            found, error = self._speeds(solve, regions, speeds)
-            speeds = np.where(np.isnan(before), np.nan, found)  # a closed region stays closed
+            moved, error = self._speeds(solve, regions, speeds)
+            speeds = np.where(np.isnan(before), np.nan, moved)  # a closed region stays closed
             if not np.any(np.abs(speeds - before) > 1e-13 * np.abs(speeds)):
                 break
         return np.stack([speeds[0], speeds[1], error])
@@ -136,12 +136,7 @@ class _Point:
 
 
 def _suits(form: HillForm, name: str) -> bool:
-    if name == "speed":
-        return not form.elastic
-    if name not in form.system.parameters:
-        return False
-    probe = [form.stiffness(**{name: v}) for v in (1.0, 2.0, 5.0)]
-    return bool(np.allclose(probe, (1.0, 2.0, 5.0), rtol=1e-14))
+    return not form.elastic if name == "speed" else is_stiffness(form, name)
 
 
 def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[int, ...]:

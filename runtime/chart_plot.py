@@ -99,7 +99,8 @@ def _draw_marks(ax: Axes, values: Array, label: str, left: float) -> None:
 def _draw_fractions(ax: Axes, frequency: float) -> None:
     """Put the speeds 2 Omega / n on a second axis along the top, n the number of the region."""
     low, high = ax.get_xlim()
-    ticks, labels = [], []
+    ticks: list[float] = []
+    labels: list[str] = []
     for n in range(1, 41):
         speed = 2.0 * frequency / n * _RPM
         if low <= speed <= high and (not ticks or ticks[-1] - speed > 0.045 * (high - low)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,9 @@ from . import chebyshev
 from .chart_boundaries import BoundaryCurves, boundary_curves
 from .errors import bad
 from .families import Array, LinearPeriodic
-from .hill import discriminant
-from .hill_form import hill_form, is_hill
+from .floquet import monodromy
+from .hill import discriminant_grid
+from .hill_form import hill_form, is_hill, plain_axes
 from .results import Check, Result
 from .stability_polynomial import characteristic, half_traces, largest_modulus
 
@@ -50,7 +51,8 @@ class StabilityChart(Result):
     marks : mapping
         Values along y or x to be marked, by label.
     nodes : tuple of int
-        How many Chebyshev nodes were sampled along x and y.
+        How many Chebyshev nodes were sampled along x and y; (0, 0) where the half trace of one
+        function was evaluated by :func:`~.hill.discriminant_grid`.
     """
 
     x_name: str
@@ -123,16 +125,8 @@ def stability_chart(
     """
     names, axes = _axes(system, x, y)
     sampler = _Sampler(system, names)
-    transformed = [sampler.transform(n, values) for n, values in zip(names, axes, strict=True)]
-    series = _series(sampler, transformed, rtol)
-    values = np.stack(
-        [
-            chebyshev.tensor_values(c, *(_unit(t) for t in transformed)).T
-            for c in series.coefficients
-        ],
-        axis=-1,
-    )
-    largest, stable = _verdict(sampler, values, names, axes)
+    series = _plain_hill(sampler, axes) or _interpolated(sampler, axes, rtol)
+    largest, stable = _verdict(sampler, series.values, names, axes)
     exact, first = None, None
     if boundaries and is_hill(system):
         exact, first = boundary_curves(system, names, axes)
@@ -147,7 +141,7 @@ def stability_chart(
         y_name=names[1],
         x=axes[0],
         y=axes[1],
-        invariants=values,
+        invariants=series.values,
         stable=stable,
         largest=largest,
         exact=exact,
@@ -193,6 +187,7 @@ class _Sampler:
         self.method = "half trace" if self.hill else "characteristic polynomial"
         self.method += " at Chebyshev nodes, spectral interpolation"
         self._form = hill_form(system) if self.hill else None
+        self.plain = None if self._form is None or self.damped else plain_axes(self._form, names)
 
     def transform(self, name: str, values: Array) -> Array:
         """Return the variable in which the invariants are entire."""
@@ -210,11 +205,10 @@ class _Sampler:
         """Return invariants ``(k, nx, ny)`` and the largest error of a sample."""
         ax, ay = (self.back(n, v) for n, v in zip(self.names, (x, y), strict=True))
         if self._form is not None:
-            return self._half_traces(ax, ay)
-        from .floquet import monodromy
-
-        point = {self.names[0]: ax[:, None], self.names[1]: ay[None, :]}
-        speed = point.pop("speed", np.asarray(1.0))
+            # One mode: for each y a function f, and all x at once where x leaves f alone.
+            return half_traces(self._form, self.names, ax, ay)
+        point: dict[str, Any] = {self.names[0]: ax[:, None], self.names[1]: ay[None, :]}
+        speed = point.pop("speed", 1.0)
         result = monodromy(self.system, speed, **point)
         shape = (len(ax), len(ay))
         size = 2 * self.system.size
@@ -223,44 +217,42 @@ class _Sampler:
         scale = np.max(np.abs(matrices), axis=(-2, -1)) ** min(2, self.system.size)
         return np.moveaxis(values, -1, 0), float(np.max(result.error * scale) * size)
 
-    def _half_traces(self, ax: Array, ay: Array) -> tuple[Array, float]:
-        """One mode: for each y a function f, and all x at once where x leaves f alone."""
-        return half_traces(self._form, self.names, ax, ay, discriminant)
-
 
 @dataclass(frozen=True)
 class _Series:
-    coefficients: tuple[Array, ...]
+    """Invariants on the chart, with their error and that of the samples."""
+
+    values: Array
     error: float
     sample_error: float
     nodes: tuple[int, int]
 
 
-def _unit(values: Array) -> Array:
-    low, high = float(values.min()), float(values.max())
-    return chebyshev.unit(values, low, high)
+def _plain_hill(sampler: _Sampler, axes: tuple[Array, Array]) -> _Series | None:
+    """Return half traces where the axes are lam2 and the factor of one function, else None."""
+    if sampler.plain is None:
+        return None
+    which, f, lam2, factor = sampler.plain
+    order = np.argsort(lam2(axes[which]))
+    found = discriminant_grid(f, lam2(axes[which])[order], factor(axes[1 - which]))
+    values = np.empty_like(found.value)
+    values[order] = found.value
+    error = float(np.max(found.error))
+    shown = values.T if which == 0 else values
+    return _Series(shown[..., None], error, error, (0, 0))
 
 
-def _series(
-    sampler: Callable[[Array, Array], tuple[Array, float]],
-    axes: Sequence[Array],
-    rtol: float,
-) -> _Series:
+def _interpolated(sampler: _Sampler, axes: tuple[Array, Array], rtol: float) -> _Series:
     """Refine the nodes along each axis until the tails of all series are small.
 
     How many nodes an axis needs is found on three lines across the chart; then the whole grid is
     sampled once, and again only where that was too few.
     """
-    count = [_FIRST, _FIRST]
-    for axis in (0, 1):
-        while True:
-            trial = [count[0], count[1]]
-            trial[1 - axis] = 3
-            coefficients, _ = _sampled(sampler, axes, trial)
-            size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
-            if _tail(coefficients, axis) <= rtol * size or count[axis] >= _MOST:
-                break
-            count[axis] = min(_MOST, count[axis] + max(4, count[axis] // 4))
+    axes = (
+        sampler.transform(sampler.names[0], axes[0]),
+        sampler.transform(sampler.names[1], axes[1]),
+    )
+    count = [_counted(sampler, axes, axis, rtol) for axis in (0, 1)]
     while True:
         coefficients, sample_error = _sampled(sampler, axes, count)
         size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
@@ -271,8 +263,23 @@ def _series(
         for axis in (0, 1):
             if tails[axis] > floor:
                 count[axis] = min(_MOST, count[axis] + count[axis] // 3)
+    places = [chebyshev.unit(a, float(a.min()), float(a.max())) for a in axes]
+    values = [chebyshev.tensor_values(c, places[0], places[1]).T for c in coefficients]
     error = sum(tails) + sample_error
-    return _Series(tuple(coefficients), error, sample_error / size, (count[0], count[1]))
+    return _Series(np.stack(values, axis=-1), error, sample_error / size, (count[0], count[1]))
+
+
+def _counted(sampler: _Sampler, axes: tuple[Array, Array], axis: int, rtol: float) -> int:
+    """Return how many nodes one axis needs, judged on three lines along it."""
+    count = _FIRST
+    while True:
+        trial = [3, 3]
+        trial[axis] = count
+        coefficients, _ = _sampled(sampler, axes, trial)
+        size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
+        if _tail(coefficients, axis) <= rtol * size or count >= _MOST:
+            return count
+        count = min(_MOST, count + max(4, count // 4))
 
 
 def _sampled(

@@ -143,22 +143,11 @@ def discriminant(
     the Chebyshev series and the error of ``f``.
     """
     check_function(f)
-    given = {"lam2": lam2, "mu": mu, "damping": damping}
-    lam, amp, k = (finite(name, value) for name, value in given.items())
-    if np.any(k < 0.0):
-        raise bad("damping", float(k.min()), "K >= 0", "damping takes energy out")
-    try:
-        shape = np.broadcast_shapes(lam.shape, amp.shape, k.shape)
-    except ValueError as reason:
-        raise bad(
-            "lam2, mu, damping",
-            f"shapes {lam.shape}, {amp.shape}, {k.shape}",
-            "shapes that broadcast",
-            "reshape them, for example to (n, 1) and (1, m)",
-        ) from reason
+    (lam, amp, k), shape = arguments(lam2=lam2, mu=mu, damping=damping)
     x = _collapsed(_padded(lam - k * k, len(shape)))
     y = _collapsed(_padded(amp, len(shape)))
-    log2_scale = np.broadcast_to(_padded(k * (-2.0 * pi / log(2.0)), len(shape)), x.shape)
+    log2_scale = _collapsed(_padded(k * (-2.0 * pi / log(2.0)), len(shape)))
+    x, log2_scale = np.broadcast_arrays(x, log2_scale)
     if all(min(n, m) == 1 for n, m in zip(x.shape, y.shape, strict=True)):
         work = _Work(f, x.ravel(), y.ravel(), log2_scale.ravel(), grid=True)
         value, error = (_ungrid(item, x.shape, y.shape, shape) for item in work.run())
@@ -398,6 +387,26 @@ def finite(name: str, values: ArrayLike) -> Array:
     if not np.all(np.isfinite(out)):
         raise bad(name, "an entry that is not finite", "finite numbers", "correct the input")
     return out
+
+
+def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
+    """Return the arguments as arrays and their broadcast shape, or refuse by name.
+
+    ``damping`` must not be negative.
+    """
+    arrays = tuple(finite(name, value) for name, value in given.items())
+    damping = arrays[list(given).index("damping")]
+    if np.any(damping < 0.0):
+        raise bad("damping", float(damping.min()), "K >= 0", "damping takes energy out")
+    try:
+        return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
+    except ValueError as reason:
+        raise bad(
+            ", ".join(given),
+            f"shapes {', '.join(str(item.shape) for item in arrays)}",
+            "shapes that broadcast",
+            "reshape them, for example to (n, 1) and (1, m)",
+        ) from reason
 
 
 def check_function(f: object) -> None:

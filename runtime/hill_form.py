@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from .errors import bad
-from .families import Array, LinearPeriodic
+from .families import Array, LinearPeriodic, Term
 from .periodic import PeriodicFunction
 
 
@@ -84,14 +85,65 @@ def hill_form(system: LinearPeriodic) -> HillForm:
     for term in system.terms:
         if term.array in parts:
             sign = -1.0 if term.array == "B" else 1.0
-            series = _series(lambda theta, t=term: t(theta)[..., 0, 0])  # type: ignore[misc]
-            parts[term.array].append((term.scale, series * (sign / mass)))
+            parts[term.array].append((term.scale, _series(term) * (sign / mass)))
     return HillForm(system, tuple(parts["B"]), tuple(parts["Kg"]))
 
 
-def _series(function: object) -> PeriodicFunction:
-    def flat(theta: Array) -> Array:
-        values: Array = function(np.ravel(theta))  # type: ignore[operator]
-        return values.reshape(np.shape(theta))
+PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
 
-    return PeriodicFunction.from_callable(flat)
+
+def plain_axes(form: HillForm, names: tuple[str, str]) -> PlainAxes | None:
+    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0``, where they do.
+
+    Parameters
+    ----------
+    form : HillForm
+        Without damping.
+    names : tuple of str
+        ``"speed"`` or parameters.
+
+    Returns
+    -------
+    tuple or None
+        Which axis carries lam2 (0 or 1), the function f, and the maps from the values of that
+        axis to lam2 and from the values of the other one to mu; None where f is not simply
+        proportional to the other parameter, or lam2 not the speed's or a parameter of its own.
+    """
+    for which in (0, 1):
+        along, other = names[which], names[1 - which]
+        if other == "speed" or (along == "speed" and form.elastic):
+            continue
+        unit = form.function(1.0, **{other: 1.0})
+        probe = np.linspace(0.0, 2.0 * np.pi, 17)
+        doubled = form.function(1.0, **{other: 2.0})(probe)
+        if not np.allclose(doubled, 2.0 * unit(probe), rtol=1e-14, atol=0.0):
+            continue
+        stiffness = form.stiffness()
+        if form.stiffness(**{other: 1.0}) != form.stiffness(**{other: 2.0}):
+            continue
+        if along == "speed":
+            return which, unit, partial(_over_square, stiffness), np.asarray
+        if is_stiffness(form, along):
+            return which, unit, np.asarray, np.asarray
+    return None
+
+
+def _over_square(stiffness: float, speed: Array) -> Array:
+    return stiffness / speed**2
+
+
+def is_stiffness(form: HillForm, name: str) -> bool:
+    """Return True where a parameter is the constant stiffness itself."""
+    if name not in form.system.parameters:
+        return False
+    probe = [form.stiffness(**{name: v}) for v in (1.0, 2.0, 5.0)]
+    return bool(np.allclose(probe, (1.0, 2.0, 5.0), rtol=1e-14))
+
+
+def _series(term: Term) -> PeriodicFunction:
+    """Return the only entry of a term as a Fourier series."""
+
+    def entry(theta: Array) -> Array:
+        return term(np.ravel(theta))[:, 0, 0].reshape(np.shape(theta))
+
+    return PeriodicFunction.from_callable(entry)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import bad
-from .hill import check_function, finite
+from .hill import arguments, check_function
 from .hill_damped import damped
 from .hill_layout import LARGEST, stacked, truncation
 from .hill_transfer import EPS
@@ -130,27 +130,9 @@ def hill_boundaries(
     """
     check_function(f)
     numbers = check_regions(regions)
-    amp, k = finite("mu", mu), finite("damping", damping)
-    if np.any(k < 0.0):
-        raise bad("damping", float(k.min()), "K >= 0", "damping takes energy out")
-    try:
-        shape = np.broadcast_shapes(amp.shape, k.shape)
-    except ValueError as reason:
-        raise bad(
-            "mu, damping", f"shapes {amp.shape}, {k.shape}", "shapes that broadcast", "reshape them"
-        ) from reason
-    if not numbers or 0 in shape:
-        lower = np.zeros((len(numbers), *shape))
-        upper, error = lower.copy(), lower.copy()
-    else:
-        flat = np.broadcast_to(amp, shape).ravel()
-        lower, upper, error = _undamped(f, flat, numbers)
-        friction = np.broadcast_to(k, shape).ravel()
-        hit = friction > 0.0
-        if hit.any():
-            lower[:, hit], upper[:, hit], error[:, hit] = damped(
-                f, flat[hit], friction[hit], numbers, (lower[:, hit], upper[:, hit])
-            )
+    (amp, k), shape = arguments(mu=mu, damping=damping)
+    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
+    lower, upper, error = _boundaries(f, flat, friction, numbers)
     full = (len(numbers), *shape)
     return Boundaries(
         method="Hill matrix",
@@ -162,6 +144,22 @@ def hill_boundaries(
         mu=amp if amp.shape == shape else np.broadcast_to(amp, shape),
         damping=k,
     )
+
+
+def _boundaries(
+    f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...]
+) -> tuple[Array, Array, Array]:
+    """Return lower, upper and error, each ``(len(regions), n)``, for mu and K ``(n,)``."""
+    if not regions or not mu.size:
+        nothing = np.zeros((len(regions), mu.size))
+        return nothing, nothing.copy(), nothing.copy()
+    lower, upper, error = _undamped(f, mu, regions)
+    hit = k > 0.0
+    if hit.any():
+        lower[:, hit], upper[:, hit], error[:, hit] = damped(
+            f, mu[hit], k[hit], regions, (lower[:, hit], upper[:, hit])
+        )
+    return lower, upper, error
 
 
 def _undamped(

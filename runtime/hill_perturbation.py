@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..generated import hill_boundaries_first_order
 from .errors import bad
-from .hill import check_function, finite
+from .hill import arguments, check_function
 from .hill_matrix import Boundaries, check_regions
 from .hill_transfer import EPS
 from .periodic import PeriodicFunction
@@ -64,23 +64,11 @@ def perturbation_boundaries(
     numbers = check_regions(regions)
     if order != 1 or isinstance(order, bool):
         raise bad("order", repr(order), "1", "use hill_boundaries for the exact boundaries")
-    amp, k = finite("mu", mu), finite("damping", damping)
-    if np.any(k < 0.0):
-        raise bad("damping", float(k.min()), "K >= 0", "damping takes energy out")
-    try:
-        shape = np.broadcast_shapes(amp.shape, k.shape)
-    except ValueError as reason:
-        raise bad(
-            "mu, damping", f"shapes {amp.shape}, {k.shape}", "shapes that broadcast", "reshape them"
-        ) from reason
+    (amp, k), shape = arguments(mu=mu, damping=damping)
     lower = np.empty((len(numbers), *shape))
     upper, error = np.empty_like(lower), np.empty_like(lower)
     for i, n in enumerate(numbers):
-        an, bn = (f.a[n], f.b[n]) if 0 < n <= f.harmonics else (0.0, 0.0)
-        if n == 0:
-            lower[i], upper[i] = -np.inf, np.broadcast_to(-f.a[0] * amp, shape)
-        else:
-            lower[i], upper[i] = _first_order(n, amp, f.a[0], an, bn, k)
+        lower[i], upper[i] = _ends(f, n, amp, k)
         error[i] = np.where(np.isnan(upper[i]), np.nan, _left_out(f, n, amp, k))
     return Boundaries(
         method="perturbation, first order",
@@ -92,6 +80,14 @@ def perturbation_boundaries(
         mu=np.broadcast_to(amp, shape),
         damping=k,
     )
+
+
+def _ends(f: PeriodicFunction, n: int, mu: Array, k: Array) -> tuple[Array, Array]:
+    """Return both ends of region n."""
+    if n == 0:
+        return np.full(mu.shape, -np.inf), -f.a[0] * mu
+    an, bn = (float(f.a[n]), float(f.b[n])) if n <= f.harmonics else (0.0, 0.0)
+    return _first_order(n, mu, float(f.a[0]), an, bn, k)
 
 
 def _first_order(

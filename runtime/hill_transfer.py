@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import bad
-from .periodic import PeriodicFunction, trig_table
+from .periodic import PeriodicFunction, segment_values
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
@@ -362,8 +362,7 @@ def _expand(
     """Return the table of coefficients, its degree, and the size of what is left out."""
     rule = gauss(q)
     g = (pi / segments) ** 2
-    trig = trig_table(f.harmonics, segments, tuple(rule.x.tolist()))
-    values = (np.concatenate([f.a, f.b]) @ trig).reshape(segments, q)
+    values = segment_values(f, segments, tuple(rule.x.tolist()))
     onward, ends, base = _resolvents(rule, g, lam2[0], mu[0], values)
     # Level 0: the free motion from the two unit starts, driven by the base potential.
     free = np.stack([np.ones(q), 1.0 + rule.x])[:, None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -23,6 +24,9 @@ Assembly = Literal["open", "crossed"]
 @dataclass(frozen=True, kw_only=True)
 class Motion(Result):
     """Motion of a four-bar linkage at given crank angles; every array has their shape.
+
+    ``error`` has it too: the figure for the worse of theta3 and theta4 [rad], from the round-off of
+    crank angle and lengths that the position passes on; it grows near a dead centre.
 
     Attributes
     ----------
@@ -93,7 +97,7 @@ class FourBar:
         problems = [
             Problem(f"FourBar.{name}", repr(value), "a positive finite length", "correct it")
             for name, value in self.lengths.items()
-            if not (np.isfinite(value) and value > 0)
+            if not (isinstance(value, Real) and 0 < value < np.inf)
         ]
         if self.assembly not in ("open", "crossed"):
             problems.append(
@@ -120,6 +124,12 @@ class FourBar:
     def lengths(self) -> Mapping[str, float]:
         """Lengths by name."""
         return {name: getattr(self, name) for name in self.names}
+
+    @property
+    def _unit_lengths(self) -> dict[str, float]:
+        """Lengths below 1, scaled by a power of two: their digits stay, their squares are safe."""
+        exponent = -int(np.frexp(max(self.lengths.values()))[1])
+        return {name: float(np.ldexp(value, exponent)) for name, value in self.lengths.items()}
 
     @property
     def branch(self) -> float:
@@ -151,6 +161,9 @@ class FourBar:
     def motion(self, theta: ArrayLike) -> Motion:
         """Return the motion of coupler and follower (Smith 2.2, 2.7, 2.10).
 
+        At ``theta = 0`` theta3 and theta4 lie between -pi and pi; from there they are continuous
+        over any number of turns.
+
         Parameters
         ----------
         theta : array_like
@@ -164,64 +177,84 @@ class FourBar:
         Raises
         ------
         BadInput
-            If an angle is not finite, or the linkage cannot reach it.
+            If an angle is not a finite number, or the linkage cannot reach it or folds there.
         """
-        angles = np.asarray(theta, dtype=float)
-        self._require_reachable(angles)
-        values = four_bar_kinematics.motion(
-            angles, **self.lengths, assembly=self.branch, winding=float(self.crank > self.frame)
-        )
-        theta3, theta4, *rest = (np.asarray(value, dtype=float) for value in values)
-        closure = self._closure(angles, theta3, theta4)
-        unit = np.finfo(float).eps
-        # A dead centre amplifies the last digit of a length by 1/sin(transmission angle).
-        gain = 1.0 / np.min(np.abs(np.sin(rest[-1])), initial=1.0)
-        turns = np.max(np.abs(angles), initial=1.0)
+        angles = _finite(theta)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            values = four_bar_kinematics.motion(
+                angles,
+                **self._unit_lengths,
+                assembly=self.branch,
+                winding=float(self.crank > self.frame),
+            )
+        arrays = dict(zip(_OUTPUTS, map(np.asarray, values), strict=True))
+        self._require_reached(angles, arrays)
+        closure = self._closure(angles, arrays["theta3"], arrays["theta4"])
+        limit = 64 * np.finfo(float).eps * np.max(np.abs(angles), initial=1.0)
         return Motion(
             theta2=angles,
-            theta3=theta3,
-            theta4=theta4,
-            omega3=rest[0],
-            omega4=rest[1],
-            alpha3=rest[2],
-            alpha4=rest[3],
-            transmission_angle=rest[4],
+            **arrays,
             method="closed form",
-            error=float(32 * unit * turns * gain),
-            error_norm="angles [rad], largest absolute",
-            checks={"loop closure over longest link": Check(closure, float(64 * unit * turns))},
+            error=self._angle_error(angles, arrays),
+            error_norm="worse of theta3 and theta4 [rad], absolute, entrywise",
+            checks={"loop closure over longest link": Check(closure, float(limit))},
         )
+
+    def _angle_error(self, theta2: Array, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of the angle and of each length does, three times.
+
+        A change of a length moves the closure along that link; seen along coupler or follower it
+        turns the other one, the more the closer the two are to one line.
+        """
+        frame, crank, coupler, follower = self._unit_lengths.values()
+        aligned = np.abs(np.cos(m["theta4"] - m["theta3"]))
+        sine = np.abs(np.sin(m["transmission_angle"]))
+        figures = []
+        for link, other, own, opposite in (
+            ("3", "4", coupler, follower),
+            ("4", "3", follower, coupler),
+        ):
+            beside = m["theta" + other]
+            moved = crank * np.abs(np.cos(theta2 - beside)) + frame * np.abs(np.cos(beside))
+            moved += own * aligned + opposite
+            turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
+            figures.append(turned + moved / (own * sine))
+        return np.asarray(1.5 * np.finfo(float).eps * np.maximum(*figures))
 
     def _closure(self, theta2: Array, theta3: Array, theta4: Array) -> float:
+        frame, crank, coupler, follower = self._unit_lengths.values()
         gap = (
-            self.crank * np.exp(1j * theta2)
-            + self.coupler * np.exp(1j * theta3)
-            - self.frame
-            - self.follower * np.exp(1j * theta4)
+            crank * np.exp(1j * theta2)
+            + coupler * np.exp(1j * theta3)
+            - frame
+            - follower * np.exp(1j * theta4)
         )
-        return float(np.max(np.abs(gap), initial=0.0) / max(self.lengths.values()))
+        longest = max(self._unit_lengths.values())
+        return float(np.max(np.abs(gap), initial=0.0) / longest)
 
-    def _require_reachable(self, theta: Array) -> None:
-        if not np.all(np.isfinite(theta)):
-            raise bad("theta", "a value that is not finite", "finite angles", "remove it")
-        if self.crank_turns:
-            return
-        # Both differences of squares as sums that do not cancel, as in the emitted form.
-        cos2, sin2 = np.cos(theta / 2) ** 2, np.sin(theta / 2) ** 2
-        shortest, longest = self.reach
-        near, far = abs(self.frame - self.crank), self.frame + self.crank
-        over = (near - shortest) * (near + shortest) * cos2 + (far - shortest) * (
-            far + shortest
-        ) * sin2
-        under = (longest - near) * (longest + near) * cos2 + (longest - far) * (
-            longest + far
-        ) * sin2
-        outside = ~((over > 0) & (under > 0))
-        if np.any(outside):
-            worst = float(np.ravel(theta)[np.argmax(np.ravel(outside))])
+    def _require_reached(self, theta: Array, arrays: Mapping[str, Array]) -> None:
+        """Raise BadInput where coupler and follower did not meet, or lie in one line."""
+        reached = np.logical_and.reduce([np.isfinite(value) for value in arrays.values()])
+        if not np.all(reached):
+            shortest, longest = self.reach
+            first = float(np.ravel(theta)[np.argmin(np.ravel(reached))])
             raise bad(
                 "theta",
-                f"{worst:.6g} rad",
+                f"{first:.6g} rad",
                 f"a diagonal BD between {shortest:g} and {longest:g}",
-                "this linkage's crank is a rocker; keep theta inside its range",
+                "this linkage cannot reach the angle, or folds there; keep theta inside its range",
             )
+
+
+_OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")
+
+
+def _finite(theta: ArrayLike) -> Array:
+    """Return angles as an array, or raise BadInput."""
+    try:
+        angles = np.asarray(theta, dtype=float)
+    except (TypeError, ValueError) as refusal:
+        raise bad("theta", repr(theta), "an array of angles [rad]", "correct it") from refusal
+    if not np.all(np.isfinite(angles)):
+        raise bad("theta", "a value that is not finite", "finite angles", "remove it")
+    return angles

@@ -133,13 +133,13 @@ def _load(folder: Path, entry: Entry) -> ModuleType:
     packaged = Path(generated.__path__[0])
     if folder == packaged:
         return importlib.import_module(f"{generated.__name__}.{entry.module}")
-    name = f"elastolink_emitted_{entry.module}_{entry.content}"
+    name = f"elastolink_emitted_{entry.module}_{entry.text[:16]}"  # equal texts load once
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, folder / f"{entry.module}.py")
     if spec is None or spec.loader is None:
         raise bad(str(folder), entry.module, "a Python module", "regenerate it")
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
     spec.loader.exec_module(module)
+    sys.modules[name] = module  # not before: what fails to load is not kept
     return module

@@ -148,7 +148,9 @@ class PeriodicFunction:
             goal = 8.0 * _EPS if tol is None else tol
             flat = tol is None and tail < _NOISE and tail * _FLAT > before
             if tail <= goal or flat:
-                found = _chopped(cls, a, b, max(4.0 * tail, goal) * scale, np.max(np.abs(values)))
+                # Noise reaches a few times higher than it does in the upper half.
+                level = max(4.0 * tail, goal) if tol is None else goal
+                found = _chopped(cls, a, b, level * scale, float(np.max(np.abs(values))))
                 gap = _gap(f, found, label)
                 if gap <= 1e3 * max(tail, goal) * scale:
                     return found
@@ -261,14 +263,13 @@ class PeriodicFunction:
         return float(np.sum(self.amplitudes)) + self.error
 
 
-@lru_cache(maxsize=32)
-def trig_table(harmonics: int, segments: int, nodes: tuple[float, ...]) -> Array:
-    """Return cos and sin of m theta at the nodes of equal segments of the circle.
+def segment_values(f: PeriodicFunction, segments: int, nodes: tuple[float, ...]) -> Array:
+    """Evaluate at the nodes of equal segments of the circle, by one short FFT per node.
 
     Parameters
     ----------
-    harmonics : int
-        Highest harmonic M.
+    f : PeriodicFunction
+        The function.
     segments : int
         Number of equal parts of ``[0, 2 pi]``.
     nodes : tuple of float
@@ -276,13 +277,25 @@ def trig_table(harmonics: int, segments: int, nodes: tuple[float, ...]) -> Array
 
     Returns
     -------
-    ndarray, shape (2 M + 2, segments * len(nodes))
-        Rows ``cos m theta``, m = 0 ... M, then ``sin m theta``; read-only.
+    ndarray, shape (segments, len(nodes))
     """
-    x = (np.arange(segments)[:, None] + 0.5 * (1.0 + np.asarray(nodes))) / segments
-    turns = np.arange(harmonics + 1)[:, None] * x.ravel()
-    angle = 2.0 * np.pi * (turns - np.rint(turns))
-    return _frozen(np.concatenate([np.cos(angle), np.sin(angle)]))
+    turned = (f.a - 1j * f.b) * _phases(f.harmonics, segments, nodes)
+    # Harmonics that differ by a multiple of the number of segments agree at equal nodes.
+    layers = -(-turned.shape[1] // segments)
+    folded = np.zeros((len(nodes), layers * segments), dtype=complex)
+    folded[:, : turned.shape[1]] = turned
+    spectrum = folded.reshape(len(nodes), layers, segments).sum(axis=1)
+    return np.ascontiguousarray(np.fft.ifft(spectrum, norm="forward").real.T)
+
+
+@lru_cache(maxsize=32)
+def _phases(harmonics: int, segments: int, nodes: tuple[float, ...]) -> NDArray[np.complex128]:
+    """Return ``exp(i m theta)`` at the nodes of the first segment, shape (nodes, harmonics + 1)."""
+    within = 0.5 * (1.0 + np.asarray(nodes)) / segments
+    turns = within[:, None] * np.arange(harmonics + 1)
+    out: NDArray[np.complex128] = np.exp(2j * np.pi * (turns - np.rint(turns)))
+    out.setflags(write=False)
+    return out
 
 
 def _frozen(values: Array) -> Array:

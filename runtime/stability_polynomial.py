@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from .families import Array
-
-if TYPE_CHECKING:
-    from .hill_form import HillForm
+from .hill import discriminant
+from .hill_form import HillForm
 
 
 def characteristic(matrices: Array, *, reduced: bool) -> Array:
@@ -105,7 +101,6 @@ def half_traces(
     names: tuple[str, str],
     x: Array,
     y: Array,
-    discriminant: Callable[..., Any],
 ) -> tuple[Array, float]:
     """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and their error.
 

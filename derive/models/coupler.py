@@ -13,7 +13,8 @@ printed
     the coupler's own axial inertia along its length, so that N is the end load everywhere
     (what Smith 6.17 amounts to);
 reduced
-    also the spin ``omega3^2 y`` and the coupler's part of the end load (Smith 6.18).
+    also the energy ``mu omega3^2 y^2 / 2`` of the spin and the coupler's part of the end load
+    (Smith 6.18).
 """
 
 from __future__ import annotations
@@ -37,7 +38,6 @@ from ..records import (
 )
 from ..separation import StagedSystem
 from ..spec import ModelSpec
-from ..staged import Steps
 from ..variational import (
     hamilton,
     linearise,
@@ -86,16 +86,19 @@ def action(spec: ModelSpec) -> ActionDensity:
     """Return the action of the coupler in axes that move with its chord (Smith Figs. 25, 26)."""
     without = dropped(spec)
     pin = (crank * th2.diff(t) * sp.sin(th3 - th2), crank * th2.diff(t) * sp.cos(th3 - th2))
-    spin = sp.Integer(0) if "spin" in without else sp.Integer(1)
     shift = sp.Integer(0) if "axial_inertia" in without else sp.Integer(1)
-    along = pin[0] + shift * u.diff(t) - spin * th3.diff(t) * y
+    along = pin[0] + shift * u.diff(t) - th3.diff(t) * y
     across = pin[1] + y.diff(t) + th3.diff(t) * (x + shift * u)
+    square = along**2 + across**2
+    if "spin" in without:
+        # The square alone: its product with the motion of the pin belongs to the forcing.
+        square -= (th3.diff(t) * y) ** 2
     return ActionDensity(
         x=x,
         t=t,
         length=coupler,
         fields=(y, u, tension),
-        density=density / 2 * (along**2 + across**2)
+        density=density / 2 * square
         - stiffness / 2 * y.diff(x, 2) ** 2
         - tension * (u.diff(x) + y.diff(x) ** 2 / 2),
         force_density={y: -damping * y.diff(t)},

@@ -23,7 +23,7 @@ frame, crank, coupler, follower = sp.symbols("frame crank coupler follower", pos
 assembly, winding = sp.symbols("assembly winding", real=True)
 
 ARGUMENTS = (
-    Argument("theta2", "array_like, shape (...)", "rad", "Crank angle"),
+    Argument("theta2", "ndarray or float, shape (...)", "rad", "Crank angle"),
     Argument("frame", "float", "m", "Length of the fixed link AD"),
     Argument("crank", "float", "m", "Length of the crank AB"),
     Argument("coupler", "float", "m", "Length of the coupler BC"),

@@ -41,7 +41,9 @@ def _describe(spec: ModelSpec) -> Description:
     return Description(
         title="Hill's equation with viscous damping",
         references=("Smith (7.11)", "Smith (7.38)"),
-        arguments=(Argument("theta", "array_like, shape (...)", "rad", "Independent variable"),),
+        arguments=(
+            Argument("theta", "ndarray or float, shape (...)", "rad", "Independent variable"),
+        ),
         parameters=(
             Argument("lam2", "float", "1/s^2", "Constant part of the stiffness"),
             Argument("mu", "float", "1/s^2", "Factor of the periodic part f"),

@@ -26,8 +26,8 @@ def _describe(spec: ModelSpec) -> Description:
         title="First-order stability boundaries of Hill's equation",
         references=("Smith (7.23), (7.25)", "Smith (7.46), (7.49)"),
         arguments=(
-            Argument("n", "array_like, shape (...)", "", "Number of the region, from 1"),
-            Argument("mu", "array_like, shape (...)", "", "Parameter that multiplies f"),
+            Argument("n", "ndarray or float, shape (...)", "", "Number of the region, from 1"),
+            Argument("mu", "ndarray or float, shape (...)", "", "Parameter that multiplies f"),
             Argument("a0", "float or ndarray", "", "Mean of f"),
             Argument("an", "float or ndarray", "", "Cosine coefficient n of f"),
             Argument("bn", "float or ndarray", "", "Sine coefficient n of f"),

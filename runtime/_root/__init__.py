@@ -12,6 +12,7 @@ __version__ = "0.1.0"
 
 _PUBLIC = {
     "BadInput": "errors",
+    "Constrained": "families",
     "ElastolinkError": "errors",
     "FourBar": "mechanisms",
     "LinearPeriodic": "families",
@@ -19,7 +20,11 @@ _PUBLIC = {
     "PeriodicFunction": "periodic",
     "StepTooLongWarning": "errors",
     "Term": "families",
+    "Transcendental": "families",
+    "array_function": "families",
+    "assemble": "assembly",
     "discriminant": "hill",
+    "find_module": "modules",
     "floquet_multipliers": "floquet",
     "hill_boundaries": "hill_matrix",
     "list_scenes": "scenes",

@@ -18,6 +18,7 @@ from ..results import Result
 
 Array = NDArray[np.float64]
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+_SHORT = 0.1
 _PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 
 
@@ -127,11 +128,21 @@ class Contender:
 
 
 def compare(problem: str, contenders: Sequence[Contender], rounds: int) -> list[Row]:
-    """Time the contenders in turn, ``rounds`` times after one warm-up; the first is ours."""
-    errors = [contender.error(contender.run()) for contender in contenders]
+    """Time the contenders in turn, ``rounds`` times; the first is ours.
+
+    Before each timed run a short one is repeated untimed, so that none suffers from what the one
+    before it left in the caches.
+    """
     times = np.empty((rounds, len(contenders)))
+    errors, short = [], []
+    for contender in contenders:
+        begin = time.perf_counter()
+        errors.append(contender.error(contender.run()))
+        short.append(time.perf_counter() - begin < _SHORT)
     for i in range(rounds):
         for j, contender in enumerate(contenders):
+            if short[j]:
+                contender.run()
             begin = time.perf_counter()
             contender.run()
             times[i, j] = (time.perf_counter() - begin) / contender.share

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from ..hill_matrix import Boundaries, hill_boundaries
 from ..periodic import PeriodicFunction
 from ..results import Check
 from .records import Benchmark, Contender, Row, compare, functions, one_thread
-from .reference import half_traces
 
 Array = NDArray[np.float64]
 
@@ -48,8 +48,8 @@ def benchmark_slices(slices: int = 1000, rounds: int = 25) -> Benchmark:
     -----
     The ten lines build the banded Hermitian matrix in exp(i k theta), cut at the smallest harmonic
     that gives 1e-12 (found beforehand, not timed), and give no error figure.  Their batch is a loop
-    over a sample of the slices.  The reference corrects the eigenvalues of a much larger matrix by
-    a Newton step on half traces in extended precision wherever the boundary is a simple root.
+    over a sample of the slices.  The reference diagonalises a larger matrix, the last step in
+    extended precision.
     """
     if slices < 1 or rounds < 1:
         raise bad("benchmark_slices", f"{slices}, {rounds}", "at least 1 each", "take more")
@@ -126,13 +126,39 @@ def banded_boundaries(f: PeriodicFunction, mu: float, harmonic: int) -> Array:
     return ends
 
 
+@lru_cache(maxsize=8)
 def _reference(f: PeriodicFunction) -> Array:
-    """Return the ends of regions 1-6 at mu = 1 to about 1e-15."""
-    found = banded_boundaries(f, _MU, f.harmonics + 30)
-    # Half traces in extended precision at three points give value, slope and curvature.
-    h = 1e-5
-    left, middle, right = half_traces(f, found + h * np.array([-1.0, 0.0, 1.0])[:, None, None], _MU)
-    level = np.array([-1.0 if n % 2 else 1.0 for n in _REGIONS])
-    slope = ((right - left) / (2.0 * h)).astype(float)
-    step = ((middle - level).astype(float)) / np.where(np.abs(slope) < 1e-3, np.inf, slope)
-    return np.asarray(found - step)
+    """Return the ends of regions 1-6 at mu = 1, rounded from extended precision."""
+    ends = np.empty((2, 6))
+    for odd in (0, 1):
+        values = _extended_eigenvalues(f, odd, f.harmonics + 12)
+        first = 1 - odd
+        ends[:, first::2] = values[first : first + 6].reshape(3, 2).T
+    ends.setflags(write=False)
+    return ends
+
+
+def _extended_eigenvalues(f: PeriodicFunction, odd: int, harmonic: int) -> Array:
+    """Return eigenvalues of the full Hermitian matrix, the last step in extended precision.
+
+    The matrix is brought to the basis of its computed eigenvectors, where what is off the diagonal
+    is round-off: it matters only between the two ends of one region, which may nearly coincide.
+    """
+    k = (np.arange(-harmonic, harmonic + 1 - odd) + 0.5 * odd).astype(np.longdouble)
+    apart = k[:, None] - k
+    number = np.abs(apart).astype(int)
+    inside = np.minimum(number, f.harmonics)
+    c = np.where(number > f.harmonics, 0.0, f.a[inside] - 1j * np.sign(apart) * f.b[inside])
+    matrix = np.asarray(-0.5 * _MU * c, dtype=np.clongdouble)
+    np.fill_diagonal(matrix, k * k - _MU * np.longdouble(f.a[0]))
+    vectors = np.linalg.eigh(matrix.astype(complex))[1].astype(np.clongdouble)
+    inner = vectors.conj().T @ matrix @ vectors
+    excess = vectors.conj().T @ vectors - np.eye(len(k))
+    inner -= 0.5 * (excess @ inner + inner @ excess)
+    levels = inner.diagonal().real.copy()
+    # Pairs (1, 2), (3, 4), ... of the whole problem, (0, 1), (2, 3), ... of the other.
+    for i in range(1 - odd, len(k) - 1, 2):
+        middle, half = 0.5 * (levels[i] + levels[i + 1]), 0.5 * (levels[i + 1] - levels[i])
+        reach = np.sqrt(half * half + np.abs(inner[i, i + 1]) ** 2)
+        levels[i], levels[i + 1] = middle - reach, middle + reach
+    return levels.astype(float)

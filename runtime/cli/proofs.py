@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +27,9 @@ def add(commands: Any) -> None:
     reproduce.add_argument(
         "document", nargs="?", metavar="DOCUMENT", help="smith; all documents by default"
     )
-    reproduce.add_argument("--figure", metavar="N", help="one figure, for example 27 or 84")
+    reproduce.add_argument(
+        "--figure", metavar="N", help="one figure or table, e.g. 27, 27c, 84, table_coupler"
+    )
     reproduce.add_argument(
         "--out", default="gallery", metavar="DIR", help="folder to write; default %(default)s"
     )
@@ -55,8 +59,15 @@ def _reproduce(options: argparse.Namespace) -> int:
     opt.picture(options)
     from ..gallery import reproduce
 
-    result = reproduce(options.document, options.figure, folder)
-    return opt.finish(options, result, opt.ranges(result))
+    result = reproduce(
+        options.document, options.figure, folder, progress=sys.stderr.isatty() and not options.json
+    )
+    lines = result.lines()
+    if not options.json:
+        # The lines show every comparison; of the checks only those that fail remain to be told.
+        failed = {name: check for name, check in result.checks.items() if not check.passed}
+        result = replace(result, checks=failed)
+    return opt.finish(options, result, lines)
 
 
 def _benchmark(options: argparse.Namespace) -> int:

@@ -135,6 +135,6 @@ class _AtState:
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
-        columns = [column for vector in vectors for column in np.moveaxis(vector, -1, 0)]
+        columns = [vector[..., i] for vector in vectors for i in range(vector.shape[-1])]
         passed = {name: self.given[name](vectors[0], time) for name in self.external}
         return self.function(*columns, time, **passed, **self.values)

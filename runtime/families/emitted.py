@@ -81,13 +81,18 @@ def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Arr
     known = getattr(module, "ARRAYS", {})
     if name not in known:
         raise bad(
-            module.__name__, f"no function {name} of arrays", f"one of {sorted(known)}", "correct it"
+            module.__name__,
+            f"no function {name} of arrays",
+            f"one of {sorted(known)}",
+            "correct it",
         )
     places: Places = known[name]
     function: Callable[..., object] = getattr(module, name, _nothing)
 
     def arrays(*arguments: ArrayLike, **named: ArrayLike) -> dict[str, Array]:
-        batch = np.broadcast_shapes(*map(np.shape, arguments), *map(np.shape, named.values()))
+        given = (*arguments, *named.values())
+        shapes = [np.shape(item) for item in given if not isinstance(item, float)]
+        batch = np.broadcast_shapes(*shapes) if any(shapes) else ()
         return stacked(places, function(*arguments, **named), batch)
 
     return arrays

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from .records import Drawn, FigureEntry, Gallery, Quoted, Shown, Table
-from .reproduce import figures, reproduce
+from .rendering import figures, reproduce
 
 __all__ = ["Drawn", "FigureEntry", "Gallery", "Quoted", "Shown", "Table", "figures", "reproduce"]

@@ -18,11 +18,20 @@ table { border-collapse: collapse; font-size: 0.85rem; margin: 0.8rem 0; }
 th, td { border-bottom: 1px solid #ddd; padding: 0.25rem 0.6rem; text-align: left;
   vertical-align: top; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.agrees { color: #2c6b37; } .known { color: #a3480f; } .differs { color: #b00020; font-weight: bold; }
+.agrees { color: #2c6b37; } .known { color: #a3480f; }
+.differs { color: #b00020; font-weight: bold; }
 .note { font-size: 0.85rem; color: #444; }
 """.strip()
 
-_HEADER = ("what the text says", "section", "printed", "computed", "deviation", "tolerance", "verdict")
+_HEADER = (
+    "what the text says",
+    "section",
+    "printed",
+    "computed",
+    "deviation",
+    "tolerance",
+    "verdict",
+)
 
 
 def page(title: str, shown: Sequence[Shown]) -> str:
@@ -53,7 +62,7 @@ def page(title: str, shown: Sequence[Shown]) -> str:
 
 
 def _summary(shown: Sequence[Shown]) -> str:
-    lines = ['<table>\n<tr><th>figure</th><th class="left">title</th><th>quoted</th>']
+    lines = ["<table>\n<tr><th>figure</th><th>title</th><th>quoted</th>"]
     lines.append("<th>agree</th></tr>")
     for item in shown:
         quoted = item.drawn.quoted
@@ -102,6 +111,7 @@ def _quoted(rows: Sequence[Quoted]) -> str:
 def _table(table: Table) -> str:
     lines = [f"<h3>{escape(table.title)}</h3>", "<table>"]
     lines.append("<tr>" + "".join(f"<th>{escape(name)}</th>" for name in table.header) + "</tr>")
-    for row in table.rows:
-        lines.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>")
+    lines += [
+        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows
+    ]
     return "\n".join([*lines, "</table>"])

@@ -134,11 +134,14 @@ class Drawn:
         What the document leaves open and what was chosen for it.
     tables : tuple of Table
         Numbers behind the picture.
+    files : tuple of (str, str)
+        Further files to write beside the picture: name and text.
     """
 
     quoted: tuple[Quoted, ...] = ()
     notes: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from . import smith_kinematics, smith_solutions
+from . import (
+    smith_charts,
+    smith_coupler_equation,
+    smith_kinematics,
+    smith_solutions,
+    smith_speeds,
+    smith_waves,
+)
 from .records import FigureEntry
-from .smith_linkages import PROPORTIONS
+from .smith_linkages import PROPORTIONS, RIGS
 
 _END_LOADS = tuple(
     FigureEntry(
@@ -16,6 +23,27 @@ _END_LOADS = tuple(
         smith_kinematics.end_load_figure(proportions),
     )
     for letter, proportions in zip("abcde", PROPORTIONS, strict=True)
+)
+
+_WAVES = tuple(
+    FigureEntry(
+        "smith",
+        str(number),
+        f"Wave-form of the coupler at Omega/{divisor:g}",
+        smith_waves.wave_figure(divisor),
+    )
+    for number, divisor in zip(range(47, 52), (8.0, 5.0, 3.0, 4.0, 4.7), strict=True)
+)
+
+_CHARTS = tuple(
+    FigureEntry(
+        "smith",
+        rig.figure,
+        f"Stability chart, linkage {rig.linkage}, coupler {rig.thickness} in",
+        smith_speeds.chart_figure(rig.figure),
+        size=(7.4, 6.0),
+    )
+    for rig in RIGS
 )
 
 _SMITH = (
@@ -73,6 +101,39 @@ _SMITH = (
         smith_solutions.figure_33,
         panels=(3, 2),
         size=(7.8, 6.4),
+    ),
+    FigureEntry(
+        "smith",
+        "34",
+        "Stability chart: exact, first and second order",
+        smith_charts.figure_34,
+        size=(7.2, 5.0),
+    ),
+    FigureEntry(
+        "smith",
+        "35",
+        "Stability chart: effect of the crank's length",
+        smith_charts.figure_35,
+        panels=(2, 2),
+        size=(7.6, 6.0),
+    ),
+    FigureEntry(
+        "smith", "36", "Stability chart: first unstable region, damped", smith_charts.figure_36
+    ),
+    FigureEntry(
+        "smith", "37", "Stability chart: effect of damping on four regions", smith_charts.figure_37
+    ),
+    FigureEntry(
+        "smith", "45", "Calibration: sinusoidal and point-load shapes", smith_waves.figure_45
+    ),
+    *_WAVES,
+    *_CHARTS,
+    FigureEntry(
+        "smith",
+        "table_coupler",
+        "Printed against complete coupler equation",
+        smith_coupler_equation.figure_table,
+        size=(7.8, 4.8),
     ),
 )
 

@@ -126,7 +126,9 @@ def figure_6c(axes: Sequence[Axes]) -> Drawn:
         f"{np.max(np.abs(_follower(crank, theta).alpha4)):.3g} (crank {crank:g})"
         for crank in _CRANKS[3:]
     )
-    note = f"The caption prints l2 for the coupler's length, l3. Peaks outside the picture: {peaks}."
+    note = (
+        f"The caption prints l2 for the coupler's length, l3. Peaks outside the picture: {peaks}."
+    )
     return Drawn(tuple(_limits("alpha4", 0.0, np.zeros_like)), (_LIMIT, note))
 
 
@@ -261,8 +263,8 @@ def _phi_row(proportions: str) -> Quoted:
 
 
 def _rows_2122(proportions: str) -> list[Quoted]:
-    largest = [max(_sizes(p), key=lambda name, p=p: _sizes(p)[name]) for p in PROPORTIONS]
-    most = sum(name == "f3" for name in largest)
+    sizes = [_sizes(other) for other in PROPORTIONS]
+    most = sum(size["f3"] == max(size.values()) for size in sizes)
     return [
         _phi_row(proportions),
         Quoted(
@@ -347,8 +349,8 @@ def _rows_houben(proportions: str) -> list[Quoted]:
             "'all of which exceed unity'",
             "6.2.2",
             relation=">",
-            differs="pi^2 l2/(2 l3) is 0.037 here, so that eps2 f2 is negligible after all; the text "
-            "calls this figure 27(c), meaning 27(e)",
+            differs="pi^2 l2/(2 l3) is 0.037 here, so that eps2 f2 is negligible after all; the "
+            "text calls this figure 27(c), meaning 27(e)",
         ),
     ]
 

@@ -111,10 +111,6 @@ class Rig:
         """Linkage and coupler in a few words."""
         return f"{self.linkage}, {self.thickness} in"
 
-    def get(self, key: str) -> object:
-        """Return a value of the scene."""
-        return load_scene(self.scene).get(key)
-
     @property
     def frequency(self) -> float:
         """Natural frequency of the coupler [rad/s]."""

@@ -65,16 +65,37 @@ _TEXT_READING = "section 9.5.3 says the least, the list of figures 0.0069"
 
 OBSERVATIONS = (
     Observation(
-        "82", _LEAST, 6, 250.0, "resonance", "56", "third subharmonic, low inertia",
+        "82",
+        _LEAST,
+        6,
+        250.0,
+        "resonance",
+        "56",
+        "third subharmonic, low inertia",
         inertia_note=_TEXT_READING,
     ),
-    Observation("82", _GREATEST, 6, 220.0, "resonance", "61", "third subharmonic, greatest inertia"),
     Observation(
-        "82", _LEAST, 5, 300.0, "resonance", "56", "small rise in amplitude",
+        "82", _GREATEST, 6, 220.0, "resonance", "61", "third subharmonic, greatest inertia"
+    ),
+    Observation(
+        "82",
+        _LEAST,
+        5,
+        300.0,
+        "resonance",
+        "56",
+        "small rise in amplitude",
         inertia_note=_TEXT_READING,
     ),
     Observation(
-        "82", 0.0149, 5, 270.0, "range", "58-61", "no period, from 260 to 280 rpm", 10.0,
+        "82",
+        0.0149,
+        5,
+        270.0,
+        "range",
+        "58-61",
+        "no period, from 260 to 280 rpm",
+        10.0,
         "'higher values': 0.0109 to 0.0190; 0.0149 taken",
     ),
     Observation("82", _GREATEST, 0, 230.0, "stable", "55", "stable at every inertia shown"),

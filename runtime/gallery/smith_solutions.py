@@ -119,9 +119,7 @@ def _lag(one: Trajectory, other: Trajectory, turn: int) -> float:
 
 
 def _line(ax: Axes, run: Trajectory, colour: str, label: str, style: str = "-") -> None:
-    ax.plot(
-        np.degrees(run.theta), 1e3 * run.q[:, 0], style, color=colour, lw=1.0, label=label
-    )
+    ax.plot(np.degrees(run.theta), 1e3 * run.q[:, 0], style, color=colour, lw=1.0, label=label)
     ax.set_ylabel(r"$10^3\,U_1$")
 
 
@@ -254,8 +252,9 @@ def figure_30(axes: Sequence[Axes]) -> Drawn:
     )
     note = (
         "The tolerance of the Kutta-Merson programme is not stated; taken is a relative "
-        f"{_KUTTA_MERSON_RTOL:g} for one step. The difference between the two is the error of the "
-        "looser one, no necessary feature of a variable step: with 1e-8 the curves coincide."
+        f"{_KUTTA_MERSON_RTOL:g} for one step, none longer than the 1 deg at which values are "
+        "kept. A difference is the error of the looser method, no necessary feature of a variable "
+        "step: here it cannot be seen."
     )
     return Drawn((row,), (_DATA, note))
 
@@ -288,9 +287,13 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
         panel_title(ax, f"mode {m}")
         if m < _MODES:
             ax.set_xlabel("")
+    return Drawn(tuple(_mode_rows(q, fast)), (_DATA,))
+
+
+def _mode_rows(q: Array, fast: Array) -> list[Quoted]:
     size = np.sqrt(2.0 * np.nanmean(fast**2, axis=0))
     slow = np.nanmax(np.abs(q - fast), axis=0)
-    rows = [
+    return [
         Quoted(
             "fast part: first mode over second",
             10.0,
@@ -345,7 +348,6 @@ def figure_31(axes: Sequence[Axes]) -> Drawn:
             differs="one and a half orders; section 6.2.3.2 itself says 'more than an order'",
         ),
     ]
-    return Drawn(tuple(rows), (_DATA,))
 
 
 def figure_32(axes: Sequence[Axes]) -> Drawn:

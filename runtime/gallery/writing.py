@@ -35,7 +35,9 @@ def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
     except OSError as refusal:
         _remove(made)
         reason = refusal.strerror or "an error"
-        raise bad(str(folder), reason, "a folder that can be written", "choose another") from refusal
+        raise bad(
+            str(folder), reason, "a folder that can be written", "choose another"
+        ) from refusal
     try:
         _stage_and_move(folder, staging, contents)
     except BaseException:

@@ -49,6 +49,10 @@ def error_maps(generator: Generator, theta: Array, step: float) -> Array:
     return total
 
 
+# Stands for an error that is not a number: the step shrinks as fast as it may.
+_REJECT = 1e10
+
+
 @dataclass(frozen=True)
 class AdaptiveRun:
     """States of an adaptive run at wanted angles, with its counters.
@@ -56,7 +60,7 @@ class AdaptiveRun:
     Attributes
     ----------
     states : ndarray
-        Shape ``(reached, m)``; fewer than wanted where the run was stopped.
+        Shape ``(reached, m)``; fewer than wanted where the run ended early.
     accepted, rejected : int
         Number of steps.
     """
@@ -101,6 +105,7 @@ def adaptive(
     Returns
     -------
     AdaptiveRun
+        With fewer states than angles where ``stop`` said so or the step shrank to nothing.
     """
     states = [state]
     accepted = rejected = 0
@@ -115,18 +120,19 @@ def adaptive(
             allowed = atol + rtol * np.maximum(np.abs(state), np.abs(new))
             ratio = float(np.max(np.abs(estimate) / allowed))
             if not np.isfinite(ratio):
-                ratio = 1e10
-            if ratio <= 1.0 or trial < 1e-13 * max(1.0, abs(here)):
-                here = float(target) if pieces == 1 else here + trial
-                state = new
-                accepted += 1
-            else:
+                ratio = _REJECT
+            proposal = trial * min(4.0, max(0.1, 0.9 * max(ratio, 1e-10) ** -0.2))
+            if ratio > 1.0:
                 rejected += 1
-            # Only a step that was not cut short to meet the angle may argue for a longer one.
-            factor = min(4.0, max(0.1, 0.9 * max(ratio, 1e-10) ** -0.2))
-            step = trial * factor if ratio > 1.0 else max(step, trial * factor)
-            if ratio > 0.5 and ratio <= 1.0:
-                step = trial * factor
+                step = proposal
+                if step < 1e-13 * max(1.0, abs(here)):
+                    return AdaptiveRun(np.array(states), accepted, rejected)
+                continue
+            here = float(target) if pieces == 1 else here + trial
+            state = new
+            accepted += 1
+            # A step cut short to meet the angle says little about how long the next may be.
+            step = proposal if ratio > 0.5 else max(step, proposal)
         states.append(state)
         if tick is not None:
             tick(count)

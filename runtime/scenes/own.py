@@ -40,7 +40,7 @@ def own_system(scene: Scene) -> LinearPeriodic:
     emitted = find_module(scene.model_spec())
     numbers = _numbers(scene)
     parameters = [name for name, _, _ in emitted.module.PARAMETERS]
-    arguments = _arguments(emitted.module) - set(parameters)
+    arguments = _arguments(emitted.module) - set(parameters) - set(emitted.module.EXTERNAL)
     missing = sorted((set(parameters) | arguments) - set(numbers))
     if missing:
         known = f"one of {sorted(numbers)}"

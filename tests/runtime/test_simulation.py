@@ -278,6 +278,41 @@ def test_energy_balance_catches_a_wrong_motion():
         assert not energy_balance(form, run.theta, shifted, run.qd / 1.7, 1e-12).passed
 
 
+def test_a_step_that_shrinks_to_nothing_is_told():
+    # The spring is not a number beyond theta = 1.
+    def spring(theta):
+        return np.where(theta < 1.0, 9.0, np.nan)[:, None, None]
+
+    from elastolink.runtime.integrators import kutta_merson
+
+    def generator(theta):
+        out = np.zeros((len(theta), 2, 2))
+        out[:, 0, 1] = 1.0
+        out[:, 1:, :1] = -spring(theta)
+        return out
+
+    run = kutta_merson.adaptive(
+        generator,
+        np.linspace(0.0, 2.0, 5),
+        np.array([1.0, 0.0]),
+        1e-6,
+        np.full(2, 1e-6),
+        stop=lambda state: False,
+        first=0.1,
+    )
+    assert len(run.states) == 2
+    assert run.rejected > 5
+
+
+def test_progress_is_shown_only_when_wanted(capsys):
+    quiet = simulate(_driven(), 2.0, 3.0, initial=(0.1, 0.0), samples=36)
+    assert capsys.readouterr() == ("", "")
+    for method in ("gauss_legendre", "kutta_merson", "DOP853"):
+        shown = simulate(_driven(), 2.0, 3.0, method, initial=(0.1, 0.0), samples=36, progress=True)
+        assert "108/108" in capsys.readouterr().err
+        assert shown.q.shape == quiet.q.shape
+
+
 # The record ----------------------------------------------------------------------------------
 
 

@@ -46,9 +46,9 @@ def by_quadrature(modes: int, theta: float, speed: float, acceleration: float):
     is what the outer part needs to follow the hub: N = int_x^L mu (phi_t^2 s - hub_x) ds + tip.
     """
     p = {**PARAMETERS, **GEOMETRY}
-    l, mu, tip = p["length"], p["mass_per_length"], p["tip_mass"]
+    span, mu, tip = p["length"], p["mass_per_length"], p["tip_mass"]
     nodes, weights = np.polynomial.legendre.leggauss(24)
-    x, weights = l * (nodes + 1) / 2, weights * l / 2
+    x, weights = span * (nodes + 1) / 2, weights * span / 2
     phi = p["rocking"] * np.sin(theta)
     turn = p["rocking"] * np.cos(theta) * speed
     bend = p["rocking"] * (np.cos(theta) * acceleration - np.sin(theta) * speed**2)
@@ -58,16 +58,18 @@ def by_quadrature(modes: int, theta: float, speed: float, acceleration: float):
     )
     along = hub @ [np.cos(phi), np.sin(phi)]
     across = hub @ [-np.sin(phi), np.cos(phi)]
-    tension = mu * (turn**2 * (l**2 - x**2) / 2 - along * (l - x)) + tip * (turn**2 * l - along)
+    tension = mu * (turn**2 * (span**2 - x**2) / 2 - along * (span - x)) + tip * (
+        turn**2 * span - along
+    )
     powers = np.arange(2, modes + 2)[:, None]
-    shape = l * (x / l) ** powers
-    slope = powers * (x / l) ** (powers - 1)
-    curvature = powers * (powers - 1) / l * (x / l) ** (powers - 2)
-    end = np.full(modes, l)
+    shape = span * (x / span) ** powers
+    slope = powers * (x / span) ** (powers - 1)
+    curvature = powers * (powers - 1) / span * (x / span) ** (powers - 2)
+    end = np.full(modes, span)
     mass = mu * (shape * weights) @ shape.T + tip * np.outer(end, end)
     elastic = p["bending_stiffness"] * (curvature * weights) @ curvature.T
     stiffness = elastic + (slope * weights * tension) @ slope.T - turn**2 * mass
-    force = -mu * (shape * weights) @ (bend * x + across) - tip * end * (bend * l + across)
+    force = -mu * (shape * weights) @ (bend * x + across) - tip * end * (bend * span + across)
     return mass, stiffness, force
 
 
@@ -99,11 +101,11 @@ def test_fewer_modes_are_the_leading_block(beam):
 
 
 def test_cantilever_frequencies(beam):
-    """Three polynomials hold 1.8751^2 to 1e-4, two to 5e-3, from above."""
+    """Three polynomials hold 1.8751^2 to 4e-4, two to 5e-3, from above."""
     unit = PARAMETERS["bending_stiffness"] / (
         PARAMETERS["mass_per_length"] * GEOMETRY["length"] ** 4
     )
-    for modes, within in ((2, 5e-3), (3, 1e-4)):
+    for modes, within in ((2, 5e-3), (3, 4e-4)):
         system = beam(modes, tip_mass=0.0)
         k, m = (system.array(name, 0.0)[0] for name in ("K", "M"))
         found = np.sqrt(scipy.linalg.eigvalsh(k, m)[0] / unit)
@@ -126,6 +128,9 @@ def test_each_count_has_its_own_module(emit, beam, tmp_path):
     assert len(names) == 2
     with pytest.raises(BadInput, match="4_modes"):
         find_module(spec(4), [tmp_path])
+    module = emit("carried_beam", spec(2)).module
+    with pytest.raises(BadInput, match="2, the module's own"):
+        assemble(module, geometry=GEOMETRY, parameters=PARAMETERS, modes=3)
 
 
 def test_stability_only_module_holds_no_forcing(emit):

@@ -1,4 +1,4 @@
-"""The linear-periodic family, many modes: a turning blade of emitted elements, joined at run time."""
+"""The linear-periodic family, many modes: a blade of emitted elements, joined at run time."""
 
 from __future__ import annotations
 
@@ -45,13 +45,16 @@ def joined(matrices: np.ndarray) -> np.ndarray:
     return matrix[5:, 5:]
 
 
-def blade(element, count: int = 2, *, gravity=0.0, damping=0.0, forcing=False) -> LinearPeriodic:
+def blade(
+    element, count: int = 2, *, gravity=0.0, damping=0.0, forcing=False, **changes
+) -> LinearPeriodic:
     """Return a clamped blade of unit length on a hub of no radius, its axis horizontal."""
+    numbers = {**UNIT, **changes}
     length = np.full(count, 1.0 / count)
     inner = np.arange(count) / count
 
     def arrays(tension_0=0.0, tension_1=0.0, tension_2=0.0):
-        return element(length, inner, tension_0, tension_1, tension_2, **UNIT)
+        return element(length, inner, tension_0, tension_1, tension_2, **numbers)
 
     whole = {name: joined(value) for name, value in arrays().items()}
     # mu w^2 (1 - r^2)/2 of the rotation, and -mu g (1 - r) cos theta of the weight
@@ -118,7 +121,12 @@ def frobenius(speed: float, guess: float) -> float:
 # Wright, Smith, Thresher and Wang 1982, table of the uniform beam without hub: 4 decimals.
 @pytest.mark.parametrize(
     ("speed", "published"),
-    [(0, (3.5160, 22.0345)), (3, (4.7973, 23.3203)), (6, (7.3604, 26.8091)), (12, (13.1702, 37.6031))],
+    [
+        (0, (3.5160, 22.0345)),
+        (3, (4.7973, 23.3203)),
+        (6, (7.3604, 26.8091)),
+        (12, (13.1702, 37.6031)),
+    ],
 )
 def test_flap_frequencies_against_publication_and_power_series(element, speed, published):
     fine = flap_frequencies(blade(element, 24), float(speed))[:2]
@@ -127,8 +135,9 @@ def test_flap_frequencies_against_publication_and_power_series(element, speed, p
     np.testing.assert_allclose(fine, exact, rtol=2e-6)
     # Two elements are the tenant: Rayleigh's bound from above, within the cubic's error.
     coarse = flap_frequencies(blade(element), float(speed))[:2]
-    assert np.all(coarse > exact)
-    np.testing.assert_allclose(coarse, exact, rtol=[2e-3, 2e-2])
+    excess = coarse / exact - 1.0
+    assert np.all(excess > 0.0)
+    assert np.all(excess < 1.2e-2)
 
 
 def test_elements_converge_with_fourth_order(element):
@@ -140,16 +149,19 @@ def test_elements_converge_with_fourth_order(element):
 
 
 def test_lag_is_flap_less_the_rotation(element):
-    """In the limit of no stretch omega_lag^2 = omega_flap^2 - w^2; stretch costs about w^2/EA."""
-    system = blade(element, 4)
-    m, gyro, k = second_order(system, 2.0)
-    n = system.size
-    block = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -gyro]])
-    whole = scipy.linalg.block_diag(np.eye(n), m)
-    found = np.sort(np.abs(scipy.linalg.eigvals(block, whole).imag))[::2]
-    flap = flap_frequencies(system, 2.0)[0]
-    assert np.min(np.abs(found - np.sqrt(flap**2 - 4.0))) < 2e-2
-    assert np.min(np.abs(found - flap)) < 1e-9
+    """Stiff in stretch, omega_lag^2 = omega_flap^2 - w^2; the shift goes as 1/EA."""
+    speed, shifts = 2.0, []
+    for axial in (4e3, 4e5):
+        system = blade(element, 4, axial_stiffness=axial)
+        m, gyro, k = second_order(system, speed)
+        n = system.size
+        block = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -gyro]])
+        found = np.abs(scipy.linalg.eigvals(block, scipy.linalg.block_diag(np.eye(n), m)).imag)
+        flap = flap_frequencies(system, speed)[0]
+        assert np.min(np.abs(found - flap)) < 1e-9
+        shifts.append(np.min(found) - np.sqrt(flap**2 - speed**2))
+    assert abs(shifts[1]) < 1e-4
+    assert shifts[0] / shifts[1] == pytest.approx(100.0, rel=0.02)
 
 
 def test_stretch_of_the_steady_rotation(element):
@@ -161,10 +173,11 @@ def test_stretch_of_the_steady_rotation(element):
     # u'' = -w^2 (r + u)/EA by hand: u = sin(kr)/(k cos k) - r, k = w/sqrt(EA)
     wave = speed / np.sqrt(UNIT["axial_stiffness"])
     tip = np.sin(wave) / (wave * np.cos(wave)) - 1.0
-    at = system.labels.index("u8")
-    assert steady[at] == pytest.approx(tip, rel=1e-4)
-    moved = simulate(system, speed, 0.2, initial=(steady, np.zeros(system.size)))
-    assert np.max(np.abs(moved.q - steady)) < 1e-6 * np.abs(tip)
+    assert steady[system.labels.index("u8")] == pytest.approx(tip, rel=2e-3)
+    system = blade(element, forcing=True)
+    steady = np.linalg.solve(second_order(system, 4.0)[2], 16.0 * system.array("f", 0.0)[0])
+    moved = simulate(system, 4.0, 1.0, initial=(steady, np.zeros(system.size)))
+    assert np.max(np.abs(moved.q - steady)) < 1e-9 * np.max(np.abs(steady))
 
 
 def test_multipliers_of_the_constant_blade(element):
@@ -216,7 +229,7 @@ def test_multipliers_under_gravity_against_plain_integration(element):
 
 def test_speed_boundaries_under_gravity(element):
     system = blade(element, gravity=9.0)
-    found = speed_boundaries(system, speed_range=(7.5, 13.0))
+    found = speed_boundaries(system, speed_range=(20.0, 24.0))
     assert len(found.speed) > 0
     assert found.checks["monodromy"].passed
     for speed, sign in zip(found.speed, found.multiplier, strict=True):

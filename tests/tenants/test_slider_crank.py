@@ -1,4 +1,4 @@
-"""The closed-form family: the slider-crank against its loop, solved and differentiated in numbers."""
+"""The closed-form family: the slider-crank against its loop in many digits."""
 
 from __future__ import annotations
 

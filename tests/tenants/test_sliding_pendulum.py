@@ -64,7 +64,10 @@ def textbook(state, m=NUMBERS):
     s, a, sd, ad = state
     total, ml = m["block"] + m["bob"], m["bob"] * m["rod"]
     matrix = np.array([[total, ml * np.cos(a)], [np.cos(a), m["rod"]]])
-    right = [ml * ad**2 * np.sin(a) - m["spring"] * s - m["damping"] * sd, -m["gravity"] * np.sin(a)]
+    right = [
+        ml * ad**2 * np.sin(a) - m["spring"] * s - m["damping"] * sd,
+        -m["gravity"] * np.sin(a),
+    ]
     return np.linalg.solve(matrix, right)
 
 
@@ -123,7 +126,12 @@ def test_motion_keeps_energy_and_length(systems):
     drift = system.violation(q, times)["constraints"][:, 0, 0]
     assert np.max(np.abs(drift)) < 1e-8
     minimal = solve_ivp(
-        lambda t, y: [*y[2:], *textbook(y)], (0.0, 6.0), start, "DOP853", times, rtol=1e-11,
+        lambda t, y: [*y[2:], *textbook(y)],
+        (0.0, 6.0),
+        start,
+        "DOP853",
+        times,
+        rtol=1e-11,
         atol=1e-12,
     )
     expected, _ = cartesian(*minimal.y)

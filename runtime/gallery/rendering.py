@@ -13,8 +13,8 @@ import numpy as np
 from ..errors import bad
 from ..progress import bar
 from ..results import Check
+from . import registry
 from .records import Drawn, FigureEntry, Gallery, Shown
-from .registry import DOCUMENTS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,10 +38,11 @@ def figures(document: str | None = None, figure: str | None = None) -> tuple[Fig
     BadInput
         If there is no such document or figure.
     """
-    if document is not None and document not in DOCUMENTS:
-        raise bad("document", repr(document), f"one of {sorted(DOCUMENTS)}", "correct the name")
-    names = list(DOCUMENTS) if document is None else [document]
-    entries = tuple(entry for name in names for entry in DOCUMENTS[name])
+    known = registry.DOCUMENTS
+    if document is not None and document not in known:
+        raise bad("document", repr(document), f"one of {sorted(known)}", "correct the name")
+    names = list(known) if document is None else [document]
+    entries = tuple(entry for name in names for entry in known[name])
     if figure is None:
         return entries
     wanted = _plain(figure)
@@ -93,6 +94,7 @@ def reproduce(
             shown.append(Shown(entry, drawn))
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
+                files |= {name: text.encode() for name, text in drawn.files}
             if tick is not None:
                 tick(done)
     if out is not None:

@@ -1,0 +1,149 @@
+"""Every emitted function at 80 digits: the measure, the machinery behind it, and the page."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+import sympy as sp
+from elastolink.derive.checks import (
+    ALLOWED,
+    ROUNDOFF,
+    Judgement,
+    Point,
+    exact_at,
+    judge,
+    reference_of,
+    worst,
+)
+from elastolink.derive.staged import Steps
+from emitted_accuracy import EXCEPTIONS, PAGE, cosine_moment, emitted_functions, page_rows, rows
+from linkage_truth import OUTPUTS, Linkage, angles, exact_points, motion
+
+
+@pytest.mark.parametrize("module, function", sorted(emitted_functions()))
+def test_every_output_is_within_the_measure(module, function):
+    found = [row for row in rows() if (row.module, row.function) == (module, function)]
+    assert [row.judgement.output for row in found] == list(emitted_functions()[module, function])
+    beyond = {row.key: row.judgement for row in found if not row.judgement.passed}
+    assert set(beyond) <= set(EXCEPTIONS), beyond
+
+
+def test_every_exception_is_still_needed():
+    beyond = {row.key for row in rows() if not row.judgement.passed}
+    assert set(EXCEPTIONS) <= beyond
+
+
+def test_the_page_is_current():
+    """Rows alike, and the worst measures within what another mathematics library changes."""
+    stated = page_rows(PAGE.read_text())
+    found = {row.key: row.judgement.measure for row in rows()}
+    assert set(stated) == set(found), "run: python tests/derive/emitted_accuracy.py"
+    apart = {k: (w, found[k]) for k, w in stated.items() if not abs(w - found[k]) <= 0.1 + found[k]}
+    assert not apart, "run: python tests/derive/emitted_accuracy.py"
+
+
+# ---------------------------------------------------------------- the truth itself
+
+
+def test_the_exact_linkage_closes_and_moves_consistently():
+    """Loop closure to 70 digits; rates against differences of the angles."""
+    for exact in exact_points()[::7]:
+        with mpmath.workdps(80):
+            n = {k: mpmath.mpf(v) for k, v in exact.point.arguments.items()}
+            m = exact.values
+            gap = (
+                n["crank"] * mpmath.expj(n["theta2"])
+                + n["coupler"] * mpmath.expj(m["theta3"])
+                - n["follower"] * mpmath.expj(m["theta4"])
+                - n["frame"]
+            )
+            # A double root loses half of the digits.
+            assert abs(gap) < mpmath.mpf(10) ** -35 * n["frame"]
+            step = mpmath.mpf(10) ** -30
+            later = {**n, "theta2": n["theta2"] + step}
+            after = motion(later, {"theta3": m["theta3"], "theta4": m["theta4"]})
+            for angle, speed, rate in (
+                ("theta3", "omega3", "alpha3"),
+                ("theta4", "omega4", "alpha4"),
+            ):
+                for value, slope in ((angle, speed), (speed, rate)):
+                    change = (after[value] - m[value]) / step
+                    scale = 1 + abs(m[slope]) + abs(m[rate]) ** 2
+                    assert abs(change - m[slope]) < mpmath.mpf(10) ** -15 * scale
+
+
+def test_the_exact_linkage_refuses_what_cannot_close():
+    with mpmath.workdps(30), pytest.raises(ValueError, match="does not close"):
+        angles(*map(mpmath.mpf, (3.0, 3.0, 1.0, 1.0, 1.0)), mpmath.mpf(1))
+
+
+@pytest.mark.parametrize("power", [0, 1, 2])
+@pytest.mark.parametrize("j", [-5, 0, 1, 4, 119])
+def test_moments_of_cosines_against_quadrature(power, j):
+    with mpmath.workdps(30):
+        ends = mpmath.linspace(0, 1, abs(j) + 2)
+        found = mpmath.quad(lambda xi: xi**power * mpmath.cos(j * mpmath.pi * xi), ends)
+        assert abs(found - cosine_moment(power, j)) < mpmath.mpf(10) ** -25
+
+
+# ---------------------------------------------------------------- the machinery
+
+
+def test_the_measure_sees_cancellation_and_forgives_conditioning():
+    x = sp.Symbol("x")
+    reference = reference_of((x,), [("f", sp.exp(x) - 1)])
+    exact = exact_at(reference, Point("small", {"x": 1e-9}))
+    (careless,) = judge(lambda x: math.exp(x) - 1.0, ("f",), exact)
+    (careful,) = judge(lambda x: math.expm1(x), ("f",), exact)
+    assert careless.measure > 1e6 > ALLOWED > 2.0 > careful.measure
+    assert not careless.passed
+    # cos near pi/2 has no relative accuracy, and none is asked for.
+    exact = exact_at(reference_of((x,), [("f", sp.cos(x))]), Point("zero", {"x": math.pi / 2}))
+    (judged,) = judge(lambda x: math.cos(x) * (1 + 1e-3) + ROUNDOFF, ("f",), exact)
+    assert judged.passed
+
+
+def test_fair_size_is_the_gradient_weighted_with_the_inputs():
+    x, y, n = sp.symbols("x y n")
+    reference = reference_of((x, y, n), [("f", n * x**3 / y)])
+    exact = exact_at(reference, Point("p", {"x": 2.0, "y": -5.0}, {"n": 7.0}))
+    assert float(exact.values["f"]) == pytest.approx(-56 / 5, rel=1e-15)
+    assert float(exact.fair["f"]) == pytest.approx(56 / 5 * (1 + 3 + 1), rel=1e-15)
+
+
+def test_reference_follows_named_steps_in_many_digits():
+    x, a, b = sp.symbols("x a b")
+    steps = Steps(((a, sp.sin(x) / 3), (b, a**2 + sp.pi)))
+    exact = exact_at(reference_of((x,), [("f", a * b)], steps), Point("p", {"x": 0.5}))
+    with mpmath.workdps(60):
+        third = mpmath.sin(mpmath.mpf("0.5")) / 3
+        assert abs(exact.values["f"] - third * (third**2 + mpmath.pi)) < mpmath.mpf(10) ** -58
+
+
+def test_judgement_of_nothing_and_of_not_a_number():
+    point = Point("p", {})
+    assert Judgement("f", point, 0.0, 0.0, 0.0).measure == 0.0
+    assert Judgement("f", point, 0.0, 1e-300, 0.0).measure == math.inf
+    nan = Judgement("f", point, math.nan, math.nan, 1.0)
+    assert nan.measure == math.inf and not nan.passed
+    small = Judgement("f", point, 1.0, ROUNDOFF, 1.0)
+    assert worst([small, nan, small]) == {"f": nan}
+
+
+def test_judge_refuses_a_function_that_returns_something_else():
+    exact = exact_at(reference_of((), [("f", sp.Integer(1))]), Point("p", {}))
+    with pytest.raises(ValueError, match="2 values returned for 1 names"):
+        judge(lambda: (1.0, 2.0), ("f",), exact)
+
+
+def test_linkages_of_the_points_turn_fully():
+    for exact in exact_points():
+        frame, crank, coupler, follower = (
+            exact.point.inputs[name] for name in ("frame", "crank", "coupler", "follower")
+        )
+        assert abs(frame - crank) > abs(coupler - follower)
+        assert frame + crank < coupler + follower
+    assert Linkage(2.0, 1.0, 2.0, 2.0, 1.0).point("p", 0.0).fixed["winding"] == 0.0
+    assert set(OUTPUTS) < set(exact_points()[0].values)

@@ -1,0 +1,81 @@
+"""A continuum of several fields on shape functions, against hand results and the projection."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from elastolink.derive import authoring as au
+
+x, t = sp.symbols("x t", real=True)
+length, mu, ea, ei, c, tip, push = sp.symbols("length mu EA EI c tip push", positive=True)
+theta, td, tdd = sp.symbols("theta td tdd", real=True)
+CRANK = au.CrankMotion(theta, td, tdd)
+u, v = (sp.Function(name)(x, t) for name in ("u", "v"))
+spin = sp.Function("turn")(t).diff(t)
+
+
+def arm(**changes: object) -> au.ActionDensity:
+    """A turning arm that stretches (u) and bends (v), with a mass and a force at its tip."""
+    kinetic = (u.diff(t) - spin * v) ** 2 + (v.diff(t) + spin * (x + u)) ** 2
+    elastic = ea * u.diff(x) ** 2 + ei * v.diff(x, 2) ** 2
+    values = {
+        "density": mu / 2 * kinetic - elastic / 2,
+        "point_terms": (au.PointTerm(length, tip / 2 * kinetic),),
+        "force_density": {v: -c * v.diff(t)},
+        "end_forces": (au.EndForce(length, v, 0, push),),
+        "essential": (au.Essential(0, u, 0), au.Essential(0, v, 0), au.Essential(0, v, 1)),
+        **changes,
+    }
+    return au.ActionDensity(x, t, length, (u, v), **values)
+
+
+def arrays(action: au.ActionDensity, bases: dict) -> au.DiscreteSystem:
+    lagrangian = au.assumed_modes(action, bases)
+    energy = au.in_crank_angle(lagrangian.expression, CRANK, t, {sp.Function("turn")(t): theta})
+    return au.quadratic_form(energy, lagrangian.coordinates, CRANK, t, forces=lagrangian.forces)
+
+
+BASES = {u: au.FiniteBasis(x, length, (x,)), v: au.FiniteBasis(x, length, (x**2,))}
+
+
+def test_turning_arm_by_hand():
+    found = arrays(arm(), BASES)
+    assert found.labels == ("u1", "v1")
+    mass = sp.diag(mu * length**3 / 3 + tip * length**2, mu * length**5 / 5 + tip * length**4)
+    coupling = mu * length**4 / 4 + tip * length**3
+    assert found.matrix("M") == mass
+    assert found.matrix("K") == sp.diag(ea * length, 4 * ei * length)
+    assert found.matrix("B") == mass
+    assert found.matrix("A") == coupling * sp.Matrix([[0, -1], [1, 0]])
+    assert found.matrix("C") == sp.diag(0, c * length**5 / 5)
+    assert found.matrix("f") == sp.Matrix([mu * length**3 / 3 + tip * length**2, 0])
+    assert found.matrix("g") == sp.Matrix([0, -coupling])
+    assert found.matrix("p") == sp.Matrix([0, push * length**2])
+
+
+def test_one_field_agrees_with_the_projection():
+    shapes = au.FiniteBasis(x, length, (x**2, x**3, x**2 * sp.sin(x / length)), amplitude=length)
+    energy = mu / 2 * (v.diff(t) + spin * x) ** 2 - ei / 2 * v.diff(x, 2) ** 2
+    action = au.ActionDensity(
+        x,
+        t,
+        length,
+        (v,),
+        energy + mu / 2 * spin**2 * v**2,
+        force_density={v: -c * v.diff(t)},
+        essential=(au.Essential(0, v, 0), au.Essential(0, v, 1)),
+    )
+    one = arrays(action, {v: shapes})
+    other = au.project_action(action, v, shapes, CRANK, followers={sp.Function("turn")(t): theta})
+    assert set(one.arrays) == set(other.arrays)
+    for name in one.arrays:
+        difference = one.matrix(name) - other.matrix(name)
+        assert difference.applyfunc(sp.simplify) == sp.zeros(*difference.shape), name
+
+
+def test_bases_that_do_not_fit_are_refused():
+    with pytest.raises(ValueError, match=r"no basis for the fields \['v\(x, t\)'\]"):
+        au.assumed_modes(arm(), {u: BASES[u]})
+    loose = au.FiniteBasis(x, length, (x, x**2))
+    with pytest.raises(ValueError, match=r"x of v does not vanish at 0 \(derivative 1\)"):
+        au.assumed_modes(arm(), {u: BASES[u], v: loose})

@@ -1,0 +1,140 @@
+"""Emission: templates and keys agree both ways, lines fit, the text is what the records say."""
+
+from __future__ import annotations
+
+import ast
+import json
+import shutil
+from dataclasses import replace
+
+import jinja2
+import numpy as np
+import pytest
+from elastolink.derive import emission
+from elastolink.derive.emission import TemplateKeys, emit
+from elastolink.derive.ir import Argument, Kernel, ModuleSpec, Result, Statement, TermRow
+from elastolink.derive.spec import ModelSpec
+
+WORDS = "a quantity whose meaning takes very many words to explain, " * 3 + "at last"
+KERNEL = Kernel(
+    name="angle_functions",
+    summary="Return something",
+    arguments=(
+        Argument("theta", "array_like, shape (...)", "rad", "Crank angle"),
+        *(Argument(f"length_{i}", "float", "m", WORDS) for i in range(12)),
+    ),
+    results=(
+        Result("first", "ndarray, shape (...)", "", WORDS),
+        Result("second", "ndarray, shape (...)", "m", "Short"),
+    ),
+    statements=(
+        Statement("x0", "xp.sin(theta)"),
+        Statement("x1", " + ".join(f"length_{i} * x0**{i}" for i in range(12))),
+    ),
+    returns=("x0", " - ".join(["x1", *(f"length_{i} * theta" for i in range(12))])),
+    references=("Smith (6.6)",),
+    operations=42,
+)
+LINEAR = ModuleSpec(
+    spec=ModelSpec("press", "full", flexible=("ram", "slide"), modes=3, drop=("spin",)),
+    family="linear_periodic",
+    title="A press",
+    notes=(WORDS,),
+    references=("Nobody (1.1)",) * 12,
+    kernels=(KERNEL,),
+    terms=(
+        TermRow("K", 0, None, "first", "modal_1"),
+        TermRow("B", 2, "inertia_" * 9, "second_" * 9, "modal_" * 6),
+    ),
+    parameters=(Argument("inertia", "float", "kg m^2", 'The "big" one'),),
+    tables=(("MODAL_1", "(" + ", ".join(["1.0"] * 60) + ",)"),),
+)
+CLOSED = replace(LINEAR, family="closed_form", terms=(), tables=(), parameters=())
+CONTENT = "0123456789abcdef" * 2
+
+
+@pytest.fixture
+def templates(tmp_path, monkeypatch):
+    """Return a copy of the templates that a test may spoil."""
+    copy = tmp_path / "templates"
+    shutil.copytree(emission._TEMPLATES, copy)
+    monkeypatch.setattr(emission, "_TEMPLATES", copy)
+    return copy
+
+
+def load(text):
+    space = {}
+    exec(compile(text, "emitted", "exec"), space)
+    return space
+
+
+@pytest.mark.parametrize("module", [LINEAR, CLOSED], ids=lambda m: m.family)
+def test_the_text_is_a_module_that_says_what_the_records_say(module):
+    text = emit(module, CONTENT)
+    space = load(text)
+    assert space["FAMILY"] == module.family
+    assert json.loads(space["SPEC"]) == json.loads(module.spec.canonical())
+    assert space["CONTENT"] == CONTENT
+    assert space["__all__"] == ["angle_functions"]
+    assert space["RETURNS"] == {"angle_functions": ("first", "second")}
+    header = ast.get_docstring(ast.parse(text))
+    for part in ("A press.", "Do not edit.", "angle_functions: 42 operations", CONTENT, "SymPy"):
+        assert part in header
+    for part in ("mechanism press", "flexible ram, slide", "3 modes", "without spin"):
+        assert part in " ".join(header.split())
+
+
+def test_the_tables_of_a_linear_periodic_module_are_the_rows():
+    space = load(emit(LINEAR, CONTENT))
+    rows = tuple((t.array, t.power, t.scale, t.angle, t.modal) for t in LINEAR.terms)
+    assert space["TERMS"] == rows
+    assert space["PARAMETERS"] == (("inertia", "kg m^2", 'The "big" one'),)
+    assert space["MODAL_1"] == (1.0,) * 60
+
+
+def test_the_function_computes_what_the_statements_say():
+    function = load(emit(LINEAR, CONTENT))["angle_functions"]
+    theta, lengths = np.linspace(-1.0, 2.0, 5), np.arange(1.0, 13.0)
+    first, second = function(theta, *lengths)
+    powers = np.sin(theta)[:, None] ** np.arange(12)
+    assert first == pytest.approx(np.sin(theta), rel=1e-15)
+    assert second == pytest.approx(powers @ lengths - lengths.sum() * theta, rel=1e-13)
+
+
+@pytest.mark.parametrize("module", [LINEAR, CLOSED], ids=lambda m: m.family)
+def test_lines_fit_and_end_cleanly(module):
+    text = emit(module, CONTENT)
+    assert max(map(len, text.splitlines())) <= 100
+    assert all(line == line.rstrip() for line in text.splitlines())
+    assert text.endswith("\n")
+    assert not text.endswith("\n\n")
+    assert "\n\n\n\n" not in text
+
+
+def test_a_key_that_the_template_does_not_use_is_an_error(templates):
+    base = templates / "base.py.j2"
+    base.write_text(base.read_text().replace("{{ title }}", "Title"))
+    with pytest.raises(TemplateKeys, match=r"not used \['title'\]"):
+        emit(CLOSED, CONTENT)
+
+
+def test_a_key_that_is_not_supplied_is_an_error(templates):
+    child = templates / "closed_form.py.j2"
+    child.write_text(child.read_text() + "{% block declarations %}{{ colour }}{% endblock %}")
+    with pytest.raises(TemplateKeys, match=r"not supplied \['colour'\]"):
+        emit(CLOSED, CONTENT)
+
+
+def test_an_attribute_that_does_not_exist_is_an_error(templates):
+    base = templates / "base.py.j2"
+    base.write_text(base.read_text().replace("{{ kernel.summary }}", "{{ kernel.sumary }}"))
+    with pytest.raises(jinja2.UndefinedError, match="sumary"):
+        emit(CLOSED, CONTENT)
+
+
+def test_a_function_without_arrays_asks_for_no_namespace():
+    plain = replace(KERNEL, statements=(), returns=("theta", "length_0"))
+    text = emit(replace(CLOSED, kernels=(plain,)), CONTENT)
+    body = text.partition("def angle_functions(")[2]
+    assert "_namespace" not in body
+    assert load(text)["angle_functions"](3.0, *range(12)) == (3.0, 0)

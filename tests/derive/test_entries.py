@@ -1,0 +1,227 @@
+"""Arrays with explicit entries: what is emitted, what is left out, what is passed in."""
+
+from __future__ import annotations
+
+import types
+
+import numpy as np
+import pytest
+import sympy as sp
+from elastolink.derive import authoring as au
+from elastolink.derive.emission import emit
+from elastolink.derive.entries import (
+    ConstrainedSystem,
+    MatrixForm,
+    TranscendentalSystem,
+    lower_constrained,
+    lower_matrices,
+    lower_transcendental,
+)
+from elastolink.derive.external import external_values
+from elastolink.derive.ir import ModuleSpec
+from elastolink.derive.lowering import CannotPrint
+from elastolink.derive.pipeline import Model, module_text
+from elastolink.runtime.families.emitted import array_function
+
+t, m, k = sp.symbols("t m k", real=True)
+a, b = sp.symbols("a b", real=True)
+SPEC = au.ModelSpec("some", "thing")
+PARAMETERS = (au.scalar("m", "kg", "Mass"), au.scalar("k", "N/m", "Stiffness"))
+WORDS = au.Description(title="Some thing", references=("hand",), parameters=PARAMETERS)
+
+
+def loaded(module: ModuleSpec) -> types.ModuleType:
+    found = types.ModuleType("emitted")
+    exec(compile(emit(module, "0"), "emitted", "exec"), found.__dict__)
+    return found
+
+
+def motion(energy: sp.Expr, *coordinates: sp.Expr, constraints=(), forces=None):
+    return au.euler_lagrange(
+        au.Lagrangian(coordinates, t, energy, tuple(constraints), forces=forces or {})
+    )
+
+
+def coordinate(name: str) -> sp.Expr:
+    return sp.Function(name)(t)
+
+
+# Matrices ------------------------------------------------------------------------------------
+
+
+def matrices(*arrays: tuple[str, sp.Matrix]) -> ModuleSpec:
+    words = au.Description(
+        title="Matrices",
+        references=("hand",),
+        arguments=(au.scalar("a", "", "First"), au.scalar("b", "", "Second")),
+        kernel="element",
+        summary="Return matrices",
+    )
+    form = MatrixForm(tuple((name, sp.ImmutableDenseMatrix(value)) for name, value in arrays))
+    return lower_matrices(SPEC, form, words)
+
+
+def test_equal_entries_are_returned_once_and_zeros_never():
+    spec = matrices(("K", sp.Matrix([[a, -b, 0], [-b, a, 0]])), ("f", sp.Matrix([a])))
+    assert len(spec.kernels[0].returns) == 2
+    function = array_function(loaded(spec), "element")
+    found = function(2.0, np.array([3.0, 4.0]))
+    np.testing.assert_array_equal(found["K"][1], [[2, -4, 0], [-4, 2, 0]])
+    np.testing.assert_array_equal(found["f"], [[[2.0]], [[2.0]]])
+
+
+def test_entries_without_arguments_take_the_batch():
+    function = array_function(loaded(matrices(("I", sp.eye(2)), ("O", sp.zeros(1, 3)))), "element")
+    found = function(np.zeros((4, 1)), np.zeros(5))
+    assert found["I"].shape == (4, 5, 2, 2)
+    assert found["O"].shape == (4, 5, 1, 3)
+    np.testing.assert_array_equal(found["I"][2, 3], np.eye(2))
+
+
+def test_a_function_of_zeros_is_not_emitted():
+    spec = matrices(("O", sp.zeros(2, 2)))
+    assert spec.kernels == ()
+    np.testing.assert_array_equal(array_function(loaded(spec), "element")(1.0, 2.0)["O"], 0.0)
+
+
+def test_only_some_arrays():
+    form = MatrixForm((("K", sp.ImmutableDenseMatrix([a])), ("M", sp.ImmutableDenseMatrix([b]))))
+    assert [name for name, _ in form.only(["M"]).arrays] == ["M"]
+    with pytest.raises(ValueError, match=r"unknown outputs \['G'\]"):
+        form.only(["G"])
+    with pytest.raises(ValueError, match="named twice"):
+        MatrixForm(form.arrays + form.arrays[:1])
+
+
+def test_an_undeclared_symbol_is_refused():
+    with pytest.raises(CannotPrint, match="stray"):
+        matrices(("K", sp.Matrix([a + sp.Symbol("stray")])))
+
+
+# Constrained ---------------------------------------------------------------------------------
+
+
+def test_oscillator_has_constant_arrays_and_no_constraint():
+    x = coordinate("x")
+    equations = motion(m / 2 * x.diff(t) ** 2 - k / 2 * x**2, x)
+    module = loaded(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
+    assert module.COORDINATES == ("x",)
+    assert module.MULTIPLIERS == ()
+    assert module.EXTERNAL == ()
+    assert not hasattr(module, "constraints")
+    found = array_function(module, "dynamics")(np.array([0.5, 2.0]), 0.0, 0.0, m=3.0, k=7.0)
+    np.testing.assert_array_equal(found["mass"], [[[3.0]], [[3.0]]])
+    np.testing.assert_array_equal(found["rest"], [[[3.5]], [[14.0]]])
+    assert found["jacobian"].shape == (2, 0, 1)
+
+
+def test_open_functions_are_passed_in():
+    """A bead on a wire y = shape(x) that is lifted by y0(t)."""
+    x, lift = coordinate("x"), sp.Function("lift")(t)
+    y = lift + sp.Function("shape")(x)
+    equations = motion(m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) - k * y, x)
+    module = loaded(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
+    assert module.EXTERNAL == ("lift_d1", "lift_d2", "shape_d1", "shape_d2")
+    passed = {"lift_d1": 0.3, "lift_d2": -1.1, "shape_d1": 0.7, "shape_d2": 0.4}
+    found = array_function(module, "dynamics")(0.2, 1.5, 0.0, **passed, m=2.0, k=5.0)
+    # m (1 + y'^2) x.. + m y' (y'' x.^2 + lift..) + k y' = 0 by hand
+    assert found["mass"][0, 0] == pytest.approx(2.0 * (1 + 0.7**2), rel=1e-15)
+    by_hand = 2.0 * 0.7 * (0.4 * 1.5**2 - 1.1) + 5.0 * 0.7
+    assert found["rest"][0, 0] == pytest.approx(by_hand, rel=1e-14)
+
+
+def test_open_function_of_a_composite_argument():
+    x, y = coordinate("x"), coordinate("y")
+    potential = sp.Function("phi")(x**2 + y**2)
+    equations = motion(m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) - potential, x, y)
+    module = loaded(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
+    assert module.EXTERNAL == ("phi_d1",)
+    found = array_function(module, "dynamics")(0.5, 0.2, 0.0, 0.0, 0.0, phi_d1=3.0, m=1.0, k=0.0)
+    np.testing.assert_allclose(found["rest"][:, 0], [3.0, 1.2], rtol=1e-15)
+
+
+def test_one_open_function_has_one_argument():
+    x = coordinate("x")
+    f = sp.Function("f")
+    with pytest.raises(ValueError, match="f is applied to"):
+        external_values([f(x) + f(2 * x)])
+    with pytest.raises(ValueError, match="one argument"):
+        external_values([sp.Function("g")(x, t)])
+
+
+def test_words_of_the_description_reach_the_arguments():
+    x = coordinate("x")
+    equations = motion(m / 2 * x.diff(t) ** 2 - k / 2 * x**2, x)
+    words = au.Description(
+        title="Oscillator",
+        references=("hand",),
+        arguments=(au.scalar("x", "m", "Place of the mass"),),
+        parameters=PARAMETERS,
+    )
+    kernel = lower_constrained(SPEC, ConstrainedSystem(equations), words).kernels[0]
+    by_name = {argument.name: argument for argument in kernel.arguments}
+    assert by_name["x"].meaning == "Place of the mass"
+    assert by_name["x_dot"].meaning == "Velocity x_dot"
+    assert list(by_name) == ["x", "x_dot", "t", "m", "k"]
+
+
+def test_variations_are_emitted_only_when_wanted():
+    x, y = coordinate("x"), coordinate("y")
+    lagrangian = au.Lagrangian(
+        (x, y), t, m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) - k * y, (x**2 + y**2 - 1,)
+    )
+    model = Model(
+        "some",
+        ("thing",),
+        lambda spec: lagrangian,
+        lambda spec: WORDS,
+        lambda spec, e: ConstrainedSystem(e, au.variational_equations(e)),
+    )
+    whole = module_text(SPEC, model, "0")
+    lean = module_text(SPEC.with_(outputs=("motion",)), model, "0")
+    assert "def variations(" in whole
+    assert "def variations(" not in lean
+    with pytest.raises(ValueError, match="forcing"):
+        module_text(SPEC.with_(outputs=("forcing",)), model, "0")
+
+
+# Transcendental ------------------------------------------------------------------------------
+
+
+def test_fixed_fixed_string():
+    """One segment of a string from wall to node: D = T/c Omega cot(Omega l/c), poles at n pi."""
+    frequency = sp.Symbol("frequency", positive=True)
+    system = TranscendentalSystem(
+        frequency,
+        sp.ImmutableDenseMatrix([[frequency * sp.cos(frequency) / sp.sin(frequency)]]),
+        sp.floor(frequency / sp.pi),
+    )
+    module = loaded(lower_transcendental(SPEC, system, WORDS))
+    assert module.SIZE == 1
+    found = array_function(module, "dynamic_stiffness")(np.array([1.0, 4.0]), m=1.0, k=1.0)
+    np.testing.assert_allclose(found["stiffness"][:, 0, 0], [1 / np.tan(1), 4 / np.tan(4)])
+    np.testing.assert_array_equal(found["poles"][:, 0, 0], [0, 1])
+
+
+def test_dynamic_stiffness_is_square():
+    with pytest.raises(ValueError, match="not square"):
+        TranscendentalSystem(a, sp.ImmutableDenseMatrix([[a, b]]), sp.S.Zero)
+
+
+# Pipeline ------------------------------------------------------------------------------------
+
+
+def test_equations_of_a_discrete_system_need_no_discretisation():
+    x = coordinate("x")
+    lagrangian = au.Lagrangian((x,), t, m / 2 * x.diff(t) ** 2 - k / 2 * x**2)
+    model = Model("some", ("thing",), lambda spec: lagrangian, lambda spec: WORDS)
+    assert 'FAMILY = "constrained"' in module_text(SPEC, model, "0")
+
+
+def test_a_continuum_does():
+    x = sp.Symbol("x")
+    y = sp.Function("y")(x, t)
+    action = au.ActionDensity(x, t, sp.S.One, (y,), y.diff(t) ** 2 - y.diff(x) ** 2)
+    model = Model("some", ("thing",), lambda spec: action, lambda spec: WORDS)
+    with pytest.raises(TypeError, match="discretise"):
+        module_text(SPEC, model, "0")

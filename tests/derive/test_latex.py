@@ -1,0 +1,169 @@
+"""The LaTeX document: complete, balanced, the same on every run, with the model's own symbols."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sympy as sp
+from elastolink.derive import authoring as au
+from elastolink.derive.jobs import jobs_of
+from elastolink.derive.latex import latex_document
+from elastolink.derive.regenerate import main
+
+EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "slider_crank_rod.py"
+
+
+def document(*names, model=None):
+    return latex_document([(job.spec, job.model()) for job in jobs_of(names, [], [], model)])
+
+
+@pytest.fixture(scope="module")
+def everything():
+    return document()
+
+
+@pytest.fixture(scope="module")
+def example():
+    return document(model=str(EXAMPLE))
+
+
+def assert_well_formed(text):
+    bare = re.sub(r"\\[\\{}_^~&%$#]", "", text)
+    depth = 0
+    for sign in bare:
+        depth += {"{": 1, "}": -1}.get(sign, 0)
+        assert depth >= 0
+    assert depth == 0
+    open_environments = []
+    for kind, name in re.findall(r"\\(begin|end)\{([\w*]+)\}", text):
+        if kind == "begin":
+            open_environments.append(name)
+        else:
+            assert open_environments.pop() == name
+    assert not open_environments
+    assert text.count(r"\left") - text.count(r"\leftarrow") == text.count(r"\right")
+    outside = re.sub(r"\\begin\{(align|gather)\*\}.*?\\end\{\1\*\}", "", text, flags=re.S)
+    bare = re.sub(r"\\[\\{}_^~&%$#]", "", outside)
+    assert bare.count("$") % 2 == 0
+    words = re.sub(r"\$.*?\$", "", bare)
+    assert not re.search(r"[_^&#]", words.partition(r"\maketitle")[2])
+    assert all(ord(sign) < 128 for sign in text)
+
+
+def test_every_packaged_model_is_a_section_of_a_well_formed_document(everything):
+    assert_well_formed(everything)
+    assert everything.startswith("\\documentclass")
+    assert everything.endswith("\\end{document}\n")
+    names = [job.name for job in jobs_of([], [], [], None)]
+    assert everything.count("\\section{") == len(names)
+    for name in names:
+        assert name.replace("_", r"\_") in everything
+
+
+def test_a_continuum_shows_each_stage_with_its_symbols(example):
+    assert_well_formed(example)
+    stages = ["Lagrangian per length", "Field equations", "Natural conditions", "Projected arrays"]
+    places = [example.index(f"\\subsection*{{{stage}") for stage in stages]
+    assert places == sorted(places)
+    for symbol in (
+        r"{y}_{xxxx}",
+        r"\ddot{\theta_{2}}",
+        r"\mathrm{bending\_stiffness}",
+        r"M_{mm} ={} &1",
+        r"B_{mn}",
+        r"f_{m}",
+        r"s_{\mathrm{bend}}",
+        r"variation of ${y}_{x}$",
+    ):
+        assert symbol in example
+
+
+def test_the_bending_term_is_the_one_of_the_beam(example):
+    (line,) = re.findall(r"K_\{mm\} =\{\} &(.*)", example)
+    assert line == (
+        r"\frac{\pi^{4} \, \mathrm{bending\_stiffness} \, m^{4}}"
+        r"{\mathrm{mass\_per\_length} \, \mathrm{rod}^{4}}"
+    )
+
+
+def test_lines_are_no_wider_than_a_page(everything):
+    shown = re.compile(r"\\(mathrm|left|right|frac|dot|ddot|quad)\b|[{}_^ &]")
+    widths = sorted(len(shown.sub("", line)) for line in everything.splitlines())
+    assert widths[int(0.99 * len(widths))] < 150
+
+
+def test_constraints_matrices_and_supports_are_shown():
+    t, x = sp.symbols("t x", real=True)
+    q, s = (sp.Function(name)(t) for name in ("q", "s"))
+    mass, stop = sp.symbols("mass R_a", positive=True)
+    words = au.Description("A pendulum & its 50 % slider", ("none",), ())
+    sliding = au.Model(
+        "pendulum",
+        ("sliding",),
+        lambda spec: au.Lagrangian(
+            (q, s), t, mass * (q.diff(t) ** 2 + s.diff(t) ** 2) / 2, (q - sp.sin(s),), ()
+        ),
+        lambda spec: words,
+    )
+    y = sp.Function("y")(x, t)
+    length = sp.Symbol("length", positive=True)
+    held = au.ActionDensity(
+        x,
+        t,
+        length,
+        (y,),
+        mass * y.diff(t) ** 2 / 2 - y.diff(x, 2) ** 2 / 2,
+        point_terms=(au.PointTerm(length, mass * y.diff(t) ** 2 / 2),),
+        supports=(au.Support(length / 3, y, stop),),
+        essential=(au.Essential(0, y, 0), au.Essential(0, y, 1)),
+    )
+    basis = au.FiniteBasis(x, length, (x**2 * (x - length / 3),))
+    crank = au.CrankMotion(*sp.symbols("theta rate acceleration", real=True))
+    beam = au.Model(
+        "beam",
+        ("held",),
+        lambda spec: held,
+        lambda spec: words,
+        lambda spec, equations: au.StagedSystem(
+            au.project(equations, y, basis, crank), au.Steps(), (mass, length), (crank.theta,)
+        ),
+    )
+    models = [(au.ModelSpec("pendulum", "sliding"), sliding), (au.ModelSpec("beam", "held"), beam)]
+    text = latex_document(models)
+    assert_well_formed(text)
+    for part in (
+        r"A pendulum \& its 50 \% slider",
+        r"\Phi_q^T \lambda + Q,\quad \Phi = 0",
+        r"\Phi_q ={} &",
+        r"\subsection*{Jump conditions}",
+        r"R_{\mathrm{a}}",
+        r"L_{x = \mathrm{length}}",
+        r"${y}_{x} = 0$ at $x = 0$",
+    ):
+        assert part in text
+
+
+def test_the_document_is_the_same_under_another_hash_seed(example, tmp_path):
+    code = "import sys; from elastolink.derive.regenerate import main; sys.exit(main(sys.argv[1:]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "--model", str(EXAMPLE), "--latex", "own.tex"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONHASHSEED": "97"},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stdout) == (0, "wrote own.tex\n"), done.stderr
+    assert (tmp_path / "own.tex").read_text() == example
+    assert not (tmp_path / "generated").exists()
+
+
+def test_asked_models_alone_are_shown(tmp_path, capsys):
+    file = tmp_path / "hill.tex"
+    assert main(["hill_plain", "--latex", str(file)]) == 0
+    assert file.read_text() == document("hill_plain")
+    assert file.read_text().count("\\section{") == 1

@@ -1,0 +1,307 @@
+"""Printing, common subexpressions, order and layout of what the pipeline emits."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import array_api_strict
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from elastolink import generated
+from elastolink.derive.ir import Argument, Result
+from elastolink.derive.lowering import CannotPrint, count_operations, lower_kernel, to_line
+from elastolink.derive.models import four_bar
+from elastolink.derive.spec import ModelSpec
+from elastolink.derive.staged import Steps
+from elastolink.generated import four_bar_kinematics
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from linkage_truth import OUTPUTS, random_points
+
+x, y, z = sp.symbols("x y z", positive=True)
+m, n = sp.symbols("m n", integer=True, positive=True)
+HERE = Path(generated.__path__[0])
+
+# ---------------------------------------------------------------- round trip
+
+
+class _Exact(ast.NodeTransformer):
+    """Turn every literal of a line into a call, so that 1 / 3 is not rounded."""
+
+    def visit_Constant(self, node):
+        return ast.Call(ast.Name("number", ast.Load()), [ast.Constant(repr(node.value))], [])
+
+
+MPMATH = SimpleNamespace(
+    sin=mpmath.sin,
+    cos=mpmath.cos,
+    tan=mpmath.tan,
+    exp=mpmath.exp,
+    sinh=mpmath.sinh,
+    cosh=mpmath.cosh,
+    atan=mpmath.atan,
+    sqrt=mpmath.sqrt,
+    atan2=mpmath.atan2,
+    abs=abs,
+    floor=mpmath.floor,
+)
+
+
+def evaluate(line, values):
+    """Evaluate a printed line in the working precision of mpmath."""
+    tree = ast.fix_missing_locations(_Exact().visit(ast.parse(line, mode="eval")))
+    scope = {"xp": MPMATH, "number": mpmath.mpf, **values}
+    return eval(compile(tree, "line", "eval"), {"__builtins__": {}}, scope)
+
+
+def run(line, **values):
+    return eval(line, {"xp": np, **values})
+
+
+LEAVES = st.one_of(
+    st.sampled_from([x, y, z]),
+    st.integers(-4, 4).map(sp.Integer),
+    st.builds(sp.Rational, st.integers(-7, 7), st.integers(2, 9)),
+)
+
+
+def _grow(inner):
+    return st.one_of(
+        st.builds(sp.Add, inner, inner),
+        st.builds(sp.Mul, inner, inner),
+        st.builds(lambda a, b: a - b, inner, inner),
+        st.builds(lambda a, b: a / b if b != 0 else a, inner, inner),
+        st.builds(lambda a, k: a**k if a != 0 else a, inner, st.integers(-3, 3)),
+        st.builds(lambda a: sp.sqrt(a**2 + 1), inner),
+        st.builds(lambda a: (a**2 + 2) ** sp.Rational(3, 2), inner),
+        st.builds(lambda a: (a**2 + 2) ** sp.Rational(-5, 3), inner),
+        st.builds(sp.sin, inner),
+        st.builds(lambda a: sp.exp(-(a**2)), inner),
+        st.builds(lambda a, b: sp.atan2(a, b**2 + 1), inner, inner),
+        st.builds(sp.Abs, inner),
+    )
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(st.recursive(LEAVES, _grow, max_leaves=12))
+def test_a_printed_line_means_the_expression(expression):
+    assume(expression.is_finite is not False and not expression.has(sp.zoo, sp.nan, sp.oo))
+    values = {"x": "0.73", "y": "1.9", "z": "3.1"}
+    with mpmath.workdps(60):
+        numbers = {name: mpmath.mpf(value) for name, value in values.items()}
+        expected = sp.lambdify((x, y, z), expression, "mpmath")(*numbers.values())
+        assume(mpmath.isfinite(expected) and abs(expected) < 1e30)
+        found = evaluate(to_line(expression), numbers)
+        # Numbers such as sqrt(2) are printed as doubles.
+        assert abs(found - expected) <= 1e-9 * (1 + abs(expected)) or abs(expected) < 1e-9
+        if not any(a.is_number and not a.is_Rational for a in sp.preorder_traversal(expression)):
+            assert abs(found - expected) <= mpmath.mpf(10) ** -40 * (1 + abs(expected))
+
+
+@pytest.mark.parametrize(
+    "expression, line",
+    [
+        (-x, "-x"),
+        (x - y, "x - y"),
+        (x / y, "x / y"),
+        (x / (y * z), "x / (y * z)"),
+        (-x * (y - z), "-x * (y - z)"),
+        (1 / x, "1 / x"),
+        (x**-2, "1 / x**2"),
+        (x**2 / y**3, "x**2 / y**3"),
+        (3 * x / 4, "3 * x / 4"),
+        (sp.Rational(5, 4) - x / 3, "5 / 4 - x / 3"),
+        ((x + y) ** 2, "(x + y)**2"),
+        (sp.sqrt(x + y), "xp.sqrt(x + y)"),
+        (1 / sp.sqrt(x), "1 / xp.sqrt(x)"),
+        (x * sp.exp(-y), "x * xp.exp(-y)"),
+        (x / sp.exp(y) / z, "x * xp.exp(-y) / z"),
+        (sp.pi * x, "3.141592653589793 * x"),
+        (sp.pi**2 * x / 3, "3.289868133696453 * x"),
+        (-sp.sqrt(2) * x, "-1.4142135623730951 * x"),
+        ((-1) ** (m + n), "(1 - 2 * ((m + n) % 2))"),
+        (sp.Mod(x + y, z), "((x + y) % z)"),
+        (sp.Piecewise((x, sp.Eq(m, n)), (y, True)), "xp.where((m == n), x, y)"),
+    ],
+)
+def test_lines_read_as_one_would_write_them(expression, line):
+    assert to_line(expression) == line
+
+
+def test_numbers_are_rounded_once():
+    """pi^4 squared up from a rounded pi is off by more than one rounding."""
+    for number in (sp.pi, sp.pi**4, sp.pi**2 / 3, sp.sqrt(2) * sp.pi, sp.exp(1) + 1, sp.sin(1)):
+        assert float(to_line(number)) == float(sp.N(number, 40))
+    assert run(to_line(-sp.sqrt(3))) == -float(sp.sqrt(3).n(40))
+
+
+def test_decaying_exponentials_do_not_overflow():
+    line = to_line(x * sp.exp(-y))
+    with np.errstate(all="raise", under="ignore"):
+        assert run(line, x=2.0, y=np.float64(5000.0)) == 0.0
+
+
+@pytest.mark.parametrize("first, second", [(1, 0), (0, 1), (3, 1), (-2, sp.Rational(1, 2))])
+def test_a_choice_between_numbers_runs_in_every_namespace(first, second):
+    line = to_line(sp.Piecewise((sp.sympify(first), sp.Eq(x, y)), (sp.sympify(second), True)))
+    one, other = np.array([1.0, 2.0]), np.array([1.0, 3.0])
+    expected = np.array([float(first), float(second)])
+    np.testing.assert_array_equal(run(line, x=one, y=other), expected)
+    xp = array_api_strict
+    strict = eval(line, {"xp": xp, "x": xp.asarray(one), "y": xp.asarray(other)})
+    np.testing.assert_array_equal(np.asarray(strict), expected)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        sp.gamma(x),
+        sp.Function("f")(x),
+        x**y,
+        sp.I,
+        sp.oo,
+        sp.zoo * x,
+        sp.Derivative(sp.Function("f")(x), x),
+        sp.Integral(x, x),
+        sp.Piecewise((1, x > 2), (2, x > 1), (3, True)),
+        sp.Piecewise((x, sp.Ne(m, n)), (y, True)),
+        sp.Matrix([x]),
+    ],
+)
+def test_what_has_no_emitted_form_is_refused(expression):
+    with pytest.raises(CannotPrint):
+        to_line(expression)
+
+
+# ---------------------------------------------------------------- kernels
+
+
+def kernel(outputs, steps=None, arguments=("x", "y", "z")):
+    made = tuple(Argument(name, "float", "", name) for name in arguments)
+    results = [(Result(f"r{i}", "float", "", ""), e) for i, e in enumerate(outputs)]
+    return lower_kernel("k", "Return", made, steps or Steps(), results)
+
+
+def call(made, **values):
+    scope = dict(values, xp=np)
+    for statement in made.statements:
+        scope[statement.target] = eval(statement.expression, scope)
+    return [eval(text, scope) for text in made.returns]
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.lists(st.recursive(LEAVES, _grow, max_leaves=8), min_size=1, max_size=4))
+def test_common_subexpressions_change_no_value(expressions):
+    assume(not any(e.has(sp.zoo, sp.nan, sp.oo) for e in expressions))
+    values = {"x": 0.73, "y": 1.9, "z": 3.1}
+    with np.errstate(all="ignore"):
+        plain = [run(to_line(e), **values) for e in expressions]
+        assume(all(np.isfinite(v) and abs(v) < 1e12 for v in plain))
+        together = call(kernel(expressions), **values)
+    for one, other in zip(plain, together, strict=True):
+        assert abs(one - other) <= 1e-9 * (1 + abs(one))
+
+
+def test_kinematics_with_and_without_common_subexpressions():
+    """The emitted motion against its steps evaluated one by one, each as it was derived."""
+    closed = four_bar.MODEL.energies(ModelSpec("four_bar", "kinematics"))
+    for point in random_points(30, seed=8):
+        scope = {symbol: point.arguments[symbol.name] for symbol in closed.inputs}
+        for symbol, value in closed.steps.steps:
+            names = sorted(value.free_symbols, key=str)
+            scope[symbol] = sp.lambdify(names, value, "math")(*(scope[s] for s in names))
+        found = dict(zip(OUTPUTS, four_bar_kinematics.motion(**point.arguments), strict=True))
+        for name, value in closed.outputs:
+            names = sorted(value.free_symbols, key=str)
+            plain = sp.lambdify(names, value, "math")(*(scope[s] for s in names))
+            assert found[name] == pytest.approx(plain, rel=1e-10, abs=1e-12)
+
+
+def test_steps_that_no_output_needs_are_pruned_and_the_rest_stands_in_order():
+    a, b, c = sp.symbols("a b c")
+    steps = Steps(((a, x + y), (b, sp.sin(a)), (c, sp.cos(x))))
+    made = kernel([b * z], steps)
+    assert [s.target for s in made.statements] == ["a", "b"]
+    assert call(made, x=1.0, y=2.0, z=3.0) == [3.0 * np.sin(3.0)]
+
+
+def test_a_symbol_from_nowhere_is_refused():
+    with pytest.raises(CannotPrint, match="w is neither an argument nor a step"):
+        kernel([x * sp.Symbol("w")])
+
+
+def test_a_sign_that_alternates_needs_an_integer():
+    made = kernel([(-1) ** (m + n) * x], arguments=("m", "n", "x"))
+    assert call(made, m=2.0, n=3.0, x=5.0) == [-5.0]
+    with pytest.raises(CannotPrint, match="for integers alone"):
+        kernel([(-1) ** x])
+
+
+def test_every_name_is_defined_before_it_is_used_and_used_once_defined():
+    """All emitted modules: straight-line code without idle statements."""
+    for path in sorted(HERE.glob("*.py")):
+        for function in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(function, ast.FunctionDef) or function.name == "_namespace":
+                continue
+            known = {a.arg for a in function.args.args} | {"xp", "_namespace"}
+            used: set[str] = set()
+            for statement in function.body:
+                names = [node for node in ast.walk(statement) if isinstance(node, ast.Name)]
+                loaded = {node.id for node in names if isinstance(node.ctx, ast.Load)}
+                assert loaded <= known, (path.name, function.name, loaded - known)
+                used |= loaded
+                known |= {node.id for node in names if isinstance(node.ctx, ast.Store)}
+            idle = known - used - {a.arg for a in function.args.args} - {"_namespace", "xp"}
+            assert not idle, (path.name, function.name, idle)
+
+
+def test_operations_are_counted_by_what_is_evaluated():
+    assert count_operations([x + y * z]) == 2
+    assert count_operations([sp.sin(x)]) == 1
+    assert count_operations([sp.pi**2 * x / 3]) == 1
+    assert count_operations([]) == 0
+
+
+# ---------------------------------------------------------------- determinism and layout
+
+_SCRIPT = """
+from elastolink.derive.models import four_bar
+from elastolink.derive.spec import ModelSpec
+from elastolink.derive.pipeline import module_text
+print(module_text(ModelSpec("four_bar", "kinematics"), four_bar.MODEL, "0" * 32), end="")
+"""
+
+
+def test_two_hash_seeds_give_the_same_bytes():
+    texts = []
+    for seed in ("1", "4321"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        done = subprocess.run(
+            [sys.executable, "-c", _SCRIPT], env=environment, capture_output=True, check=True
+        )
+        texts.append(done.stdout)
+    assert texts[0] == texts[1] and len(texts[0]) > 1000
+
+
+def test_lines_fit():
+    for path in sorted(HERE.glob("*.py")):
+        lines = path.read_text().splitlines()
+        long = [(path.name, i + 1) for i, line in enumerate(lines) if len(line) > 99]
+        assert not long
+
+
+def test_wrapped_text_still_is_the_spec():
+    for path in sorted(HERE.glob("*_*.py")):
+        if path.name == "__init__.py":
+            continue
+        module = importlib.import_module(f"{generated.__name__}.{path.stem}")
+        assert module.SPEC.startswith('{"balanced":[')
+        assert " " not in module.SPEC

@@ -1,0 +1,116 @@
+"""Rewritings that keep digits: they equal what they replace, and they do keep them."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+import sympy as sp
+from elastolink.derive.safe import (
+    UnsafeRewriting,
+    bernstein_in_cosine,
+    root_of_parts,
+    solve_cosine_sine,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+a, b, c, d, s, cosine, root = sp.symbols("a b c d s cosine root")
+upper, lower = sp.symbols("upper lower")
+
+
+def as_cosine(expression):
+    return expression.subs({upper: (1 + cosine) / 2, lower: (1 - cosine) / 2})
+
+
+# ---------------------------------------------------------------- end values
+
+
+@settings(max_examples=50, deadline=None, derandomize=True)
+@given(st.lists(st.tuples(*(st.integers(-5, 5),) * 2), min_size=1, max_size=3))
+def test_end_values_reproduce_any_product_of_linear_factors(pairs):
+    expression = sp.prod([p * a + q * b * cosine + 1 for p, q in pairs])
+    form = bernstein_in_cosine(sp.expand(expression), cosine, upper, lower)
+    assert sp.expand(as_cosine(form) - expression) == 0
+    assert not form.has(cosine)
+
+
+def test_end_values_are_differences_of_lengths():
+    """a^2 + b^2 - 2 a b cos x is (a - b)^2 cos^2(x/2) + (a + b)^2 sin^2(x/2)."""
+    form = bernstein_in_cosine(a**2 + b**2 - 2 * a * b * cosine, cosine, upper, lower)
+    assert form == (a - b) ** 2 * upper + (a + b) ** 2 * lower
+
+
+def test_end_values_keep_the_digits_of_a_nearly_vanishing_length():
+    """The law of cosines at 1e-9 rad with sides that differ by 1e-12: all digits against none."""
+    form = bernstein_in_cosine(a**2 + b**2 - 2 * a * b * cosine, cosine, upper, lower)
+    angle, one, other = 1e-9, 1.0, 1.0 - 1e-12
+    half = {upper: math.cos(angle / 2) ** 2, lower: math.sin(angle / 2) ** 2}
+    found = sp.lambdify((a, b, upper, lower), form, "math")(one, other, half[upper], half[lower])
+    plain = one**2 + other**2 - 2 * one * other * math.cos(angle)
+    with mpmath.workdps(50):
+        x, y = mpmath.mpf(one), mpmath.mpf(other)
+        exact = x**2 + y**2 - 2 * x * y * mpmath.cos(mpmath.mpf(angle))
+        assert abs(found - exact) < 1e-15 * exact
+        assert abs(plain - exact) > 1e-2 * exact
+
+
+def test_end_values_in_given_sums():
+    sums = {a: (s + d) / 2, b: (s - d) / 2}
+    form = bernstein_in_cosine(a**2 + b**2 + 2 * a * b * cosine, cosine, upper, lower, sums)
+    assert form == s**2 * upper + d**2 * lower
+
+
+def test_a_factor_that_is_not_linear_is_refused():
+    with pytest.raises(UnsafeRewriting, match="is not linear in cosine"):
+        bernstein_in_cosine(a + b * cosine**2, cosine, upper, lower)
+
+
+def test_what_does_not_vary_is_left_alone():
+    assert bernstein_in_cosine(a**2 * b, cosine, upper, lower) == a**2 * b
+
+
+# ---------------------------------------------------------------- a cos x + b sin x = c
+
+
+def test_the_solution_satisfies_equation_and_circle():
+    cos, sin, discriminant = solve_cosine_sine(a, b, c, root)
+    assert sp.cancel(a * cos + b * sin - c) == 0
+    circle = sp.expand(sp.numer(sp.together(cos**2 + sin**2 - 1)))
+    assert sp.rem(circle, root**2 - discriminant, root) == 0
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_both_roots_are_found(sign):
+    cos, sin, discriminant = solve_cosine_sine(a, b, c, root)
+    values = {a: 0.3, b: -1.1, c: 0.6}
+    values[root] = sign * sp.sqrt(discriminant.subs(values))
+    x = sp.atan2(sin.subs(values), cos.subs(values))
+    assert float(0.3 * sp.cos(x) - 1.1 * sp.sin(x)) == pytest.approx(0.6, rel=1e-14)
+    # The root tells the two apart: a sin x - b cos x.
+    assert sp.sign(0.3 * sp.sin(x) + 1.1 * sp.cos(x)) == sign
+
+
+# ---------------------------------------------------------------- parts of a known sum
+
+
+def test_root_of_parts_is_the_root():
+    form = root_of_parts((s - d, s + d), (a, b), root, s**2 - d**2)
+    assert form == 2 * s * root / (a + b)
+    exact = form.subs({a: s - d, b: s + d, root: sp.sqrt(s**2 - d**2)})
+    assert sp.simplify(exact - sp.sqrt(s**2 - d**2)) == 0
+
+
+def test_root_of_parts_forgives_digits_that_moved_from_one_to_the_other():
+    """2 sqrt((1 + x)(1 - x)) with x = 1e-9 lost in one part only."""
+    form = sp.lambdify((s, a, b, root), root_of_parts((s - d, s + d), (a, b), root, s**2 - d**2))
+    off = 1e-6
+    part, other = 1.0 + off, 1.0
+    assert form(1.0, part, other, math.sqrt(part * other)) == pytest.approx(1.0, abs=off**2)
+    assert abs(math.sqrt(part * other) - 1.0) > off / 3
+
+
+def test_parts_that_do_not_make_the_product_are_refused():
+    with pytest.raises(UnsafeRewriting, match="is not"):
+        root_of_parts((s - d, s + d), (a, b), root, s**2 + d**2)

@@ -1,0 +1,83 @@
+"""Public names: they exist, they are listed in one order, and what is not public says so."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import elastolink as el
+import elastolink.derive.authoring
+import elastolink.runtime
+import pytest
+
+ROOT = Path(__file__).parents[1]
+RUNTIME = ["elastolink.runtime"] + [
+    found.name
+    for found in pkgutil.walk_packages(elastolink.runtime.__path__, "elastolink.runtime.")
+]
+PACKAGES = [name for name in RUNTIME if hasattr(importlib.import_module(name), "__path__")]
+
+
+@pytest.mark.parametrize("name", el.__all__)
+def test_a_public_name_loads_and_says_what_it_is(name):
+    value = getattr(el, name)
+    assert name in dir(el)
+    if name != "__version__":
+        assert inspect.getdoc(value)
+        assert value.__module__.startswith("elastolink.runtime.")
+
+
+def test_the_names_of_the_design_are_there():
+    wanted = "FourBar load_scene PeriodicFunction simulate discriminant monodromy"
+    wanted += " floquet_multipliers hill_boundaries perturbation_boundaries stability_chart"
+    assert set(wanted.split()) <= set(el.__all__)
+
+
+def test_the_list_of_public_names_is_sorted_and_complete():
+    assert el.__all__ == sorted(el.__all__, key=lambda name: (name != "__version__", name))
+    assert dir(el) == sorted(el.__all__)
+
+
+def test_an_unknown_name_is_refused_as_python_does():
+    with pytest.raises(AttributeError, match="no attribute 'four_bar'"):
+        _ = el.four_bar
+
+
+def test_a_name_loads_its_own_module_alone():
+    code = (
+        "import sys, elastolink as el; el.BadInput\n"
+        "print(sorted(n for n in sys.modules if n.startswith('elastolink.runtime.')))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "['elastolink.runtime.errors']"
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_each_package_lists_what_it_makes_public(package):
+    module = importlib.import_module(package)
+    tree = ast.parse(Path(module.__file__).read_text())
+    own = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level]
+    names = {alias.asname or alias.name for node in own if node.module for alias in node.names}
+    if not own:
+        return  # a package of files that are asked for one by one
+    assert len(set(module.__all__)) == len(module.__all__)
+    assert set(module.__all__) <= set(dir(module))
+    assert {name for name in names if not name.startswith("_")} <= set(module.__all__)
+
+
+def test_the_names_for_authors_of_models_are_there():
+    authoring = elastolink.derive.authoring
+    assert authoring.__all__ == sorted(authoring.__all__)
+    for name in authoring.__all__:
+        assert inspect.getdoc(getattr(authoring, name))
+
+
+def test_every_public_name_is_on_the_page_of_the_interface():
+    page = (ROOT / "docs" / "api.md").read_text()
+    missing = [name for name in el.__all__ if name not in page and name != "__version__"]
+    assert missing == []

@@ -1,0 +1,245 @@
+"""The walls of the house: who may import what, seen in the source and tried out in processes."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = ("derive", "generated", "runtime", "templates")
+PACKAGES = {folder: f"elastolink.{folder}" for folder in FOLDERS}
+STANDARD = frozenset(sys.stdlib_module_names)
+NUMERIC = {"numpy", "scipy"}
+# What the run-time side may load inside a function, when it is asked for.
+LAZY = {"matplotlib", "mpl_toolkits", "pint", "tqdm", "xarray", "heyoka", "numba", "flint"}
+# Proofs of emitted functions at many digits; nothing else of derive/ may import the module.
+CHECKS = "derive/checks.py"
+
+
+def sources(*folders: str) -> list[Path]:
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+
+
+def package_of(path: Path) -> list[str]:
+    """Return the package that holds a source file, as a list of names."""
+    parts = list(path.relative_to(ROOT).with_suffix("").parts)
+    if parts[:2] == ["runtime", "_root"]:
+        return ["elastolink"]
+    return ["elastolink", *parts[:-1]]
+
+
+def imports(path: Path) -> Iterator[tuple[str, bool]]:
+    """Yield what a file imports, by absolute name, and whether at the level of the module."""
+
+    def visit(node: ast.AST, outer: bool) -> Iterator[tuple[str, bool]]:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.Import):
+                yield from ((alias.name, outer) for alias in child.names)
+            elif isinstance(child, ast.ImportFrom):
+                base = child.module or ""
+                if child.level:
+                    package = package_of(path)
+                    package = package[: len(package) - child.level + 1]
+                    base = ".".join([*package, *filter(None, [child.module])])
+                yield base, outer
+                yield from ((f"{base}.{alias.name}", outer) for alias in child.names)
+            elif isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test):
+                yield from visit(ast.Module(child.orelse, []), outer)
+            else:
+                inner = isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
+                yield from visit(child, outer and not inner)
+
+    yield from visit(ast.parse(path.read_text()), True)
+
+
+def inside(name: str, *packages: str) -> bool:
+    return any(name == package or name.startswith(f"{package}.") for package in packages)
+
+
+def top(name: str) -> str:
+    return name.partition(".")[0]
+
+
+def relative(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("path", sources("derive"), ids=relative)
+def test_derive_imports_sympy_and_jinja_alone(path):
+    allowed = STANDARD | {"sympy", "jinja2"}
+    if relative(path) == CHECKS:
+        allowed |= {"numpy", "mpmath"}
+    for name, _ in imports(path):
+        if top(name) == "elastolink":
+            within = ("elastolink.derive", "elastolink._files")
+            assert name == "elastolink" or inside(name, *within), name
+            assert not inside(name, "elastolink.derive.checks"), name
+        else:
+            assert top(name) in allowed, name
+
+
+@pytest.mark.parametrize("path", sources("generated"), ids=relative)
+def test_generated_imports_numpy_alone(path):
+    assert {name for name, _ in imports(path)} <= {"numpy"}
+
+
+def test_templates_hold_one_docstring_and_no_code():
+    (path,) = sources("templates")
+    (statement,) = ast.parse(path.read_text()).body
+    assert isinstance(statement, ast.Expr)
+
+
+@pytest.mark.parametrize("path", sources("runtime"), ids=relative)
+def test_runtime_imports_numerics_and_the_rest_lazily(path):
+    root = relative(path).startswith("runtime/_root/")
+    for name, outer in imports(path):
+        if root:
+            assert top(name) in STANDARD, name
+        elif top(name) == "elastolink":
+            within = ["elastolink.runtime", "elastolink.generated", "elastolink._files"]
+            within.append("elastolink.derive.spec" if outer else "elastolink.derive")
+            passing = name in {"elastolink", "elastolink.derive", "elastolink.__version__"}
+            assert passing or inside(name, *within), name
+        else:
+            assert top(name) in STANDARD | NUMERIC | (set() if outer else LAZY), name
+
+
+def test_the_package_of_the_symbolic_side_imports_nothing():
+    (statement,) = ast.parse((ROOT / "derive" / "__init__.py").read_text()).body
+    assert isinstance(statement, ast.Expr)
+
+
+@pytest.mark.parametrize("path", sources(*FOLDERS, "tests", "docs"), ids=relative)
+def test_nothing_imports_a_folder_by_its_bare_name(path):
+    """The root is on the path when tests run: a bare import would load a second copy."""
+    assert not {top(name) for name, _ in imports(path)} & set(FOLDERS)
+
+
+def test_the_scan_of_imports_sees_what_it_has_to(tmp_path, monkeypatch):
+    """The guard of the tests above: a forbidden import of every kind is found."""
+    monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
+    path = tmp_path / "runtime" / "cli" / "new.py"
+    path.parent.mkdir(parents=True)
+    path.write_text(
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import jinja2\n"
+        "else:\n    import sympy\n"
+        "from ...derive import pipeline\nfrom .. import charts\nimport runtime.charts\n"
+        "try:\n    import scipy.linalg\nexcept ImportError:\n    pass\n"
+        "def plot():\n    import matplotlib.pyplot\n    from . import options\n"
+        "class A:\n    import numpy\n"
+    )
+    found = dict(imports(path))
+    assert found == {
+        "typing": True,
+        "typing.TYPE_CHECKING": True,
+        "sympy": True,
+        "elastolink.derive": True,
+        "elastolink.derive.pipeline": True,
+        "elastolink.runtime": True,
+        "elastolink.runtime.charts": True,
+        "runtime.charts": True,
+        "scipy.linalg": True,
+        "matplotlib.pyplot": False,
+        "elastolink.runtime.cli": False,
+        "elastolink.runtime.cli.options": False,
+        "numpy": True,
+    }
+
+
+def python(code: str, *arguments: str) -> str:
+    """Run code in a fresh interpreter; its output, once it has succeeded in silence."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code, *arguments],
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    return done.stdout
+
+
+BLOCK = "import sys; sys.modules.update(dict.fromkeys({!r}));"
+IMPORT_ALL = """
+import importlib, pkgutil
+package = importlib.import_module(sys.argv[1])
+for found in pkgutil.walk_packages(package.__path__, sys.argv[1] + '.'):
+    importlib.import_module(found.name)
+"""
+
+
+def test_runtime_loads_with_the_symbolic_side_blocked():
+    python(BLOCK.format(["sympy", "jinja2", "mpmath"]) + IMPORT_ALL, "elastolink.runtime")
+    python(BLOCK.format(["sympy", "jinja2", "mpmath"]) + IMPORT_ALL, "elastolink.generated")
+
+
+def test_runtime_solves_with_the_symbolic_side_blocked():
+    code = BLOCK.format(["sympy", "jinja2", "mpmath"]) + (
+        "import numpy as np, elastolink as el\n"
+        "scene = el.load_scene('smith_1972_5152_sixteenth_inch')\n"
+        "system = scene.system()\n"
+        "motion = el.simulate(system, speed=35.0, revolutions=2)\n"
+        "assert motion.passed and np.abs(motion.q).max() > 0\n"
+        "chart = el.stability_chart(system, x=('speed', np.linspace(20.0, 90.0, 12)),\n"
+        "    y=('follower_inertia', np.linspace(1e-3, 5e-3, 10)))\n"
+        "assert not chart.stable.all() and chart.stable.any()\n"
+        "assert el.FourBar(frame=5, crank=1, coupler=5, follower=2).motion(0.3).theta3 > 0\n"
+        "f = el.PeriodicFunction(a=[0.0, 1.0])\n"
+        "print(float(el.hill_boundaries(f, mu=0.1).lower[0]))\n"
+    )
+    # b1(q = 0.2) / 4 by its series 1 - q - q^2/8 + q^3/64 - q^4/1536 - 11 q^5/36864, good to 1e-8.
+    assert float(python(code)) == pytest.approx(0.19878097, abs=2e-8)
+
+
+def test_the_command_line_works_with_the_symbolic_side_blocked(tmp_path):
+    code = BLOCK.format(["sympy", "jinja2", "mpmath"]) + (
+        "from elastolink.runtime.cli import main\n"
+        "assert main(['kinematics', 'smith_1972_12_6_12_12', '--json']) == 0\n"
+        "assert main(['stability', 'mathieu', '--json']) == 0\n"
+    )
+    assert "theta3" in python(code)
+
+
+def test_derive_loads_and_derives_with_the_numeric_side_blocked():
+    blocked = ["scipy", "matplotlib", "pint", "tqdm", "elastolink.runtime", "elastolink.generated"]
+    python(BLOCK.format(blocked) + IMPORT_ALL, "elastolink.derive")
+    code = BLOCK.format(["numpy", *blocked]) + (
+        "from elastolink.derive.jobs import jobs_of\n"
+        "(job,) = jobs_of(['four_bar_coupler_reduced'], [], [], None)\n"
+        "print(job.text())"
+    )
+    assert "def angle_functions(" in python(code)
+
+
+@pytest.mark.parametrize("path", sources("generated"), ids=relative)
+def test_an_emitted_module_loads_with_everything_but_numpy_blocked(path):
+    code = (
+        "import sys\n"
+        "class Wall:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        top, _, rest = name.partition('.')\n"
+        "        mine = top == 'elastolink' and rest.partition('.')[0] in {'', 'generated'}\n"
+        "        if not (mine or top == 'numpy' or top in sys.stdlib_module_names):\n"
+        "            raise ImportError(f'{name} is behind the wall')\n"
+        "sys.meta_path.insert(0, Wall())\n"
+        f"import elastolink.generated.{path.stem}\n"
+        "loaded = {name.partition('.')[0] for name in sys.modules}\n"
+        "print(sorted(loaded & {'numpy', 'scipy', 'sympy'}))\n"
+    )
+    found = python(code.replace(".__init__\n", "\n"))
+    assert found == ("[]\n" if path.stem == "__init__" else "['numpy']\n")
+
+
+def test_importing_elastolink_loads_nothing_of_weight():
+    code = (
+        "import sys, elastolink as el\n"
+        "heavy = 'numpy scipy sympy jinja2 matplotlib pint tqdm mpmath xarray'.split()\n"
+        "print([name for name in heavy if name in sys.modules])\n"
+        "el.load_scene('mathieu').system(), el.FourBar, el.simulate, el.stability_chart\n"
+        "print([name for name in heavy if name in sys.modules])\n"
+    )
+    assert python(code).splitlines() == ["[]", "['numpy', 'scipy']"]

@@ -50,9 +50,8 @@ def linear_periodic(
     q, qd = list(equations.coordinates), list(equations.velocities)
 
     def plain(matrix: sp.Matrix) -> sp.Matrix:
-        return matrix.applyfunc(
-            lambda e: sp.expand(in_crank_angle(e, crank, equations.t, followers or {}))
-        )
+        values = followers or {}
+        return matrix.applyfunc(lambda e: in_crank_angle(e, crank, equations.t, values).expand())
 
     mass, residual = plain(equations.mass), plain(equations.rest - equations.forces)
     found, forcing, damping, turning = _read_off(residual, q, qd, crank)

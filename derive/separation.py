@@ -187,8 +187,8 @@ def _explicit_groups(
         # One sign of each matrix, so that functions of angle which differ in sign alone share it.
         negative = angle != 1 and next(item for item in numbers if item != 0) < 0
         sign = -1 if negative else 1
-        key = (scale, sign * numbers, angle == 1)
-        found[key] = found.get(key, sp.Integer(0)) + sign * angle
+        shared = (scale, sign * numbers, angle == 1)
+        found[shared] = found.get(shared, sp.Integer(0)) + sign * angle
     zero = sp.Integer(0)
     return [_Group(name, s, angle, _Modal(zero, zero, e)) for (s, e, _), angle in found.items()]
 

@@ -10,7 +10,7 @@ turns fully, so that no digit is lost near a dead centre.
 
 Cost per evaluation:
     motion: 163 operations
-Content hash 2b028d9fa01c3c23a47ae69d2f9f085d; derived with SymPy 1.14.0.
+Content hash 909a371cdd732bd5c06b8bd83452bd4b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "2b028d9fa01c3c23a47ae69d2f9f085d"
+CONTENT = "909a371cdd732bd5c06b8bd83452bd4b"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -7,7 +7,7 @@ Equations: Smith (7.23), (7.25); Smith (7.46), (7.49).
 
 Cost per evaluation:
     first_order: 14 operations
-Content hash a5f93871a941c5c6e50ea412d63ca4ca; derived with SymPy 1.14.0.
+Content hash cda36274930469ec778141d9e5816e58; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hi'
     'll","modes":null,"outputs":[]}'
 )
-CONTENT = "a5f93871a941c5c6e50ea412d63ca4ca"
+CONTENT = "cda36274930469ec778141d9e5816e58"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

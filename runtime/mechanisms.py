@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -181,13 +181,13 @@ class FourBar:
         """
         angles = _finite(theta)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            values = four_bar_kinematics.motion(
+            values = _MOTION(
                 angles,
                 **self._unit_lengths,
                 assembly=self.branch,
                 winding=float(self.crank > self.frame),
             )
-        arrays = dict(zip(_OUTPUTS, map(np.asarray, values), strict=True))
+        arrays: dict[str, Any] = dict(zip(_OUTPUTS, map(np.asarray, values), strict=True))
         self._require_reached(angles, arrays)
         closure = self._closure(angles, arrays["theta3"], arrays["theta4"])
         limit = 64 * np.finfo(float).eps * np.max(np.abs(angles), initial=1.0)
@@ -246,6 +246,7 @@ class FourBar:
             )
 
 
+_MOTION: Callable[..., tuple[Array, ...]] = four_bar_kinematics.motion
 _OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")
 
 

@@ -188,7 +188,8 @@ def _plain(value: np.ndarray[Any, Any]) -> Any:
         return {"real": _plain(value.real), "imag": _plain(value.imag)}
     if value.dtype.kind != "f":
         return value.tolist()
-    nested = np.where(np.isfinite(value), value, None)
+    nested = value.astype(object)
+    nested[~np.isfinite(value)] = None
     return nested.tolist()
 
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..periodic import PeriodicFunction
 from ..results import Result
+from ..series.periodic import PeriodicFunction
 
 Array = NDArray[np.float64]
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..periodic import PeriodicFunction
+from ..series.periodic import PeriodicFunction
 
 Real = np.longdouble
 Reals = NDArray[np.longdouble]

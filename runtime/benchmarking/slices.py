@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.linalg import eig_banded
 
 from ..errors import bad
-from ..hill_matrix import Boundaries, hill_boundaries
-from ..periodic import PeriodicFunction
+from ..hill.matrix import Boundaries, hill_boundaries
 from ..results import Check
+from ..series.periodic import PeriodicFunction
 from .records import Benchmark, Contender, Row, compare, functions, one_thread
 
 Array = NDArray[np.float64]

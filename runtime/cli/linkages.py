@@ -126,7 +126,7 @@ def _simulate(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     speed = 1.0 if _without_crank(scene, options) else speed_of(options, scene)
     system = scene.system()
-    from ..simulation import simulate
+    from ..simulation.trajectory import simulate
 
     chosen = {name: getattr(options, name) for name in ("method", "initial", "steps")}
     given = {name: value for name, value in chosen.items() if value is not None}

@@ -11,8 +11,8 @@ from . import options as opt
 from .linkages import speed_of
 
 if TYPE_CHECKING:
-    from ..charts import StabilityChart
-    from ..floquet import FloquetMultipliers
+    from ..charts.chart import StabilityChart
+    from ..floquet.monodromy_matrix import FloquetMultipliers
     from ..scenes import Scene
 
 _POINTS = 201
@@ -60,7 +60,7 @@ def _stability(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     speeds = _speeds(options, scene)
     system = scene.system()
-    from ..floquet import floquet_multipliers
+    from ..floquet.monodromy_matrix import floquet_multipliers
 
     result = floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
     return opt.finish(options, result, _multiplier_lines(result, scene))
@@ -115,7 +115,7 @@ def _chart(options: argparse.Namespace) -> int:
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
-    from ..charts import stability_chart
+    from ..charts.chart import stability_chart
 
     chart = stability_chart(system, x=x, y=y, marks=_marks(scene, y))
     return opt.finish(options, chart, _chart_lines(chart, scene))

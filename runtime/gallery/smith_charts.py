@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill import discriminant
-from ..hill_matrix import hill_boundaries
-from ..hill_perturbation import perturbation_boundaries
+from ..hill.half_trace import discriminant
+from ..hill.matrix import hill_boundaries
+from ..hill.perturbation import perturbation_boundaries
 from ..mechanisms import FourBar
-from ..periodic import PeriodicFunction
+from ..series.periodic import PeriodicFunction
 from .records import Drawn, Quoted
 from .smith_linkages import Array, end_load, f3_series
 from .style import COLOURS, legend_below, panel_title

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill_perturbation import perturbation_boundaries
-from ..speed_boundaries import speed_boundaries
+from ..floquet.speeds import speed_boundaries
+from ..hill.perturbation import perturbation_boundaries
 from .records import Drawn, Quoted, Table
 from .smith_linkages import (
     EQUATIONS,

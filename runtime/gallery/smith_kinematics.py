@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..mechanisms import FourBar, Motion
-from ..periodic import PeriodicFunction
+from ..series.periodic import PeriodicFunction
 from .records import Drawn, Quoted
 from .smith_linkages import PROPORTIONS, Array, EndLoad, end_load, linkage_of
 from .style import COLOURS, crank_axis, legend_below

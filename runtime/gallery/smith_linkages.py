@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..families import LinearPeriodic
-from ..hill_form import HillForm, hill_form
-from ..hill_matrix import hill_boundaries
+from ..hill.form import HillForm, hill_form
+from ..hill.matrix import hill_boundaries
 from ..mechanisms import FourBar
-from ..periodic import PeriodicFunction
 from ..scenes import load_scene
+from ..series.periodic import PeriodicFunction
 
 Array = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from ..errors import StepTooLongWarning
 from ..families import LinearPeriodic
-from ..hill import discriminant
+from ..hill.half_trace import discriminant
 from ..scenes import load_scene
-from ..simulation import Trajectory, simulate
+from ..simulation.trajectory import Trajectory, simulate
 from .records import Drawn, Quoted
 from .smith_linkages import Array, f3_series, linkage_of
 from .style import COLOURS, crank_axis, legend_below, panel_title

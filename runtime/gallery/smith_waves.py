@@ -12,9 +12,9 @@ import numpy as np
 
 from ..errors import LinearRangeWarning
 from ..families import LinearPeriodic
-from ..hill import discriminant
+from ..hill.half_trace import discriminant
 from ..scenes import load_scene
-from ..simulation import simulate
+from ..simulation.trajectory import simulate
 from .records import Drawn, Quoted
 from .smith_linkages import RIG, Array
 from .style import COLOURS, crank_axis, legend_below

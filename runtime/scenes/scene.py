@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 # Where each mechanism's equations become a family object; imported when one is asked for.
 _BUILDERS = {
-    "four_bar": ("..couplers", "coupler_system"),
-    "hill": ("..hill_system", "hill_system"),
+    "four_bar": ("..systems.coupler", "coupler_system"),
+    "hill": ("..systems.hill", "hill_system"),
 }
 _OWN_BUILDER = (".own", "own_system")
 # Keys that no file gives and that follow from the others.

@@ -8,8 +8,8 @@ from elastolink.runtime.benchmarking.records import Contender, compare, function
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.benchmarking.slices import banded_boundaries
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.hill_matrix import hill_boundaries
-from elastolink.runtime.periodic import PeriodicFunction
+from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.series.periodic import PeriodicFunction
 
 PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.firstorder import canonical_form
+from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.integrators import METHODS
 from elastolink.runtime.integrators.gauss_legendre import gauss_legendre
-from elastolink.runtime.marching import make_grid, march
+from elastolink.runtime.simulation.marching import make_grid, march
 
 SPEED = 3.0
 START = (np.array([0.3, -0.2]), np.array([0.1, 0.4]))

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.reference import half_traces
-from elastolink.runtime.hill import discriminant, discriminant_grid
-from elastolink.runtime.hill_matrix import hill_boundaries
-from elastolink.runtime.periodic import PeriodicFunction
+from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
+from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.series.periodic import PeriodicFunction
 
 pytestmark = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import elastolink as el
 import numpy as np
 import pytest
-
-import elastolink as el
-from elastolink.runtime.stability_polynomial import characteristic, largest_modulus
+from elastolink.runtime.charts.invariants import characteristic, largest_modulus
 
 RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = np.linspace(40.0, 99.0, 61)
@@ -60,7 +59,7 @@ def test_shading_agrees_with_exact_boundaries(undamped):
         j = int(np.argmin(np.abs(curves.at - inertia)))
         assert abs(curves.at[j] - inertia) < 1e-12
         # lower in lam2 is the higher speed
-        inside = (SPEEDS < curves.lower[:, j, None]) & (SPEEDS > curves.upper[:, j, None])
+        inside = (curves.lower[:, j, None] > SPEEDS) & (curves.upper[:, j, None] < SPEEDS)
         assert np.array_equal(~undamped.stable[i], np.any(inside, axis=0))
 
 

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from elastolink.runtime import chebyshev
+from elastolink.runtime.series import chebyshev as chebyshev
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import scipy.linalg
 from elastolink.generated import four_bar_coupler_complete, hill_plain
-from elastolink.runtime.assembly import assemble
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import (
     MATRICES,
@@ -20,6 +19,7 @@ from elastolink.runtime.families import (
     array_function,
 )
 from elastolink.runtime.families.emitted import check_module, parameter_values, stacked
+from elastolink.runtime.systems.assembly import assemble
 
 
 def named(*names: str):

@@ -7,7 +7,11 @@ import pytest
 import scipy.linalg
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import floquet_multipliers, monodromy, symplectic_unit
+from elastolink.runtime.floquet.monodromy_matrix import (
+    floquet_multipliers,
+    monodromy,
+    symplectic_unit,
+)
 
 
 def _named(names):

@@ -20,10 +20,10 @@ from elastolink.runtime.gallery.smith_linkages import (
 from elastolink.runtime.gallery.smith_observations import OBSERVATIONS
 from elastolink.runtime.gallery.smith_waves import _system, periodic_response
 from elastolink.runtime.gallery.writing import write_together
-from elastolink.runtime.hill_matrix import hill_boundaries
-from elastolink.runtime.periodic import PeriodicFunction
+from elastolink.runtime.hill.matrix import hill_boundaries
 from elastolink.runtime.scenes import load_scene
-from elastolink.runtime.simulation import simulate
+from elastolink.runtime.series.periodic import PeriodicFunction
+from elastolink.runtime.simulation.trajectory import simulate
 
 QUICK = ("6", "7", "27", "28", "29", "32", "33", "34", "35", "36", "45", "83", "87")
 

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.hill import discriminant
-from elastolink.runtime.hill_matrix import hill_boundaries
-from elastolink.runtime.periodic import PeriodicFunction
+from elastolink.runtime.hill.half_trace import discriminant
+from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.series.periodic import PeriodicFunction
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -3,8 +3,8 @@ import pytest
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.hill import discriminant, discriminant_grid
-from elastolink.runtime.periodic import PeriodicFunction
+from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
+from elastolink.runtime.series.periodic import PeriodicFunction
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.hill_matrix import hill_boundaries
-from elastolink.runtime.hill_perturbation import perturbation_boundaries
-from elastolink.runtime.periodic import PeriodicFunction
+from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.hill.perturbation import perturbation_boundaries
+from elastolink.runtime.series.periodic import PeriodicFunction
 
 FUNCTIONS = functions()
 

@@ -15,7 +15,7 @@ import elastolink.generated
 import pytest
 from elastolink.derive.regenerate import main
 from elastolink.derive.spec import MANIFEST, ModelSpec
-from elastolink.runtime.modules import find_module, search_path
+from elastolink.runtime.systems.modules import find_module, search_path
 
 PACKAGED = Path(elastolink.generated.__path__[0])
 HILL = ModelSpec("hill", "plain")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.mechanisms import FourBar
-from elastolink.runtime.periodic import PeriodicFunction, segment_values
+from elastolink.runtime.series.periodic import PeriodicFunction, segment_values
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -272,6 +272,7 @@ def test_listing_scenes_loads_no_heavy_package():
 @pytest.fixture
 def own_module(tmp_path, monkeypatch):
     """A module of an own mechanism: the packaged reduced coupler under another spec."""
+    import hashlib
     import json
     from dataclasses import asdict
     from pathlib import Path
@@ -280,8 +281,10 @@ def own_module(tmp_path, monkeypatch):
 
     spec = ModelSpec("own_linkage", "reduced", flexible=("coupler",))
     source = Path(generated.__path__[0]) / "four_bar_coupler_reduced.py"
-    (tmp_path / "own_module.py").write_bytes(source.read_bytes())
-    row = {"module": "own_module", "spec": asdict(spec), "content": "0" * 32, "text": ""}
+    text = source.read_bytes()
+    (tmp_path / "own_module.py").write_bytes(text)
+    digest = hashlib.sha256(text).hexdigest()
+    row = {"module": "own_module", "spec": asdict(spec), "content": "0" * 32, "text": digest}
     (tmp_path / "manifest.json").write_text(json.dumps({"modules": {spec.key(): row}}))
     monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
     return spec

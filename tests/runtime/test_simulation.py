@@ -7,7 +7,7 @@ import pytest
 from elastolink.runtime.errors import BadInput, LinearRangeWarning, StepTooLongWarning
 from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.integrators import METHODS, SCIPY_METHODS
-from elastolink.runtime.simulation import Trajectory, simulate
+from elastolink.runtime.simulation.trajectory import Trajectory, simulate
 
 ALL = (*sorted(METHODS), *SCIPY_METHODS)
 NUMBERS = {"stiffness": 50.0, "damping": 0.0, "f": 0.4, "h": 3.0, "p": 7.0, "depth": 0.0}
@@ -265,8 +265,8 @@ def test_leaving_the_linear_range_is_told():
 
 
 def test_energy_balance_catches_a_wrong_motion():
-    from elastolink.runtime.energy import energy_balance
-    from elastolink.runtime.firstorder import canonical_form
+    from elastolink.runtime.floquet.first_order import canonical_form
+    from elastolink.runtime.simulation.energy import energy_balance
 
     system, _ = _turned((3.0, 5.0))
     run = simulate(system, 1.7, 3.0, initial=([0.2, -0.1], 0.0))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import floquet_multipliers, monodromy
-from elastolink.runtime.hill_matrix import hill_boundaries
-from elastolink.runtime.periodic import PeriodicFunction
-from elastolink.runtime.speed_boundaries import speed_boundaries
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
+from elastolink.runtime.floquet.speeds import speed_boundaries
+from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.series.periodic import PeriodicFunction
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 

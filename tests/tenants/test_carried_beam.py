@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 from elastolink.derive.spec import ModelSpec
-from elastolink.runtime.assembly import assemble
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.modules import find_module
-from elastolink.runtime.simulation import simulate
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.simulation.trajectory import simulate
+from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems.modules import find_module
 
 GEOMETRY = {"radius": 0.12, "rocking": 0.5, "length": 0.7}
 PARAMETERS = {

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.derive.spec import ModelSpec
-from elastolink.runtime.assembly import assemble
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.simulation import simulate
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.simulation.trajectory import simulate
+from elastolink.runtime.systems.assembly import assemble
 
 LENGTH, TRAVEL = 2.0, 0.6
 PARAMETERS = {"modal_mass": 1.3, "stiffness": 40.0, "slider_mass": 0.5, "gravity": 9.81}

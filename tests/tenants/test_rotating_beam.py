@@ -8,9 +8,9 @@ import pytest
 import scipy.linalg
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.families import LinearPeriodic, Term, array_function
-from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.simulation import simulate
-from elastolink.runtime.speed_boundaries import speed_boundaries
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.floquet.speeds import speed_boundaries
+from elastolink.runtime.simulation.trajectory import simulate
 from scipy.integrate import solve_ivp
 
 UNIT = {

@@ -1,0 +1,15 @@
+"""Floquet analysis of linear periodic systems: monodromy, multipliers, critical speeds."""
+
+from __future__ import annotations
+
+from .monodromy_matrix import FloquetMultipliers, Monodromy, floquet_multipliers, monodromy
+from .speeds import SpeedBoundaries, speed_boundaries
+
+__all__ = [
+    "FloquetMultipliers",
+    "Monodromy",
+    "SpeedBoundaries",
+    "floquet_multipliers",
+    "monodromy",
+    "speed_boundaries",
+]

@@ -1,0 +1,453 @@
+"""Canonical first-order form of a linear periodic system, with the crank angle as variable.
+
+The state is y = (q, p) with p = M q' + A q, so no derivative of a coefficient occurs and the flow
+is symplectic where the system is undamped.  Angle-dependent arrays are evaluated once for all
+speeds and parameter values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..families import LinearPeriodic, Term
+
+Array = NDArray[np.float64]
+
+# Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
+# divided by speed^2; S and g act only when the crank accelerates.
+SPEED_POWER = {"M": 0, "A": 0, "B": 0, "C": -1, "K": -2, "Kg": -2, "f": 0, "h": -1, "p": -2}
+
+
+@dataclass(frozen=True)
+class CanonicalForm:
+    """The system at given speeds and parameter values, ready to be sampled over the crank angle.
+
+    Make it with :func:`canonical_form`.  Inside it the batch is flat.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        The system.
+    speed : ndarray
+        Crank speeds [rad/s], shape ``(nb,)``.
+    factors : ndarray
+        Factor of each term, speed included, shape ``(number of terms, nb)``.
+    batch : tuple of int
+        Shape of the batch seen from outside.
+    forced : bool
+        Whether the generator carries a last component, always 1, through which forcing acts.
+    """
+
+    system: LinearPeriodic
+    speed: Array
+    factors: Array
+    batch: tuple[int, ...]
+    forced: bool
+
+    @property
+    def size(self) -> int:
+        """Number of components of the state: 2n, and one more where forced."""
+        return 2 * self.system.size + int(self.forced)
+
+    @property
+    def damped(self) -> bool:
+        """True where some damping term has a non-zero factor."""
+        return any(
+            term.array == "C" and bool(np.any(factor))
+            for term, factor in zip(self.system.terms, self.factors, strict=True)
+        )
+
+    @cached_property
+    def conservative(self) -> bool:
+        """True where the flow is symplectic: no damping, and B, K and Kg symmetric."""
+        theta = even_angles(self.system.period, 8)
+        found = [] if self.damped else [self.assemble(a, theta) for a in ("B", "K", "Kg")]
+        return not self.damped and all(
+            value is None
+            or np.max(np.abs(value - np.swapaxes(value, -1, -2))) <= 1e-13 * np.max(np.abs(value))
+            for value in found
+        )
+
+    @property
+    def constant(self) -> bool:
+        """True where nothing depends on the crank angle."""
+        used = "MABC" + ("fhp" if self.forced else "")
+        names = (*used, "K", "Kg")
+        return all(term.constant for term in self.system.terms if term.array in names)
+
+    def take(self, index: slice | NDArray[np.intp]) -> CanonicalForm:
+        """Return the form for a part of the flat batch."""
+        factors = self.factors[:, index]
+        return replace(self, speed=self.speed[index], factors=factors, batch=(factors.shape[1],))
+
+    def assemble(self, names: str | tuple[str, ...], theta: Array) -> Array | None:
+        """Return the sum of arrays at crank angles; None where no term belongs to them.
+
+        Parameters
+        ----------
+        names : str or tuple of str
+            Arrays to add.
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nb, nt, n, n)``, or ``(nb, nt, n)``; nt is 1 where no term depends on the
+            angle.
+        """
+        wanted = (names,) if isinstance(names, str) else names
+        pairs = [
+            (term, factor)
+            for term, factor in zip(self.system.terms, self.factors, strict=True)
+            if term.array in wanted and np.any(factor)
+        ]
+        if not pairs:
+            return None
+        angles = theta[:1] if all(term.constant for term, _ in pairs) else theta
+        samples = np.stack([_sample(term, angles) for term, _ in pairs])
+        factors = np.stack([factor for _, factor in pairs], axis=1)
+        flat = factors @ samples.reshape(len(pairs), -1)
+        shaped: Array = flat.reshape(len(self.speed), *samples.shape[1:])
+        return shaped
+
+    def generator(self, theta: Array) -> Array:
+        """Return L of y' = L(theta) y at crank angles.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(nb, nt, m, m)`` in the scaled state (q/s, p s), s from :attr:`scale`.
+
+        Raises
+        ------
+        BadInput
+            If a mass matrix is singular.
+        """
+        n = self.system.size
+        flexibility = self._inverse_mass(theta)
+        gyro = self.assemble("A", theta)
+        damping = self.assemble("C", theta)
+        inertia = self.assemble("B", theta)
+        stiffness = self.assemble(("K", "Kg"), theta)
+        out: Array = np.zeros((len(self.speed), len(theta), self.size, self.size))
+        out[..., :n, n : 2 * n] = flexibility
+        if inertia is not None:
+            out[..., n : 2 * n, :n] += inertia
+        if stiffness is not None:
+            out[..., n : 2 * n, :n] -= stiffness
+        # q' = M^-1 (p - A q) enters p' through A^T - C.
+        feedback: Array | None = None if damping is None else -damping
+        if gyro is not None:
+            transposed = np.swapaxes(gyro, -1, -2)
+            feedback = transposed if feedback is None else feedback + transposed
+            out[..., :n, :n] = -(flexibility @ gyro)
+        if feedback is not None:
+            through = feedback @ flexibility
+            out[..., n : 2 * n, n : 2 * n] = through
+            if gyro is not None:
+                out[..., n : 2 * n, :n] -= through @ gyro
+        if self.forced:
+            force = self.assemble(("f", "h", "p"), theta)
+            if force is not None:
+                out[..., n : 2 * n, -1] = force
+        scale = self.scale[:, None, :]
+        out /= scale[..., :, None]
+        out *= scale[..., None, :]
+        return out
+
+    def trace(self, theta: Array) -> Array:
+        """Return the trace of L, ``-trace(M^-1 C)/speed``; shape ``(nb, nt)``."""
+        damping = self.assemble("C", theta)
+        if damping is None:
+            return np.zeros((len(self.speed), len(theta)))
+        product = np.einsum("...ij,...ji->...", self._inverse_mass(theta), damping)
+        return -np.broadcast_to(product, (len(self.speed), len(theta)))
+
+    def momentum(self, theta: float, q: Array, slope: Array) -> Array:
+        """Return p = M q' + A q at one angle for the first member of the batch."""
+        at = np.array([theta])
+        mass = self.assemble("M", at)
+        gyro = self.assemble("A", at)
+        value: Array = self.require_mass(mass)[0, 0] @ slope
+        return value if gyro is None else value + gyro[0, 0] @ q
+
+    def slope(self, theta: Array, q: Array, p: Array) -> Array:
+        """Return q' = M^-1 (p - A q) along a motion of the first member of the batch.
+
+        Shapes: ``theta (nt,)``, ``q``, ``p`` and the result ``(nt, n)``.
+        """
+        gyro = self.assemble("A", theta)
+        if gyro is not None:
+            p = p - (gyro[0] @ q[:, :, None])[:, :, 0]
+        value: Array = (self._inverse_mass(theta)[0] @ p[:, :, None])[:, :, 0]
+        return value
+
+    def require_mass(self, mass: Array | None) -> Array:
+        """Return the mass matrix; raise :class:`BadInput` where the system has none."""
+        if mass is None:
+            raise bad(
+                "LinearPeriodic.terms", "no mass term M", "a positive definite M", "add the term"
+            )
+        return mass
+
+    def _inverse_mass(self, theta: Array) -> Array:
+        mass = self.require_mass(self.assemble("M", theta))
+        if mass.shape[-1] == 1:
+            return 1.0 / mass
+        return np.linalg.inv(mass).astype(np.float64)
+
+    @cached_property
+    def mean(self) -> Mapping[str, Array]:
+        """Mean over the period of M, A, B, C and of the stiffness K + Kg; each ``(nb, n, n)``."""
+        theta = even_angles(self.system.period, 64)
+        n = self.system.size
+        found = {}
+        for name in ("M", "A", "B", "C", "K"):
+            value = self.assemble(("K", "Kg") if name == "K" else name, theta)
+            found[name] = np.zeros((len(self.speed), n, n)) if value is None else value.mean(axis=1)
+        return found
+
+    @cached_property
+    def frequency(self) -> Array:
+        """Highest natural frequency over the speed, from mean K + Kg and M; shape ``(nb,)``."""
+        highest: Array = np.sqrt(self._spectral("K"))
+        return highest
+
+    @cached_property
+    def rate(self) -> Array:
+        """Largest rate of change of the state per radian, to choose a step; shape ``(nb,)``."""
+        turning = 2 * np.pi / self.system.period
+        own = np.sqrt(self._spectral("K") + self._spectral("B"))
+        return np.maximum(turning, own + self._spectral("C") + self._spectral("A"))
+
+    @cached_property
+    def activity(self) -> Array:
+        """Mean size of the generator over the period, which scales round-off; shape ``(nb,)``."""
+        values = self.generator(even_angles(self.system.period, 16))
+        n = 2 * self.system.size
+        sizes = np.linalg.norm(values[..., :n, :n], axis=(-2, -1))
+        mean: Array = np.mean(sizes, axis=1)
+        return mean
+
+    def _spectral(self, name: str) -> Array:
+        """Return the spectral norm of a mean matrix in coordinates of unit mass."""
+        cholesky = np.linalg.cholesky(self.mean["M"])
+        half = np.linalg.solve(cholesky, self.mean[name])
+        reduced = np.linalg.solve(cholesky, np.swapaxes(half, -1, -2))
+        norm: Array = np.linalg.norm(reduced, ord=2, axis=(-2, -1)).astype(np.float64)
+        return norm
+
+    @cached_property
+    def scale(self) -> Array:
+        """Scale of each component of the state, shape ``(nb, m)``.
+
+        Displacement and momentum of a harmonic oscillator of the mean mass and stiffness get like
+        sizes; the scaling is symplectic.
+        """
+        mass = np.diagonal(self.mean["M"], axis1=-2, axis2=-1)
+        stiffness = np.abs(np.diagonal(self.mean["K"], axis1=-2, axis2=-1))
+        size = (mass * np.maximum(stiffness, mass)) ** -0.25
+        # Powers of two make the scaling free of rounding.
+        size = np.exp2(np.round(np.log2(size))).astype(np.float64)
+        parts = [size, 1 / size]
+        if self.forced:
+            parts.append(np.ones((len(size), 1)))
+        return np.concatenate(parts, axis=-1)
+
+
+def even_angles(period: float, count: int) -> Array:
+    """Return ``count`` angles that divide a period evenly, from 0; shape ``(count,)`` [rad]."""
+    return np.linspace(0.0, period, count, endpoint=False, dtype=np.float64)
+
+
+def canonical_form(
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    parameters: Mapping[str, ArrayLike] | None = None,
+    *,
+    forcing: bool = False,
+) -> CanonicalForm:
+    """Return the canonical form of a system at speeds and parameter values that broadcast.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    speed : array_like
+        Crank speeds [rad/s], positive.
+    parameters : mapping, optional
+        Parameter values that replace the system's own.
+    forcing : bool
+        Whether forcing is carried along; it is left out where the system has none.
+
+    Raises
+    ------
+    BadInput
+        If a speed is not positive and finite, a parameter is unknown or not finite, shapes do not
+        broadcast, or a mass matrix is not positive definite.
+    """
+    speeds = np.asarray(speed, dtype=float)
+    if not (np.all(np.isfinite(speeds)) and np.all(speeds > 0)):
+        raise bad("speed", speed, "positive finite speeds [rad/s]", "leave out speeds <= 0")
+    changes = {name: np.asarray(value, dtype=float) for name, value in (parameters or {}).items()}
+    for name, value in changes.items():
+        if not np.all(np.isfinite(value)):
+            raise bad(name, value, "finite numbers", "correct the parameter")
+    try:
+        batch = np.broadcast_shapes(speeds.shape, *(v.shape for v in changes.values()))
+    except ValueError as mismatch:
+        shapes = {"speed": speeds.shape, **{k: v.shape for k, v in changes.items()}}
+        raise bad(
+            "speed and parameters", shapes, "shapes that broadcast", "add axes of length 1"
+        ) from mismatch
+    scales = system.scale_values(**changes)
+    flat_speed = np.broadcast_to(speeds, batch).reshape(-1)
+    factors = np.zeros((len(system.terms), len(flat_speed)))
+    for row, term in zip(factors, system.terms, strict=True):
+        if term.array in SPEED_POWER:
+            scale = 1.0 if term.scale is None else scales[term.scale]
+            power = SPEED_POWER[term.array] + term.power
+            row[:] = np.broadcast_to(scale, batch).reshape(-1) * flat_speed**power
+    forced = forcing and any(term.array in ("f", "h", "p") for term in system.terms)
+    form = CanonicalForm(system, flat_speed, factors, batch, forced)
+    _check_mass(form)
+    return form
+
+
+def _check_mass(form: CanonicalForm) -> None:
+    """Raise where the mass matrix is not symmetric and positive definite."""
+    theta = even_angles(form.system.period, 8)
+    mass = form.require_mass(form.assemble("M", theta))
+    asymmetry = np.max(np.abs(mass - np.swapaxes(mass, -1, -2)))
+    lowest = np.min(np.linalg.eigvalsh(mass)) if np.all(np.isfinite(mass)) else np.nan
+    if not lowest > 0 or asymmetry > 1e-10 * np.max(np.abs(mass)):
+        raise bad(
+            "mass matrix M",
+            f"smallest eigenvalue {lowest:.3g}, asymmetry {asymmetry:.3g}",
+            "a symmetric positive definite matrix at every angle and parameter value",
+            "check masses, inertias and parameter values",
+        )
+
+
+def _sample(term: Term, theta: Array) -> Array:
+    return np.asarray(term(theta), dtype=float)
+
+
+def spring_generator(form: CanonicalForm) -> Callable[[Array], Array]:
+    """Return P of y'' = P(theta) y for a system without first derivatives.
+
+    With forcing, y carries a last component that stays 1.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+        The system at one or more speeds.
+
+    Returns
+    -------
+    callable
+        From angles ``(nt,)`` to ``(nb, nt, m, m)``, m = n or n + 1.
+
+    Raises
+    ------
+    BadInput
+        If damping C or the gyroscopic matrix G = M' + A - A^T does not vanish.
+    """
+    theta = even_angles(form.system.period, 64)
+    gyro = form.assemble("A", theta)
+    found = []
+    if form.damped:
+        found.append("damping C")
+    if not form.system.is_constant("M"):
+        found.append("a mass matrix that depends on the crank angle")
+    if gyro is not None:
+        skew = np.max(np.abs(gyro - np.swapaxes(gyro, -1, -2)))
+        if skew > 1e-13 * np.max(np.abs(gyro)):
+            found.append("a gyroscopic matrix A - A^T")
+    if found:
+        raise bad(
+            "de_vogelaere",
+            " and ".join(found),
+            "an equation without first derivatives",
+            "use gauss_legendre, magnus4 or rk4, or leave the term out",
+        )
+    slope = None
+    if gyro is not None and not form.system.is_constant("A"):
+        slope = periodic_derivative(lambda at: _dense(form, "A", at), form.system.period)
+    n = form.system.size
+
+    def generator(angles: Array) -> Array:
+        total = np.zeros((len(form.speed), len(angles), n, n))
+        for sign, names in ((-1.0, ("K", "Kg")), (1.0, ("B",))):
+            value = form.assemble(names, angles)
+            if value is not None:
+                total += sign * value
+        if slope is not None:
+            total -= slope(angles)
+        inverse = np.linalg.inv(form.require_mass(form.assemble("M", angles)))
+        out = np.zeros((len(form.speed), len(angles), n + form.forced, n + form.forced))
+        out[..., :n, :n] = inverse @ total
+        force = form.assemble(("f", "h", "p"), angles) if form.forced else None
+        if force is not None:
+            out[..., :n, n] = np.einsum("...ij,...j->...i", inverse, force)
+        return out
+
+    return generator
+
+
+def _dense(form: CanonicalForm, name: str, theta: Array) -> Array:
+    value = form.assemble(name, theta)
+    n = form.system.size
+    return np.zeros((len(form.speed), len(theta), n, n)) if value is None else value
+
+
+def periodic_derivative(
+    function: Callable[[Array], Array], period: float
+) -> Callable[[Array], Array]:
+    """Return d/dtheta of a smooth periodic matrix function, by its Fourier series.
+
+    Parameters
+    ----------
+    function : callable
+        From angles ``(nt,)`` to ``(nb, nt, n, n)``.
+    period : float
+        Its period [rad].
+
+    Raises
+    ------
+    BadInput
+        If 4096 samples do not resolve the function to round-off.
+    """
+    count = 32
+    while True:
+        values = function(even_angles(period, count))
+        coefficients = np.fft.rfft(values, axis=1) / count
+        top = np.max(np.abs(coefficients))
+        if np.max(np.abs(coefficients[:, count // 3 :])) <= 1e-14 * top:
+            break
+        count *= 2
+        if count > 4096:
+            raise bad(
+                "A", "a function that 4096 samples do not resolve", "a smooth one", "check it"
+            )
+    rate = 2j * np.pi / period * np.arange(count // 3)
+    weights = 2 * rate[:, None, None] * coefficients[:, : count // 3]
+
+    def derivative(theta: Array) -> Array:
+        waves = np.exp(theta[:, None] * rate)
+        result: Array = np.real(np.einsum("tk,bkij->btij", waves, weights))
+        return result
+
+    return derivative

@@ -1,0 +1,391 @@
+"""Monodromy matrices and Floquet multipliers of linear periodic systems of any size."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..results import Check, Result
+from .eigenvalues import eigenvalues
+from .first_order import CanonicalForm, canonical_form, even_angles
+from .period_products import STAGES, period_product
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_EPS = float(np.finfo(float).eps)
+# Phase that the first try lets pass per segment; collocation of order 16 is then near 1e-9.
+_PHASE = 3.0
+_MOST_SEGMENTS = 2**20
+
+
+@dataclass(frozen=True, kw_only=True)
+class Monodromy(Result):
+    """Monodromy matrices of the canonical variables (q, p = M q' + A q) over one period.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], shape ``batch``.
+    matrix : ndarray
+        Shape ``(*batch, 2n, 2n)``; the monodromy matrix is ``matrix * 2**exponent``.
+    exponent : ndarray
+        Power of two taken out where the growth would overflow, else 0; shape ``batch``.
+    scale : ndarray
+        Sizes of the state's components, shape ``(*batch, 2n)``; the error and the checks refer to
+        the scaled matrix ``matrix[i, j] * scale[j] / scale[i]``.
+    error : ndarray
+        Shape ``batch``, in the norm that ``error_norm`` names.
+    segments : ndarray
+        Number of collocation segments per period that were used, shape ``batch``.
+    """
+
+    speed: Array
+    matrix: Array
+    exponent: NDArray[np.int64]
+    scale: Array
+    segments: NDArray[np.int64]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+
+    @property
+    def scaled(self) -> Array:
+        """The matrices in scaled variables, shape ``(*batch, 2n, 2n)``."""
+        value: Array = self.matrix / self.scale[..., :, None] * self.scale[..., None, :]
+        return value
+
+    @property
+    def determinant(self) -> Array:
+        """Determinant of each monodromy matrix, shape ``batch``; may underflow with damping."""
+        sign, logarithm = np.linalg.slogdet(self.matrix)
+        shift = self.matrix.shape[-1] * self.exponent * np.log(2.0)
+        value: Array = sign * np.exp(logarithm + shift)
+        return value
+
+
+def monodromy(
+    system: LinearPeriodic, speed: ArrayLike, *, rtol: float = 1e-11, **parameters: ArrayLike
+) -> Monodromy:
+    """Return the monodromy matrix of the canonical variables over one period.
+
+    The equation is ``q' = M^-1 (p - A q)``, ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w`` with
+    theta as variable.  It is solved by Gauss-Legendre collocation of order 16; the number of
+    segments is doubled until two results agree.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system; forcing plays no part.
+    speed : array_like
+        Crank speeds w [rad/s], positive.
+    rtol : float
+        Wanted error, in the norm of ``error_norm``; 1e-13 to 1e-2.  Long periods with many
+        oscillations may not reach it, because of round-off: see ``error``.
+    **parameters : array_like
+        Parameter values that replace the system's own; they broadcast with ``speed``.
+
+    Returns
+    -------
+    Monodromy
+        Its checks: ``liouville``, the determinant against ``exp(-integral trace(M^-1 C)/w)``; and
+        ``symplectic``, the defect of ``X^T J X = J`` over ``|X|^2``, where conservative.
+
+    Raises
+    ------
+    BadInput
+        If speeds or parameters are unusable (see :func:`~.first_order.canonical_form`), or more
+        than a million segments would be needed.
+    """
+    if not 1e-13 <= rtol <= 1e-2:
+        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-11")
+    form = canonical_form(system, speed, parameters)
+    count = len(form.speed)
+    m = 2 * system.size
+    scaled = np.zeros((count, m, m))
+    exponent = np.zeros(count, dtype=np.int64)
+    error = np.zeros(count)
+    segments = np.zeros(count, dtype=np.int64)
+    for group, first in _groups(form):
+        part = form.take(group)
+        scaled[group], exponent[group], error[group], segments[group] = _refined(part, first, rtol)
+    checks = _monodromy_checks(form, scaled, exponent, error)
+    # The exponent stays only where the unscaled matrix would overflow.
+    size = np.log2(np.maximum(np.max(np.abs(scaled), axis=(-2, -1)), 1e-300)) + exponent
+    spread = 2 * np.max(np.abs(np.log2(form.scale)), axis=-1, initial=0.0)
+    kept = np.where(size + spread < 1000, 0, exponent)
+    scaled = np.ldexp(scaled, (exponent - kept)[:, None, None])
+    scale = form.scale
+    matrix = scaled * scale[:, :, None] / scale[:, None, :]
+    batch = form.batch
+    return Monodromy(
+        method=f"Gauss-Legendre collocation, order {2 * STAGES}",
+        error=error.reshape(batch),
+        error_norm="largest entry of the error, relative to the largest entry of the matrix, "
+        "both in scaled variables",
+        checks=checks,
+        provenance=dict(system.provenance),
+        speed=form.speed.reshape(batch),
+        matrix=matrix.reshape(*batch, m, m),
+        exponent=kept.reshape(batch),
+        scale=scale.reshape(*batch, m),
+        segments=segments.reshape(batch),
+    )
+
+
+def _groups(form: CanonicalForm) -> list[tuple[NDArray[np.intp], int]]:
+    """Split the batch by the number of segments to begin with, a power of two."""
+    wanted = np.maximum(form.rate * form.system.period / _PHASE, 2.0)
+    level = np.ceil(np.log2(wanted)).astype(int)
+    if np.max(level, initial=0) >= np.log2(_MOST_SEGMENTS):
+        worst = int(np.argmax(level))
+        raise bad(
+            "speed",
+            f"{form.speed[worst]:.6g} rad/s, where the highest mode turns through "
+            f"{form.rate[worst] * form.system.period:.3g} rad in a period",
+            f"at most {_PHASE * _MOST_SEGMENTS / 2:.3g} rad",
+            "raise the speed or leave out the highest modes",
+        )
+    return [(np.flatnonzero(level == value), 2 ** int(value)) for value in np.unique(level)]
+
+
+Refined = tuple[Array, NDArray[np.int64], Array, NDArray[np.int64]]
+
+
+def _refined(form: CanonicalForm, first: int, rtol: float) -> Refined:
+    """Double the number of segments until each matrix of the batch agrees with its forerunner."""
+    count = len(form.speed)
+    value, exponent = period_product(form, first)
+    error = np.full(count, np.inf)
+    used = np.full(count, first, dtype=np.int64)
+    open_: NDArray[np.intp] = np.arange(count)
+    before = np.ones(count)
+    number = first
+    while len(open_):
+        number *= 2
+        part = form.take(open_)
+        new, power = period_product(part, number)
+        difference = _distance(value[open_], exponent[open_], new, power)
+        rounding = _EPS * (4.0 + 0.5 * part.activity * form.system.period)
+        # The change overestimates the error of the finer result; where it shrinks as fast as the
+        # order promises, one more such shrinking is counted on, with a margin.
+        gain = np.clip(difference / before[open_], 1e-3, 1.0)
+        gain[difference > 1e-3] = 1.0
+        error[open_] = difference * gain + rounding
+        value[open_], exponent[open_], used[open_] = new, power, number
+        # Round-off, not truncation, where halving the segments no longer helps.
+        stuck = (difference > 0.25 * before[open_]) & (difference < 1e-3)
+        error[open_[stuck]] += 2 * difference[stuck]
+        done = (error[open_] <= rtol) | stuck
+        before[open_] = difference
+        open_ = open_[~done]
+        if 2 * number > _MOST_SEGMENTS:
+            break
+    return value, exponent, error, used
+
+
+def _distance(
+    first: Array, first_power: NDArray[np.int64], second: Array, second_power: NDArray[np.int64]
+) -> Array:
+    """Return the largest difference of entries over the largest entry of the second."""
+    shift = np.clip(first_power - second_power, -1000, 1000)
+    aligned = np.ldexp(first, shift[:, None, None])
+    top = np.max(np.abs(second), axis=(-2, -1))
+    distance: Array = np.max(np.abs(aligned - second), axis=(-2, -1)) / top
+    return np.where(np.isfinite(distance), distance, 1.0)
+
+
+def symplectic_unit(n: int) -> Array:
+    """Return J = [[0, I], [-I, 0]], shape ``(2n, 2n)``."""
+    return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
+
+
+def _trace_integral(form: CanonicalForm) -> Array:
+    """Return the integral of trace L over a period, by the trapezoidal rule on the circle."""
+    count = 64
+    before: Array | None = None
+    while True:
+        theta = even_angles(form.system.period, count)
+        value: Array = form.trace(theta).mean(axis=1) * form.system.period
+        if before is not None:
+            change = np.abs(value - before)
+            if np.all(change <= 1e-13 * np.abs(value)) or count >= 4096:
+                return value
+        before, count = value, 2 * count
+
+
+def _monodromy_checks(
+    form: CanonicalForm, scaled: Array, exponent: NDArray[np.int64], error: Array
+) -> Mapping[str, Check]:
+    """Liouville's determinant, and symplecticity where undamped, of the worst of the batch."""
+    n = form.system.size
+    norm = np.linalg.norm(scaled, axis=(-2, -1))
+    checks = {}
+    sign, logarithm = np.linalg.slogdet(scaled)
+    expected = _trace_integral(form) - 2 * n * exponent * np.log(2.0)
+    # A determinant is known to the error of the matrix times its condition.
+    with np.errstate(over="ignore"):
+        condition = np.linalg.cond(scaled)
+    known = condition * error < 0.01
+    gap = np.where(sign > 0, np.abs(logarithm - expected), np.inf) / np.maximum(condition, 1.0)
+    if np.any(known):
+        limit = 8 * n * float(np.max(error[known]))
+        checks["liouville"] = Check(float(np.max(gap[known])), limit)
+    if form.conservative:
+        unit = symplectic_unit(n)
+        shrink = np.ldexp(1.0, np.clip(-2 * exponent, -1060, 1000))[:, None, None]
+        defect = np.swapaxes(scaled, -1, -2) @ unit @ scaled - unit * shrink
+        worst = np.max(np.linalg.norm(defect, axis=(-2, -1)) / norm**2)
+        checks["symplectic"] = Check(float(worst), 8 * n * float(np.max(error)))
+    return checks
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloquetMultipliers(Result):
+    """Floquet multipliers: the eigenvalues of the monodromy matrix.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], shape ``batch``.
+    multipliers : ndarray of complex
+        Shape ``(*batch, 2n)``, by falling modulus, then by the size of the argument, upper half
+        plane first; inf where one overflows.
+    exponents : ndarray of complex
+        Their logarithms, growth and turning per period; finite where a multiplier overflows.
+    error : ndarray
+        Absolute error of each multiplier, shape ``(*batch, 2n)``: condition times error of the
+        matrix, or the square root that holds near a double multiplier.
+    period : float
+        Period of the coefficients [rad].
+    """
+
+    speed: Array
+    multipliers: ComplexArray
+    exponents: ComplexArray
+    period: float
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """True where no multiplier is outside the unit circle by more than its error."""
+        modulus = np.abs(self.multipliers)
+        inside = np.isfinite(modulus) & (modulus <= 1.0 + self.error)
+        value: NDArray[np.bool_] = np.all(inside, axis=-1)
+        return value
+
+    @property
+    def growth(self) -> Array:
+        """Largest growth rate of the logarithm of the amplitude [1/s], shape ``batch``."""
+        value: Array = np.max(self.exponents.real, axis=-1) * self.speed / self.period
+        return value
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the multipliers and the unit circle into ``ax`` and return the axes."""
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            ax = Figure().add_subplot()
+        circle = np.exp(1j * np.linspace(0.0, 2 * np.pi, 361))
+        ax.plot(circle.real, circle.imag, color="0.6", linewidth=0.8)
+        values = self.multipliers.ravel()
+        ax.plot(values.real, values.imag, "o", markersize=3)
+        ax.set_aspect("equal")
+        ax.set_xlabel("real part of multiplier")
+        ax.set_ylabel("imaginary part of multiplier")
+        return ax
+
+
+def floquet_multipliers(
+    system: LinearPeriodic, speed: ArrayLike, *, rtol: float = 1e-11, **parameters: ArrayLike
+) -> FloquetMultipliers:
+    """Return the Floquet multipliers over one period, each with its error.
+
+    Where growth hides the small multipliers in the rounding of the monodromy matrix, the product
+    of its segments is decomposed without being formed, so that all multipliers keep their digits.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system; forcing plays no part.
+    speed : array_like
+        Crank speeds [rad/s], positive.
+    rtol : float
+        Wanted error of the monodromy matrix, see :func:`monodromy`.
+    **parameters : array_like
+        Parameter values that replace the system's own; they broadcast with ``speed``.
+
+    Returns
+    -------
+    FloquetMultipliers
+        Its checks: those of the monodromy matrix, and ``product``, the product of the
+        multipliers against Liouville's determinant; ``reciprocal pairs`` where undamped.
+
+    Raises
+    ------
+    BadInput
+        As :func:`monodromy`.
+    """
+    matrices = monodromy(system, speed, rtol=rtol, **parameters)
+    form = canonical_form(system, speed, parameters)
+    count, m = len(form.speed), form.size
+    volume = _trace_integral(form)
+    logarithm, angle, error = eigenvalues(
+        form,
+        matrices.scaled.reshape(count, m, m),
+        matrices.exponent.reshape(count),
+        matrices.error.reshape(count),
+        matrices.segments.reshape(count),
+        volume,
+    )
+    with np.errstate(over="ignore"):
+        modulus, absolute = np.exp(logarithm), np.exp(error)
+    turning = np.cos(angle) + 1j * np.where(np.abs(angle) == np.pi, 0.0, np.sin(angle))
+    finite = np.isfinite(modulus)
+    values = np.where(finite, np.where(finite, modulus, 0.0) * turning, np.inf)
+    checks = {**matrices.checks, "product": _product(logarithm, error, volume)}
+    if form.conservative:
+        checks["reciprocal pairs"] = _reciprocal(logarithm, angle, error)
+    shape = (*form.batch, m)
+    return FloquetMultipliers(
+        method=f"eigenvalues of the monodromy matrix ({matrices.method})",
+        error=absolute.reshape(shape),
+        error_norm="absolute, of each multiplier",
+        checks=checks,
+        provenance=dict(system.provenance),
+        speed=form.speed.reshape(form.batch),
+        multipliers=values.reshape(shape),
+        exponents=(logarithm + 1j * angle).reshape(shape),
+        period=system.period,
+    )
+
+
+def _product(logarithm: Array, error: Array, volume: Array) -> Check:
+    """Product of the multipliers against the determinant, in logarithms, at the worst place."""
+    own = np.exp(np.minimum(error - np.maximum(logarithm, -1e4), 0.0))
+    limit = 2 * np.sum(own, axis=-1) + 64 * _EPS * (1 + np.abs(volume))
+    finite = np.all(np.isfinite(logarithm), axis=-1)
+    total = np.sum(np.where(np.isfinite(logarithm), logarithm, 0.0), axis=-1)
+    value = np.where(finite, np.abs(total - volume), 0.0)
+    worst = int(np.argmax(value / limit))
+    return Check(float(value[worst]), float(limit[worst]))
+
+
+def _reciprocal(logarithm: Array, angle: Array, error: Array) -> Check:
+    """How far the multipliers are from reciprocal pairs, at the worst place against the error."""
+    pair = logarithm[:, :, None] + logarithm[:, None, :]
+    turn = angle[:, :, None] + angle[:, None, :]
+    defect = np.abs(np.expm1(np.clip(pair, -50, 50) + 1j * turn))
+    partner = np.argmin(defect, axis=-1)
+    value = np.take_along_axis(defect, partner[..., None], axis=-1)[..., 0]
+    own = np.exp(np.clip(error - logarithm, -50, 50))
+    limit = 2 * (own + np.take_along_axis(own, partner, axis=-1)) + 64 * _EPS
+    worst = np.unravel_index(np.argmax(value / limit), value.shape)
+    return Check(float(value[worst]), float(limit[worst]))

@@ -1,0 +1,149 @@
+"""A single vibrating mode as Hill's equation: which part is constant, which is periodic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from ..errors import bad
+from ..families import Array, LinearPeriodic, Term
+from ..series.periodic import PeriodicFunction
+
+
+@dataclass(frozen=True)
+class HillForm:
+    """``q'' + (c/w) q' + (k/w^2 + f(theta) + g(theta)/w^2) q = 0`` at crank speed w.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        The system with one degree of freedom.
+    inertial : tuple of (str or None, PeriodicFunction)
+        Parts of f with the parameter monomial that multiplies each.
+    elastic : tuple of (str or None, PeriodicFunction)
+        Parts of g, likewise.
+    """
+
+    system: LinearPeriodic
+    inertial: tuple[tuple[str | None, PeriodicFunction], ...]
+    elastic: tuple[tuple[str | None, PeriodicFunction], ...]
+
+    def stiffness(self, **changes: float) -> float:
+        """Return k [1/s^2], the square of the natural frequency without the periodic parts."""
+        return self._constant("K", changes)
+
+    def damping(self, **changes: float) -> float:
+        """Return c [1/s]; K of Smith (7.38) is ``c / (2 w)``."""
+        return self._constant("C", changes)
+
+    def _constant(self, array: str, changes: Mapping[str, float]) -> float:
+        value = self.system.array(array, 0.0, **changes)[0, 0, 0]
+        return float(value / self.system.array("M", 0.0, **changes)[0, 0, 0])
+
+    def function(self, speed: float, **changes: float) -> PeriodicFunction:
+        """Return ``f + g / w^2`` at a speed [rad/s] and parameter values."""
+        scales = self.system.scale_values(**changes)
+        total = PeriodicFunction()
+        for parts, divisor in ((self.inertial, 1.0), (self.elastic, speed**2)):
+            for scale, part in parts:
+                factor = 1.0 if scale is None else float(scales[scale])
+                total = total + part * (factor / divisor)
+        return total
+
+
+def is_hill(system: LinearPeriodic) -> bool:
+    """Return True where the system is one mode with constant mass, damping and stiffness."""
+    return (
+        system.size == 1
+        and not system.has("A")
+        and all(system.is_constant(name) for name in ("M", "C", "K"))
+        and all(term.power == 0 for term in system.terms)
+        and abs(system.period - 2 * np.pi) < 1e-15
+    )
+
+
+def hill_form(system: LinearPeriodic) -> HillForm:
+    """Return the Hill form of a system with one mode (Smith 7.11, 7.38).
+
+    Raises
+    ------
+    BadInput
+        If the system has several modes, or a mass or damping that changes over the cycle.
+    """
+    if not is_hill(system):
+        raise bad(
+            "system",
+            f"{system.size} degrees of freedom",
+            "one mode with constant mass, damping and stiffness",
+            "use floquet_multipliers or speed_boundaries",
+        )
+    mass = float(system.array("M", 0.0)[0, 0, 0])
+    parts: dict[str, list[tuple[str | None, PeriodicFunction]]] = {"B": [], "Kg": []}
+    for term in system.terms:
+        if term.array in parts:
+            sign = -1.0 if term.array == "B" else 1.0
+            parts[term.array].append((term.scale, _series(term) * (sign / mass)))
+    return HillForm(system, tuple(parts["B"]), tuple(parts["Kg"]))
+
+
+PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
+
+
+def plain_axes(form: HillForm, names: tuple[str, str]) -> PlainAxes | None:
+    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0``, where they do.
+
+    Parameters
+    ----------
+    form : HillForm
+        Without damping.
+    names : tuple of str
+        ``"speed"`` or parameters.
+
+    Returns
+    -------
+    tuple or None
+        Which axis carries lam2 (0 or 1), the function f, and the maps from the values of that
+        axis to lam2 and from the values of the other one to mu; None where f is not simply
+        proportional to the other parameter, or lam2 not the speed's or a parameter of its own.
+    """
+    for which in (0, 1):
+        along, other = names[which], names[1 - which]
+        if other == "speed" or (along == "speed" and form.elastic):
+            continue
+        unit = form.function(1.0, **{other: 1.0})
+        probe = np.linspace(0.0, 2.0 * np.pi, 17)
+        doubled = form.function(1.0, **{other: 2.0})(probe)
+        if not np.allclose(doubled, 2.0 * unit(probe), rtol=1e-14, atol=0.0):
+            continue
+        stiffness = form.stiffness()
+        if form.stiffness(**{other: 1.0}) != form.stiffness(**{other: 2.0}):
+            continue
+        if along == "speed":
+            return which, unit, partial(_over_square, stiffness), np.asarray
+        if is_stiffness(form, along):
+            return which, unit, np.asarray, np.asarray
+    return None
+
+
+def _over_square(stiffness: float, speed: Array) -> Array:
+    return stiffness / speed**2
+
+
+def is_stiffness(form: HillForm, name: str) -> bool:
+    """Return True where a parameter is the constant stiffness itself."""
+    if name not in form.system.parameters:
+        return False
+    probe = [form.stiffness(**{name: v}) for v in (1.0, 2.0, 5.0)]
+    return bool(np.allclose(probe, (1.0, 2.0, 5.0), rtol=1e-14))
+
+
+def _series(term: Term) -> PeriodicFunction:
+    """Return the only entry of a term as a Fourier series."""
+
+    def entry(theta: Array) -> Array:
+        return term(np.ravel(theta))[:, 0, 0].reshape(np.shape(theta))
+
+    return PeriodicFunction.from_callable(entry)

@@ -1,0 +1,447 @@
+"""Half trace of Hill's equation with damping, y'' + 2 K y' + (lam2 + mu f(theta)) y = 0.
+
+With y = exp(-K theta) u the equation becomes u'' + (lam2 - K^2 + mu f) u = 0 (Smith (7.39),
+(7.40)); the half trace of the damped monodromy matrix over 2 pi is exp(-2 pi K) times that of the
+undamped one.  The half trace is an entire function of (lam2, mu): where many points are wanted it
+is sampled at few Chebyshev nodes and interpolated, the tail of the coefficients checked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, log, pi, sqrt
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..results import Check, Result
+from ..series import chebyshev
+from ..series.periodic import PeriodicFunction
+from .transfer import EPS, Transfer, transfer
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Box = tuple[float, float, float, float]
+
+# Up to so many points direct evaluation is as fast as interpolation, and its figure is entrywise.
+_DIRECT_GRID, _DIRECT_POINTS = 2048, 8192
+# A box is split where the solutions' growth varies more than this over it, or where it would need
+# more nodes in one direction.
+_GROWTH, _MOST_NODES = 1e2, 768
+# Wide boxes cost digits: the terms of the polynomials grow with the distance from its middle.
+_WIDEST = 200.0
+_DETERMINANT_LIMIT = 1e-10
+
+
+@dataclass(frozen=True, kw_only=True)
+class HalfTrace(Result):
+    """Half trace of the monodromy matrix over one turn of the damped equation.
+
+    Attributes
+    ----------
+    value : ndarray
+        ``(y1(2 pi) + y2'(2 pi)) / 2``, Smith's X of (7.9), in the broadcast shape of the
+        arguments; infinite where it exceeds the range of doubles.
+    error : ndarray
+        Estimate of the absolute error of each entry.
+    damping : ndarray
+        K, in a shape that broadcasts to that of ``value``.
+    lam2, mu : ndarray
+        The parameters, likewise.
+    """
+
+    value: Array
+    damping: Array
+    lam2: Array
+    mu: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+
+    @property
+    def level(self) -> Array:
+        """Boundary level ``(1 + exp(-4 pi K)) / 2``: the motion is stable while ``|value|`` < it.
+
+        It is ``exp(-2 pi K) cosh(2 pi K)``: the level cosh(2 pi K) of the undamped half trace.
+        """
+        return np.asarray(0.5 * (1.0 + np.exp(-4.0 * pi * self.damping)))
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """True where both multipliers lie inside the unit circle (on it, when undamped)."""
+        return np.asarray(np.abs(self.value) < self.level)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Shade the unstable part of a grid, or draw the half trace along a line.
+
+        Raises
+        ------
+        BadInput
+            If the values are neither a grid of lam2 by mu nor a line.
+        """
+        import matplotlib.pyplot as plt
+
+        if ax is None:
+            ax = plt.figure().add_subplot()
+        lam2, mu = np.squeeze(self.lam2), np.squeeze(self.mu)
+        if self.value.ndim == 2 and lam2.ndim == mu.ndim == 1:
+            shown = self.value if lam2.size == self.value.shape[0] else self.value.T
+            excess = np.abs(shown) - self.level
+            ax.contourf(lam2, mu, excess.T, levels=[0.0, np.inf], colors=["0.8"])
+            ax.set_xlabel(r"$\lambda^2$")
+            ax.set_ylabel(r"$\mu$")
+            return ax
+        if self.value.ndim == 1:
+            across = lam2 if lam2.ndim == 1 else mu
+            ax.plot(across, self.value)
+            ax.set_xlabel(r"$\lambda^2$" if lam2.ndim == 1 else r"$\mu$")
+            ax.set_ylabel("half trace")
+            return ax
+        raise bad(
+            "HalfTrace.plot", f"values of shape {self.value.shape}", "a line or a grid", "slice it"
+        )
+
+
+def discriminant(
+    f: PeriodicFunction, lam2: ArrayLike, mu: ArrayLike, damping: ArrayLike = 0.0
+) -> HalfTrace:
+    """Return the half trace of the monodromy matrix of y'' + 2 K y' + (lam2 + mu f) y = 0.
+
+    The motion is stable where ``|value| < (1 + exp(-4 pi K)) / 2`` (undamped: 1); multiplier +1
+    at the positive, -1 at the negative level.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        Coefficient of period 2 pi.
+    lam2, mu : array_like
+        Parameters; any sign, any shapes that broadcast.  Arrays that vary along different axes,
+        such as ``(n, 1)`` and ``(1, m)``, are evaluated as a grid by two matrix products.
+    damping : array_like
+        K of Smith (7.38), at least zero; broadcasts with the others.
+
+    Returns
+    -------
+    HalfTrace
+        ``value`` and ``error`` (absolute, entrywise estimate) in the broadcast shape.
+
+    Raises
+    ------
+    BadInput
+        If an argument is not finite, shapes do not broadcast, K is negative, or ``lam2 + mu f``
+        is so large that more than 65536 segments would be needed.
+
+    Notes
+    -----
+    Smith (7.9), (7.38)-(7.40).  The error figure holds round-off (amplified by the norm of the
+    monodromy matrices round the circle), the truncation of the transfer polynomials, the tail of
+    the Chebyshev series and the error of ``f``.
+    """
+    check_function(f)
+    (lam, amp, k), shape = arguments(lam2=lam2, mu=mu, damping=damping)
+    x = _collapsed(_padded(lam - k * k, len(shape)))
+    y = _collapsed(_padded(amp, len(shape)))
+    log2_scale = _collapsed(_padded(k * (-2.0 * pi / log(2.0)), len(shape)))
+    x, log2_scale = np.broadcast_arrays(x, log2_scale)
+    if all(min(n, m) == 1 for n, m in zip(x.shape, y.shape, strict=True)):
+        work = _Work(f, x.ravel(), y.ravel(), log2_scale.ravel(), grid=True)
+        value, error = (_ungrid(item, x.shape, y.shape, shape) for item in work.run())
+    else:
+        x, y, s = (np.broadcast_to(item, shape).ravel() for item in (x, y, log2_scale))
+        work = _Work(f, x, y, s, grid=False)
+        value, error = (item.reshape(shape) for item in work.run())
+    return HalfTrace(
+        method="transfer polynomials"
+        + (" at Chebyshev nodes, interpolated" if work.interpolated else ""),
+        error=error,
+        error_norm="absolute, entrywise",
+        checks={"determinant": Check(work.defect, _DETERMINANT_LIMIT)},
+        value=value,
+        damping=k,
+        lam2=lam,
+        mu=amp,
+    )
+
+
+def discriminant_grid(
+    f: PeriodicFunction, lam2_values: ArrayLike, mu_values: ArrayLike, damping: float = 0.0
+) -> HalfTrace:
+    """Return the half trace at all pairs of lam2 ``(n,)`` and mu ``(m,)``, shape ``(n, m)``.
+
+    See :func:`discriminant`; this is ``discriminant(f, lam2[:, None], mu[None, :], damping)``.
+    """
+    lam2, mu = np.ravel(finite("lam2", lam2_values)), np.ravel(finite("mu", mu_values))
+    return discriminant(f, lam2[:, None], mu[None, :], damping)
+
+
+class _Work:
+    """One evaluation: points or a grid, cut into boxes that a Chebyshev series can serve."""
+
+    def __init__(
+        self, f: PeriodicFunction, x: Array, y: Array, log2_scale: Array, grid: bool
+    ) -> None:
+        self.f, self.x, self.y, self.log2_scale, self.grid = f, x, y, log2_scale, grid
+        self.defect = 0.0
+        self.interpolated = False
+        self._axis = 0
+
+    def run(self) -> tuple[Array, Array]:
+        """Return value and error: shape ``(nx, ny)`` on a grid, ``(n,)`` at points."""
+        shape = (self.x.size, self.y.size) if self.grid else self.x.shape
+        if 0 in shape:
+            return np.zeros(shape), np.zeros(shape)
+        whole = np.arange(self.x.size), np.arange(self.y.size)
+        first = self._box(*whole)
+        if first is not None:
+            return first
+        value, error = np.empty(shape), np.empty(shape)
+        pending = self._parts(*whole)
+        while pending:
+            ix, iy = pending.pop()
+            found = self._box(ix, iy)
+            if found is None:
+                pending.extend(self._parts(ix, iy))
+                continue
+            where = np.ix_(ix, iy) if self.grid else ix
+            value[where], error[where] = found
+        return value, error
+
+    def _limits(self, ix: NDArray[np.intp], iy: NDArray[np.intp]) -> Box:
+        x, y = self.x[ix], self.y[iy]
+        return float(x.min()), float(x.max()), float(y.min()), float(y.max())
+
+    def _box(self, ix: NDArray[np.intp], iy: NDArray[np.intp]) -> tuple[Array, Array] | None:
+        """Evaluate one box; None where it should be split first (its axis in ``_axis``)."""
+        count = ix.size * iy.size if self.grid else ix.size
+        x, y, scale = self.x[ix], self.y[iy], self.log2_scale[ix]
+        limits = self._limits(ix, iy)
+        direct = transfer(self.f, limits[:2], limits[2:])
+        if sum(direct.spread) > _WIDEST:
+            self._axis = int(direct.spread[1] > direct.spread[0])
+            return None
+        few = _DIRECT_GRID if self.grid else _DIRECT_POINTS
+        if count <= few or direct.floor < -1e3:
+            return self._direct(direct, x, y, scale)
+        found = _series(direct, limits)
+        if isinstance(found, int):
+            self._axis = found
+            return None
+        self.interpolated = True
+        self.defect = max(self.defect, found.defect)
+        u, v = chebyshev.unit(x, *limits[:2]), chebyshev.unit(y, *limits[2:])
+        error = found.error(u)
+        if self.grid:
+            value = chebyshev.tensor_values(found.coefficients, u, v)
+            error, scale = error[:, None], scale[:, None]
+        else:
+            value = chebyshev.point_values(found.coefficients, u, v)
+        if scale.any():
+            factor = np.exp2(scale)
+            value, error = value * factor, error * factor
+        return value, np.broadcast_to(error, value.shape)
+
+    def _direct(
+        self, polynomials: Transfer, x: Array, y: Array, scale: Array
+    ) -> tuple[Array, Array]:
+        shape = (x.size, y.size) if self.grid else x.shape
+        if self.grid:
+            x, y, scale = np.repeat(x, y.size), np.tile(y, x.size), np.repeat(scale, y.size)
+        value, error, exponent, defect = polynomials.half_trace_with_error(x, y)
+        self.defect = max(self.defect, float(defect.max()))
+        whole = np.rint(scale)
+        power = exponent + whole.astype(np.int64)
+        with np.errstate(over="ignore", under="ignore"):
+            value = np.ldexp(value * np.exp2(scale - whole), power)
+            error = np.ldexp(error * np.exp2(scale - whole), power)
+        return value.reshape(shape), error.reshape(shape)
+
+    def _parts(
+        self, ix: NDArray[np.intp], iy: NDArray[np.intp]
+    ) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+        """Cut a box in two at the middle of the axis that asked for it."""
+        along = (self.x[ix], self.y[iy])[self._axis]
+        lower = along <= 0.5 * (along.min() + along.max())
+        if lower.all():
+            lower = np.arange(along.size) < along.size // 2
+        if not self.grid:
+            return [(ix[part], iy[part]) for part in (lower, ~lower)]
+        if self._axis == 0:
+            return [(ix[lower], iy), (ix[~lower], iy)]
+        return [(ix, iy[lower]), (ix, iy[~lower])]
+
+
+@dataclass(frozen=True)
+class _Series:
+    """Double Chebyshev series of the half trace over a box, with its error figure.
+
+    The figure depends on lam2 alone: ``everywhere`` plus a profile over the nodes.
+    """
+
+    coefficients: Array
+    everywhere: float
+    profile: Array
+    defect: float
+
+    def error(self, u: Array) -> Array:
+        """Return the figure at lam2 mapped to [-1, 1], any order, shape as ``u``."""
+        rising = chebyshev.nodes(self.profile.size)[::-1]
+        return np.asarray(np.interp(u, rising, self.profile[::-1]) + self.everywhere)
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """What the four edges of a box tell: nodes needed, largest value, errors, Liouville."""
+
+    counts: tuple[int, int]
+    largest: float
+    noise: float
+    profile: Array
+    defect: float
+
+
+def _series(polynomials: Transfer, limits: Box) -> _Series | int:
+    """Interpolate over a box; the number of the axis to split where that would not do."""
+    edges = _edges(polynomials, limits)
+    if isinstance(edges, int):
+        return edges
+    n, m = edges.counts
+    rounding = max(4.0 * EPS * edges.largest, 0.1 * edges.noise)
+    for _ in range(4):
+        x, y = _nodes(limits[:2], n), _nodes(limits[2:], m)
+        values = polynomials.half_trace(np.repeat(x, m), np.tile(y, n)).reshape(n, m)
+        above = max(1.0, float(np.abs(values).max()) / edges.largest)
+        c = chebyshev.coefficients2(values)
+        size = np.abs(c)
+        rows = float(size[-2:].sum()) if n > 1 else 0.0
+        columns = float(size[:, -2:].sum()) if m > 1 else 0.0
+        # Every entry carries round-off: that much of a tail does not show a lack of nodes.
+        ok_rows = rows <= 2.0 * rounding * above * m
+        ok_columns = columns <= 2.0 * rounding * above * n
+        if ok_rows and ok_columns:
+            # Errors of the nodal values stay where they are, but for a few per cent.
+            everywhere = rows + columns + 2.0 * EPS * float(size.sum())
+            everywhere += 0.05 * above * edges.noise
+            return _Series(c, everywhere, 1.5 * above * edges.profile, edges.defect)
+        n, m = (n if ok_rows else ceil(1.2 * n) + 2), (m if ok_columns else ceil(1.2 * m) + 2)
+    return 0 if not ok_rows else 1
+
+
+def _edges(polynomials: Transfer, limits: Box) -> _Edges | int:
+    """Sample the four edges of a box; the number of an axis that should be split first."""
+    x0, x1, y0, y1 = limits
+    n = _guess(x1 - x0, x0) if x1 > x0 else 1
+    m = _guess(polynomials.swing, 0.0) if y1 > y0 else 1
+    while True:
+        x, y = _nodes((x0, x1), n), _nodes((y0, y1), m)
+        points_x = np.concatenate([x, x, np.full(m, x0), np.full(m, x1)])
+        points_y = np.concatenate([np.full(n, y0), np.full(n, y1), y, y])
+        value, error, _, defect = polynomials.half_trace_with_error(points_x, points_y)
+        lines = [value[: 2 * n].reshape(2, n), value[2 * n :].reshape(2, m)]
+        size = [np.maximum(1.0, np.abs(line)) for line in lines]
+        growth = [float((s.max(axis=1) / s.min(axis=1)).max()) for s in size]
+        if max(growth) > _GROWTH:
+            return int(growth[1] > growth[0])
+        largest, noise = float(max(s.max() for s in size)), float(error.max())
+        tolerance = max(2.0 * EPS * largest, 0.05 * noise)
+        needed = [
+            chebyshev.length(
+                np.abs(line @ chebyshev.analysis(line.shape[1]).T).max(axis=0), tolerance
+            )
+            for line in lines
+        ]
+        short = [count > 1 and need > count - 3 for count, need in zip((n, m), needed, strict=True)]
+        if not any(short):
+            profile = np.pad(error[: 2 * n].reshape(2, n).max(axis=0), 1, mode="edge")
+            profile = np.maximum(np.maximum(profile[:-2], profile[2:]), profile[1:-1])
+            # Two more: the last two tell whether the inside needs more than the edges.
+            counts = (min(needed[0] + 2, n), min(needed[1] + 2, m))
+            return _Edges(counts, largest, noise, profile, float(defect.max()))
+        n, m = (2 * n if short[0] else n), (2 * m if short[1] else m)
+        if max(n, m) > _MOST_NODES:
+            return int(m > n)
+
+
+def _nodes(limits: tuple[float, float], count: int) -> Array:
+    low, high = limits
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.nodes(count))
+
+
+def _guess(span: float, low: float) -> int:
+    """Guess how many nodes an axis needs; only the time depends on it."""
+    start = sqrt(max(low, 0.0))
+    half_phase = pi * (sqrt(start * start + span) - start)
+    return min(16 * ceil((1.4 * half_phase + 14.0) / 16.0), _MOST_NODES)
+
+
+def finite(name: str, values: ArrayLike) -> Array:
+    """Return an array of finite numbers, or refuse by name."""
+    try:
+        out = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as reason:
+        raise bad(name, repr(values)[:60], "numbers", "correct the input") from reason
+    if not np.all(np.isfinite(out)):
+        raise bad(name, "an entry that is not finite", "finite numbers", "correct the input")
+    return out
+
+
+def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
+    """Return the arguments as arrays and their broadcast shape, or refuse by name.
+
+    ``damping`` must not be negative.
+    """
+    arrays = tuple(finite(name, value) for name, value in given.items())
+    damping = arrays[list(given).index("damping")]
+    if np.any(damping < 0.0):
+        raise bad("damping", float(damping.min()), "K >= 0", "damping takes energy out")
+    try:
+        return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
+    except ValueError as reason:
+        raise bad(
+            ", ".join(given),
+            f"shapes {', '.join(str(item.shape) for item in arrays)}",
+            "shapes that broadcast",
+            "reshape them, for example to (n, 1) and (1, m)",
+        ) from reason
+
+
+def check_function(f: object) -> None:
+    """Refuse anything but a :class:`PeriodicFunction`."""
+    if not isinstance(f, PeriodicFunction):
+        raise bad(
+            "f",
+            type(f).__name__,
+            "a PeriodicFunction",
+            "use PeriodicFunction(a=, b=), .from_samples or .from_callable",
+        )
+
+
+def _padded(values: Array, ndim: int) -> Array:
+    return values.reshape((1,) * (ndim - values.ndim) + values.shape)
+
+
+def _collapsed(values: Array) -> Array:
+    """Cut every axis along which an array does not vary to length 1."""
+    for axis in range(values.ndim):
+        first = values.take([0], axis=axis) if values.shape[axis] > 1 else values
+        if first is values or not np.array_equal(first, values.take([-1], axis=axis)):
+            continue
+        if np.all(values == first):
+            values = first
+    return values
+
+
+def _ungrid(
+    grid: Array, x_shape: tuple[int, ...], y_shape: tuple[int, ...], shape: tuple[int, ...]
+) -> Array:
+    """Bring values of all pairs into the shape of the arguments."""
+    n = len(shape)
+    apart = grid.reshape(x_shape + y_shape)
+    order = [axis if x_shape[axis] != 1 else n + axis for axis in range(n)]
+    rest = [axis for axis in range(2 * n) if axis not in order]
+    together = apart.transpose(order + rest).reshape([apart.shape[axis] for axis in order])
+    return np.broadcast_to(together, shape) if together.shape != shape else together

@@ -1,0 +1,209 @@
+"""Stability boundaries of Hill's equation from the eigenvalues of its Fourier (Hill) matrix.
+
+On a boundary of the n-th region the equation has a solution of period 2 pi (n even) or one that
+changes sign after 2 pi (n odd).  In the basis cos k theta, sin k theta (k whole or half-whole) the
+boundaries lam2 are the eigenvalues of ``k^2 - 2 K d/d theta - mu f``: symmetric without damping.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..results import Result
+from ..series.periodic import PeriodicFunction
+from .damped import damped
+from .half_trace import arguments, check_function
+from .layout import LARGEST, stacked, truncation
+from .transfer import EPS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+_CHUNK = 2**18
+
+
+@dataclass(frozen=True, kw_only=True)
+class Boundaries(Result):
+    """Boundaries of unstable regions of Hill's equation.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (len(regions), *mu.shape)
+        Ends in lam2 of each unstable region; NaN where damping has closed it.
+    error : ndarray, shape (len(regions), *mu.shape)
+        Estimate of the absolute error, valid for both ends; NaN where they are.
+    regions : tuple of int
+        Numbers n; the region starts at lam2 = n^2/4 at mu = 0.
+    mu, damping : ndarray
+        As given, ``damping`` in a shape that broadcasts to that of ``mu``.
+    """
+
+    lower: Array
+    upper: Array
+    regions: tuple[int, ...]
+    mu: Array
+    damping: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "lower": ("region", "mu"),
+        "upper": ("region", "mu"),
+        "error": ("region", "mu"),
+        "mu": ("mu",),
+    }
+
+    @property
+    def width(self) -> Array:
+        """Width of each region in lam2, same shape as ``lower``."""
+        return self.upper - self.lower
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Shade the regions over (lam2, mu), mu upwards.
+
+        Raises
+        ------
+        BadInput
+            If mu is not one-dimensional.
+        """
+        import matplotlib.pyplot as plt
+
+        if self.mu.ndim != 1:
+            raise bad("Boundaries.plot", f"mu of shape {self.mu.shape}", "a line of mu", "slice it")
+        if ax is None:
+            ax = plt.figure().add_subplot()
+        for low, high in zip(self.lower, self.upper, strict=True):
+            line = ax.plot(np.stack([low, high], axis=1), self.mu)[0]
+            ax.fill_betweenx(self.mu, low, high, color=line.get_color(), alpha=0.3)
+        ax.set_xlabel(r"$\lambda^2$")
+        ax.set_ylabel(r"$\mu$")
+        return ax
+
+
+def hill_boundaries(
+    f: PeriodicFunction,
+    mu: ArrayLike,
+    regions: Sequence[int] = (1, 2),
+    damping: ArrayLike = 0.0,
+) -> Boundaries:
+    """Return the exact boundaries of unstable regions of y'' + 2 K y' + (lam2 + mu f) y = 0.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        Coefficient of period 2 pi.
+    mu : array_like
+        Any shape, any sign.
+    regions : sequence of int
+        Numbers n >= 0.  Region n >= 1 starts at lam2 = n^2/4 at mu = 0.  Region 0 reaches from
+        minus infinity to the lowest eigenvalue of period 2 pi: ``lower`` is -inf.
+    damping : array_like
+        K of Smith (7.38), at least zero; broadcasts with mu.
+
+    Returns
+    -------
+    Boundaries
+        ``lower``, ``upper`` and ``error`` of shape ``(len(regions), *mu.shape)`` (the broadcast
+        shape of mu and damping).  NaN where damping has closed a region.
+
+    Raises
+    ------
+    BadInput
+        If an argument is not finite, a region is not a whole number >= 0, K is negative, or the
+        truncated matrix would need more than 2048 harmonics.
+
+    Notes
+    -----
+    Smith 7.1.3 and 7.1.4: the curves that (7.37) and (7.48) approximate.  The matrix is truncated
+    where the second-order effect of the harmonics left out, computed from the eigenvectors, is
+    below 1e-14; the error figure adds round-off and the error of ``f``.  With damping each region
+    lies within the undamped one moved by K^2 (the half trace has one extremum in each), which
+    is how its real eigenvalues get their number.  Near the tip of a damped region the
+    two ends depend on the data through a square root, and the error figure grows accordingly.
+    """
+    check_function(f)
+    numbers = check_regions(regions)
+    (amp, k), shape = arguments(mu=mu, damping=damping)
+    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
+    lower, upper, error = _boundaries(f, flat, friction, numbers)
+    full = (len(numbers), *shape)
+    return Boundaries(
+        method="Hill matrix",
+        error=error.reshape(full),
+        error_norm="absolute, entrywise, for either end",
+        lower=lower.reshape(full),
+        upper=upper.reshape(full),
+        regions=numbers,
+        mu=amp if amp.shape == shape else np.broadcast_to(amp, shape),
+        damping=k,
+    )
+
+
+def _boundaries(
+    f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...]
+) -> tuple[Array, Array, Array]:
+    """Return lower, upper and error, each ``(len(regions), n)``, for mu and K ``(n,)``."""
+    if not regions or not mu.size:
+        nothing = np.zeros((len(regions), mu.size))
+        return nothing, nothing.copy(), nothing.copy()
+    lower, upper, error = _undamped(f, mu, regions)
+    hit = k > 0.0
+    if hit.any():
+        lower[:, hit], upper[:, hit], error[:, hit] = damped(
+            f, mu[hit], k[hit], regions, (lower[:, hit], upper[:, hit])
+        )
+    return lower, upper, error
+
+
+def _undamped(
+    f: PeriodicFunction, mu: Array, regions: tuple[int, ...]
+) -> tuple[Array, Array, Array]:
+    """Return lower, upper and error, each ``(len(regions), n)``, for mu ``(n,)``."""
+    lower = np.empty((len(regions), mu.size))
+    upper = np.empty_like(lower)
+    cut = truncation(f, float(np.abs(mu).max()), max(regions))
+    mean = -f.a[0] * mu
+    for odd in (0, 1):
+        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
+        if not rows:
+            continue
+        count = max(regions[i] for i in rows) + 1
+        values = _spectra(f, odd, cut.harmonic + odd, mu, count)
+        values += mean[:, None]
+        for i in rows:
+            n = regions[i]
+            lower[i] = values[:, n - 1] if n else -np.inf
+            upper[i] = values[:, n]
+    figure = cut.left_out + EPS * (2.0 * cut.norm + np.abs(mean)) + f.error * np.abs(mu)
+    return lower, upper, np.tile(figure, (len(regions), 1))
+
+
+def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int) -> Array:
+    """Return the lowest eigenvalues of ``k^2 - mu (f - mean)``, shape ``(n, count)``."""
+    step = max(1, _CHUNK // (4 * harmonic * harmonic))
+    out = np.empty((mu.size, count))
+    for start in range(0, mu.size, step):
+        part = slice(start, start + step)
+        out[part] = np.linalg.eigvalsh(stacked(f, odd, harmonic, mu[part]))[:, :count]
+    return out
+
+
+def check_regions(regions: Sequence[int]) -> tuple[int, ...]:
+    """Return the numbers of the regions, or refuse."""
+    try:
+        numbers = tuple(int(n) for n in regions)
+        good = all(n == given and n >= 0 for n, given in zip(numbers, regions, strict=True))
+    except (TypeError, ValueError):
+        good = False
+    if not good:
+        raise bad("regions", repr(regions), "whole numbers >= 0", "for example (1, 2)")
+    if numbers and max(numbers) > LARGEST:
+        raise bad("regions", max(numbers), f"at most {LARGEST}", "ask for lower regions")
+    return numbers

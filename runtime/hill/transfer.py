@@ -1,0 +1,418 @@
+"""Transfer matrices of Hill's equation as polynomials of its two parameters.
+
+The equation u'' + (lam2 + mu f(theta)) u = 0 is cut into equal segments of the circle.  On each of
+them the 2 x 2 transfer matrix is an entire function of (lam2, mu).  Its Taylor polynomial about a
+point of the wanted box comes from Picard iteration, the double integral taken exactly on the
+interpolant through Gauss-Legendre nodes; the segments are short enough for a total degree near
+ten.  At any set of points the matrices then cost one matrix product, and their product round the
+circle a few passes of element-wise arithmetic, over all points at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil, lgamma, log, log2, pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import bad
+from ..series.periodic import PeriodicFunction, segment_values
+
+Array = NDArray[np.float64]
+Exponents = NDArray[np.int64]
+Range = tuple[float, float]
+
+EPS = float(np.finfo(float).eps)
+_MOST_SEGMENTS = 2**16
+_MOST_LEVELS = 40
+_NODE_COUNTS = np.arange(8, 25)
+# Neglected part of the interpolant; the end values see about its square (superconvergence).
+_NODE_TAIL = 1e-9
+# Largest sqrt(spread) * length and sqrt(size) * length of a segment: beyond these the Taylor
+# polynomial, or the interpolant, needs more terms than a further halving costs.
+_SPREAD, _SIZE = 1.8, 3.6
+
+
+@dataclass(frozen=True)
+class Gauss:
+    """Gauss-Legendre nodes on [-1, 1] with the matrices that integrate twice from -1.
+
+    Attributes
+    ----------
+    x : ndarray, shape (q,)
+        Nodes.
+    inner : ndarray, shape (q, q)
+        Values to the double integral at the nodes.
+    ends : ndarray, shape (2, q)
+        Values to the double and to the single integral at +1.
+    """
+
+    x: Array
+    inner: Array
+    ends: Array
+
+
+@lru_cache(maxsize=32)
+def gauss(q: int) -> Gauss:
+    """Return the nodes and integration matrices of order q, computed in extended precision."""
+    real = np.longdouble
+    k = np.arange(1, q + 1).astype(real)
+    x = -np.cos((k - real(0.25)) / real(q + 0.5) * real(np.pi))
+    for _ in range(8):
+        p = _legendre(x, q + 1)
+        slope = q * (x * p[q] - p[q - 1]) / (x * x - 1)
+        x = x - p[q] / slope
+    p = _legendre(x, q + 3)
+    slope = q * (x * p[q] - p[q - 1]) / (x * x - 1)
+    weights = 2 / ((1 - x * x) * slope**2)
+    j = np.arange(q).astype(real)[:, None]
+    series = (2 * j + 1) / 2 * p[:q] * weights
+    # The integral of P_n from -1 is (P_{n+1} - P_{n-1}) / (2n+1), with P_{-1} = -1 for n = 0.
+    once = np.empty((q + 1, q), dtype=real)
+    once[0] = p[1] + 1
+    for n in range(1, q + 1):
+        once[n] = (p[n + 1] - p[n - 1]) / (2 * n + 1)
+    twice = np.empty((q, q), dtype=real)
+    twice[0] = once[1] + once[0]
+    for n in range(1, q):
+        twice[n] = (once[n + 1] - once[n - 1]) / (2 * n + 1)
+    inner = twice.T @ series
+    ends = np.stack([weights * (1 - x), weights])
+    arrays = [np.asarray(item, dtype=float) for item in (x, inner, ends)]
+    for item in arrays:
+        item.setflags(write=False)
+    return Gauss(*arrays)
+
+
+def _legendre(x: NDArray[np.longdouble], count: int) -> NDArray[np.longdouble]:
+    p = np.empty((count, x.size), dtype=np.longdouble)
+    p[0], p[1] = 1, x
+    for n in range(1, count - 1):
+        p[n + 1] = ((2 * n + 1) * x * p[n] - n * p[n - 1]) / (n + 1)
+    return p
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """The transfer matrices of all segments as polynomials over a box of parameters.
+
+    Attributes
+    ----------
+    table : ndarray, shape (4 * segments, monomials)
+        Entries (row, column, segment) by monomials ``xi^i eta^j``, by rising total degree, in the
+        state ``(u, du/dx)``, x running from -1 to 1 over a segment.
+    degree : int
+        Total degree.
+    segments : int
+        Number of segments, a power of two.
+    lam2, mu : (centre, half-width)
+        ``xi = (lam2 - centre) / half-width`` and eta likewise.
+    truncation : float
+        Estimate of the largest entry that the polynomials and the interpolation leave out.
+    size : float
+        Largest ``|lam2 + mu f|`` over box and circle.
+    spread : tuple of float
+        Largest deviation from the point of expansion that lam2 and mu bring about.
+    swing : float
+        Largest ``|mu| sup|f|`` over the box.
+    floor : float
+        Smallest ``lam2 + mu f`` over box and circle, at most zero.
+    f_error : float
+        Error of the periodic function that was used.
+    """
+
+    table: Array
+    degree: int
+    segments: int
+    lam2: Range
+    mu: Range
+    truncation: float
+    size: float
+    spread: Range
+    swing: float
+    floor: float
+    f_error: float
+
+    @property
+    def chunk(self) -> int:
+        """How many points to evaluate at a time, so that the arrays stay in the cache."""
+        return max(64, 2**17 // self.segments)
+
+    def matrices(self, lam2: Array, mu: Array) -> Array:
+        """Return the transfer matrices at points ``(n,)``, shape ``(2, 2, segments, n)``."""
+        xi = (lam2 - self.lam2[0]) / self.lam2[1] if self.lam2[1] else np.zeros_like(lam2)
+        eta = (mu - self.mu[0]) / self.mu[1] if self.mu[1] else np.zeros_like(mu)
+        powers = np.empty((self.table.shape[1], lam2.size))
+        powers[0] = 1.0
+        start = 0
+        for k in range(1, self.degree + 1):
+            new = start + k
+            np.multiply(powers[start:new], xi, out=powers[new : new + k])
+            np.multiply(powers[new - 1], eta, out=powers[new + k])
+            start = new
+        return (self.table @ powers).reshape(2, 2, self.segments, lam2.size)
+
+    def half_trace(self, lam2: Array, mu: Array) -> Array:
+        """Return the half trace at points ``(n,)``."""
+        out = np.empty(lam2.size)
+        for begin in range(0, lam2.size, self.chunk):
+            part = slice(begin, begin + self.chunk)
+            blocks = _halved(self.matrices(lam2[part], mu[part]), 2)
+            a, b = blocks[:, :, 0], blocks[:, :, 1]
+            out[part] = 0.5 * np.einsum("ijn,jin->n", b, a)
+        return out
+
+    def half_trace_with_error(
+        self, lam2: Array, mu: Array
+    ) -> tuple[Array, Array, Exponents, Array]:
+        """Return half trace and error figure at points ``(n,)``, scaled against overflow.
+
+        Returns
+        -------
+        value, error : ndarray, shape (n,)
+            To be multiplied by ``2**exponent``.
+        exponent : ndarray of int, shape (n,)
+            Zeros unless the solutions grow beyond 1e100.
+        defect : ndarray, shape (n,)
+            Deviation of the product of the segments' determinants from 1 (Liouville).
+        """
+        n = lam2.size
+        value, error, defect = np.empty(n), np.empty(n), np.empty(n)
+        exponent: Exponents = np.zeros(n, dtype=np.int64)
+        for begin in range(0, n, self.chunk):
+            part = slice(begin, begin + self.chunk)
+            value[part], error[part], exponent[part], defect[part] = self._checked(
+                lam2[part], mu[part]
+            )
+        return value, error, exponent, defect
+
+    def _checked(self, lam2: Array, mu: Array) -> tuple[Array, Array, Exponents, Array]:
+        m = self.matrices(lam2, mu)
+        det = m[0, 0] * m[1, 1]
+        det -= m[0, 1] * m[1, 0]
+        det -= 1.0
+        defect = np.abs(det.sum(axis=0))
+        # The error of a trace is that of each segment times the monodromy matrix that starts at
+        # it, so the monodromy is formed from several cuts of the circle, close enough together.
+        cuts = min(self.segments, 2 ** max(3, ceil(log2(pi * sqrt(self.swing) + 1.0))))
+        scaled = 2.0 * pi * sqrt(-self.floor) > 230.0
+        if scaled:
+            turns, exponent = _all_cuts_scaled(m, cuts)
+        else:
+            turns = _all_cuts(_halved(m, cuts))
+            exponent = np.zeros(lam2.size, dtype=np.int64)
+        # Entries of a segment are good to units of their largest summands: 1, 1, 2 and the third
+        # one's, small as the third entry itself may be.
+        third = 2.0 * self.size * (pi / self.segments) ** 2
+        norm = np.abs(turns[0, 0]) + np.abs(turns[1, 1])
+        norm += third * np.abs(turns[0, 1]) + 2.0 * np.abs(turns[1, 0])
+        amplification = norm.mean(axis=0)
+        # A determinant computed from rounded entries is itself off by a few units.
+        excess = np.maximum(defect - 4.0 * EPS * self.segments, 0.0)
+        local = EPS * (8.0 + 1.2 * self.segments) + self.segments * self.truncation + excess
+        # d(half trace) / d(lam2 + mu f) at one angle is half the entry (1, 2) from there.
+        reply = np.abs(turns[0, 1]).mean(axis=0) * (pi * pi / self.segments)
+        error = amplification * local + reply * (self.f_error * np.abs(mu))
+        value = 0.5 * (turns[0, 0, 0] + turns[1, 1, 0])
+        return value, error, exponent, defect
+
+
+def _product(b: Array, a: Array) -> Array:
+    """Return the 2 x 2 products ``b a``, both ``(2, 2, ...)``, element by element."""
+    out: Array = b[:, 0, None] * a[0]
+    out += b[:, 1, None] * a[1]
+    return out
+
+
+def _turned(m: Array, step: int) -> Array:
+    """Return the matrices renumbered from ``step`` (np.roll, at a fraction of its overhead)."""
+    return np.concatenate([m[:, :, step:], m[:, :, :step]], axis=2)
+
+
+def _halved(m: Array, blocks: int) -> Array:
+    """Multiply neighbours until ``blocks`` matrices round the circle are left."""
+    while m.shape[2] > blocks:
+        m = _product(m[:, :, 1::2], m[:, :, 0::2])
+    return m
+
+
+def _all_cuts(m: Array) -> Array:
+    """Return the product once round the circle from every cut, shape as ``m``."""
+    step = 1
+    while step < m.shape[2]:
+        m = _product(_turned(m, step), m)
+        step *= 2
+    return m
+
+
+def _all_cuts_scaled(m: Array, cuts: int) -> tuple[Array, Exponents]:
+    """Do the same with a power of two taken out at every step; one exponent for all cuts."""
+    exponent = np.zeros(m.shape[2:], dtype=np.int64)
+    while m.shape[2] > cuts:
+        m = _product(m[:, :, 1::2], m[:, :, 0::2])
+        exponent = exponent[1::2] + exponent[0::2]
+        m, exponent = _normalised(m, exponent)
+    step = 1
+    while step < m.shape[2]:
+        m = _product(_turned(m, step), m)
+        exponent = np.concatenate([exponent[step:], exponent[:step]]) + exponent
+        m, exponent = _normalised(m, exponent)
+        step *= 2
+    common = exponent.max(axis=0)
+    return np.ldexp(m, np.maximum(exponent - common, -2000)), common
+
+
+def _normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
+    _, shift = np.frexp(np.abs(m).max(axis=(0, 1)))
+    return np.ldexp(m, -shift), exponent + shift
+
+
+def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
+    """Expand the transfer matrices over a box of parameters.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        The coefficient function.
+    lam2, mu : (low, high)
+        The box.
+
+    Raises
+    ------
+    BadInput
+        If the box needs more than 65536 segments.
+    """
+    reach = max(abs(mu[0]), abs(mu[1]))
+    short = f.truncated(0.02 * EPS / max(reach, 0.02))
+    bound = float(np.sum(short.amplitudes))
+    half_l, half_m = 0.5 * (lam2[1] - lam2[0]), 0.5 * (mu[1] - mu[0])
+    size = max(abs(lam2[0]), abs(lam2[1])) + reach * bound
+    floor = min(0.0, lam2[0] - reach * bound)
+    centre_m = 0.5 * (mu[0] + mu[1])
+    spread = half_l + reach * bound
+    # Expanding about the middle of the mu range costs a solve per segment: only where it pays.
+    if half_l + half_m * bound < 0.5 * spread and reach * bound > 1.0:
+        spread = half_l + half_m * bound
+    else:
+        centre_m, half_m = 0.0, reach
+    segments, q = _resolution(short, spread, size, reach)
+    table, degree, truncation = _expand(
+        short, (0.5 * (lam2[0] + lam2[1]), half_l), (centre_m, half_m), segments, q
+    )
+    return Transfer(
+        table=table,
+        degree=degree,
+        segments=segments,
+        lam2=(0.5 * (lam2[0] + lam2[1]), half_l),
+        mu=(centre_m, half_m),
+        truncation=truncation,
+        size=size,
+        spread=(half_l, half_m * bound),
+        swing=reach * bound,
+        floor=floor,
+        f_error=short.error,
+    )
+
+
+@lru_cache(maxsize=1)
+def _log_double_factorials() -> Array:
+    """Return log (2q - 1)!! of the node counts on offer."""
+    return np.array([lgamma(2 * q + 1) - q * log(2.0) - lgamma(q + 1) for q in _NODE_COUNTS])
+
+
+def _resolution(f: PeriodicFunction, spread: float, size: float, reach: float) -> tuple[int, int]:
+    """Choose the number of segments and of nodes in each."""
+    wanted = 2.0 * pi * max(sqrt(spread) / _SPREAD, sqrt(size) / _SIZE, 1.0)
+    if not wanted <= _MOST_SEGMENTS:
+        raise bad(
+            "discriminant",
+            f"|lam2 + mu f| up to {size:.3g}",
+            f"at most {(_MOST_SEGMENTS * _SIZE / (2 * pi)) ** 2:.1g}, in boxes of "
+            f"at most {(_MOST_SEGMENTS * _SPREAD / (2 * pi)) ** 2:.1g}",
+            "scale the equation, or ask for a smaller range",
+        )
+    segments = max(8, 2 ** ceil(log2(wanted)))
+    weights = np.concatenate([[size], reach * f.amplitudes[1:]])
+    waves = np.arange(weights.size, dtype=float)
+    while True:
+        length = 2.0 * pi / segments
+        # Legendre coefficient q of exp(i x t) is at most x^q / (2q - 1)!!.
+        x = 0.5 * length * (waves + sqrt(size))
+        with np.errstate(under="ignore", over="ignore", divide="ignore"):
+            logs = _NODE_COUNTS[:, None] * np.log(x) - _log_double_factorials()[:, None]
+            tails = np.minimum(1.0, np.exp(logs)) @ weights * (0.25 * length**2)
+        enough = np.flatnonzero(tails <= _NODE_TAIL)
+        if enough.size:
+            return segments, int(_NODE_COUNTS[enough[0]])
+        if segments >= _MOST_SEGMENTS:
+            raise bad(
+                "discriminant",
+                f"a function with {f.harmonics} harmonics",
+                "one that 65536 segments resolve",
+                "truncate it",
+            )
+        segments *= 2
+
+
+def _expand(
+    f: PeriodicFunction, lam2: Range, mu: Range, segments: int, q: int
+) -> tuple[Array, int, float]:
+    """Return the table of coefficients, its degree, and the size of what is left out."""
+    rule = gauss(q)
+    g = (pi / segments) ** 2
+    values = segment_values(f, segments, tuple(rule.x.tolist()))
+    onward, ends, base = _resolvents(rule, g, lam2[0], mu[0], values)
+    # Level 0: the free motion from the two unit starts, driven by the base potential.
+    free = np.stack([np.ones(q), 1.0 + rule.x])[:, None]
+    source = free * base
+    sources = [source]
+    u = free + _applied(source, onward)
+    weighted = mu[1] * values
+    weight = g * (lam2[1] + float(np.abs(weighted).max()))
+    for k in range(1, _MOST_LEVELS + 1):
+        source = np.empty((2 * (k + 1), segments, q))
+        np.multiply(u, lam2[1], out=source[: 2 * k])
+        source[2 * k :] = 0.0
+        source[2:] += weighted * u
+        sources.append(source)
+        u = _applied(source, onward)
+        # The whole of the next level is at most the last solution times this.
+        largest = float(np.abs(u).max()) * weight * (k + 2)
+        if largest <= 0.1 * EPS:
+            break
+    table = _applied(np.concatenate(sources), ends)
+    table[0] += [1.0, 0.0]
+    table[1] += [2.0, 1.0]
+    table = table.reshape(-1, 2, segments, 2).transpose(3, 1, 2, 0).reshape(4 * segments, -1)
+    left_out = 2.0 * largest + g * max(lam2[1], mu[1]) * _NODE_TAIL**2
+    return np.ascontiguousarray(table), k, left_out
+
+
+def _resolvents(
+    rule: Gauss, g: float, lam2: float, mu: float, values: Array
+) -> tuple[Array, Array, Array]:
+    """Return the maps from a source to the solution at the nodes and at the end, and the base.
+
+    The base potential at the point of expansion, ``(segments, q)``, is on the left-hand side: the
+    maps are one matrix each where it is constant, else one per segment.
+    """
+    q = rule.x.size
+    base = np.full(values.shape, lam2) if mu == 0.0 else lam2 + mu * values
+    if mu == 0.0:
+        resolvent = np.linalg.solve(np.eye(q) + (g * lam2) * rule.inner, rule.inner)
+        ends = rule.ends - (g * lam2) * (rule.ends @ resolvent)
+    else:
+        left = np.eye(q) + g * rule.inner * base[:, None]
+        resolvent = np.linalg.solve(left, np.broadcast_to(rule.inner, left.shape))
+        ends = rule.ends - g * ((rule.ends * base[:, None]) @ resolvent)
+    return -g * np.swapaxes(resolvent, -1, -2), -g * np.swapaxes(ends, -1, -2), base
+
+
+def _applied(source: Array, matrix: Array) -> Array:
+    """Apply one matrix, or one per segment, to sources ``(m, segments, q)``."""
+    m, segments, q = source.shape
+    if matrix.ndim == 2:
+        return (source.reshape(-1, q) @ matrix).reshape(m, segments, -1)
+    return np.swapaxes(np.swapaxes(source, 0, 1) @ matrix, 0, 1)

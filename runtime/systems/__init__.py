@@ -1,0 +1,8 @@
+"""From scenes and emitted modules to the systems that the solvers take."""
+
+from __future__ import annotations
+
+from .assembly import assemble
+from .modules import EmittedModule, find_module
+
+__all__ = ["EmittedModule", "assemble", "find_module"]

@@ -1,0 +1,145 @@
+"""Finding emitted modules: by the hash of their spec, through the manifests of known folders."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import importlib.util
+import json
+import os
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from ... import generated
+from ...derive.spec import Entry, ModelSpec, cache_folder, read_manifest
+from ..errors import bad
+
+
+@dataclass(frozen=True)
+class EmittedModule:
+    """A loaded module with what its manifest says of it."""
+
+    entry: Entry
+    folder: Path
+    module: ModuleType
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """Name and content hash, for results."""
+        return {"module": self.entry.module, "module_hash": self.entry.content}
+
+
+def search_path(folders: Sequence[str | Path] = ()) -> Iterator[Path]:
+    """Yield the folders that may hold modules, in the order in which they are asked.
+
+    The given ones, ``$ELASTOLINK_GENERATED``, the user's cache folder, the packaged modules.
+    """
+    yield from (Path(folder) for folder in folders)
+    if "ELASTOLINK_GENERATED" in os.environ:
+        yield Path(os.environ["ELASTOLINK_GENERATED"])
+    yield cache_folder()
+    yield Path(generated.__path__[0])
+
+
+def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedModule:
+    """Return the emitted module of a spec.
+
+    A module for the spec's own number of modes is preferred to one for any number.  Outside the
+    packaged modules, one that today's sources would emit differently counts as missing, so that a
+    cache that an older version filled is never used by mistake.
+
+    Parameters
+    ----------
+    spec : ModelSpec
+        The model that a scene names.
+    folders : sequence of path-like
+        Folders to search first.
+
+    Raises
+    ------
+    BadInput
+        If no manifest lists it, with the command that makes it; if its model cannot make it; or
+        if the file is not as it was emitted.
+    """
+    candidates = (spec, spec.with_(modes=None)) if spec.modes is not None else (spec,)
+    outdated = ""
+    for folder in search_path(folders):
+        known = read_manifest(folder)
+        for candidate in candidates:
+            entry = known.get(candidate.key())
+            if entry is None or not (folder / f"{entry.module}.py").is_file():
+                continue
+            if _outdated(folder, entry):
+                outdated = f", only an outdated one in {folder}"
+                continue
+            _refuse_edited(folder, entry)
+            return EmittedModule(entry, folder, _load(folder, entry))
+    found = f"no emitted module {spec.name()}{outdated}"
+    raise bad("model", found, "one listed in a manifest", f"run: {_command(spec, folders)}")
+
+
+def _outdated(folder: Path, entry: Entry) -> bool:
+    """Return True where a packaged model would emit something else now."""
+    if folder == Path(generated.__path__[0]):
+        return False
+    from ...derive.catalogue import find
+    from ...derive.manifest import content_hash
+
+    try:
+        paths = find(entry.spec).paths()
+    except LookupError:  # a user's model, whose file is not known here
+        return False
+    return entry.content != content_hash(entry.spec, paths)
+
+
+def _refuse_edited(folder: Path, entry: Entry) -> None:
+    path = folder / f"{entry.module}.py"
+    if hashlib.sha256(path.read_bytes()).hexdigest() != entry.text:
+        raise bad(
+            f"module {path}",
+            "a file that was changed by hand",
+            "the text that was emitted",
+            "move it away and run regenerate-equations again",
+        )
+
+
+def _command(spec: ModelSpec, folders: Sequence[str | Path]) -> str:
+    """Return the command that makes a module, where :func:`find_module` will see it."""
+    from ...derive.catalogue import find
+    from ...derive.manifest import checkout
+
+    try:
+        wrong = find(spec).choices.unknown(spec)
+        if wrong is not None:
+            part, found, expected = wrong
+            raise bad(f"model.{part}", found, expected, "correct it")
+        table = {k: v for k, v in json.loads(spec.canonical()).items() if v not in ([], None)}
+        command = f"regenerate-equations --spec {shlex.quote(json.dumps(table, sort_keys=True))}"
+    except LookupError:
+        command = f"regenerate-equations --model FILE.py, with the file of {spec.mechanism}"
+    target = (checkout() or cache_folder()).resolve()
+    if target not in {folder.resolve() for folder in search_path(folders)}:
+        command = command.replace(
+            "equations", f"equations --out {shlex.quote(str(cache_folder()))}", 1
+        )
+    return command
+
+
+def _load(folder: Path, entry: Entry) -> ModuleType:
+    packaged = Path(generated.__path__[0])
+    if folder == packaged:
+        return importlib.import_module(f"{generated.__name__}.{entry.module}")
+    name = f"elastolink_emitted_{entry.module}_{entry.text[:16]}"  # equal texts load once
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, folder / f"{entry.module}.py")
+    if spec is None or spec.loader is None:
+        raise bad(str(folder), entry.module, "a Python module", "regenerate it")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    sys.modules[name] = module  # not before: what fails to load is not kept
+    return module

@@ -1,0 +1,170 @@
+"""Kinematics where formulas break: adversarial linkages, hairs' breadths, far scales and angles."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.derive.checks import exact_at, judge, worst
+from elastolink.generated import four_bar_coupler_complete, four_bar_kinematics
+from elastolink.runtime.mechanisms import FourBar
+from linkage_truth import OUTPUTS, Linkage, coupler_functions, motion
+
+TURN = 2.0 * np.pi
+
+
+def adversarial_linkage(random):
+    """Return lengths over four decades, nearly equal, nearly parallel or nearly folding.
+
+    The relative distance from equality is log-uniform down to a few round-offs.
+    """
+    while True:
+        lengths = 10.0 ** random.uniform(-4.0, 0.0, 4)
+        nudge = 1.0 + 10.0 ** random.uniform(-15.0, 0.0, 4) * random.choice([-1.0, 1.0], 4)
+        kind = random.integers(4)
+        if kind == 0:
+            lengths = np.ones(4)
+        elif kind == 1:
+            lengths = lengths[[0, 1, 0, 1]]
+        elif kind == 2:
+            lengths[3] = lengths[0] + lengths[1] - lengths[2]
+        frame, crank, coupler, follower = lengths * nudge
+        turns = abs(frame - crank) > abs(coupler - follower) and frame + crank < coupler + follower
+        if turns and min(lengths * nudge) > 0:
+            sign = float(random.choice([-1.0, 1.0]))
+            return Linkage(float(frame), float(crank), float(coupler), float(follower), sign)
+
+
+def adversarial_angle(random):
+    quarter = np.pi / 2 * random.integers(-4, 5)
+    return float(
+        random.choice(
+            [
+                random.uniform(-10.0, 10.0),
+                10.0 ** random.uniform(-20.0, 0.0),
+                quarter,
+                quarter + 10.0 ** random.uniform(-15.0, 0.0),
+            ]
+        )
+    )
+
+
+def judged(count, seed):
+    random = np.random.default_rng(seed)
+    functions = [n for n in four_bar_coupler_complete.RETURNS if n.endswith("_functions")]
+    for i in range(count):
+        point = adversarial_linkage(random).point(f"adversarial {i}", adversarial_angle(random))
+        emitted = dict(zip(OUTPUTS, four_bar_kinematics.motion(**point.arguments), strict=True))
+        near = {name: mpmath.mpf(float(emitted[name])) for name in ("theta3", "theta4")}
+
+        def reference(numbers, near=near):
+            m = motion(numbers, near)
+            return {**m, **coupler_functions(numbers, m)}
+
+        exact = exact_at(reference, point)
+        yield from judge(four_bar_kinematics.motion, OUTPUTS, exact)
+        for name in functions:
+            function = getattr(four_bar_coupler_complete, name)
+            yield from judge(function, four_bar_coupler_complete.RETURNS[name], exact)
+
+
+def test_measure_at_adversarial_linkages():
+    beyond = {k: (j.measure, j.point) for k, j in worst(judged(250, 41)).items() if not j.passed}
+    assert not beyond
+
+
+@pytest.mark.slow
+def test_measure_at_many_adversarial_linkages():
+    beyond = {k: (j.measure, j.point) for k, j in worst(judged(5000, 42)).items() if not j.passed}
+    assert not beyond
+
+
+@pytest.mark.parametrize("exponent", range(3, 16))
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+def test_speed_at_the_dead_centre_of_a_linkage_a_hair_from_its_change_point(exponent, assembly):
+    """Frame + crank = coupler + follower less h: where the links line up, hand geometry.
+
+    The transmission angle there is pi less sqrt(2 h l / (l3 l4)), l = l3 + l4, to first order, and
+    the follower's speed crank sin(theta2 - theta3) / (follower sin): finite and of one sign.
+    """
+    hair = 10.0**-exponent
+    bar = FourBar(3.0, 1.0, 2.0 + hair, 2.0, assembly)
+    actual = (bar.coupler - 2.0) + (bar.follower - 2.0)
+    moved = bar.motion(np.pi)
+    expected = np.sqrt(2 * actual * 4.0 / (bar.coupler * bar.follower))
+    # The sum of the lengths is rounded to 4.4e-16, and so is pi.
+    allowed = 2 * hair + 1e-15 / hair + 1e-15 / expected
+    assert np.pi - moved.transmission_angle == pytest.approx(expected, rel=allowed)
+    sines = np.sin(np.pi - moved.theta3), np.sin(moved.theta4 - moved.theta3)
+    assert moved.omega4 == pytest.approx(sines[0] / (2.0 * sines[1]), rel=1e-6)
+    assert moved.passed
+
+
+@pytest.mark.parametrize("shape", [(1.0, 1.0, 1.0), (5.0, 5.0, 2.0)])
+@pytest.mark.parametrize("ratio", 10.0 ** -np.arange(2, 15, 3.0))
+def test_short_crank_swings_the_follower_in_proportion(ratio, shape):
+    """To first order in the crank: d theta4 = crank cos(theta2 - theta3) / (l4 sin) of the rest."""
+    frame, coupler, follower = shape
+    bar = FourBar(frame, ratio * frame, coupler, follower)
+    theta = np.linspace(0.0, TURN, 17)
+    moved = bar.motion(theta)
+    rest = FourBar(frame, 1e-15 * frame, coupler, follower).motion(0.0)
+    sine = follower * np.sin(rest.theta4 - rest.theta3)
+    speed = bar.crank * np.sin(theta - rest.theta3) / sine
+    np.testing.assert_allclose(moved.omega4, speed, atol=10 * ratio * np.abs(speed).max())
+    slope = bar.crank * np.cos(theta - rest.theta3) / sine
+    np.testing.assert_allclose(moved.alpha4, slope, atol=20 * ratio * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("ratio", 10.0 ** -np.arange(2, 15, 3.0))
+def test_short_frame_makes_the_links_turn_with_the_crank(ratio):
+    """Seen from the crank the frame is a short crank: accelerations keep their digits."""
+    theta = np.linspace(0.1, TURN, 17)
+    drag = FourBar(ratio, 1.0, 0.9, 0.7).motion(theta)
+    # Inversion on the crank: frame and crank change places, the angle changes its sign.
+    turned = FourBar(1.0, ratio, 0.9, 0.7, "open").motion(-theta)
+    np.testing.assert_allclose(drag.omega3, 1.0 - turned.omega3, rtol=1e-12)
+    for one, other in ((drag.alpha3, turned.alpha3), (drag.alpha4, turned.alpha4)):
+        np.testing.assert_allclose(one, other, atol=1e-11 * np.abs(other).max())
+
+
+def test_inversion_on_the_crank_swaps_frame_and_crank():
+    """A drag link is a crank rocker seen from its crank, digit for digit up to round-off."""
+    random = np.random.default_rng(7)
+    theta = np.linspace(-TURN, TURN, 41)
+    for _ in range(20):
+        linkage = adversarial_linkage(random)
+        assembly = "open" if linkage.assembly > 0 else "crossed"
+        f, c, a, b = linkage.lengths.values()
+        one, other = FourBar(f, c, a, b, assembly), FourBar(c, f, a, b, assembly)
+        here, there = one.motion(theta), other.motion(-theta)
+        np.testing.assert_allclose(
+            here.transmission_angle, there.transmission_angle, rtol=1e-10, atol=1e-12
+        )
+        size = 1.0 + np.abs(here.omega4).max()
+        assert np.all(np.abs(here.omega4 - (1.0 - there.omega4)) < 1e-6 * size)
+
+
+@pytest.mark.parametrize("turns", [1, 1e3, 1e6, 1e9])
+def test_angles_far_out_lose_no_more_than_their_own_digits(turns):
+    theta = np.array([0.3, 1.0, 2.5]) + turns * TURN
+    for lengths in ((5.0, 1.0, 5.0, 2.0), (2.0, 4.0, 5.0, 4.5)):
+        bar = FourBar(*lengths)
+        moved = bar.motion(theta)
+        chain = bar.crank * np.exp(1j * theta) + bar.coupler * np.exp(1j * moved.theta3)
+        gap = np.abs(chain - bar.frame - bar.follower * np.exp(1j * moved.theta4))
+        assert np.all(gap < 8 * np.spacing(theta) * 5.0 + 1e-14)
+        assert moved.passed
+
+
+def test_extreme_scales_and_ratios_stay_finite():
+    for lengths in (
+        (1e-300, 2e-301, 1e-300, 5e-301),
+        (1e300, 2e299, 1e300, 5e299),
+        (1.0, 1e-100, 1.0, 0.5),
+        (1e-100, 1.0, 1.0, 0.5),
+    ):
+        for assembly in ("open", "crossed"):
+            moved = FourBar(*lengths, assembly).motion(np.linspace(-4.0, 4.0, 33))
+            assert moved.passed
+            assert all(np.all(np.isfinite(getattr(moved, name))) for name in OUTPUTS)

@@ -253,9 +253,9 @@ _OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmi
 def _finite(theta: ArrayLike) -> Array:
     """Return angles as an array, or raise BadInput."""
     try:
-        angles = np.asarray(theta, dtype=float)
+        angles = np.array(theta, dtype=float)
     except (TypeError, ValueError) as refusal:
-        raise bad("theta", repr(theta), "an array of angles [rad]", "correct it") from refusal
+        raise bad("theta", repr(theta)[:60], "an array of angles [rad]", "correct it") from refusal
     if not np.all(np.isfinite(angles)):
         raise bad("theta", "a value that is not finite", "finite angles", "remove it")
     return angles

@@ -351,7 +351,9 @@ def _describe(spec: ModelSpec) -> Description:
         results=results,
         notes=(
             "The squares of the diagonal and of the area are sums of like-signed terms for every "
-            "crank that turns fully, so that no digit is lost near a dead centre.",
+            "crank that turns fully, so that no digit is lost near a dead centre; speeds and "
+            "accelerations hold the short one of crank and frame as a factor.",
+            "At theta2 = 0 both angles lie between -pi and pi.",
         ),
     )
 

@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import bad
 from . import options as opt
 
-_BENCHMARKS = ("chart",)
+_BENCHMARKS = ("chart", "slices")
 
 
 def add(commands: Any) -> None:
@@ -40,7 +40,11 @@ def add(commands: Any) -> None:
         summary="Time this toolkit beside its peers, in one run, one thread each.",
         example="elastolink benchmark chart --json",
     )
-    benchmark.add_argument("subject", choices=_BENCHMARKS, help="what is timed")
+    benchmark.add_argument(
+        "subject",
+        choices=_BENCHMARKS,
+        help="chart: a million half traces; slices: exact boundaries",
+    )
 
 
 def _writable_folder(name: str) -> Path:
@@ -72,7 +76,8 @@ def _reproduce(options: argparse.Namespace) -> int:
 
 def _benchmark(options: argparse.Namespace) -> int:
     opt.picture(options)
-    from ..benchmarking.chart import benchmark_chart
+    from ..benchmarking import benchmark_chart, benchmark_slices
 
-    result = benchmark_chart()
-    return opt.finish(options, result, opt.ranges(result))
+    run = {"chart": benchmark_chart, "slices": benchmark_slices}[options.subject]
+    result = run()
+    return opt.finish(options, result, result.table().splitlines())

@@ -78,6 +78,5 @@ def _benchmark(options: argparse.Namespace) -> int:
     opt.picture(options)
     from ..benchmarking import benchmark_chart, benchmark_slices
 
-    run = {"chart": benchmark_chart, "slices": benchmark_slices}[options.subject]
-    result = run()
+    result = benchmark_chart() if options.subject == "chart" else benchmark_slices()
     return opt.finish(options, result, result.table().splitlines())

@@ -20,9 +20,19 @@ OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmis
 TURN = 2.0 * np.pi
 
 
+@lru_cache(maxsize=64)
+def _cosine_sine(angle, precision):
+    return mpmath.cos(angle), mpmath.sin(angle)
+
+
+def cosine_sine(angle):
+    """Return cosine and sine; one angle of a pose is asked for many times."""
+    return _cosine_sine(angle, mpmath.mp.prec)
+
+
 def angles(theta2, frame, crank, coupler, follower, assembly):
     """Return theta3 and theta4 between -pi and pi; closed to the working precision."""
-    bx, by = crank * mpmath.cos(theta2), crank * mpmath.sin(theta2)
+    bx, by = (crank * part for part in cosine_sine(theta2))
     ex, ey = frame - bx, -by  # from B to D
     # |BD + l4 e4|^2 = l3^2:   2 l4 (ex cos + ey sin) = l3^2 - l4^2 - BD^2 = k
     k = (coupler**2 - follower**2 - ex**2 - ey**2) / (2 * follower)
@@ -58,9 +68,7 @@ def motion(numbers, near=None):
     if near is not None:
         theta3 += pi2 * mpmath.nint((near["theta3"] - theta3) / pi2)
         theta4 += pi2 * mpmath.nint((near["theta4"] - theta4) / pi2)
-    s2, c2 = mpmath.sin(theta2), mpmath.cos(theta2)
-    s3, c3 = mpmath.sin(theta3), mpmath.cos(theta3)
-    s4, c4 = mpmath.sin(theta4), mpmath.cos(theta4)
+    (c2, s2), (c3, s3), (c4, s4) = map(cosine_sine, (theta2, theta3, theta4))
     matrix = (-coupler * s3, follower * s4, coupler * c3, -follower * c4)
     omega3, omega4 = solve(*matrix, crank * s2, -crank * c2)
     alpha3, alpha4 = solve(
@@ -97,9 +105,9 @@ def end_load(numbers, m, inertia3=0, moment3=0, inertia4=0, rate=1, acceleration
     alpha3 = m["alpha3"] * rate**2 + m["omega3"] * acceleration
     alpha4 = m["alpha4"] * rate**2 + m["omega4"] * acceleration
     # Acceleration of B across BC, for its moment of momentum.
-    across = numbers["crank"] * (-(rate**2) * mpmath.sin(turn) + acceleration * mpmath.cos(turn))
-    s3, c3 = mpmath.sin(m["theta3"]), mpmath.cos(m["theta3"])
-    s4, c4 = mpmath.sin(m["theta4"]), mpmath.cos(m["theta4"])
+    cosine, sine = cosine_sine(turn)
+    across = numbers["crank"] * (-(rate**2) * sine + acceleration * cosine)
+    (c3, s3), (c4, s4) = cosine_sine(m["theta3"]), cosine_sine(m["theta4"])
     force_x, force_y = solve(
         -coupler * s3,
         coupler * c3,
@@ -118,15 +126,15 @@ def coupler_functions(numbers, m):
     beyond x needs for its acceleration along BC; the load across is that of the rigid link.
     """
     coupler, crank = numbers["coupler"], numbers["crank"]
-    turn = numbers["theta2"] - m["theta3"]
+    cosine, sine = cosine_sine(numbers["theta2"] - m["theta3"])
     found = {
         "angle_omega3": m["omega3"] ** 2,
-        "angle_cos23": -mpmath.cos(turn) * crank / (2 * coupler),
-        "acceleration_sin23": -mpmath.sin(turn) * crank / (2 * coupler),
+        "angle_cos23": -cosine * crank / (2 * coupler),
+        "acceleration_sin23": -sine * crank / (2 * coupler),
         "forcing_alpha3": 2 * m["alpha3"],
-        "forcing_sin23": -2 * crank * mpmath.sin(turn) / coupler,
+        "forcing_sin23": -2 * crank * sine / coupler,
         "acceleration_forcing_omega3": 2 * m["omega3"],
-        "acceleration_forcing_cos23": 2 * crank * mpmath.cos(turn) / coupler,
+        "acceleration_forcing_cos23": 2 * crank * cosine / coupler,
     }
     for argument, name in (
         ("inertia3", "coupler_inertia"),

@@ -22,7 +22,7 @@ TURN = 2.0 * np.pi
 
 @lru_cache(maxsize=64)
 def _cosine_sine(angle, precision):
-    return mpmath.cos(angle), mpmath.sin(angle)
+    return mpmath.mp.cos_sin(angle)
 
 
 def cosine_sine(angle):

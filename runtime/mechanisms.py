@@ -12,13 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..generated import four_bar_kinematics
 from .errors import BadInput, Problem, bad
-from .results import Check, Result
+from .results import Check, Result, provenance
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 Assembly = Literal["open", "crossed"]
+
+# However large the angles, a loop that gapes wider than this is no motion.
+_WIDEST_GAP = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +175,9 @@ class FourBar:
         Returns
         -------
         Motion
-            Every array has the shape of ``theta``.
+            Every array has the shape of ``theta``.  The check "folds within the angles" fails
+            where coupler and follower come into one line between the least and the greatest
+            angle: the motion is not continuous there, or it may leave by the other branch.
 
         Raises
         ------
@@ -191,14 +196,43 @@ class FourBar:
         self._require_reached(angles, arrays)
         closure = self._closure(angles, arrays["theta3"], arrays["theta4"])
         limit = 64 * np.finfo(float).eps * np.max(np.abs(angles), initial=1.0)
+        checks = {
+            "loop closure over longest link": Check(closure, min(float(limit), _WIDEST_GAP)),
+            "folds within the angles": Check(float(self._folds(angles)), 0.0),
+        }
         return Motion(
             theta2=angles,
             **arrays,
             method="closed form",
             error=self._angle_error(angles, arrays),
             error_norm="worse of theta3 and theta4 [rad], absolute, entrywise",
-            checks={"loop closure over longest link": Check(closure, float(limit))},
+            checks=checks,
+            provenance=provenance(
+                {
+                    **{f"links.{name}": repr(float(size)) for name, size in self.lengths.items()},
+                    "links.assembly": self.assembly,
+                }
+            ),
         )
+
+    def _folds(self, theta: Array) -> int:
+        """Count the angles between the least and the greatest where BD has its extreme length."""
+        if self.crank_turns or theta.size == 0:
+            return 0
+        frame, crank, coupler, follower = self._unit_lengths.values()
+        near, far = abs(frame - crank), frame + crank
+        low, high = float(theta.min()), float(theta.max())
+        found: set[float] = set()
+        for reach in (abs(coupler - follower), coupler + follower):
+            if not near <= reach <= far:
+                continue
+            square = (reach - near) * (reach + near) / (4.0 * frame * crank)
+            fold = 2.0 * float(np.arcsin(np.sqrt(min(square, 1.0))))
+            for start in (fold, -fold):
+                # The first one beyond the least angle is enough to know.
+                first = start + 2.0 * np.pi * (np.floor((low - start) / (2.0 * np.pi)) + 1.0)
+                found.update([float(first)] if low < first < high else [])
+        return len(found)
 
     def _angle_error(self, theta2: Array, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of the angle and of each length does, three times.

@@ -6,7 +6,7 @@ import io
 import json
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ErrorKind = Literal["bound", "estimate"]
+
+# The dimensions of arrays that broadcast with each other, whatever their shapes.
+BROADCAST = ("...",)
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,41 @@ class Check:
         return bool(self.value <= self.limit)
 
 
+class DeferredChecks(Mapping[str, Check]):
+    """Self-checks that are made when they are first looked at, and then kept.
+
+    For results so quick that a check would take longer than the work.  ``checks``, ``passed``,
+    ``require``, ``to_dict`` and ``save`` to JSON look at them.
+
+    Parameters
+    ----------
+    make : callable
+        Makes the checks by name; it and what it holds must bear pickling where the result should.
+    """
+
+    def __init__(self, make: Callable[[], Mapping[str, Check]]) -> None:
+        self._make = make
+        self._made: Mapping[str, Check] | None = None
+
+    @property
+    def _checks(self) -> Mapping[str, Check]:
+        if self._made is None:
+            self._made = self._make()
+        return self._made
+
+    def __getitem__(self, name: str) -> Check:
+        """Return one check by name."""
+        return self._checks[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        return iter(self._checks)
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self._checks)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Result:
     """Base of every result.
@@ -62,6 +100,12 @@ class Result:
         Self-checks by name.
     provenance : mapping of str to str
         Scene, module hash, versions.
+
+    Notes
+    -----
+    A class names the dimensions of its arrays in ``dimensions`` (extra axes count up: ``mu``,
+    ``mu_1``; :data:`BROADCAST` for arrays that broadcast with each other), and in ``exported`` the
+    properties that leave with the fields: to JSON, CSV, NPZ.
     """
 
     method: str
@@ -72,10 +116,14 @@ class Result:
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    exported: ClassVar[tuple[str, ...]] = ()
 
     @property
     def passed(self) -> bool:
-        """True where every self-check passed."""
+        """True where no self-check failed; a result without any (``checks`` is empty) passes.
+
+        Such a result rests on its error figure alone.
+        """
         return all(check.passed for check in self.checks.values())
 
     def require(self) -> None:
@@ -89,21 +137,25 @@ class Result:
             raise SelfCheckFailed(f"{type(self).__name__}: " + "; ".join(failed))
 
     def arrays(self) -> dict[str, np.ndarray[Any, Any]]:
-        """Return the numeric fields by name."""
+        """Return the numeric fields and exported properties by name.
+
+        A tuple of numbers is among them where ``dimensions`` names its axis.
+        """
         found: dict[str, np.ndarray[Any, Any]] = {}
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if isinstance(value, (bool, int, float, complex, np.ndarray, np.generic)):
-                found[item.name] = np.asarray(value)
+        for name in (*(item.name for item in fields(self)), *self.exported):
+            value = getattr(self, name)
+            listed = isinstance(value, tuple) and name in self.dimensions
+            if listed or isinstance(value, (bool, int, float, complex, np.ndarray, np.generic)):
+                found[name] = np.asarray(value)
         return found
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON; NaN becomes None."""
         out: dict[str, Any] = {}
-        for item in fields(self):
-            value = _jsonable(getattr(self, item.name))
+        for name in (*(item.name for item in fields(self)), *self.exported):
+            value = _jsonable(getattr(self, name))
             if value is not None:
-                out[item.name] = value
+                out[name] = value
         out["checks"] = {
             name: {"value": _plain(np.asarray(c.value)), "limit": c.limit, "passed": c.passed}
             for name, c in self.checks.items()
@@ -121,7 +173,10 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the result; the ending chooses npz, json, csv or nc (NetCDF).
 
-        The file appears whole or not at all.
+        The file appears whole or not at all.  A CSV file has long form: one row for each point,
+        arrays of fewer dimensions repeated, the columns of an axis that no array gives counted
+        from 0.  Arrays that do not fit together stand in blocks, an empty line between them, each
+        with a header of its own.
 
         Raises
         ------
@@ -147,7 +202,7 @@ class Result:
         data = {}
         for name, value in self.arrays().items():
             dims = self.dimensions.get(name)
-            if dims is None or len(dims) != value.ndim:
+            if dims is None or len(dims) != value.ndim or dims == BROADCAST:
                 dims = tuple(f"{name}_{i}" for i in range(value.ndim))
             data[name] = (dims, value)
         attributes = {"method": self.method, "error_norm": self.error_norm}
@@ -177,7 +232,9 @@ def _jsonable(value: object) -> Any:
     if isinstance(value, bool | int | float | complex | np.ndarray | np.generic):
         return _plain(np.asarray(value))
     if isinstance(value, tuple) and all(isinstance(v, str | int | float) for v in value):
-        return list(value)
+        return [v if isinstance(v, str) else _plain(np.asarray(v)) for v in value]
+    if isinstance(value, Mapping):
+        return {str(key): _jsonable(item) for key, item in value.items()}
     if is_dataclass(value) and not isinstance(value, type):
         return {item.name: _jsonable(getattr(value, item.name)) for item in fields(value)}
     return None
@@ -204,14 +261,63 @@ def _json(result: Result) -> bytes:
 
 
 def _csv(result: Result) -> bytes:
-    columns = {name: np.ravel(value) for name, value in result.arrays().items()}
-    longest = max((len(column) for column in columns.values()), default=0)
-    rows = [",".join(columns)]
-    rows += [
-        ",".join(repr(c[i].item()) if i < len(c) else "" for c in columns.values())
-        for i in range(longest)
-    ]
-    return ("\n".join(rows) + "\n").encode()
+    arrays = result.arrays()
+    axes = _axes(arrays, result.dimensions)
+    wholes: list[dict[str, int]] = []
+    for own in sorted(axes.values(), key=len, reverse=True):
+        if not any(own.items() <= whole.items() for whole in wholes):
+            wholes.append(own)
+    blocks = []
+    for whole in wholes:
+        members = {name: arrays[name] for name in arrays if axes[name].items() <= whole.items()}
+        blocks.append(_block(members, axes, whole))
+    return "\n".join(blocks).encode()
+
+
+def _axes(
+    arrays: Mapping[str, np.ndarray[Any, Any]], dimensions: Mapping[str, tuple[str, ...]]
+) -> dict[str, dict[str, int]]:
+    """Return label and length of the axes of each array, less those of length 1.
+
+    Arrays without declared dimensions belong together where their shapes are the same.
+    """
+    joined = [array.ndim for name, array in arrays.items() if dimensions.get(name) == BROADCAST]
+    depth = max(joined, default=0)
+    found = {}
+    for name, array in arrays.items():
+        n, names = array.ndim, dimensions.get(name, ())
+        if names == BROADCAST:
+            labels = tuple(f"axis_{depth - n + i}" for i in range(n))
+        elif names:
+            extra = tuple(f"{names[-1]}_{i}" for i in range(1, n - len(names) + 1))
+            labels = (*names, *extra)[:n]
+        else:
+            shape = "x".join(map(str, array.shape))
+            labels = tuple(f"axis_{i}_of_{shape}" for i in range(n))
+        found[name] = {k: size for k, size in zip(labels, array.shape, strict=True) if size != 1}
+    return found
+
+
+def _block(
+    arrays: Mapping[str, np.ndarray[Any, Any]],
+    axes: Mapping[str, Mapping[str, int]],
+    whole: Mapping[str, int],
+) -> str:
+    """Return header and rows of arrays that broadcast to the axes of one of them."""
+    shape = tuple(whole.values())
+    columns: dict[str, np.ndarray[Any, Any]] = {}
+    for place, label in enumerate(whole):
+        if not any(list(axes[name]) == [label] for name in arrays):
+            columns[label] = np.indices(shape)[place].ravel()
+    for name, array in arrays.items():
+        own = [label for label in whole if label in axes[name]]
+        # The order of an array's own axes may be another than that of the block.
+        turned = array.squeeze().transpose([list(axes[name]).index(label) for label in own])
+        spread = turned.reshape([whole[label] if label in own else 1 for label in whole])
+        columns[name] = np.broadcast_to(spread, shape).ravel()
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+    return "\n".join(lines) + "\n"
 
 
 def _netcdf(result: Result) -> bytes:
@@ -220,3 +326,16 @@ def _netcdf(result: Result) -> bytes:
         path = Path(folder) / "result.nc"
         data.to_netcdf(path)
         return path.read_bytes()
+
+
+def provenance(extra: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the provenance of a result: what is known of its input, and the versions in use.
+
+    Parameters
+    ----------
+    extra : mapping of str to str, optional
+        Scene, module hash, changed parameters, lengths.
+    """
+    from .. import __version__
+
+    return {**(extra or {}), "elastolink": __version__, "numpy": np.__version__}

@@ -32,7 +32,7 @@ _PUBLIC = {
     "monodromy": "floquet.monodromy_matrix",
     "perturbation_boundaries": "hill.perturbation",
     "simulate": "simulation.trajectory",
-    "speed_boundaries": "floquet.speeds",
+    "speed_boundaries": "floquet.boundary_speeds",
     "stability_chart": "charts.chart",
 }
 

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..families import Array, LinearPeriodic
-from ..hill.form import HillForm, hill_form, is_stiffness
+from ..hill.form import HillForm, hill_form, is_stiffness, leaves_function_alone
 from ..hill.matrix import Boundaries, hill_boundaries
 from ..hill.perturbation import perturbation_boundaries
 from ..series.periodic import PeriodicFunction
+from .damped_speeds import exact_speeds, first_order_speeds
+from .structure import is_damped
 
 _MOST_ROWS = 121
 _MOST_DAMPED_ROWS = 41
-_MOST_ROUNDS = 40
 _MOST_REGIONS = 24
 
 
@@ -35,6 +36,8 @@ class BoundaryCurves:
         Ends in lam2, brought to the units of the axis; NaN where there is none.
     error : ndarray, shape (len(regions), n)
         Absolute error in the units of the axis, estimated.
+    left_out : int
+        How many further regions reach into the chart but are not followed.
     """
 
     along: str
@@ -43,6 +46,7 @@ class BoundaryCurves:
     lower: Array
     upper: Array
     error: Array
+    left_out: int = 0
 
 
 def boundary_curves(
@@ -67,17 +71,18 @@ def boundary_curves(
         return None, None
     along, other = names[which], names[1 - which]
     rows = axes[1 - which]
-    most = _MOST_ROWS if form.damping() == 0.0 and other != "damping" else _MOST_DAMPED_ROWS
+    sharp = not is_damped(system, names, axes)
+    most = _MOST_ROWS if sharp else _MOST_DAMPED_ROWS
     if len(rows) > most:
         rows = np.linspace(rows[0], rows[-1], most)
     points = [_Point.of(form, along, other, float(value)) for value in rows]
-    regions = _regions(axes[which], along, points)
+    regions, left_out = _regions(axes[which], along, points)
     tables: list[BoundaryCurves] = []
-    for solve in (hill_boundaries, perturbation_boundaries):
+    for exact in (True, False):
         ends = np.full((3, len(regions), len(rows)), np.nan)
         for j, point in enumerate(points):
-            ends[:, :, j] = point.ends(solve, regions)
-        tables.append(BoundaryCurves(along, regions, rows, *ends))
+            ends[:, :, j] = point.ends(exact, regions)
+        tables.append(BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out))
     return tables[0], tables[1]
 
 
@@ -98,55 +103,38 @@ class _Point:
         f = form.function(speed, **changes)
         return cls(along, speed, f, form.stiffness(**changes), form.damping(**changes))
 
-    def ends(self, solve: Callable[..., Boundaries], regions: tuple[int, ...]) -> Array:
+    def ends(self, exact: bool, regions: tuple[int, ...]) -> Array:
         """Return lower ends, upper ends and errors in the units of the axis, shape (3, regions)."""
+        solve: Callable[..., Boundaries] = hill_boundaries if exact else perturbation_boundaries
         if self.along != "speed":
             found = solve(self.function, 1.0, regions, damping=self.damping / (2 * self.speed))
-            return np.stack([found.lower, found.upper, found.error])
-        number = np.asarray(regions)
-        at_rest = 2.0 * np.sqrt(self.stiffness) / number
-        speeds = np.stack([at_rest, at_rest])
-        error = np.zeros(len(regions))
-        for _ in range(1 if self.damping == 0.0 else _MOST_ROUNDS):
-            before = speeds
-            moved, error = self._speeds(solve, regions, speeds)
-            speeds = np.where(np.isnan(before), np.nan, moved)  # a closed region stays closed
-            if not np.any(np.abs(speeds - before) > 1e-13 * np.abs(speeds)):
-                break
-        return np.stack([speeds[0], speeds[1], error])
-
-    def _speeds(
-        self, solve: Callable[..., Boundaries], regions: tuple[int, ...], speeds: Array
-    ) -> tuple[Array, Array]:
-        """Return the speeds of both ends for the damping K = c / (2 w) at the speeds given."""
-        pick = np.arange(len(regions))
-        damping = np.nan_to_num(self.damping / (2.0 * speeds)).ravel()
-        if self.damping == 0.0:
-            damping = damping[:1]
-            pick = np.zeros_like(pick)
-        found = solve(self.function, np.ones(len(damping)), regions, damping=damping)
-        half = len(regions) if len(damping) > 1 else 0
-        index = np.arange(len(regions))
-        lam2 = np.stack([found.lower[index, pick], found.upper[index, pick + half]])
-        error = np.maximum(found.error[index, pick], found.error[index, pick + half])
+            return np.stack([found.lower, found.upper, found.error]) * self.speed**2
+        if self.stiffness <= 0.0:
+            return np.full((3, len(regions)), np.nan)
+        if self.damping != 0.0:
+            damped = exact_speeds if exact else first_order_speeds
+            return damped(self.function, self.stiffness, self.damping, regions)
+        found = solve(self.function, 1.0, regions)
+        lam2 = np.stack([found.lower, found.upper])
         with np.errstate(invalid="ignore", divide="ignore"):
-            moved = np.sqrt(np.where(lam2 > 0, self.stiffness / lam2, np.nan))
-            moved_error: Array = error * np.max(moved / (2 * np.abs(lam2)), axis=0)
-        return moved, moved_error
+            speeds = np.sqrt(np.where(lam2 > 0, self.stiffness / lam2, np.nan))
+            error = found.error * np.max(speeds / (2 * np.abs(lam2)), axis=0)
+        return np.stack([speeds[0], speeds[1], error])
 
 
 def _suits(form: HillForm, name: str) -> bool:
-    return not form.elastic if name == "speed" else is_stiffness(form, name)
+    return leaves_function_alone(form, name) if name == "speed" else is_stiffness(form, name)
 
 
-def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[int, ...]:
-    """Return the regions that may reach into the chart, the lowest ones first."""
+def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, ...], int]:
+    """Return the regions that may reach into the chart, the lowest ones, and how many more do."""
     lows, highs, reach = [], [], 0.0
-    for point in (points[0], points[-1]):
-        lam2 = point.stiffness / ends**2 if along == "speed" else ends
+    for point in points:
+        lam2 = point.stiffness / ends**2 if along == "speed" else ends / point.speed**2
         lows.append(float(lam2.min()))
         highs.append(float(lam2.max()))
         reach = max(reach, point.function.bound())
     first = max(1, int(np.floor(2 * np.sqrt(max(min(lows) - reach, 0.0)))))
-    last = int(np.ceil(2 * np.sqrt(max(max(highs) + reach, 0.25))))
-    return tuple(range(first, min(last, first + _MOST_REGIONS - 1) + 1))
+    last = max(first, int(np.ceil(2 * np.sqrt(max(max(highs) + reach, 0.25)))))
+    most = min(last, first + _MOST_REGIONS - 1)
+    return tuple(range(first, most + 1)), last - most

@@ -1,30 +1,28 @@
-"""Stability charts: sample the entire functions that decide stability, interpolate spectrally."""
+"""Stability charts: what decides stability over two parameters, boundaries, self-checks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..families import Array, LinearPeriodic
-from ..floquet.monodromy_matrix import monodromy
-from ..hill.form import hill_form, is_hill, plain_axes
-from ..hill.half_trace import discriminant_grid
+from ..hill.form import is_hill
 from ..results import Check, Result
-from ..series import chebyshev
 from .boundaries import BoundaryCurves, boundary_curves
-from .invariants import characteristic, half_traces, largest_modulus
+from .sampling import Sampler, invariants, relative_error
+from .structure import natural_frequency
+from .verdict import spot_check, verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Axis = tuple[str, ArrayLike]
-_TOLERANCE = 1e-11
-_FIRST, _MOST = 16, 512
+_ONE_MODE, _SEVERAL = 1e-11, 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,18 +39,24 @@ class StabilityChart(Result):
         What decides stability: the half trace (one mode), or the coefficients of the reduced
         (undamped) or full characteristic polynomial of the monodromy matrix.
     stable : ndarray of bool, shape (ny, nx)
-        True where no multiplier leaves the unit circle.
+        True where no multiplier leaves the unit circle by more than the slack.
     largest : ndarray, shape (ny, nx)
         Largest modulus of a multiplier.
+    slack : ndarray, shape (ny, nx)
+        How far a modulus may lie above 1 and still count as stable: what the error of the
+        invariants explains.  A resonance that grows less than this in a turn is not seen.
     exact, first_order : BoundaryCurves or None
         Boundaries from the Hill matrix, and of first order in the periodic part; one mode only.
     natural_frequency : float
-        Lowest natural frequency [rad/s] of the system at rest; NaN where speed is not an axis.
+        Lowest natural frequency [rad/s] of the system at rest; NaN where speed is not an axis or
+        the other axis changes the frequency.
+    frequency_name : str
+        What the plot calls it.
     marks : mapping
         Values along y or x to be marked, by label.
     nodes : tuple of int
-        How many Chebyshev nodes were sampled along x and y; (0, 0) where the half trace of one
-        function was evaluated by :func:`~.half_trace.discriminant_grid`.
+        How many Chebyshev nodes were sampled along x and y; (0, 0) where the invariants were
+        evaluated at each point, see ``method``.
     """
 
     x_name: str
@@ -62,9 +66,11 @@ class StabilityChart(Result):
     invariants: Array
     stable: NDArray[np.bool_]
     largest: Array
+    slack: Array
     exact: BoundaryCurves | None = None
     first_order: BoundaryCurves | None = None
     natural_frequency: float = float("nan")
+    frequency_name: str = "natural frequency"
     marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     nodes: tuple[int, int] = (0, 0)
 
@@ -73,6 +79,7 @@ class StabilityChart(Result):
         "y": ("y",),
         "stable": ("y", "x"),
         "largest": ("y", "x"),
+        "slack": ("y", "x"),
         "invariants": ("y", "x", "invariant"),
     }
 
@@ -90,7 +97,9 @@ def stability_chart(
     *,
     boundaries: bool = True,
     marks: Mapping[str, Sequence[float]] | None = None,
-    rtol: float = _TOLERANCE,
+    rtol: float | None = None,
+    progress: bool = False,
+    frequency_name: str = "natural frequency",
 ) -> StabilityChart:
     """Return the stability of a system over two parameters.
 
@@ -110,32 +119,47 @@ def stability_chart(
     marks : mapping, optional
         Label to values along y that the plot marks.
     rtol : float
-        Wanted error of the invariants, relative to their size where that exceeds 1.
+        Wanted error of the invariants, relative to their size where that exceeds 1; by default
+        1e-11 for one mode and 1e-9 for several.
+    progress : bool
+        Whether to show a progress bar (extra ``progress``).
+    frequency_name : str
+        What the plot calls the natural frequency.
 
     Returns
     -------
     StabilityChart
-        ``error`` is the largest absolute error of an invariant, estimated from the tail of the
-        series and the error of the samples.
+        ``error`` is the largest error of an invariant, over the larger of 1 and its size,
+        estimated from the tail of the series and the error of the samples.  Among the checks,
+        ``spot check`` compares five points with :func:`~.monodromy_matrix.floquet_multipliers`.
 
     Raises
     ------
     BadInput
-        If an axis is unknown, empty, not rising, or the speed not positive.
+        If an axis is unknown, empty, not rising, or the speed not positive; if modes and axes
+        would take an hour or so.
     """
     names, axes = _axes(system, x, y)
-    sampler = _Sampler(system, names)
-    series = _plain_hill(sampler, axes) or _interpolated(sampler, axes, rtol)
-    largest, stable = _verdict(sampler, series.values, names, axes)
+    if rtol is None:
+        rtol = _ONE_MODE if system.size == 1 else _SEVERAL
+    if not 1e-13 <= rtol <= 1e-2:
+        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
+    sampler = Sampler(system, names, axes, rtol)
+    series = invariants(sampler, progress=progress)
+    found = verdict(sampler, series)
+    largest, stable, slack = found
     exact, first = None, None
     if boundaries and is_hill(system):
         exact, first = boundary_curves(system, names, axes)
     return StabilityChart(
-        method=sampler.method,
-        error=series.error,
-        error_norm="invariants of the monodromy matrix, largest absolute"
-        + (" (half trace)" if sampler.hill else ""),
-        checks={"spread of samples at nodes": Check(series.sample_error, max(1e-8, 1e3 * rtol))},
+        method=series.method,
+        error=relative_error(series.error, series.values),
+        error_norm=("half trace" if sampler.hill else "invariants")
+        + " of the monodromy matrix, largest, relative where beyond 1",
+        checks={
+            "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),
+            "spot check": spot_check(sampler, series, found),
+        },
         provenance=system.provenance,
         x_name=names[0],
         y_name=names[1],
@@ -144,9 +168,11 @@ def stability_chart(
         invariants=series.values,
         stable=stable,
         largest=largest,
+        slack=slack,
         exact=exact,
         first_order=first,
-        natural_frequency=_natural_frequency(system) if "speed" in names else float("nan"),
+        natural_frequency=natural_frequency(system, names, axes),
+        frequency_name=frequency_name,
         marks={k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()},
         nodes=series.nodes,
     )
@@ -174,163 +200,3 @@ def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tu
     if x[0] == y[0]:
         raise bad("axis y", repr(y[0]), "another parameter than along x", "choose another")
     return (x[0], y[0]), (found[0], found[1])
-
-
-class _Sampler:
-    """Evaluates the invariants at given points of the transformed axes."""
-
-    def __init__(self, system: LinearPeriodic, names: tuple[str, str]) -> None:
-        self.system, self.names = system, names
-        damping = system.has("C") and bool(np.any(system.array("C", 0.0)))
-        self.damped = damping or "damping" in names
-        self.hill = is_hill(system) and not (system.has("Kg") and "speed" in names)
-        self.method = "half trace" if self.hill else "characteristic polynomial"
-        self.method += " at Chebyshev nodes, spectral interpolation"
-        self._form = hill_form(system) if self.hill else None
-        self.plain = None if self._form is None or self.damped else plain_axes(self._form, names)
-
-    def transform(self, name: str, values: Array) -> Array:
-        """Return the variable in which the invariants are entire."""
-        if name != "speed":
-            return values
-        return np.asarray(1.0 / values if self.damped else 1.0 / values**2)
-
-    def back(self, name: str, values: Array) -> Array:
-        """Undo :meth:`transform`."""
-        if name != "speed":
-            return values
-        return np.asarray(1.0 / values if self.damped else 1.0 / np.sqrt(values))
-
-    def __call__(self, x: Array, y: Array) -> tuple[Array, float]:
-        """Return invariants ``(k, nx, ny)`` and the largest error of a sample."""
-        ax, ay = (self.back(n, v) for n, v in zip(self.names, (x, y), strict=True))
-        if self._form is not None:
-            # One mode: for each y a function f, and all x at once where x leaves f alone.
-            return half_traces(self._form, self.names, ax, ay)
-        point: dict[str, Any] = {self.names[0]: ax[:, None], self.names[1]: ay[None, :]}
-        speed = point.pop("speed", 1.0)
-        result = monodromy(self.system, speed, **point)
-        shape = (len(ax), len(ay))
-        size = 2 * self.system.size
-        matrices = np.broadcast_to(result.matrix, (*shape, size, size))
-        values = characteristic(matrices, reduced=not self.damped)
-        scale = np.max(np.abs(matrices), axis=(-2, -1)) ** min(2, self.system.size)
-        return np.moveaxis(values, -1, 0), float(np.max(result.error * scale) * size)
-
-
-@dataclass(frozen=True)
-class _Series:
-    """Invariants on the chart, with their error and that of the samples."""
-
-    values: Array
-    error: float
-    sample_error: float
-    nodes: tuple[int, int]
-
-
-def _plain_hill(sampler: _Sampler, axes: tuple[Array, Array]) -> _Series | None:
-    """Return half traces where the axes are lam2 and the factor of one function, else None."""
-    if sampler.plain is None:
-        return None
-    which, f, lam2, factor = sampler.plain
-    order = np.argsort(lam2(axes[which]))
-    found = discriminant_grid(f, lam2(axes[which])[order], factor(axes[1 - which]))
-    values = np.empty_like(found.value)
-    values[order] = found.value
-    error = float(np.max(found.error))
-    shown = values.T if which == 0 else values
-    return _Series(shown[..., None], error, error, (0, 0))
-
-
-def _interpolated(sampler: _Sampler, axes: tuple[Array, Array], rtol: float) -> _Series:
-    """Refine the nodes along each axis until the tails of all series are small.
-
-    How many nodes an axis needs is found on three lines across the chart; then the whole grid is
-    sampled once, and again only where that was too few.
-    """
-    axes = (
-        sampler.transform(sampler.names[0], axes[0]),
-        sampler.transform(sampler.names[1], axes[1]),
-    )
-    count = [_counted(sampler, axes, axis, rtol) for axis in (0, 1)]
-    while True:
-        coefficients, sample_error = _sampled(sampler, axes, count)
-        size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
-        tails = [_tail(coefficients, axis) for axis in (0, 1)]
-        floor = max(rtol * size, sample_error)
-        if max(tails) <= floor or max(count) >= _MOST:
-            break
-        for axis in (0, 1):
-            if tails[axis] > floor:
-                count[axis] = min(_MOST, count[axis] + count[axis] // 3)
-    places = [chebyshev.unit(a, float(a.min()), float(a.max())) for a in axes]
-    values = [chebyshev.tensor_values(c, places[0], places[1]).T for c in coefficients]
-    error = sum(tails) + sample_error
-    return _Series(np.stack(values, axis=-1), error, sample_error / size, (count[0], count[1]))
-
-
-def _counted(sampler: _Sampler, axes: tuple[Array, Array], axis: int, rtol: float) -> int:
-    """Return how many nodes one axis needs, judged on three lines along it."""
-    count = _FIRST
-    while True:
-        trial = [3, 3]
-        trial[axis] = count
-        coefficients, _ = _sampled(sampler, axes, trial)
-        size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
-        if _tail(coefficients, axis) <= rtol * size or count >= _MOST:
-            return count
-        count = min(_MOST, count + max(4, count // 4))
-
-
-def _sampled(
-    sampler: Callable[[Array, Array], tuple[Array, float]],
-    axes: Sequence[Array],
-    count: Sequence[int],
-) -> tuple[list[Array], float]:
-    """Return the Chebyshev coefficients of each invariant on a tensor of nodes."""
-    points = []
-    for number, values in zip(count, axes, strict=True):
-        low, high = float(values.min()), float(values.max())
-        points.append(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.nodes(number))
-    samples, error = sampler(points[0], points[1])
-    return [chebyshev.coefficients2(values) for values in samples], error
-
-
-def _tail(coefficients: Sequence[Array], axis: int) -> float:
-    """Return the size of the last quarter of the coefficients along an axis."""
-    worst = 0.0
-    for table in coefficients:
-        sizes = np.sum(np.abs(table), axis=1 - axis)
-        worst = max(worst, float(np.sum(sizes[-max(2, len(sizes) // 8) :])))
-    return worst
-
-
-def _verdict(
-    sampler: _Sampler, values: Array, names: tuple[str, str], axes: tuple[Array, Array]
-) -> tuple[Array, NDArray[np.bool_]]:
-    if not sampler.hill:
-        return largest_modulus(values, reduced=not sampler.damped)
-    level = np.ones((len(axes[1]), len(axes[0])))
-    if sampler.damped and sampler._form is not None:
-        grid = dict(zip(names, (axes[0][None, :], axes[1][:, None]), strict=True))
-        speed = np.asarray(grid.pop("speed", 1.0))
-        scales = sampler.system.scale_values(**grid)
-        total = np.zeros_like(level)
-        for term in sampler.system.terms:
-            if term.array == "C":
-                factor = 1.0 if term.scale is None else scales[term.scale]
-                total = total + factor * float(term(np.zeros(1))[0, 0, 0]) / speed
-        mass = float(sampler.system.array("M", 0.0)[0, 0, 0])
-        level = np.exp(-2 * np.pi * total / mass)
-    half = values[..., 0]
-    # rho^2 - 2 X rho + W = 0 with W the determinant.
-    root = np.sqrt(np.maximum(half**2 - level, 0.0))
-    largest = np.maximum(np.abs(half) + root, np.sqrt(level))
-    return largest, 2 * np.abs(half) <= 1.0 + level
-
-
-def _natural_frequency(system: LinearPeriodic) -> float:
-    mass = system.array("M", 0.0)[0]
-    stiffness = system.array("K", 0.0)[0]
-    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
-    return float(np.sqrt(np.min(squares)))

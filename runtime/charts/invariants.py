@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..families import Array
-from ..hill.form import HillForm
+from ..hill.form import HillForm, leaves_function_alone
 from ..hill.half_trace import discriminant
+
+# Round-off of coefficients and roots, relative to the largest coefficient.
+_ROUNDING = 32.0 * float(np.finfo(float).eps)
 
 
 def characteristic(matrices: Array, *, reduced: bool) -> Array:
@@ -38,9 +43,9 @@ def characteristic(matrices: Array, *, reduced: bool) -> Array:
 
 
 def largest_modulus(
-    coefficients: Array, *, reduced: bool, slack: float = 1e-9
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the largest modulus of a multiplier, and whether all lie on or in the unit circle.
+    coefficients: Array, *, reduced: bool, error: Array | float = 0.0
+) -> tuple[Array, NDArray[np.bool_], Array]:
+    """Return the largest modulus of a multiplier, whether all are stable, and the slack of that.
 
     Parameters
     ----------
@@ -49,19 +54,61 @@ def largest_modulus(
     reduced : bool
         Whether they are the first half of a palindromic polynomial; then the roots are sought in
         ``z = rho + 1/rho``, where stability means z real and ``|z| <= 2``.
-    slack : float
-        Distance from that interval, or from the circle, that still counts as stable.
+    error : float or ndarray, shape (...)
+        Absolute error of the coefficients; round-off is added.
+
+    Returns
+    -------
+    largest, stable, slack : ndarray, shape (...)
+        A root counts as stable where its modulus exceeds 1 by no more than what the error of the
+        coefficients explains; ``slack`` is the largest such allowance of a point.
     """
+    known = np.asarray(error) + _ROUNDING * np.max(np.abs(coefficients), axis=-1, initial=1.0)
     if not reduced:
-        moduli = np.abs(_roots(coefficients))
-        largest = np.max(moduli, axis=-1)
-        return largest, largest <= 1.0 + slack
-    z = _roots(_in_sum(coefficients))
-    rho = np.abs(z / 2 + np.sqrt(z**2 / 4 - 1 + 0j))
-    largest = np.max(np.maximum(rho, 1.0 / rho), axis=-1)
-    real = np.abs(z.imag) <= np.sqrt(slack)
-    stable = np.all(real & (np.abs(z.real) <= 2.0 + slack), axis=-1)
-    return largest, stable
+        rho = _roots(coefficients)
+        allowance = root_uncertainty(rho, known)
+        modulus = np.abs(rho)
+    else:
+        z = _roots(_in_sum(coefficients))
+        off = root_uncertainty(z, known)
+        root = np.sqrt(z**2 / 4 - 1 + 0j)
+        # Of the pair rho, 1/rho the one without cancellation.
+        near, far = np.abs(z / 2 + root), np.abs(z / 2 - root)
+        modulus = np.maximum(np.maximum(near, far), 1.0)
+        # rho moves by rho dz / sqrt(z^2 - 4), and at z = +-2 by the square root.
+        with np.errstate(divide="ignore"):
+            allowance = modulus * np.minimum(off / (2 * np.abs(root)), np.sqrt(off))
+    stable = np.all(modulus <= 1.0 + allowance, axis=-1)
+    return np.max(modulus, axis=-1), stable, np.max(allowance, axis=-1)
+
+
+def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
+    """Return how far each root of a monic polynomial moves with an error of the coefficients.
+
+    Parameters
+    ----------
+    roots : ndarray, shape (..., k)
+        The roots.
+    error : ndarray, shape (...)
+        Absolute error of a coefficient.
+
+    Returns
+    -------
+    ndarray, shape (..., k)
+        For a root alone the error of the polynomial over its slope; within a cluster of r roots
+        the r-th root of the error over the distances to the others; the smallest figure, doubled.
+    """
+    k = roots.shape[-1]
+    change = np.asarray(error)[..., None] * sum(np.abs(roots) ** j for j in range(k))
+    apart = np.sort(np.abs(roots[..., :, None] - roots[..., None, :]), axis=-1)[..., 1:]
+    # Distances to the farthest k - r others, r = 1 ... k.
+    far = np.cumprod(apart[..., ::-1], axis=-1)[..., ::-1]
+    far = np.concatenate([far, np.ones((*far.shape[:-1], 1))], axis=-1)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        moved = (change[..., None] / far) ** (1.0 / np.arange(1, k + 1))
+    moved = np.where(np.isnan(moved), np.inf, moved)
+    value: Array = 2.0 * np.min(moved, axis=-1)
+    return value
 
 
 def _in_sum(coefficients: Array) -> Array:
@@ -101,24 +148,25 @@ def half_traces(
     names: tuple[str, str],
     x: Array,
     y: Array,
-) -> tuple[Array, float]:
-    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and their error.
+    tick: Callable[[int], None] | None = None,
+) -> tuple[Array, Array]:
+    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny).
 
     A row of the grid shares one function f where the other axis is the speed or acts on the
     constant stiffness alone.
     """
     # The axis that changes f is the outer loop; along the inner one only lam2 and K change.
-    inner = 0 if _leaves_function_alone(form, names[0]) else 1
+    inner = 0 if leaves_function_alone(form, names[0]) else 1
     outer = 1 - inner
     axes = (x, y)
     values = np.empty((len(x), len(y)))
-    worst = 0.0
+    errors = np.empty((len(x), len(y)))
     for j, fixed in enumerate(axes[outer]):
         points = [{names[outer]: float(fixed), names[inner]: float(v)} for v in axes[inner]]
         speeds = np.array([p.pop("speed", 1.0) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
-        if _leaves_function_alone(form, names[inner]):
+        if leaves_function_alone(form, names[inner]):
             f = form.function(float(speeds[0]), **points[0])
             result = discriminant(f, lam2, 1.0, damping)
             row, error = result.value, result.error
@@ -129,17 +177,8 @@ def half_traces(
             ]
             row = np.array([float(r.value) for r in results])
             error = np.array([float(r.error) for r in results])
-        values[(slice(None), j) if inner == 0 else (j, slice(None))] = row
-        worst = max(worst, float(np.max(error)))
-    return values[None], worst
-
-
-def _leaves_function_alone(form: HillForm, name: str) -> bool:
-    """Return True where an axis changes the constant stiffness and damping but not f."""
-    if name == "speed":
-        return not form.elastic
-    parts = [scale for scale, _ in (*form.inertial, *form.elastic) if scale is not None]
-    base = form.system.scale_values()
-    value = form.system.parameters[name]
-    moved = form.system.scale_values(**{name: 2.0 * value + 1.0})
-    return all(np.all(base[scale] == moved[scale]) for scale in parts)
+        place = (slice(None), j) if inner == 0 else (j, slice(None))
+        values[place], errors[place] = row, error
+        if tick is not None:
+            tick((j + 1) * len(axes[inner]))
+    return values[None], errors

@@ -42,7 +42,7 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
         shading="nearest",
         rasterized=True,
     )
-    ax.fill([], [], color=_UNSTABLE, label="unstable, from the discriminant")
+    ax.fill([], [], color=_UNSTABLE, label=f"unstable, from the {_what(chart)}")
     for curves, style, colour, label in (
         (chart.exact, "-", _EXACT, "exact boundary (Hill matrix)"),
         (chart.first_order, "--", _FIRST, "first-order boundary"),
@@ -56,11 +56,11 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
     ax.set_xlabel(_LABELS.get(chart.x_name, chart.x_name))
     ax.set_ylabel(_LABELS.get(chart.y_name, chart.y_name))
     if chart.x_name == "speed" and np.isfinite(chart.natural_frequency):
-        _draw_fractions(ax, chart.natural_frequency)
+        _draw_fractions(ax, chart)
     ax.text(
         0.99,
         0.01,
-        f"error of the discriminant < {chart.error:.1e} (estimate)",
+        f"error of the {_what(chart)} < {chart.error:.1e} (estimate)",
         transform=ax.transAxes,
         ha="right",
         va="bottom",
@@ -69,6 +69,10 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
     )
     ax.legend(loc="upper left", fontsize=8, framealpha=0.9)
     return ax
+
+
+def _what(chart: StabilityChart) -> str:
+    return "discriminant" if chart.error_norm.startswith("half trace") else "invariants"
 
 
 def _shown(name: str, values: Array) -> Array:
@@ -96,19 +100,19 @@ def _draw_marks(ax: Axes, values: Array, label: str, left: float) -> None:
     ax.plot(np.full(len(values), left), values, ">", color=_MARK, ms=6, clip_on=False, label=label)
 
 
-def _draw_fractions(ax: Axes, frequency: float) -> None:
+def _draw_fractions(ax: Axes, chart: StabilityChart) -> None:
     """Put the speeds 2 Omega / n on a second axis along the top, n the number of the region."""
     low, high = ax.get_xlim()
     ticks: list[float] = []
     labels: list[str] = []
     for n in range(1, 41):
-        speed = 2.0 * frequency / n * _RPM
+        speed = 2.0 * chart.natural_frequency / n * _RPM
         if low <= speed <= high and (not ticks or ticks[-1] - speed > 0.045 * (high - low)):
             ticks.append(speed)
             labels.append(_fraction(n))
     top = ax.secondary_xaxis("top")
     top.set_xticks(ticks, labels, fontsize=8)
-    top.set_xlabel(r"fractions of the coupler frequency $\Omega$", fontsize=9)
+    top.set_xlabel(rf"fractions of the {chart.frequency_name} $\Omega$", fontsize=9)
 
 
 def _fraction(n: int) -> str:

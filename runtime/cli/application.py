@@ -88,6 +88,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except (ElastolinkError, OSError) as error:
         _complain(prefix, str(error))
+    except MemoryError:
+        _complain(prefix, "out of memory; ask for fewer points, modes or steps")
     except KeyboardInterrupt:
         _complain(prefix, "interrupted; no file is left half written")
         return _INTERRUPTED
@@ -104,8 +106,13 @@ def _module_folder(folder: str | None) -> Iterator[None]:
     if folder is None:
         yield
         return
-    if not Path(folder).is_dir():
-        raise bad("--modules", repr(folder), "a folder with a manifest", "check the path")
+    if not (Path(folder) / "manifest.json").is_file():
+        raise bad(
+            "--modules",
+            repr(folder),
+            "a folder with a manifest.json",
+            "regenerate-equations writes one",
+        )
     before = os.environ.get(_MODULES)
     os.environ[_MODULES] = folder
     try:

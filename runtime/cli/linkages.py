@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..errors import BadInput, bad
 from . import options as opt
 
 if TYPE_CHECKING:
@@ -68,10 +70,14 @@ def add(commands: Any) -> None:
 
 
 def _pair(text: str) -> tuple[float, float]:
-    q, comma, qd = text.partition(",")
-    if not comma:
-        raise argparse.ArgumentTypeError(f"found {text!r}; expected two numbers, such as 0.001,0")
-    return float(q), float(qd)
+    try:
+        q, qd = map(float, text.split(","))
+        if math.isfinite(q) and math.isfinite(qd):
+            return q, qd
+    except ValueError:
+        pass
+    found = f"found {text!r}; expected two finite numbers, such as 0.001,0"
+    raise argparse.ArgumentTypeError(found)
 
 
 def _kinematics(options: argparse.Namespace) -> int:
@@ -131,7 +137,12 @@ def _simulate(options: argparse.Namespace) -> int:
     chosen = {name: getattr(options, name) for name in ("method", "initial", "steps")}
     given = {name: value for name, value in chosen.items() if value is not None}
     shown = sys.stderr.isatty()
-    result = simulate(system, speed, options.revolutions, **given, progress=shown)
+    try:
+        result = simulate(system, speed, options.revolutions, **given, progress=shown)
+    except BadInput as error:
+        fix = "give --initial Q,QD, such as --initial 0.001,0"
+        told = (replace(p, fix=fix) if p.where == "initial" else p for p in error.problems)
+        raise BadInput(*told) from error
     return opt.finish(options, result, [*opt.ranges(result), "", f"status: {result.message}"])
 
 

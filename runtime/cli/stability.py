@@ -117,7 +117,14 @@ def _chart(options: argparse.Namespace) -> int:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
     from ..charts.chart import stability_chart
 
-    chart = stability_chart(system, x=x, y=y, marks=_marks(scene, y))
+    name = "coupler frequency" if scene.get("model.flexible", ()) == ["coupler"] else None
+    chart = stability_chart(
+        system,
+        x=x,
+        y=y,
+        marks=_marks(scene, y),
+        frequency_name=name or "natural frequency",
+    )
     return opt.finish(options, chart, _chart_lines(chart, scene))
 
 
@@ -136,8 +143,10 @@ def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
     share = 100.0 * float(np.mean(~chart.stable))
     lines = [
         f"{chart.x_name} x {chart.y_name}: {nx} x {ny} points, {share:.3g} % unstable",
-        f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes",
+        chart.method,
     ]
+    if min(chart.nodes) > 0:
+        lines.append(f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes")
     curves = chart.exact
     if curves is None:
         return lines
@@ -153,7 +162,10 @@ def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
             rows.append((str(region), *(_end(end, dimensions[curves.along]) for end in ends)))
     low, high = (_brief(curves.at[i], dimensions[other]) for i in (0, -1))
     header = ("region", f"from, at {low}", "to", f"from, at {high}", "to")
-    return [*lines, "", f"boundaries along {curves.along}:", *opt.table(header, rows), ""]
+    table = [*lines, "", f"boundaries along {curves.along}:", *opt.table(header, rows)]
+    if curves.left_out:
+        table.append(f"{curves.left_out} higher regions reach into the chart but are left out")
+    return [*table, ""]
 
 
 def _end(value: float, dimension: str) -> str:

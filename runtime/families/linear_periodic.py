@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,8 @@ from ..errors import bad
 Array = NDArray[np.float64]
 MATRICES = ("M", "A", "B", "S", "C", "K", "Kg")
 VECTORS = ("f", "h", "g", "p")
+# Even angles at which every term is sampled once, to know how fast it varies.
+_PROBES = 4096
 
 
 @dataclass(frozen=True)
@@ -129,6 +132,82 @@ class LinearPeriodic:
         """Return True where no term of ``array`` depends on the crank angle."""
         return all(term.constant for term in self.terms if term.array == array)
 
+    @cached_property
+    def spectra(self) -> tuple[Array, ...]:
+        """Largest Fourier amplitude of an entry of each term, per harmonic of the period.
+
+        One array per term: of length 1 where it is constant, else 2049, from 4096 samples.
+
+        Raises
+        ------
+        BadInput
+            If a term is not finite at a sample, or returns a wrong shape for many angles.
+        """
+        theta = np.linspace(0.0, self.period, _PROBES, endpoint=False)
+        return tuple(self._spectrum(term, theta) for term in self.terms)
+
+    def _spectrum(self, term: Term, theta: Array) -> Array:
+        values = np.asarray(term(theta[:1] if term.constant else theta), dtype=float)
+        where = f"term {term.array} ({term.scale})"
+        expected = (self.size,) * (2 if term.array in MATRICES else 1)
+        if values.shape[1:] != expected or len(values) != (1 if term.constant else len(theta)):
+            raise bad(
+                where,
+                f"shape {values.shape} for {len(theta)} angles",
+                f"{(len(theta), *expected)}",
+                "make the function return one array per angle",
+            )
+        finite = np.all(np.isfinite(values.reshape(len(values), -1)), axis=1)
+        if not np.all(finite):
+            raise bad(
+                where,
+                f"a value that is not finite at crank angle {theta[int(np.argmin(finite))]:.6g}",
+                "finite numbers at every angle",
+                "check the function, its domain and the geometry",
+            )
+        flat = values.reshape(len(values), -1)
+        if term.constant:
+            largest: Array = np.max(np.abs(flat), axis=1)
+            return largest
+        amplitude: Array = np.max(np.abs(np.fft.rfft(flat, axis=0)), axis=1) / len(flat)
+        return amplitude
+
+    def is_damped(self, **axes: ArrayLike) -> bool:
+        """Return True where some damping term is not zero at every angle and parameter value.
+
+        Parameters
+        ----------
+        **axes : float or array_like
+            Parameter values that replace the system's own; arrays broadcast.
+
+        Raises
+        ------
+        BadInput
+            If a name is not one of the system's parameters, or a term is not finite.
+        """
+        scales = self.scale_values(**axes)
+        return any(
+            term.array == "C"
+            and bool(np.any(amplitude))
+            and (term.scale is None or bool(np.any(scales[term.scale])))
+            for term, amplitude in zip(self.terms, self.spectra, strict=True)
+        )
+
+    def changed_provenance(self, **changes: ArrayLike) -> dict[str, str]:
+        """Return the provenance with parameter changes recorded under ``changed``.
+
+        Parameters
+        ----------
+        **changes : float or array_like
+            Parameter values that replace the system's own; of an array its range is told.
+        """
+        found = dict(self.provenance)
+        told = [found["changed"]] if "changed" in found else []
+        told += [f"{name}={_told(value)}" for name, value in changes.items()]
+        if told:
+            found["changed"] = ", ".join(told)
+        return found
+
     def scale_values(self, **changes: ArrayLike) -> Mapping[str, Array]:
         """Return the parameter monomials at the system's parameters, some of them changed.
 
@@ -181,7 +260,11 @@ class LinearPeriodic:
     def with_parameters(self, **changes: float) -> LinearPeriodic:
         """Return the same system with other parameter values."""
         self.scale_values(**changes)
-        return replace(self, parameters={**self.parameters, **changes})
+        return replace(
+            self,
+            parameters={**self.parameters, **changes},
+            provenance=self.changed_provenance(**changes),
+        )
 
     def with_terms(self, *terms: Term, scales: Mapping[str, float] | None = None) -> LinearPeriodic:
         """Return the system with more terms, for example modal damping.
@@ -208,3 +291,13 @@ class LinearPeriodic:
             parameters={**self.parameters, **extra},
             scales=merged if extra else old,
         )
+
+
+def _told(value: ArrayLike) -> str:
+    """Return a parameter value as text: a number, or how many from where to where."""
+    values = np.asarray(value, dtype=float)
+    if values.size == 1:
+        return repr(float(values.flat[0]))
+    if values.size == 0:
+        return "none"
+    return f"{values.size} values from {float(values.min())!r} to {float(values.max())!r}"

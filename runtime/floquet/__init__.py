@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from .boundary_speeds import SpeedBoundaries, speed_boundaries
 from .monodromy_matrix import FloquetMultipliers, Monodromy, floquet_multipliers, monodromy
-from .speeds import SpeedBoundaries, speed_boundaries
 
 __all__ = [
     "FloquetMultipliers",

@@ -7,14 +7,14 @@ speeds and parameter values.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
+from ..errors import BadInput, bad
 from ..families import LinearPeriodic, Term
 
 Array = NDArray[np.float64]
@@ -22,6 +22,10 @@ Array = NDArray[np.float64]
 # Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
 # divided by speed^2; S and g act only when the crank accelerates.
 SPEED_POWER = {"M": 0, "A": 0, "B": 0, "C": -1, "K": -2, "Kg": -2, "f": 0, "h": -1, "p": -2}
+# Arrays of like kind, whose harmonics are weighed together.
+_KIND = {"M": "M", "A": "A", "B": "K", "C": "C", "K": "K", "Kg": "K", "f": "f", "h": "f", "p": "f"}
+# Amplitude, over the largest, from which a harmonic has to be resolved.
+_SEEN = 1e-6
 
 
 @dataclass(frozen=True)
@@ -57,11 +61,36 @@ class CanonicalForm:
 
     @property
     def damped(self) -> bool:
-        """True where some damping term has a non-zero factor."""
+        """True where some damping term is not zero."""
         return any(
-            term.array == "C" and bool(np.any(factor))
-            for term, factor in zip(self.system.terms, self.factors, strict=True)
+            term.array == "C" and bool(np.any(factor)) and bool(np.any(amplitude))
+            for term, factor, amplitude in zip(
+                self.system.terms, self.factors, self.system.spectra, strict=True
+            )
         )
+
+    @cached_property
+    def reach(self) -> int:
+        """Highest harmonic of the period that a coefficient of the equation holds.
+
+        An amplitude counts from 1e-6 of the largest of its array, or of the mass; at most 2048.
+        """
+        size = max(len(amplitude) for amplitude in self.system.spectra)
+        total: dict[str, Array] = {}
+        for term, factor, amplitude in zip(
+            self.system.terms, self.factors, self.system.spectra, strict=True
+        ):
+            if term.array in SPEED_POWER and (self.forced or term.array not in ("f", "h", "p")):
+                kind = _KIND[term.array]
+                row = total.setdefault(kind, np.zeros(size))
+                row[: len(amplitude)] += np.max(np.abs(factor), initial=0.0) * amplitude
+        mass = float(np.max(total["M"])) if "M" in total else 0.0
+        highest = 0
+        for kind, row in total.items():
+            top = max(float(np.max(row)), mass if kind in "AKC" else 0.0)
+            kept = np.flatnonzero(row > _SEEN * top)
+            highest = max(highest, int(kept[-1]) if len(kept) else 0)
+        return highest
 
     @cached_property
     def conservative(self) -> bool:
@@ -133,7 +162,7 @@ class CanonicalForm:
         Raises
         ------
         BadInput
-            If a mass matrix is singular.
+            If a mass matrix is not positive definite at one of the angles.
         """
         n = self.system.size
         flexibility = self._inverse_mass(theta)
@@ -205,7 +234,13 @@ class CanonicalForm:
     def _inverse_mass(self, theta: Array) -> Array:
         mass = self.require_mass(self.assemble("M", theta))
         if mass.shape[-1] == 1:
+            if not np.all(mass > 0):
+                raise _bad_mass(mass)
             return 1.0 / mass
+        try:
+            np.linalg.cholesky(mass)
+        except np.linalg.LinAlgError as indefinite:
+            raise _bad_mass(mass) from indefinite
         return np.linalg.inv(mass).astype(np.float64)
 
     @cached_property
@@ -298,10 +333,10 @@ def canonical_form(
         If a speed is not positive and finite, a parameter is unknown or not finite, shapes do not
         broadcast, or a mass matrix is not positive definite.
     """
-    speeds = np.asarray(speed, dtype=float)
+    speeds = numbers("speed", speed)
     if not (np.all(np.isfinite(speeds)) and np.all(speeds > 0)):
         raise bad("speed", speed, "positive finite speeds [rad/s]", "leave out speeds <= 0")
-    changes = {name: np.asarray(value, dtype=float) for name, value in (parameters or {}).items()}
+    changes = {name: numbers(name, value) for name, value in (parameters or {}).items()}
     for name, value in changes.items():
         if not np.all(np.isfinite(value)):
             raise bad(name, value, "finite numbers", "correct the parameter")
@@ -313,6 +348,7 @@ def canonical_form(
             "speed and parameters", shapes, "shapes that broadcast", "add axes of length 1"
         ) from mismatch
     scales = system.scale_values(**changes)
+    _ = system.spectra  # refuses terms that are not finite
     flat_speed = np.broadcast_to(speeds, batch).reshape(-1)
     factors = np.zeros((len(system.terms), len(flat_speed)))
     for row, term in zip(factors, system.terms, strict=True):
@@ -328,126 +364,42 @@ def canonical_form(
 
 def _check_mass(form: CanonicalForm) -> None:
     """Raise where the mass matrix is not symmetric and positive definite."""
-    theta = even_angles(form.system.period, 8)
-    mass = form.require_mass(form.assemble("M", theta))
-    asymmetry = np.max(np.abs(mass - np.swapaxes(mass, -1, -2)))
+    # Angles by the golden section share no symmetry with a wave.
+    golden = form.system.period * (np.arange(16.0) * (np.sqrt(5) - 1) / 2 % 1.0)
+    mass = form.require_mass(form.assemble("M", golden))
+    asymmetry = np.max(np.abs(mass - np.swapaxes(mass, -1, -2)), initial=0.0)
     lowest = np.min(np.linalg.eigvalsh(mass)) if np.all(np.isfinite(mass)) else np.nan
     if not lowest > 0 or asymmetry > 1e-10 * np.max(np.abs(mass)):
-        raise bad(
-            "mass matrix M",
-            f"smallest eigenvalue {lowest:.3g}, asymmetry {asymmetry:.3g}",
-            "a symmetric positive definite matrix at every angle and parameter value",
-            "check masses, inertias and parameter values",
-        )
+        raise _bad_mass(mass)
+
+
+def _bad_mass(mass: Array) -> BadInput:
+    asymmetry = np.max(np.abs(mass - np.swapaxes(mass, -1, -2)))
+    lowest = np.min(np.linalg.eigvalsh(mass)) if np.all(np.isfinite(mass)) else np.nan
+    return bad(
+        "mass matrix M",
+        f"smallest eigenvalue {lowest:.3g}, asymmetry {asymmetry:.3g}",
+        "a symmetric positive definite matrix at every angle and parameter value",
+        "check masses, inertias and parameter values",
+    )
+
+
+def numbers(name: str, value: object) -> Array:
+    """Return an argument as an array of floats.
+
+    Raises
+    ------
+    BadInput
+        If it is not made of real numbers; text that spells a number is none.
+    """
+    try:
+        given = np.asarray(value)
+    except ValueError as ragged:
+        raise bad(name, repr(value), "numbers", "correct it") from ragged
+    if given.size and given.dtype.kind not in "iuf":
+        raise bad(name, repr(value), "real numbers", "give numbers")
+    return given.astype(np.float64)
 
 
 def _sample(term: Term, theta: Array) -> Array:
     return np.asarray(term(theta), dtype=float)
-
-
-def spring_generator(form: CanonicalForm) -> Callable[[Array], Array]:
-    """Return P of y'' = P(theta) y for a system without first derivatives.
-
-    With forcing, y carries a last component that stays 1.
-
-    Parameters
-    ----------
-    form : CanonicalForm
-        The system at one or more speeds.
-
-    Returns
-    -------
-    callable
-        From angles ``(nt,)`` to ``(nb, nt, m, m)``, m = n or n + 1.
-
-    Raises
-    ------
-    BadInput
-        If damping C or the gyroscopic matrix G = M' + A - A^T does not vanish.
-    """
-    theta = even_angles(form.system.period, 64)
-    gyro = form.assemble("A", theta)
-    found = []
-    if form.damped:
-        found.append("damping C")
-    if not form.system.is_constant("M"):
-        found.append("a mass matrix that depends on the crank angle")
-    if gyro is not None:
-        skew = np.max(np.abs(gyro - np.swapaxes(gyro, -1, -2)))
-        if skew > 1e-13 * np.max(np.abs(gyro)):
-            found.append("a gyroscopic matrix A - A^T")
-    if found:
-        raise bad(
-            "de_vogelaere",
-            " and ".join(found),
-            "an equation without first derivatives",
-            "use gauss_legendre, magnus4 or rk4, or leave the term out",
-        )
-    slope = None
-    if gyro is not None and not form.system.is_constant("A"):
-        slope = periodic_derivative(lambda at: _dense(form, "A", at), form.system.period)
-    n = form.system.size
-
-    def generator(angles: Array) -> Array:
-        total = np.zeros((len(form.speed), len(angles), n, n))
-        for sign, names in ((-1.0, ("K", "Kg")), (1.0, ("B",))):
-            value = form.assemble(names, angles)
-            if value is not None:
-                total += sign * value
-        if slope is not None:
-            total -= slope(angles)
-        inverse = np.linalg.inv(form.require_mass(form.assemble("M", angles)))
-        out = np.zeros((len(form.speed), len(angles), n + form.forced, n + form.forced))
-        out[..., :n, :n] = inverse @ total
-        force = form.assemble(("f", "h", "p"), angles) if form.forced else None
-        if force is not None:
-            out[..., :n, n] = np.einsum("...ij,...j->...i", inverse, force)
-        return out
-
-    return generator
-
-
-def _dense(form: CanonicalForm, name: str, theta: Array) -> Array:
-    value = form.assemble(name, theta)
-    n = form.system.size
-    return np.zeros((len(form.speed), len(theta), n, n)) if value is None else value
-
-
-def periodic_derivative(
-    function: Callable[[Array], Array], period: float
-) -> Callable[[Array], Array]:
-    """Return d/dtheta of a smooth periodic matrix function, by its Fourier series.
-
-    Parameters
-    ----------
-    function : callable
-        From angles ``(nt,)`` to ``(nb, nt, n, n)``.
-    period : float
-        Its period [rad].
-
-    Raises
-    ------
-    BadInput
-        If 4096 samples do not resolve the function to round-off.
-    """
-    count = 32
-    while True:
-        values = function(even_angles(period, count))
-        coefficients = np.fft.rfft(values, axis=1) / count
-        top = np.max(np.abs(coefficients))
-        if np.max(np.abs(coefficients[:, count // 3 :])) <= 1e-14 * top:
-            break
-        count *= 2
-        if count > 4096:
-            raise bad(
-                "A", "a function that 4096 samples do not resolve", "a smooth one", "check it"
-            )
-    rate = 2j * np.pi / period * np.arange(count // 3)
-    weights = 2 * rate[:, None, None] * coefficients[:, : count // 3]
-
-    def derivative(theta: Array) -> Array:
-        waves = np.exp(theta[:, None] * rate)
-        result: Array = np.real(np.einsum("tk,bkij->btij", waves, weights))
-        return result
-
-    return derivative

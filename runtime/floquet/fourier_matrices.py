@@ -96,7 +96,7 @@ def _coefficients(term: Term, period: float) -> ComplexArray:
     """Return the coefficients of one term, those at round-off left out."""
     if term.constant:
         return np.asarray(term(np.zeros(1)), dtype=complex)
-    count = 32
+    count = 512
     while True:
         values = np.asarray(term(even_angles(period, count)), dtype=float)
         half = np.fft.rfft(values, axis=0) / count

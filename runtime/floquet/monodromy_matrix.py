@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..families import LinearPeriodic
-from ..results import Check, Result
+from ..results import Check, Result, provenance
 from .eigenvalues import eigenvalues
 from .first_order import CanonicalForm, canonical_form, even_angles
 from .period_products import STAGES, period_product
@@ -26,6 +26,9 @@ _EPS = float(np.finfo(float).eps)
 # Phase that the first try lets pass per segment; collocation of order 16 is then near 1e-9.
 _PHASE = 3.0
 _MOST_SEGMENTS = 2**20
+_FEWEST = 16
+# Error of a multiplier up to which it says anything about stability.
+_TELLING = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +99,8 @@ def monodromy(
     Returns
     -------
     Monodromy
-        Its checks: ``liouville``, the determinant against ``exp(-integral trace(M^-1 C)/w)``; and
+        Its checks: ``converged``, the error at the worst place against ``rtol`` or what round-off
+        allows there; ``liouville``, the determinant against ``exp(-integral trace(M^-1 C)/w)``; and
         ``symplectic``, the defect of ``X^T J X = J`` over ``|X|^2``, where conservative.
 
     Raises
@@ -117,7 +121,8 @@ def monodromy(
     for group, first in _groups(form):
         part = form.take(group)
         scaled[group], exponent[group], error[group], segments[group] = _refined(part, first, rtol)
-    checks = _monodromy_checks(form, scaled, exponent, error)
+    allowed = np.maximum(rtol, 100 * _rounding(form, segments))
+    checks = _monodromy_checks(form, scaled, exponent, error, np.minimum(allowed, 1e-2))
     # The exponent stays only where the unscaled matrix would overflow.
     size = np.log2(np.maximum(np.max(np.abs(scaled), axis=(-2, -1)), 1e-300)) + exponent
     spread = 2 * np.max(np.abs(np.log2(form.scale)), axis=-1, initial=0.0)
@@ -132,7 +137,7 @@ def monodromy(
         error_norm="largest entry of the error, relative to the largest entry of the matrix, "
         "both in scaled variables",
         checks=checks,
-        provenance=dict(system.provenance),
+        provenance=provenance(system.changed_provenance(**parameters)),
         speed=form.speed.reshape(batch),
         matrix=matrix.reshape(*batch, m, m),
         exponent=kept.reshape(batch),
@@ -143,7 +148,9 @@ def monodromy(
 
 def _groups(form: CanonicalForm) -> list[tuple[NDArray[np.intp], int]]:
     """Split the batch by the number of segments to begin with, a power of two."""
-    wanted = np.maximum(form.rate * form.system.period / _PHASE, 2.0)
+    # Eight angles a segment have to see the highest harmonic twice a wave at the least.
+    fewest = max(_FEWEST, form.reach / 4)
+    wanted = np.maximum(form.rate * form.system.period / _PHASE, fewest)
     level = np.ceil(np.log2(wanted)).astype(int)
     if np.max(level, initial=0) >= np.log2(_MOST_SEGMENTS):
         worst = int(np.argmax(level))
@@ -174,7 +181,7 @@ def _refined(form: CanonicalForm, first: int, rtol: float) -> Refined:
         part = form.take(open_)
         new, power = period_product(part, number)
         difference = _distance(value[open_], exponent[open_], new, power)
-        rounding = _EPS * (4.0 + 0.5 * part.activity * form.system.period)
+        rounding = _rounding(part, number)
         # The change overestimates the error of the finer result; where it shrinks as fast as the
         # order promises, one more such shrinking is counted on, with a margin.
         gain = np.clip(difference / before[open_], 1e-3, 1.0)
@@ -190,6 +197,14 @@ def _refined(form: CanonicalForm, first: int, rtol: float) -> Refined:
         if 2 * number > _MOST_SEGMENTS:
             break
     return value, exponent, error, used
+
+
+def _rounding(form: CanonicalForm, segments: int | NDArray[np.int64]) -> Array:
+    """Return the error of the scaled matrices that round-off makes, shape ``(nb,)``."""
+    # Where the coefficients rest, all segments round alike, so that their errors add up.
+    steps = 8.0 + 0.5 * segments
+    value: Array = _EPS * (steps + 0.5 * form.activity * form.system.period)
+    return value
 
 
 def _distance(
@@ -210,7 +225,7 @@ def symplectic_unit(n: int) -> Array:
 
 def _trace_integral(form: CanonicalForm) -> Array:
     """Return the integral of trace L over a period, by the trapezoidal rule on the circle."""
-    count = 64
+    count = max(64, 2 ** int(np.ceil(np.log2(2 * form.reach + 1))))
     before: Array | None = None
     while True:
         theta = even_angles(form.system.period, count)
@@ -223,12 +238,15 @@ def _trace_integral(form: CanonicalForm) -> Array:
 
 
 def _monodromy_checks(
-    form: CanonicalForm, scaled: Array, exponent: NDArray[np.int64], error: Array
+    form: CanonicalForm, scaled: Array, exponent: NDArray[np.int64], error: Array, allowed: Array
 ) -> Mapping[str, Check]:
-    """Liouville's determinant, and symplecticity where undamped, of the worst of the batch."""
+    """Convergence, Liouville's determinant and symplecticity, of the worst of the batch."""
+    if not len(error):
+        return {}
     n = form.system.size
     norm = np.linalg.norm(scaled, axis=(-2, -1))
-    checks = {}
+    last = int(np.argmax(error / allowed))
+    checks = {"converged": Check(float(error[last]), float(allowed[last]))}
     sign, logarithm = np.linalg.slogdet(scaled)
     expected = _trace_integral(form) - 2 * n * exponent * np.log(2.0)
     # A determinant is known to the error of the matrix times its condition.
@@ -244,7 +262,7 @@ def _monodromy_checks(
         shrink = np.ldexp(1.0, np.clip(-2 * exponent, -1060, 1000))[:, None, None]
         defect = np.swapaxes(scaled, -1, -2) @ unit @ scaled - unit * shrink
         worst = np.max(np.linalg.norm(defect, axis=(-2, -1)) / norm**2)
-        checks["symplectic"] = Check(float(worst), 8 * n * float(np.max(error)))
+        checks["symplectic"] = Check(float(worst), min(8 * n * float(np.max(error)), 1e-3))
     return checks
 
 
@@ -273,11 +291,17 @@ class FloquetMultipliers(Result):
     exponents: ComplexArray
     period: float
 
+    exported: ClassVar[tuple[str, ...]] = ("stable", "growth")
+
     @property
     def stable(self) -> NDArray[np.bool_]:
-        """True where no multiplier is outside the unit circle by more than its error."""
+        """True where no multiplier is outside the unit circle by more than its error.
+
+        An error of 0.1 or more says nothing: the multiplier then has to be inside by its error.
+        """
         modulus = np.abs(self.multipliers)
-        inside = np.isfinite(modulus) & (modulus <= 1.0 + self.error)
+        slack = np.where(self.error < _TELLING, self.error, -self.error)
+        inside = np.isfinite(modulus) & (modulus <= 1.0 + slack)
         value: NDArray[np.bool_] = np.all(inside, axis=-1)
         return value
 
@@ -359,7 +383,7 @@ def floquet_multipliers(
         error=absolute.reshape(shape),
         error_norm="absolute, of each multiplier",
         checks=checks,
-        provenance=dict(system.provenance),
+        provenance=provenance(system.changed_provenance(**parameters)),
         speed=form.speed.reshape(form.batch),
         multipliers=values.reshape(shape),
         exponents=(logarithm + 1j * angle).reshape(shape),

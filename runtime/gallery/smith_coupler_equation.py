@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..floquet.speeds import speed_boundaries
+from ..floquet.boundary_speeds import speed_boundaries
 from ..hill.perturbation import perturbation_boundaries
 from .records import Drawn, Quoted, Table
 from .smith_linkages import (

@@ -22,9 +22,9 @@ class HillForm:
     system : LinearPeriodic
         The system with one degree of freedom.
     inertial : tuple of (str or None, PeriodicFunction)
-        Parts of f with the parameter monomial that multiplies each.
+        Parts of f times the mass, with the parameter monomial that multiplies each.
     elastic : tuple of (str or None, PeriodicFunction)
-        Parts of g, likewise.
+        Parts of g times the mass, likewise.
     """
 
     system: LinearPeriodic
@@ -41,16 +41,20 @@ class HillForm:
 
     def _constant(self, array: str, changes: Mapping[str, float]) -> float:
         value = self.system.array(array, 0.0, **changes)[0, 0, 0]
-        return float(value / self.system.array("M", 0.0, **changes)[0, 0, 0])
+        return float(value) / self._mass(changes)
+
+    def _mass(self, changes: Mapping[str, float]) -> float:
+        return float(self.system.array("M", 0.0, **changes)[0, 0, 0])
 
     def function(self, speed: float, **changes: float) -> PeriodicFunction:
         """Return ``f + g / w^2`` at a speed [rad/s] and parameter values."""
         scales = self.system.scale_values(**changes)
+        mass = self._mass(changes)
         total = PeriodicFunction()
         for parts, divisor in ((self.inertial, 1.0), (self.elastic, speed**2)):
             for scale, part in parts:
                 factor = 1.0 if scale is None else float(scales[scale])
-                total = total + part * (factor / divisor)
+                total = total + part * (factor / (divisor * mass))
         return total
 
 
@@ -80,14 +84,17 @@ def hill_form(system: LinearPeriodic) -> HillForm:
             "one mode with constant mass, damping and stiffness",
             "use floquet_multipliers or speed_boundaries",
         )
-    mass = float(system.array("M", 0.0)[0, 0, 0])
     parts: dict[str, list[tuple[str | None, PeriodicFunction]]] = {"B": [], "Kg": []}
     for term in system.terms:
         if term.array in parts:
             sign = -1.0 if term.array == "B" else 1.0
-            parts[term.array].append((term.scale, _series(term) * (sign / mass)))
+            parts[term.array].append((term.scale, _series(term) * sign))
     return HillForm(system, tuple(parts["B"]), tuple(parts["Kg"]))
 
+
+# Values that tell a proportional dependence, and angles at which functions are compared.
+_PROBES = (1.0, 2.0, 5.0, 0.37)
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 17)
 
 PlainAxes = tuple[int, PeriodicFunction, Callable[[Array], Array], Callable[[Array], Array]]
 
@@ -113,13 +120,17 @@ def plain_axes(form: HillForm, names: tuple[str, str]) -> PlainAxes | None:
         along, other = names[which], names[1 - which]
         if other == "speed" or (along == "speed" and form.elastic):
             continue
+        if not leaves_function_alone(form, along):
+            continue
         unit = form.function(1.0, **{other: 1.0})
-        probe = np.linspace(0.0, 2.0 * np.pi, 17)
-        doubled = form.function(1.0, **{other: 2.0})(probe)
-        if not np.allclose(doubled, 2.0 * unit(probe), rtol=1e-14, atol=0.0):
+        at = unit(_ANGLES)
+        if not all(
+            np.allclose(form.function(1.0, **{other: v})(_ANGLES), v * at, rtol=1e-14, atol=0.0)
+            for v in _PROBES
+        ):
             continue
         stiffness = form.stiffness()
-        if form.stiffness(**{other: 1.0}) != form.stiffness(**{other: 2.0}):
+        if any(form.stiffness(**{other: v}) != stiffness for v in _PROBES):
             continue
         if along == "speed":
             return which, unit, partial(_over_square, stiffness), np.asarray
@@ -136,8 +147,24 @@ def is_stiffness(form: HillForm, name: str) -> bool:
     """Return True where a parameter is the constant stiffness itself."""
     if name not in form.system.parameters:
         return False
-    probe = [form.stiffness(**{name: v}) for v in (1.0, 2.0, 5.0)]
-    return bool(np.allclose(probe, (1.0, 2.0, 5.0), rtol=1e-14))
+    probe = [form.stiffness(**{name: v}) for v in _PROBES]
+    return bool(np.allclose(probe, _PROBES, rtol=1e-14)) and leaves_function_alone(form, name)
+
+
+def leaves_function_alone(form: HillForm, name: str) -> bool:
+    """Return True where an axis changes the constant stiffness and damping but not f."""
+    if name == "speed":
+        return not form.elastic
+    parts = {scale for scale, _ in (*form.inertial, *form.elastic)}
+    parts |= {term.scale for term in form.system.terms if term.array == "M"}
+    own = form.system.parameters[name]
+    base = form.system.scale_values()
+    return all(
+        np.all(base[scale] == form.system.scale_values(**{name: value})[scale])
+        for scale in parts
+        if scale is not None
+        for value in (own + 1.0, 2.0 * abs(own) + 3.0)
+    )
 
 
 def _series(term: Term) -> PeriodicFunction:

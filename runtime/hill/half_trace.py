@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from ..results import Check, Result
+from ..results import BROADCAST, Check, Result, provenance
 from ..series import chebyshev
 from ..series.periodic import PeriodicFunction
 from .transfer import EPS, Transfer, transfer
@@ -47,7 +47,7 @@ class HalfTrace(Result):
     ----------
     value : ndarray
         ``(y1(2 pi) + y2'(2 pi)) / 2``, Smith's X of (7.9), in the broadcast shape of the
-        arguments; infinite where it exceeds the range of doubles.
+        arguments; infinite where it exceeds the range of doubles, which fails a check.
     error : ndarray
         Estimate of the absolute error of each entry.
     damping : ndarray
@@ -61,7 +61,10 @@ class HalfTrace(Result):
     lam2: Array
     mu: Array
 
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("value", "error", "damping", "lam2", "mu", "level", "stable"), BROADCAST
+    )
+    exported: ClassVar[tuple[str, ...]] = ("level", "stable")
 
     @property
     def level(self) -> Array:
@@ -155,12 +158,17 @@ def discriminant(
         x, y, s = (np.broadcast_to(item, shape).ravel() for item in (x, y, log2_scale))
         work = _Work(f, x, y, s, grid=False)
         value, error = (item.reshape(shape) for item in work.run())
+    beyond = float(value.size - np.count_nonzero(np.isfinite(value)))
     return HalfTrace(
         method="transfer polynomials"
         + (" at Chebyshev nodes, interpolated" if work.interpolated else ""),
         error=error,
         error_norm="absolute, entrywise",
-        checks={"determinant": Check(work.defect, _DETERMINANT_LIMIT)},
+        checks={
+            "determinant": Check(work.defect, _DETERMINANT_LIMIT),
+            "entries beyond the range of doubles": Check(beyond, 0.0),
+        },
+        provenance=provenance(),
         value=value,
         damping=k,
         lam2=lam,

@@ -8,18 +8,20 @@ boundaries lam2 are the eigenvalues of ``k^2 - 2 K d/d theta - mu f``: symmetric
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from ..results import Result
+from ..results import DeferredChecks, Result, provenance
 from ..series.periodic import PeriodicFunction
 from .damped import damped
 from .half_trace import arguments, check_function
 from .layout import LARGEST, stacked, truncation
 from .transfer import EPS
+from .verification import boundary_checks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -44,7 +46,7 @@ class Boundaries(Result):
     regions : tuple of int
         Numbers n; the region starts at lam2 = n^2/4 at mu = 0.
     mu, damping : ndarray
-        As given, ``damping`` in a shape that broadcasts to that of ``mu``.
+        As given, in their broadcast shape.
     """
 
     lower: Array
@@ -57,7 +59,9 @@ class Boundaries(Result):
         "lower": ("region", "mu"),
         "upper": ("region", "mu"),
         "error": ("region", "mu"),
+        "regions": ("region",),
         "mu": ("mu",),
+        "damping": ("mu",),
     }
 
     @property
@@ -111,7 +115,9 @@ def hill_boundaries(
     -------
     Boundaries
         ``lower``, ``upper`` and ``error`` of shape ``(len(regions), *mu.shape)`` (the broadcast
-        shape of mu and damping).  NaN where damping has closed a region.
+        shape of mu and damping).  NaN where damping has closed a region.  Its check compares the
+        half trace at up to 24 of the ends with the level of the boundary; it takes several times
+        as long as one slice and is made when ``checks`` (or ``passed``) is first looked at.
 
     Raises
     ------
@@ -133,16 +139,19 @@ def hill_boundaries(
     (amp, k), shape = arguments(mu=mu, damping=damping)
     flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
     lower, upper, error = _boundaries(f, flat, friction, numbers)
+    ends = partial(boundary_checks, f, flat, friction, numbers, lower, upper, error)
     full = (len(numbers), *shape)
     return Boundaries(
         method="Hill matrix",
         error=error.reshape(full),
         error_norm="absolute, entrywise, for either end",
+        checks=DeferredChecks(ends),
+        provenance=provenance(),
         lower=lower.reshape(full),
         upper=upper.reshape(full),
         regions=numbers,
-        mu=amp if amp.shape == shape else np.broadcast_to(amp, shape),
-        damping=k,
+        mu=flat.reshape(shape),
+        damping=friction.reshape(shape),
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import hill_boundaries_first_order
 from ..errors import bad
+from ..results import Check, provenance
 from ..series.periodic import PeriodicFunction
 from .half_trace import arguments, check_function
 from .matrix import Boundaries, check_regions
@@ -47,7 +48,9 @@ def perturbation_boundaries(
         ``lower``, ``upper`` and ``error`` of shape ``(len(regions), *mu.shape)`` (the broadcast
         shape of mu and damping); NaN where damping closes the region (Smith (7.50)).  ``error``
         estimates what the formula leaves out: the second-order terms in full, and a majorant of
-        the third order.
+        the third order.  A check fails where it exceeds half the width that an open region would
+        have without damping: what the formula leaves out is then as large as what it gives.
+        Regions that have no width to first order are left out of it.
 
     Raises
     ------
@@ -74,12 +77,27 @@ def perturbation_boundaries(
         method="perturbation, first order",
         error=error,
         error_norm="absolute, entrywise, for either end",
+        checks=_checks(f, numbers, amp, error),
+        provenance=provenance(),
         lower=lower,
         upper=upper,
         regions=numbers,
         mu=np.broadcast_to(amp, shape),
-        damping=k,
+        damping=np.broadcast_to(k, shape),
     )
+
+
+def _checks(
+    f: PeriodicFunction, regions: tuple[int, ...], mu: Array, error: Array
+) -> dict[str, Check]:
+    """Return the largest error figure over half the undamped width, where there is a width."""
+    known = [(i, n) for i, n in enumerate(regions) if 0 < n <= f.harmonics]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = [error[i] / (0.5 * f.amplitudes[n] * np.abs(mu)) for i, n in known]
+    found = np.ravel(shares)[np.isfinite(np.ravel(shares))]
+    if found.size == 0:
+        return {}
+    return {"error over half the width": Check(float(found.max()), 1.0)}
 
 
 def _ends(f: PeriodicFunction, n: int, mu: Array, k: Array) -> tuple[Array, Array]:

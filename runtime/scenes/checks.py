@@ -1,4 +1,4 @@
-"""What no single key can show: lengths that close, a crank that turns, axes, matching lists."""
+"""What no single key can show: lengths that close, a crank that turns, bodies, axes, lists."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from ..units import describe, to_si
 from .schema import LINKS, Layout
 
 Values = Mapping[str, dict[str, Any]]
+# Data are rounded: an inertia may fall short of the least possible one by so much.
+_ROUNDED = 1e-3
 # Parameters of a chart that may be zero; speed, mass and stiffness may not.
 _VANISH = ("follower_inertia", "damping", "coupler_inertia", "coupler_first_moment")
 
@@ -59,6 +61,35 @@ def _turning_problems(frame: float, crank: float, coupler: float, follower: floa
             fix,
         )
     ]
+
+
+def body_problems(values: Values, layout: Layout) -> list[Problem]:
+    """Check that mass, first moment and inertia of each link can belong to one body.
+
+    About the same joint the inertia is at least the square of the first moment over the mass,
+    what the whole mass at its centre would have.
+
+    Parameters
+    ----------
+    values : mapping
+        Tables in SI units, with what follows from the given quantities filled in.
+    layout : Layout
+        Of a linkage; others pass.
+    """
+    problems: list[Problem] = []
+    for link in LINKS[1:] if layout.mechanism == "four_bar" else ():
+        body = values.get(link, {})
+        if not {"mass", "first_moment", "inertia"} <= set(body):
+            continue
+        mass, moment, inertia = (body[key] for key in ("mass", "first_moment", "inertia"))
+        least = moment * moment / mass
+        if inertia < least * (1.0 - _ROUNDED):
+            found = f"{describe(inertia, 'inertia')}, with mass {describe(mass, 'mass')}"
+            found += f" and first moment {moment:.6g} kg m"
+            expected = f"at least {describe(least, 'inertia')}, first_moment^2 / mass"
+            fix = "no body has these three: correct first_moment (by default a uniform bar's)"
+            problems.append(Problem(f"{link}.inertia", found, expected, fix))
+    return problems
 
 
 def chart_problems(values: Values, layout: Layout) -> list[Problem]:

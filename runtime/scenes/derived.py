@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from ..errors import BadInput, Problem
+from .checks import body_problems
 from .schema import LINKS, Layout
 
 Values = dict[str, dict[str, Any]]
@@ -24,7 +25,8 @@ def complete(values: Values, layout: Layout) -> None:
     Raises
     ------
     BadInput
-        If a link is said to be balanced and given a first moment.
+        If a link is said to be balanced and given a first moment, or if no body can have the
+        mass, first moment and inertia of a link.
     """
     if layout.mechanism == "hill":
         _pad_series(values["function"])
@@ -49,6 +51,9 @@ def complete(values: Values, layout: Layout) -> None:
     for link in LINKS[1:]:
         if link in values:
             _rigid_bar(values[link], values["links"][link], gravity, balanced=link in balanced)
+    impossible = body_problems(values, layout)
+    if impossible:
+        raise BadInput(*impossible)
 
 
 def _pad_series(function: dict[str, Any]) -> None:

@@ -37,8 +37,8 @@ class Key:
         Length of a list, where it is fixed.
     rising : bool
         Whether a list must increase.
-    most : int or None
-        Largest count that makes sense.
+    least, most : int or None
+        Smallest and largest count that make sense.
     """
 
     name: str
@@ -51,6 +51,7 @@ class Key:
     choices: tuple[str, ...] = ()
     length: int | None = None
     rising: bool = False
+    least: int | None = None
     most: int | None = None
 
 
@@ -301,6 +302,7 @@ def chart_table(parameters: Mapping[str, str]) -> Table:
                 "count",
                 default=201,
                 limit="positive",
+                least=2,
                 most=20000,
             ),
         ]

@@ -217,6 +217,9 @@ def _out_of_range(
             "correct the sign" if number < 0 else f"give {DIMENSIONS[key.dimension].words} above 0"
         )
         problems.append(Problem(where, show(value), what, fix))
+    elif key.least is not None and number < key.least:
+        problems.append(Problem(where, show(value), f"at least {key.least}", "make it larger"))
+        return True
     elif key.most is not None and number > key.most:
         problems.append(Problem(where, show(value), f"at most {key.most}", "make it smaller"))
         return True
@@ -257,8 +260,7 @@ def _quantities(
 
 
 def _count(value: object, key: Key, where: str, problems: list[Problem]) -> int | None:
-    if isinstance(value, str) and value.strip().isdecimal() and len(value) < 10:
-        value = int(value)
+    # No text and no 2.0, whoever gives it: a count means the same in a file and in Python.
     if isinstance(value, bool) or not isinstance(value, int):
         problems.append(Problem(where, show(value), "a whole number", f"write {where} = 1"))
         return None

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..floquet.first_order import CanonicalForm, periodic_derivative
+from ..errors import BadInput
+from ..floquet.first_order import CanonicalForm
+from ..floquet.spring_form import periodic_derivative
 from ..results import Check
 
 Array = NDArray[np.float64]
@@ -41,14 +43,21 @@ def energy_balance(
     -------
     Check or None
         Value: imbalance at the end over the largest energy met.  Limit: from the error figure and
-        the spline's own error; None where that error is too large for the check to say anything.
+        the spline's own error; None where that error is too large for the check to say anything,
+        where a coefficient jumps, or where it varies between the given angles.
     """
     if len(theta) < 9:
+        return None
+    # Two given angles a wave of the highest harmonic at the least, or the spline misses it.
+    if form.reach * 2 * (theta[1] - theta[0]) > form.system.period:
         return None
     theta, q, slope = theta[:_MOST], q[:_MOST], slope[:_MOST]
     # Energies of a motion near the bound may overflow; there is no balance to check then.
     with np.errstate(over="ignore", invalid="ignore"):
-        return _balance(form, theta, q, slope, error)
+        try:
+            return _balance(form, theta, q, slope, error)
+        except BadInput:  # a coefficient with jumps has no derivative to balance with
+            return None
 
 
 def _balance(

@@ -9,8 +9,10 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import CanonicalForm, spring_generator
+from ..errors import bad
+from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import ordered_product
+from ..floquet.spring_form import spring_generator
 from ..integrators import OneStep
 from ..integrators import de_vogelaere as _de_vogelaere
 
@@ -19,6 +21,9 @@ Tick = Callable[[int], None]
 
 # Steps whose matrices are held at a time while they are multiplied together.
 _STEPS_TOGETHER = 4096
+# Most steps in a revolution, and given angles in a march.
+MOST_STEPS = 2**22
+MOST_INTERVALS = 2**25
 # Growth within a revolution up to which the revolution's flows serve as they are.
 _MODERATE = 1e8
 
@@ -263,5 +268,23 @@ def _flows(block: Array) -> Array | None:
 
 
 def steps_for(form: CanonicalForm, phase: float, samples: int) -> int:
-    """Return a multiple of ``samples`` steps a revolution, of at most ``phase`` radians each."""
-    return samples * max(1, ceil(2 * pi * float(form.rate[0]) / (phase * samples)))
+    """Return a multiple of ``samples`` steps a revolution, of at most ``phase`` radians each.
+
+    Raises
+    ------
+    BadInput
+        If a revolution needs more than four million steps.
+    """
+    # The highest harmonic of a coefficient is seen four times a wave by the eight angles of a
+    # reference step (phase 1), more often by the shorter steps.
+    fastest = max(float(form.rate[0]), form.reach / (2 * form.system.period))
+    wanted = 2 * pi * fastest / (phase * samples)
+    if not wanted * samples <= MOST_STEPS:
+        raise bad(
+            "speed",
+            f"{float(form.speed[0]):.6g} rad/s, where a revolution needs "
+            f"{wanted * samples:.3g} steps",
+            f"at most {MOST_STEPS} steps a revolution",
+            "raise the speed or leave out the highest modes",
+        )
+    return samples * max(1, ceil(wanted))

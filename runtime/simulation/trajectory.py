@@ -13,13 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LinearRangeWarning, StepTooLongWarning, bad
 from ..families import LinearPeriodic
-from ..floquet.first_order import CanonicalForm, canonical_form, even_angles, spring_generator
+from ..floquet.first_order import CanonicalForm, canonical_form, even_angles, numbers
+from ..floquet.spring_form import spring_generator
 from ..integrators import METHODS, SCIPY_METHODS, OneStep
 from ..integrators.gauss_legendre import gauss_legendre
-from ..results import Check, Result
+from ..results import Check, Result, provenance
 from .adaptive import adaptive_march
 from .energy import energy_balance
-from .marching import Grid, March, make_grid, march, steps_for
+from .marching import MOST_INTERVALS, MOST_STEPS, Grid, March, make_grid, march, steps_for
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +34,8 @@ _REFERENCE = gauss_legendre(8)
 # Smith's rule in explicit methods, and round-off accuracy in collocation of order 12.
 _PHASE = {"gauss_legendre": 0.5, "magnus4": 0.15}
 _EXPLICIT_PHASE = 0.15
-_MOST_STEPS = 2**22
+# Error that a motion may have where none was asked for, and most artificial damping.
+_FAIR = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,7 +160,8 @@ def simulate(
     -------
     Trajectory
         Its ``error`` compares with a solution of order 16 on short steps.  Its checks:
-        ``energy balance``; ``liouville``, the artificial damping over the whole motion;
+        ``accuracy``, the largest error against the ``rtol`` that fixed steps were asked for, else
+        0.01; ``energy balance``; ``liouville``, the artificial damping over the whole motion;
         ``symplectic``, for a symplectic method and a conservative system; ``linear range``, the
         largest deflection over the reference length, for systems that have mode shapes.
 
@@ -186,12 +189,15 @@ def simulate(
     q, slope = _initial(form, initial)
     if method == "de_vogelaere":
         spring_generator(form)
+    steps_for(form, 1.0, samples)  # refuses speeds too low for the reference solution
     run = _Request(form, q, slope, start, float(revolutions), samples, bound, progress)
     if method in SCIPY_METHODS or (method == "kutta_merson" and steps is None):
-        return _finish(run, method, *_adaptive(run, method, 1e-8 if rtol is None else rtol))
+        raw, error = _adaptive(run, method, 1e-8 if rtol is None else rtol)
+        return _finish(run, method, raw, error, _FAIR)
     if steps is not None:
         _warn_long_step(form, METHODS[method], steps)
-    return _finish(run, method, *_fixed(run, METHODS[method], steps, rtol))
+    raw, error = _fixed(run, METHODS[method], steps, rtol)
+    return _finish(run, method, raw, error, _FAIR if rtol is None else rtol)
 
 
 @dataclass(frozen=True)
@@ -234,7 +240,7 @@ def _fixed(
         if rtol is None or np.all(error <= rtol):
             return raw, error
         number *= 2
-        if number > _MOST_STEPS:
+        if number > MOST_STEPS:
             raise bad("rtol", rtol, f"an error within reach of {method.name}", "raise rtol")
 
 
@@ -302,7 +308,7 @@ def _error(run: _Request, grid: Grid, result: March) -> Array:
     return error
 
 
-def _finish(run: _Request, method: str, raw: _Raw, error: Array) -> Trajectory:
+def _finish(run: _Request, method: str, raw: _Raw, error: Array, wanted: float) -> Trajectory:
     form, q = run.form, raw.march.q
     speed = float(form.speed[0])
     return Trajectory(
@@ -310,8 +316,8 @@ def _finish(run: _Request, method: str, raw: _Raw, error: Array) -> Trajectory:
         error=error,
         error_norm="largest error of a coordinate over its own peak, against Gauss-Legendre "
         "collocation of order 16",
-        checks=_checks(run, raw, float(np.max(error))),
-        provenance=dict(form.system.provenance),
+        checks=_checks(run, raw, float(np.max(error)), wanted),
+        provenance=provenance(form.system.provenance),
         theta=raw.theta,
         time=(raw.theta - run.start) / speed,
         q=q,
@@ -324,9 +330,9 @@ def _finish(run: _Request, method: str, raw: _Raw, error: Array) -> Trajectory:
     )
 
 
-def _checks(run: _Request, raw: _Raw, error: float) -> Mapping[str, Check]:
+def _checks(run: _Request, raw: _Raw, error: float, wanted: float) -> Mapping[str, Check]:
     form, result = run.form, raw.march
-    checks = {}
+    checks = {"accuracy": Check(error, wanted)}
     if len(raw.theta) > 1:
         balance = energy_balance(form, raw.theta, result.q, result.slope, error)
         if balance is not None:
@@ -335,7 +341,7 @@ def _checks(run: _Request, raw: _Raw, error: float) -> Mapping[str, Check]:
         turned = raw.theta[-1] - raw.theta[0]
         mean = float(np.mean(form.trace(even_angles(form.system.period, 256))))
         drift = abs(float(result.volume - mean * turned)) / (2 * form.system.size)
-        checks["liouville"] = Check(drift, max(0.01, 10 * error))
+        checks["liouville"] = Check(drift, _FAIR)
     if raw.symplectic and form.conservative:
         checks["symplectic"] = Check(result.defect, 1e-12)
     deflection = _deflection(form.system, result.q)
@@ -378,7 +384,7 @@ def _warn_long_step(form: CanonicalForm, method: OneStep, steps: int) -> None:
 
 
 def _scalar(name: str, value: Any) -> float:
-    array = np.asarray(value, dtype=float)
+    array = numbers(name, value)
     if array.ndim != 0:
         raise bad(name, f"shape {array.shape}", "one number", "simulate one speed at a time")
     return float(array)
@@ -402,7 +408,7 @@ def _initial(
         raise bad("initial", initial, "a pair (q, qd)", "give coordinates and time derivatives")
     parts = []
     for name, part in zip(("q", "qd"), initial, strict=True):
-        values = np.asarray(part, dtype=float)
+        values = numbers(f"initial {name}", part)
         if values.shape not in ((), (1,), (n,)) or not np.all(np.isfinite(values)):
             fix = f"one per coordinate: {', '.join(form.system.labels)}"
             raise bad(f"initial {name}", part, f"{n} finite numbers", fix)
@@ -428,9 +434,19 @@ def _check_arguments(
     if not np.isfinite(_scalar("start", start)):
         raise bad("start", start, "a finite crank angle [rad]", "correct it")
     for name, count in (("steps", steps), ("samples", samples)):
-        if count is not None and (count != int(count) or count < 1):
-            raise bad(name, count, "a whole number of at least 1", "correct it")
-    if rtol is not None and not 1e-14 <= rtol < 1:
+        if count is None:
+            continue
+        given = _scalar(name, count)
+        if not 1 <= given <= MOST_STEPS or given != int(given):
+            raise bad(name, count, f"a whole number from 1 to {MOST_STEPS}", "correct it")
+    if float(revolutions) * max(samples, 1) > MOST_INTERVALS:
+        raise bad(
+            "revolutions",
+            f"{revolutions:.6g} of {samples} samples each",
+            f"at most {MOST_INTERVALS} given angles in all",
+            "go on from at_end in parts, or lower samples",
+        )
+    if rtol is not None and not 1e-14 <= _scalar("rtol", rtol) < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")
     if steps is not None and rtol is not None:
         raise bad("steps and rtol", "both", "one of them", "leave one out")

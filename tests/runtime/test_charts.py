@@ -114,10 +114,10 @@ def test_reduced_polynomial_gives_the_multipliers():
     third = np.array([[np.cos(2.0), np.sin(2.0)], [-np.sin(2.0), np.cos(2.0)]])
     matrix = np.zeros((6, 6))
     matrix[:2, :2], matrix[2:4, 2:4], matrix[4:, 4:] = turn, grow, third
-    largest, stable = largest_modulus(characteristic(matrix, reduced=True), reduced=True)
+    largest, stable, _ = largest_modulus(characteristic(matrix, reduced=True), reduced=True)
     assert largest == pytest.approx(1.3, rel=1e-12)
     assert not stable
-    full, _ = largest_modulus(characteristic(matrix, reduced=False), reduced=False)
+    full, _, _ = largest_modulus(characteristic(matrix, reduced=False), reduced=False)
     assert full == pytest.approx(1.3, rel=1e-12)
 
 
@@ -149,3 +149,23 @@ def test_dictionary_holds_the_boundaries(undamped):
     table = undamped.to_dict()
     assert table["exact"]["regions"] == list(undamped.exact.regions)
     assert len(table["exact"]["lower"]) == len(undamped.exact.regions)
+
+
+def test_picture_names_the_frequency_and_the_error_of_several_modes():
+    chart = el.stability_chart(
+        rig(**{"model.modes": 2}),
+        ("speed", SPEEDS[::10]),
+        ("follower_inertia", INERTIAS[::15]),
+        frequency_name="coupler frequency",
+    )
+    axes = chart.plot()
+    assert any("error of the invariants" in text.get_text() for text in axes.texts)
+    assert "coupler frequency" in axes.child_axes[0].get_xlabel()
+
+
+def test_points_are_evaluated_one_by_one_where_they_are_few():
+    chart = el.stability_chart(
+        rig(**{"model.modes": 2}), ("speed", SPEEDS[::20]), ("follower_inertia", INERTIAS[::15])
+    )
+    assert chart.nodes == (0, 0)
+    assert chart.method.endswith("at each point")

@@ -305,6 +305,7 @@ def test_the_module_folder_holds_for_one_command_only(capsys, monkeypatch, tmp_p
         options, "load", lambda _: seen.append(os.environ["ELASTOLINK_GENERATED"]) or {}["stop"]
     )
     monkeypatch.setenv("ELASTOLINK_GENERATED", "before")
+    (tmp_path / "manifest.json").write_text("{}")
     with pytest.raises(KeyError):
         main(["show", RIG, "--modules", str(tmp_path)])
     assert seen == [str(tmp_path)] and os.environ["ELASTOLINK_GENERATED"] == "before"
@@ -450,3 +451,34 @@ def test_a_wrong_start_is_refused(capsys, text):
     with pytest.raises(SystemExit) as left:
         main(["simulate", "mathieu", "--initial", text])
     assert left.value.code == 2 and capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize("text", ["a,b", "1,nan", "1,2,3", ""])
+def test_a_wrong_start_says_what_is_wanted(capsys, text):
+    with pytest.raises(SystemExit):
+        main(["simulate", "mathieu", "--initial", text])
+    assert "expected two finite numbers, such as 0.001,0" in capsys.readouterr().err
+
+
+def test_a_start_from_rest_without_forcing_names_the_option(capsys):
+    assert "--initial Q,QD" in refused(capsys, "simulate", "mathieu")
+
+
+def test_a_folder_without_a_manifest_is_refused(capsys, tmp_path):
+    assert "manifest.json" in refused(capsys, "show", RIG, "--modules", tmp_path)
+
+
+def test_too_little_memory_is_one_line(capsys, monkeypatch):
+    def greedy(_):
+        raise MemoryError
+
+    monkeypatch.setattr(options, "load", greedy)
+    assert "out of memory" in refused(capsys, "show", RIG)
+
+
+def test_stability_as_json_holds_the_verdict(capsys):
+    _, out, _ = run(capsys, "stability", RIG, "--speed", "760 rpm", "--json")
+    found = json.loads(out)
+    assert found["stable"] is False and found["growth"] > 0
+    _, out, _ = run(capsys, "stability", RIG, "--speed", "300 rpm", "--json")
+    assert json.loads(out)["stable"] is True

@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.first_order import (
-    canonical_form,
-    periodic_derivative,
-    spring_generator,
-)
+from elastolink.runtime.floquet.first_order import canonical_form
+from elastolink.runtime.floquet.spring_form import periodic_derivative, spring_generator
 
 SPEED = 2.3
 PARAMETERS = {"weight": 1.4, "load": 0.7}

@@ -140,7 +140,7 @@ def test_damped_determinant_is_liouvilles():
         expected = np.exp(-rate * 2 * np.pi / 2.5)
         assert found.determinant[index] == pytest.approx(expected, rel=1e-12)
     assert found.passed
-    assert set(found.checks) == {"liouville"}
+    assert set(found.checks) == {"converged", "liouville"}
 
 
 # Independent routes --------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.hill.half_trace import discriminant
 from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.hill.verification import boundary_checks
 from elastolink.runtime.series.periodic import PeriodicFunction
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -250,3 +251,51 @@ def test_plot_and_export():
     assert found.to_dict()["regions"] == [1, 2]
     with pytest.raises(BadInput, match="slice"):
         hill_boundaries(COSINE, 1.0).plot()
+
+
+CHECK = "half trace at the ends over what the figures explain"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"mu": np.linspace(0.0, 50.0, 6), "regions": (0, 1, 2, 5, 8)},
+        {"mu": np.linspace(0.0, 1.0, 300), "regions": (1, 2, 3)},
+        {"mu": np.linspace(0.0, 3.0, 50), "regions": (1, 2), "damping": 0.1},
+        {"mu": 1e4, "regions": (1, 2)},
+    ],
+)
+def test_the_half_trace_confirms_the_ends(given):
+    found = hill_boundaries(PeriodicFunction([0.3, 1.0, 0.5], [0.0, 0.2]), **given)
+    assert list(found.checks) == [CHECK] and found.passed
+    assert {"elastolink", "numpy"} <= set(found.provenance)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.1])
+def test_a_wrong_end_fails_the_check(damping):
+    f, mu, k = PeriodicFunction([0.0, 1.0, 0.5]), np.array([0.7]), np.array([damping])
+    right = hill_boundaries(f, mu, (1, 2), damping=damping)
+    arguments = (f, mu, k, right.regions)
+    good = boundary_checks(*arguments, right.lower, right.upper, right.error)
+    wrong = boundary_checks(*arguments, right.lower, right.upper + 1e-9, right.error)
+    assert good[CHECK].passed and not wrong[CHECK].passed
+
+
+def test_checks_are_made_late_once_and_survive_pickling():
+    import pickle
+
+    found = pickle.loads(pickle.dumps(hill_boundaries(PeriodicFunction([0.0, 1.0]), 1.0)))
+    assert found.checks[CHECK] is found.checks[CHECK]
+    assert found.to_dict()["checks"][CHECK]["passed"]
+    nothing = hill_boundaries(PeriodicFunction([0.0, 1.0]), 0.0, (1,), damping=0.1)
+    assert len(nothing.checks) == 0
+
+
+def test_csv_has_long_form(tmp_path):
+    found = hill_boundaries(PeriodicFunction([0.0, 1.0]), [0.1, 0.2, 0.3], (1, 4))
+    lines = found.save(tmp_path / "b.csv").read_text().splitlines()
+    header = lines[0].split(",")
+    rows = [dict(zip(header, map(float, line.split(",")), strict=True)) for line in lines[1:]]
+    assert [row["regions"] for row in rows] == [1, 1, 1, 4, 4, 4]
+    assert [row["mu"] for row in rows] == [0.1, 0.2, 0.3] * 2
+    assert [row["lower"] for row in rows] == found.lower.ravel().tolist()

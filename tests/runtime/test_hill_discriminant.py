@@ -254,3 +254,24 @@ def test_plots():
     with pytest.raises(BadInput, match="a line or a grid"):
         discriminant(f, 1.0, 1.0).plot()
     plt.close("all")
+
+
+def test_an_overflow_fails_a_check():
+    found = discriminant(PeriodicFunction([0.0, 1.0]), [-1e5, 1.0], 1.0)
+    assert np.isinf(found.value[0]) and not found.passed
+    assert found.checks["entries beyond the range of doubles"].value == 1
+    assert discriminant(PeriodicFunction([0.0, 1.0]), [-1e3, 1.0], 1.0).passed
+
+
+def test_a_grid_leaves_as_long_form_with_its_verdict(tmp_path):
+    lam2, mu = np.linspace(0.0, 2.0, 4), np.linspace(0.0, 1.0, 3)
+    found = discriminant_grid(PeriodicFunction([0.0, 1.0]), lam2, mu)
+    header, *lines = found.save(tmp_path / "d.csv").read_text().splitlines()
+    rows = [dict(zip(header.split(","), line.split(","), strict=True)) for line in lines]
+    assert len(rows) == 12
+    for row, (i, j) in zip(rows, np.ndindex(4, 3), strict=True):
+        assert float(row["lam2"]) == lam2[i] and float(row["mu"]) == mu[j]
+        assert float(row["value"]) == found.value[i, j]
+        assert row["stable"] == str(found.stable[i, j])
+    assert found.to_dict()["stable"] == found.stable.tolist()
+    assert {"elastolink", "numpy"} <= set(found.provenance)

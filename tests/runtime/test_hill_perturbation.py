@@ -99,3 +99,10 @@ def test_other_orders_are_refused(order):
 def test_bad_input(arguments):
     with pytest.raises(BadInput):
         perturbation_boundaries(PeriodicFunction([0.0, 1.0]), **arguments)
+
+
+def test_a_figure_beyond_half_the_width_fails_the_check():
+    f = PeriodicFunction([0.0, 1.0, 0.2])
+    assert perturbation_boundaries(f, [0.0, 0.1], (1, 2)).passed
+    assert not perturbation_boundaries(f, [0.0, 3.0], (1, 2)).passed
+    assert not perturbation_boundaries(f, 0.1, (3,)).checks

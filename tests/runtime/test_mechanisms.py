@@ -302,3 +302,40 @@ def test_figure_grows_towards_a_dead_centre_and_with_the_turns():
     assert error[0] < 1e-14 < 30 * error[0] < error[1] < error[2] < 1e-8
     early, late = linkage("drag link").motion([1.0, 1.0 + 1000 * TURN]).error
     assert late > 50 * early
+
+
+@pytest.mark.parametrize(
+    "theta, folds", [((0.1, 6.0), 1), ((0.1, 3.0), 0), ((-0.1, 0.1), 1), ((3.2, 9.5), 2)]
+)
+def test_an_angle_range_across_a_change_point_fails_a_check(theta, folds):
+    motion = FourBar(4.0, 1.0, 4.0, 1.0).motion(np.linspace(*theta, 12))
+    check = motion.checks["folds within the angles"]
+    assert check.value == folds and motion.passed == (folds == 0)
+
+
+def test_two_ranges_of_a_rocker_are_not_one_motion():
+    bar = FourBar(3.0, 2.0, 3.5, 1.2)
+    assert not bar.crank_turns
+    reached = [t for t in np.linspace(-np.pi, np.pi, 41) if _moves(bar, t)]
+    one_side = [t for t in reached if t > 0]
+    assert bar.motion(one_side).passed
+    assert not bar.motion([-one_side[0], one_side[0]]).passed
+
+
+def _moves(bar, theta):
+    try:
+        bar.motion(theta)
+    except BadInput:
+        return False
+    return True
+
+
+def test_the_closure_limit_stays_small_at_huge_angles():
+    motion = FourBar(5.0, 1.0, 5.0, 2.0).motion([1e15])
+    assert motion.checks["loop closure over longest link"].limit <= 1e-8
+
+
+def test_provenance_tells_lengths_assembly_and_versions():
+    found = FourBar(5.0, 1.0, 5.0, 2.0, "crossed").motion(1.0).provenance
+    assert found["links.frame"] == "5.0" and found["links.assembly"] == "crossed"
+    assert {"elastolink", "numpy"} <= set(found)

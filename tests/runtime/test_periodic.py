@@ -216,3 +216,60 @@ def test_values_on_segments(harmonics):
 def test_angles_that_are_not_finite_are_refused():
     with pytest.raises(BadInput):
         PeriodicFunction([1.0])(np.inf)
+
+
+@pytest.mark.parametrize(("width", "place"), [(0.01, 1.05), (0.02, 1.0), (0.004, 4.2)])
+def test_a_narrow_peak_is_not_missed(width, place):
+    def peaked(theta):
+        return np.cos(theta) + 0.5 * np.exp(-(((theta - place) / width) ** 2))
+
+    f = PeriodicFunction.from_callable(peaked)
+    theta = np.linspace(0.0, 2 * np.pi, 20_001)
+    assert f.harmonics > 100
+    assert np.abs(f(theta) - peaked(theta)).max() <= f.error < 1e-12
+
+
+def square(theta):
+    return np.sign(np.sin(theta))
+
+
+def rectified(theta):
+    return np.abs(np.sin(theta))
+
+
+def pole(theta):
+    return 1 / (1.0001 - np.cos(theta))
+
+
+@pytest.mark.parametrize(
+    ("meant", "tol"),
+    [
+        (square, 0.1),
+        (square, 0.01),
+        (rectified, 1e-2),
+        (rectified, 1e-4),
+        (pole, 1e-2),
+        (pole, 1e-4),
+        (pole, 1e-8),
+        (pole, None),
+    ],
+)
+def test_with_a_tolerance_the_figure_still_covers_the_function(meant, tol):
+    f = PeriodicFunction.from_callable(meant, tol=tol)
+    theta = np.concatenate([np.linspace(-0.1, 0.1, 2001), np.linspace(0.0, 6.28, 5000)])
+    gap = np.abs(f(theta) - meant(theta)).max()
+    assert gap <= f.error < 10 * gap
+
+
+def test_a_jump_of_the_size_of_noise_stays_in_the_figure():
+    def jumping(theta):
+        return np.cos(theta) + 1e-12 * np.sign(np.sin(theta - 0.3))
+
+    f = PeriodicFunction.from_callable(jumping)
+    theta = np.linspace(0.0, 2 * np.pi, 10_001)
+    assert np.abs(f(theta) - jumping(theta)).max() <= f.error < 1e-11
+
+
+def test_huge_values_do_not_overflow():
+    f = PeriodicFunction.from_callable(lambda theta: 1e300 * np.cos(theta))
+    assert f.harmonics == 1 and f.error < 1e287

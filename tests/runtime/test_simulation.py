@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput, LinearRangeWarning, StepTooLongWarning
 from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.integrators import METHODS, SCIPY_METHODS
+from elastolink.runtime.simulation.adaptive import sampled_generator
 from elastolink.runtime.simulation.trajectory import Trajectory, simulate
 
 ALL = (*sorted(METHODS), *SCIPY_METHODS)
@@ -62,7 +66,7 @@ def test_collocation_is_exact_to_round_off():
     assert np.max(np.abs(run.q[:, 0] - q)) < 1e-12 * np.max(np.abs(q))
     assert np.max(np.abs(run.qd[:, 0] - qd)) < 1e-12 * np.max(np.abs(qd))
     assert run.error[0] < 1e-12
-    assert set(run.checks) == {"energy balance", "liouville", "symplectic"}
+    assert set(run.checks) == {"accuracy", "energy balance", "liouville", "symplectic"}
 
 
 def test_damped_steady_state_is_reached():
@@ -396,3 +400,96 @@ def test_a_mass_that_is_not_positive_is_refused():
             1.0,
             initial=(0.1, 0.0),
         )
+
+
+@pytest.mark.parametrize(("method", "steps"), [("magnus4", 2), ("rk4", 12), ("gauss_legendre", 1)])
+def test_a_wrong_answer_does_not_pass(method, steps):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StepTooLongWarning)
+        run = simulate(_driven(), 2.0, 3.0, method, initial=(0.1, -0.3), steps=steps)
+    assert np.max(run.error) > 0.01
+    assert not run.checks["accuracy"].passed
+    assert not run.passed
+
+
+def test_liouville_limit_does_not_grow_with_the_error():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StepTooLongWarning)
+        run = simulate(_driven(), 2.0, 3.0, "rk4", initial=(0.1, -0.3), steps=12)
+    assert run.checks["liouville"].limit == 0.01
+    assert not run.checks["liouville"].passed
+
+
+def test_accuracy_is_held_against_the_tolerance_asked_for():
+    run = simulate(_driven(), 2.0, 1.0, "rk4", rtol=1e-7)
+    assert run.checks["accuracy"].limit == 1e-7
+    assert run.passed, run.checks
+
+
+@pytest.mark.parametrize("method", ["gauss_legendre", "rk4", "kutta_merson", "DOP853"])
+def test_a_tiny_speed_is_refused_in_one_line(method):
+    with pytest.raises(BadInput, match="speed: found 1e-06 rad/s, where a revolution needs"):
+        simulate(_driven(), 1e-6, 1.0, method)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ({"steps": "a"}, "steps"),
+        ({"steps": True}, "steps"),
+        ({"steps": 10**9}, "steps"),
+        ({"revolutions": "2"}, "revolutions"),
+        ({"revolutions": 1e9}, "revolutions"),
+        ({"samples": "8"}, "samples"),
+        ({"start": "0"}, "start"),
+        ({"rtol": "1e-3"}, "rtol"),
+        ({"speed": "2"}, "speed"),
+        ({"initial": ("a", 0.0)}, "initial q"),
+    ],
+)
+def test_types_are_checked(arguments, word):
+    given = {"speed": 2.0, "revolutions": 1.0, **arguments}
+    with pytest.raises(BadInput, match=word) as caught:
+        simulate(_driven(), **given)
+    assert "\n" not in str(caught.value)
+
+
+def test_de_vogelaere_takes_a_damping_that_is_zero():
+    zero = _driven().with_terms(Term("C", None, np.zeros((1, 1))))
+    run = simulate(zero, 2.0, 1.0, "de_vogelaere")
+    np.testing.assert_array_equal(run.q, simulate(_driven(), 2.0, 1.0, "de_vogelaere").q)
+
+
+def test_a_spike_between_given_angles_is_seen():
+    def spike(theta):
+        return np.exp(-((((theta % (2 * np.pi)) - 1.0345) / 0.01) ** 2))[:, None, None] / 0.01
+
+    system = _driven(f=0.0, h=0.0, p=0.0).with_terms(Term("Kg", None, spike))
+    coarse = simulate(system, 2.0, 1.0, initial=(0.1, 0.0), samples=8)
+    fine = simulate(system, 2.0, 1.0, initial=(0.1, 0.0), steps=8192, samples=8)
+    gap = abs(coarse.q[-1, 0] - fine.q[-1, 0]) / np.max(np.abs(fine.q))
+    assert gap <= coarse.error[0] + fine.error[0]
+    assert coarse.passed, coarse.checks
+
+
+def test_sampled_generator_is_the_generator():
+    system, _ = _turned((3.0, 5.0))
+    form = canonical_form(system, 1.7)
+    theta = np.array([0.1, 2.0, 5.5, 1000.3])
+    direct = form.generator(theta)[0]
+    np.testing.assert_allclose(
+        sampled_generator(form)(theta), direct, atol=1e-12 * np.max(np.abs(direct))
+    )
+
+
+def test_a_generator_with_jumps_is_assembled_at_each_call():
+    jump = Term("Kg", None, lambda theta: np.sign(np.sin(theta - 0.3))[:, None, None])
+    form = canonical_form(_driven().with_terms(jump), 1.7, forcing=True)
+    theta = np.array([0.1, 0.2999, 0.3001])
+    np.testing.assert_array_equal(sampled_generator(form)(theta), form.generator(theta)[0])
+
+
+def test_provenance_tells_changes_and_versions():
+    run = simulate(_driven().with_parameters(stiffness=60.0), 2.0, 1.0)
+    assert run.provenance["changed"] == "stiffness=60.0"
+    assert run.provenance["numpy"] == np.__version__

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.boundary_checks import parity
+from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
-from elastolink.runtime.floquet.speeds import speed_boundaries
 from elastolink.runtime.hill.matrix import hill_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
 from scipy.optimize import brentq
@@ -256,3 +257,62 @@ def test_bad_input_is_one_clear_line(arguments, word):
     with pytest.raises(BadInput, match=word) as caught:
         speed_boundaries(_beam(), **{"speed_range": (1.0, 2.0), **arguments})
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("harmonics", [1, 2])
+def test_a_truncation_that_loses_boundaries_fails(harmonics):
+    system = _beam(depth=1.5)
+    exact = speed_boundaries(system, speed_range=(0.6, 2.5))
+    rough = speed_boundaries(system, speed_range=(0.6, 2.5), harmonics=harmonics)
+    assert exact.passed, exact.checks
+    assert len(rough.speed) < len(exact.speed)
+    # The check tells the worse of the two multipliers.
+    assert rough.checks["truncation"].value >= (len(exact.speed) - len(rough.speed)) / 2
+    assert not rough.passed
+
+
+def test_a_truncation_that_moves_boundaries_fails():
+    exact = speed_boundaries(_beam(depth=1.5), speed_range=(0.6, 2.5))
+    rough = speed_boundaries(_beam(depth=1.5), speed_range=(0.6, 2.5), harmonics=3)
+    assert len(rough.speed) == len(exact.speed)
+    moved = np.max(np.abs(rough.speed - exact.speed) / rough.speed)
+    assert moved > 0.01
+    assert rough.checks["truncation"].value == pytest.approx(moved, rel=1e-9)
+    assert not rough.passed
+
+
+def test_a_truncation_that_suffices_passes():
+    found = speed_boundaries(_beam(depth=1.5), speed_range=(2.0, 10.0), harmonics=12)
+    assert found.passed, found.checks
+
+
+def test_every_result_has_its_checks():
+    many = speed_boundaries(_beam(), speed_range=(0.02, 5.0))
+    assert len(many.speed) > 256
+    assert set(many.checks) == {"truncation", "parity", "monodromy"}
+    assert many.passed, many.checks
+    none = speed_boundaries(_beam(), speed_range=(100.0, 200.0))
+    assert set(none.checks) == {"truncation", "parity"}
+
+
+def test_parity_notices_a_boundary_left_out():
+    system = _beam(depth=1.5)
+    found = speed_boundaries(system, -1, speed_range=(1.0, 10.0))
+    whole = parity(system, [(-1, found.speed)], (1.0, 10.0), {})
+    assert whole.passed
+    for index in range(len(found.speed)):
+        left = np.delete(found.speed, index)
+        assert not parity(system, [(-1, left)], (1.0, 10.0), {}).passed
+
+
+def test_provenance_tells_changes():
+    found = speed_boundaries(_beam(), speed_range=(1.0, 2.0), k=3.0)
+    assert found.provenance["changed"] == "k=3.0"
+
+
+def test_a_high_harmonic_is_not_mistaken_for_a_mean():
+    # cos 64 theta at 32 even angles is one.
+    wave = Term("Kg", None, lambda theta: np.cos(64 * theta)[:, None, None])
+    found = speed_boundaries(_beam().with_terms(wave), -1, speed_range=(3.0, 5.0))
+    np.testing.assert_allclose(found.speed, [4.0, 4.0], rtol=1e-3)
+    assert found.passed, found.checks

@@ -8,8 +8,8 @@ import pytest
 import scipy.linalg
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.families import LinearPeriodic, Term, array_function
+from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
-from elastolink.runtime.floquet.speeds import speed_boundaries
 from elastolink.runtime.simulation.trajectory import simulate
 from scipy.integrate import solve_ivp
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import TYPE_CHECKING, ClassVar
 
@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..families import LinearPeriodic
-from ..results import Check, Result
-from .first_order import canonical_form
+from ..results import Check, Result, provenance
+from .boundary_checks import at_boundaries, parity
+from .first_order import canonical_form, numbers
 from .fourier_matrices import Wave, real_matrices, waves
-from .monodromy_matrix import monodromy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,6 +26,8 @@ Matrices = dict[int, Array]
 
 _EPS = float(np.finfo(float).eps)
 _MOST_ROWS = 4000
+# Relative change of a speed by a larger truncation that a fixed one may leave.
+_FAIR = 0.01
 # Relative imaginary part up to which a root of the truncated problem counts as a double real one.
 _NEARLY_REAL = 1e-6
 
@@ -130,8 +132,11 @@ def speed_boundaries(
     Returns
     -------
     SpeedBoundaries
-        Its checks: ``monodromy``, the smallest singular value of (monodromy matrix - multiplier),
-        relative to the matrix, from independent integration, for up to 256 boundaries.
+        Its checks: ``truncation``, how far a larger truncation moves a speed, relatively, plus
+        the number of boundaries that it adds or removes, for the worse multiplier; ``parity``,
+        the number of test speeds at which integration contradicts the count of boundaries;
+        ``monodromy``, the smallest singular value of (monodromy matrix - multiplier), relative to
+        the matrix, from integration, at up to 256 of the boundaries.
 
     Raises
     ------
@@ -147,14 +152,17 @@ def speed_boundaries(
     form = canonical_form(system, low, parameters)
     found = waves(system, parameters)
     reach = max(wave.reach for wave in found)
-    first = harmonics or ceil(float(form.rate[0]) * system.period / (2 * np.pi)) + reach + 6
+    usual = ceil(float(form.rate[0]) * system.period / (2 * np.pi)) + reach + 6
     parts = [
-        _converged(_Problem(found, system.size, system.period, sign, low, high), first, rtol)
+        _converged(_Problem(found, system.size, system.period, sign, low, high), usual, rtol)
         if harmonics is None
-        else _truncated(_Problem(found, system.size, system.period, sign, low, high), harmonics)
+        else _truncated(
+            _Problem(found, system.size, system.period, sign, low, high), harmonics, usual, rtol
+        )
         for sign in wanted
     ]
-    return _result(system, parts, parameters)
+    limit = rtol if harmonics is None else _FAIR
+    return _result(system, parts, (low, high), limit, parameters)
 
 
 @dataclass(frozen=True)
@@ -181,13 +189,18 @@ class _Problem:
 
 @dataclass(frozen=True)
 class _Roots:
-    """Roots of one truncation, with their vectors in the real basis, ``(k, m)``."""
+    """Roots of one truncation, with their vectors in the real basis, ``(k, m)``.
+
+    ``truncation`` is the largest relative change by a larger truncation, plus the change of the
+    number of roots.
+    """
 
     multiplier: int
     harmonics: int
     speed: Array
     error: Array
     vectors: Array
+    truncation: float = 0.0
 
 
 def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
@@ -198,16 +211,24 @@ def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
         fine = _roots(problem, harmonics)
         change = _movement(fine.speed, coarse.speed)
         if len(fine.speed) == len(coarse.speed) and np.all(change <= rtol * fine.speed):
-            return _Roots(fine.multiplier, harmonics, fine.speed, fine.error + change, fine.vectors)
+            moved = _truncation(fine.speed, coarse.speed, change)
+            return replace(fine, error=fine.error + change, truncation=moved)
         coarse = fine
 
 
-def _truncated(problem: _Problem, harmonics: int) -> _Roots:
-    """Return the roots at a wanted truncation; the error is what a larger one changes."""
+def _truncated(problem: _Problem, harmonics: int, usual: int, rtol: float) -> _Roots:
+    """Return the roots at a wanted truncation; the error is what a converged one changes."""
     roots = _roots(problem, harmonics)
-    larger = _roots(problem, harmonics + max(6, harmonics // 4))
+    larger = _converged(problem, max(usual, harmonics), rtol)
     change = _movement(roots.speed, larger.speed)
-    return _Roots(roots.multiplier, harmonics, roots.speed, roots.error + change, roots.vectors)
+    moved = _truncation(roots.speed, larger.speed, change)
+    return replace(roots, error=roots.error + change, truncation=moved)
+
+
+def _truncation(speed: Array, other: Array, change: Array) -> float:
+    """Return the largest relative change plus the change of the number of roots."""
+    lost = abs(len(speed) - len(other))
+    return lost + float(np.max(np.minimum(change / speed, 1.0), initial=0.0))
 
 
 def _movement(speed: Array, other: Array) -> Array:
@@ -340,7 +361,11 @@ def _polynomial(matrices: Matrices, speed: float) -> Array:
 
 
 def _result(
-    system: LinearPeriodic, parts: list[_Roots], parameters: Mapping[str, float]
+    system: LinearPeriodic,
+    parts: list[_Roots],
+    span: tuple[float, float],
+    limit: float,
+    parameters: Mapping[str, float],
 ) -> SpeedBoundaries:
     n = system.size
     harmonics = max(part.harmonics for part in parts)
@@ -364,8 +389,14 @@ def _result(
         method="eigenvalues of the Fourier matrix",
         error=error[order],
         error_norm="absolute, of each speed [rad/s]",
-        checks=_checks(system, speed[order], sign[order], error[order], parameters),
-        provenance=dict(system.provenance),
+        checks={
+            "truncation": Check(max(part.truncation for part in parts), limit),
+            "parity": parity(
+                system, [(part.multiplier, part.speed) for part in parts], span, parameters
+            ),
+            **at_boundaries(system, speed[order], sign[order], error[order], parameters),
+        },
+        provenance=provenance(system.changed_provenance(**parameters)),
         speed=speed[order],
         multiplier=sign[order],
         cosine=cosine[order],
@@ -373,30 +404,6 @@ def _result(
         harmonics=harmonics,
         period=system.period,
     )
-
-
-def _checks(
-    system: LinearPeriodic,
-    speed: Array,
-    sign: NDArray[np.int64],
-    error: Array,
-    parameters: Mapping[str, float],
-) -> Mapping[str, Check]:
-    """Compare with monodromy matrices, at the worst boundary against what its error allows."""
-    if not 0 < len(speed) <= 256:
-        return {}
-    matrices = monodromy(system, speed, **parameters)
-    scaled = matrices.scaled
-    shifted = scaled - np.ldexp(1.0, -matrices.exponent)[:, None, None] * (
-        sign[:, None, None] * np.eye(scaled.shape[-1])
-    )
-    norm = np.linalg.norm(scaled, axis=(-2, -1))
-    value = np.linalg.svd(shifted, compute_uv=False)[:, -1] / norm
-    form = canonical_form(system, speed, parameters)
-    turning = 2 * form.rate * system.period
-    limit = 8 * scaled.shape[-1] * (matrices.error + (1 + turning) * error / speed)
-    worst = int(np.argmax(value / limit))
-    return {"monodromy": Check(float(value[worst]), float(limit[worst]))}
 
 
 def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
@@ -407,7 +414,7 @@ def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
 
 
 def _range(speed_range: tuple[float, float]) -> tuple[float, float]:
-    values = np.asarray(speed_range, dtype=float)
+    values = numbers("speed_range", speed_range)
     if values.shape != (2,) or not np.all(np.isfinite(values)) or not 0 < values[0] < values[1]:
         raise bad(
             "speed_range",

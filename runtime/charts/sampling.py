@@ -1,0 +1,249 @@
+"""Invariants over a chart: at each point where that is cheaper, else at Chebyshev nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import bad
+from ..families import Array, LinearPeriodic
+from ..floquet.first_order import canonical_form
+from ..floquet.monodromy_matrix import monodromy
+from ..hill.form import hill_form, is_hill, plain_axes
+from ..hill.half_trace import discriminant_grid
+from ..progress import bar
+from ..series import chebyshev
+from .invariants import characteristic, half_traces
+from .structure import Axes, Names, is_damped, is_symplectic
+
+_FIRST, _MOST = 16, 512
+# Monodromy matrices computed together, which bounds the memory.
+_TOGETHER = 128
+# Flops, roughly, that one chart may cost: an hour or so.
+_MOST_WORK = 1e12
+_STEP = 1.5
+
+Tick = Callable[[int], None] | None
+
+
+@dataclass(frozen=True)
+class Series:
+    """Invariants on the chart ``(ny, nx, k)``, absolute errors ``(ny, nx)``, how they were found.
+
+    ``sample_error`` is that of single samples, relative to the size of the invariants.
+    """
+
+    values: Array
+    error: Array
+    sample_error: float
+    nodes: tuple[int, int]
+    method: str
+
+
+class Sampler:
+    """Evaluates the invariants at given points of the transformed axes."""
+
+    def __init__(self, system: LinearPeriodic, names: Names, axes: Axes, rtol: float) -> None:
+        self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
+        self.damped = is_damped(system, names, axes)
+        self.reduced = is_symplectic(system, self.damped)
+        self.hill = is_hill(system) and not (system.has("Kg") and "speed" in names)
+        self.form = hill_form(system) if self.hill else None
+        self.plain = None if self.form is None or self.damped else plain_axes(self.form, names)
+
+    def transform(self, name: str, values: Array) -> Array:
+        """Return the variable in which the invariants are entire."""
+        if name != "speed":
+            return values
+        return np.asarray(1.0 / values if self.damped else 1.0 / values**2)
+
+    def back(self, name: str, values: Array) -> Array:
+        """Undo :meth:`transform`."""
+        if name != "speed":
+            return values
+        return np.asarray(1.0 / values if self.damped else 1.0 / np.sqrt(values))
+
+    def __call__(self, x: Array, y: Array, tick: Tick = None) -> tuple[Array, Array]:
+        """Return invariants ``(k, nx, ny)`` and the error of each sample ``(nx, ny)``."""
+        ax, ay = (self.back(n, v) for n, v in zip(self.names, (x, y), strict=True))
+        if self.form is not None:
+            # One mode: for each y a function f, and all x at once where x leaves f alone.
+            return half_traces(self.form, self.names, ax, ay, tick)
+        grid = (np.repeat(ax, len(ay)), np.tile(ay, len(ax)))
+        found, errors = [], []
+        for start in range(0, len(grid[0]), _TOGETHER):
+            part = slice(start, start + _TOGETHER)
+            values, error = self._matrices(grid[0][part], grid[1][part])
+            found.append(values)
+            errors.append(error)
+            if tick is not None:
+                tick(min(start + _TOGETHER, len(grid[0])))
+        values = np.concatenate(found).T.reshape(-1, len(ax), len(ay))
+        return values, np.concatenate(errors).reshape(len(ax), len(ay))
+
+    def _matrices(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Return invariants ``(points, k)`` and errors from the monodromy matrices of points."""
+        point: dict[str, Any] = {self.names[0]: x, self.names[1]: y}
+        speed = point.pop("speed", np.ones_like(x))
+        result = monodromy(self.system, speed, rtol=min(max(self.rtol, 1e-11), 1e-2), **point)
+        # Similar matrices have the same invariants; the scaled ones have entries of like size.
+        with np.errstate(over="ignore"):
+            scaled = np.ldexp(result.scaled, result.exponent[:, None, None])
+        with np.errstate(over="ignore", invalid="ignore"):
+            values = characteristic(scaled, reduced=self.reduced)
+            top = np.max(np.abs(scaled), axis=(-2, -1))
+            order = min(2, self.system.size)
+            error = 2 * self.system.size * result.error * np.maximum(top, 1.0) ** order
+        return values, error
+
+    def allowed(self, points: int) -> None:
+        """Refuse a chart that so many matrices would make too long.
+
+        Raises
+        ------
+        BadInput
+            If modes, points and segments per turn amount to more than an hour or so.
+        """
+        if self.form is not None:
+            return
+        corner: dict[str, Any] = {
+            name: np.asarray([a[i] for i in pick], dtype=float)
+            for name, a, pick in zip(
+                self.names, self.axes, ((0, 0, -1, -1), (0, -1) * 2), strict=True
+            )
+        }
+        speed = corner.pop("speed", np.ones(4))
+        rate = float(np.max(canonical_form(self.system, speed, corner).rate))
+        segments = max(4.0, 2.0 * rate * self.system.period / _STEP)
+        work = points * segments * 8 * (16 * self.system.size) ** 2
+        if work > _MOST_WORK:
+            raise bad(
+                "stability_chart",
+                f"{self.system.size} modes, {points} matrices, up to {segments:.2g} segments each",
+                f"at most {_MOST_WORK / work:.2g} of that",
+                "raise the lowest speed, give fewer modes, or narrower axes",
+            )
+
+
+def invariants(sampler: Sampler, *, progress: bool) -> Series:
+    """Return the invariants of a chart in the way that suits it."""
+    return _plain_hill(sampler) or _sampled(sampler, progress)
+
+
+def _plain_hill(sampler: Sampler) -> Series | None:
+    """Return half traces where the axes are lam2 and the factor of one function, else None."""
+    if sampler.plain is None:
+        return None
+    which, f, lam2, factor = sampler.plain
+    axes = sampler.axes
+    order = np.argsort(lam2(axes[which]))
+    found = discriminant_grid(f, lam2(axes[which])[order], factor(axes[1 - which]))
+    values, error = np.empty_like(found.value), np.empty_like(found.value)
+    values[order], error[order] = found.value, found.error
+    if which == 0:
+        values, error = values.T, error.T
+    sample = relative_error(error, values[..., None])
+    return Series(values[..., None], error, sample, (0, 0), f"half trace, {found.method}")
+
+
+def relative_error(error: Array, values: Array) -> float:
+    """Return the largest error over the larger of 1 and the size of the invariants there."""
+    size = np.maximum(1.0, np.max(np.abs(values), axis=-1))
+    finite = np.isfinite(size) & np.isfinite(error)
+    return float(np.max(error[finite] / size[finite], initial=0.0))
+
+
+def _sampled(sampler: Sampler, progress: bool) -> Series:
+    """Sample at the points of the chart, or at Chebyshev nodes where those are fewer."""
+    axes = tuple(sampler.transform(n, a) for n, a in zip(sampler.names, sampler.axes, strict=True))
+    points = len(axes[0]) * len(axes[1])
+    sampler.allowed(min(points, 2 * _FIRST))
+    count: list[int] = []
+    if points > 2 * _FIRST**2:
+        count = [_counted(sampler, axes[axis], axis, axes[1 - axis]) for axis in (0, 1)]
+    if not count or count[0] * count[1] > 0.8 * points:
+        return _direct(sampler, axes, progress)
+    while True:
+        sampler.allowed(count[0] * count[1])
+        with bar(progress, count[0] * count[1]) as tick:
+            coefficients, samples, error = _coefficients(sampler, axes, count, tick)
+        size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
+        tails = [_tail(coefficients, axis) for axis in (0, 1)]
+        worst = float(np.max(error))
+        floor = max(sampler.rtol * size, worst)
+        if max(tails) <= floor or max(count) >= _MOST:
+            break
+        for axis in (0, 1):
+            if tails[axis] > floor:
+                count[axis] = min(_MOST, count[axis] + count[axis] // 3)
+    places = [chebyshev.unit(a, float(a.min()), float(a.max())) for a in axes]
+    values = np.stack(
+        [chebyshev.tensor_values(c, places[0], places[1]).T for c in coefficients], axis=-1
+    )
+    # Round-off of the series is spread over the chart by its largest values.
+    total = sum(tails) + worst + 8 * np.finfo(float).eps * size
+    sample = relative_error(error, np.moveaxis(samples, 0, -1))
+    kind = _kind(sampler) + " at Chebyshev nodes, spectral interpolation"
+    return Series(values, np.full(values.shape[:2], total), sample, (count[0], count[1]), kind)
+
+
+def _kind(sampler: Sampler) -> str:
+    return "half trace" if sampler.hill else "characteristic polynomial"
+
+
+def _direct(sampler: Sampler, axes: Sequence[Array], progress: bool) -> Series:
+    """Sample at each point of the chart."""
+    points = len(axes[0]) * len(axes[1])
+    sampler.allowed(points)
+    with bar(progress, points) as tick:
+        values, error = sampler(axes[0], axes[1], tick)
+    shown = np.transpose(values, (2, 1, 0))
+    method = _kind(sampler) + " at each point"
+    return Series(shown, error.T, relative_error(error.T, shown), (0, 0), method)
+
+
+def _counted(sampler: Sampler, values: Array, axis: int, across: Array) -> int:
+    """Return how many nodes one axis needs, judged on lines at both ends of the other one.
+
+    The number is doubled until the tail is small; then the coefficients tell where it begins.
+    """
+    count = _FIRST
+    ends = np.array([across.min(), across.max()])
+    while True:
+        points = _nodes(values, count)
+        sampler.allowed(2 * count)
+        found, _ = sampler(points, ends) if axis == 0 else sampler(ends, points)
+        lines = found if axis == 0 else np.swapaxes(found, 1, 2)
+        table = np.abs(chebyshev.analysis(count) @ lines)
+        sizes = np.sum(np.max(table, axis=2), axis=0)
+        limit = sampler.rtol * max(1.0, float(np.max(table)))
+        needed = chebyshev.length(sizes, limit / 8)
+        if needed <= count - max(2, count // 16) or count >= _MOST:
+            # Inside the chart a little more may be needed than at its edges.
+            return min(_MOST, needed + 3 + needed // 16)
+        count *= 2
+
+
+def _nodes(values: Array, count: int) -> Array:
+    low, high = float(values.min()), float(values.max())
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.nodes(count))
+
+
+def _coefficients(
+    sampler: Sampler, axes: Sequence[Array], count: Sequence[int], tick: Tick
+) -> tuple[list[Array], Array, Array]:
+    """Return Chebyshev coefficients of each invariant, the samples and their errors."""
+    samples, error = sampler(_nodes(axes[0], count[0]), _nodes(axes[1], count[1]), tick)
+    return [chebyshev.coefficients2(values) for values in samples], samples, error
+
+
+def _tail(coefficients: Sequence[Array], axis: int) -> float:
+    """Return the sum of the sizes of the last two coefficients (an eighth of many) of an axis."""
+    worst = 0.0
+    for table in coefficients:
+        sizes = np.max(np.abs(table), axis=1 - axis)
+        worst = max(worst, float(np.sum(sizes[-min(max(2, len(sizes) // 32), 8) :])))
+    return worst

@@ -1,0 +1,76 @@
+"""Independent check of boundaries: the half trace at the ends stands at the level of a boundary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import BadInput
+from ..results import Check
+from ..series.periodic import PeriodicFunction
+from .half_trace import discriminant
+
+Array = NDArray[np.float64]
+
+_SAMPLE = 24
+# The figures are estimates, and slope and curvature come from differences.
+_LIMIT = 4.0
+_STEP = 1e-4
+
+
+def boundary_checks(
+    f: PeriodicFunction,
+    mu: Array,
+    damping: Array,
+    regions: tuple[int, ...],
+    lower: Array,
+    upper: Array,
+    error: Array,
+) -> Mapping[str, Check]:
+    """Compare the half trace at a sample of ends with the level that it has on a boundary.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        The coefficient function.
+    mu, damping : ndarray, shape (n,)
+        Factor and K.
+    regions : tuple of int
+        Numbers of the regions.
+    lower, upper, error : ndarray, shape (len(regions), n)
+        Ends in lam2 and their error figure.
+
+    Returns
+    -------
+    mapping of str to Check
+        The largest deviation from the level over what the error figures explain: slope times the
+        figure of the end, half the curvature times its square (the slope vanishes where a region
+        is closed), and the figure of the half trace.  NaN, which fails, where the half trace
+        cannot be computed; empty where there is no finite end.
+    """
+    ends = np.stack([lower, upper])
+    places = np.argwhere(np.isfinite(ends))
+    if not len(places):
+        return {}
+    chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
+    side, row, column = places[chosen.astype(int)].T
+    lam2, size = ends[side, row, column], error[row, column]
+    numbers = np.asarray(regions)[row]
+    name = "half trace at the ends over what the figures explain"
+    step = _STEP * (1.0 + np.sqrt(np.abs(lam2)))
+    try:
+        found = discriminant(
+            f, lam2 + step * np.array([[-1.0], [0.0], [1.0]]), mu[column], damping[column]
+        )
+    except BadInput:
+        return {name: Check(np.nan, _LIMIT)}
+    level = np.where(numbers % 2 == 0, 1.0, -1.0) * found.level
+    with np.errstate(invalid="ignore", over="ignore"):
+        before, at, after = found.value
+        slope = np.abs(after - before) / (2.0 * step)
+        bend = np.abs(after - 2.0 * at + before) / step**2
+        explained = slope * size + 0.5 * bend * size**2 + found.error[1]
+        share = np.abs(at - level) / explained
+    return {name: Check(float(share.max()), _LIMIT)}

@@ -67,7 +67,8 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
         fontsize=7,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5},
     )
-    ax.legend(loc="upper left", fontsize=8, framealpha=0.9)
+    # Below the axes, where it covers nothing.
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2, fontsize=8, frameon=False)
     return ax
 
 

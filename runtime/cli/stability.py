@@ -117,7 +117,7 @@ def _chart(options: argparse.Namespace) -> int:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
     from ..charts.chart import stability_chart
 
-    name = "coupler frequency" if scene.get("model.flexible", ()) == ["coupler"] else None
+    name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
     chart = stability_chart(
         system,
         x=x,

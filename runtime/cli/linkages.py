@@ -48,7 +48,9 @@ def add(commands: Any) -> None:
     )
     opt.scene_options(simulate)
     simulate.add_argument(
-        "--speed", metavar="SPEED", help="crank speed, e.g. '195 rpm'; default operation.speed"
+        "--speed",
+        metavar="SPEED",
+        help="crank speed, e.g. '195 rpm', rad/s without a unit; default operation.speed",
     )
     simulate.add_argument(
         "--revolutions", type=float, default=2.0, metavar="N", help="default %(default)s"

@@ -34,7 +34,8 @@ def add(commands: Any) -> None:
     stability.add_argument(
         "--speed",
         metavar="SPEED",
-        help="'500 rpm', or START:STOP:COUNT[UNIT]; default operation.speed, 1 without crank",
+        help="'500 rpm', or START:STOP:COUNT[UNIT], rad/s without a unit; default operation.speed, "
+        "1 without crank",
     )
     chart = opt.command(
         commands,

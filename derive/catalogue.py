@@ -45,6 +45,37 @@ class CatalogueEntry:
         return tuple(_MODELS / name for name in self.sources)
 
 
+_DROPS: tuple[tuple[str, ...], ...] = (
+    (),
+    ("crank_acceleration",),
+    ("across", "crank_acceleration"),
+)
+
+
+def _forces(mechanism: str, *more: str) -> CatalogueEntry:
+    """Return the entry of a rigid linkage's forces: all, at constant speed, of straight links."""
+    return CatalogueEntry(
+        mechanism=mechanism,
+        formulations=("forces",),
+        module=f".models.{mechanism}_forces",
+        sources=(f"{mechanism}.py", f"{mechanism}_forces.py", *more),
+        specs=tuple(ModelSpec(mechanism, "forces", drop=drop) for drop in _DROPS),
+        choices=Choices(drop=("across", "crank_acceleration")),
+    )
+
+
+def _multibody(mechanism: str, *more: str) -> CatalogueEntry:
+    """Return the entry of a rigid linkage in redundant coordinates: driven, and free."""
+    return CatalogueEntry(
+        mechanism=mechanism,
+        formulations=("multibody",),
+        module=f".models.{mechanism}_multibody",
+        sources=(f"{mechanism}.py", f"{mechanism}_forces.py", f"{mechanism}_multibody.py", *more),
+        specs=tuple(ModelSpec(mechanism, "multibody", drop=drop) for drop in ((), ("drive",))),
+        choices=Choices(drop=("across", "drive")),
+    )
+
+
 _COUPLER = ("complete", "printed", "reduced")
 
 CATALOGUE = (
@@ -54,6 +85,20 @@ CATALOGUE = (
         module=".models.four_bar",
         sources=("four_bar.py",),
         specs=(ModelSpec("four_bar", "kinematics"),),
+    ),
+    CatalogueEntry(
+        mechanism="four_bar",
+        formulations=("sensitivities",),
+        module=".models.four_bar_sensitivities",
+        sources=("four_bar.py", "four_bar_sensitivities.py"),
+        specs=(ModelSpec("four_bar", "sensitivities"),),
+    ),
+    CatalogueEntry(
+        mechanism="four_bar",
+        formulations=("clearance",),
+        module=".models.four_bar_clearance",
+        sources=("four_bar.py", "four_bar_clearance.py"),
+        specs=(ModelSpec("four_bar", "clearance"),),
     ),
     CatalogueEntry(
         mechanism="four_bar",
@@ -68,6 +113,26 @@ CATALOGUE = (
             balanced=("coupler",),
         ),
     ),
+    CatalogueEntry(
+        mechanism="slider_crank",
+        formulations=("kinematics",),
+        module=".models.slider_crank",
+        sources=("slider_crank.py",),
+        specs=(ModelSpec("slider_crank", "kinematics"),),
+    ),
+    CatalogueEntry(
+        mechanism="quick_return",
+        formulations=("kinematics",),
+        module=".models.quick_return",
+        sources=("quick_return.py",),
+        specs=(ModelSpec("quick_return", "kinematics"),),
+    ),
+    _forces("four_bar", "four_bar_vectors.py"),
+    _forces("slider_crank"),
+    _forces("quick_return"),
+    _multibody("four_bar", "four_bar_vectors.py"),
+    _multibody("slider_crank"),
+    _multibody("quick_return"),
     CatalogueEntry(
         mechanism="hill",
         formulations=("plain",),

@@ -151,7 +151,11 @@ def _paragraph(text: str) -> str:
 
 
 def _kernel(kernel: Kernel) -> Mapping[str, Any]:
-    lines = [_wrapped(s.target, s.expression, "    ") for s in kernel.statements]
+    lines = []
+    for s in kernel.statements:
+        lines.append(_wrapped(s.target, s.expression, "    "))
+        if s.release:
+            lines.append(f"    del {', '.join(s.release)}")
     if len(kernel.returns) == 1:
         closing = _wrapped("return", kernel.returns[0], "    ", joint=" ")
     else:

@@ -34,10 +34,19 @@ class Result:
 
 @dataclass(frozen=True)
 class Statement:
-    """One finished assignment, ``target = expression``."""
+    """One finished assignment, ``target = expression``.
+
+    Attributes
+    ----------
+    target, expression : str
+        Finished text.
+    release : tuple of str
+        Arrays that no later line needs: deleted here, so that their memory is used again.
+    """
 
     target: str
     expression: str
+    release: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from .projection import tidy
 from .records import ActionDensity, EquationsOfMotion, FieldEquations, Lagrangian
 from .separation import StagedSystem
 from .spec import ModelSpec
-from .staged import ClosedForm, Steps
+from .staged import ClosedForm, KernelForms, Steps
 
 _WIDTH = 110  # characters in a line of an equation
 _SILENT = re.compile(r"\\(mathrm|left|right|frac|dot|ddot|quad)\b|[{}_^ ]")
@@ -196,6 +196,16 @@ def _system(system: object) -> Iterator[str]:
         yield from _heading("Results")
         for name, expression in system.outputs:
             yield _equation(_name(name), expression)
+    elif isinstance(system, KernelForms):
+        shown: dict[sp.Symbol, sp.Expr] = {}
+        for kernel in system.kernels:
+            steps = kernel.form.steps.mapping()
+            new = [(name, value) for name, value in steps.items() if shown.get(name) != value]
+            shown |= steps
+            yield from _steps(Steps(tuple(new)))
+            yield from _heading(f"Function {_text(kernel.name)}")
+            for name, expression in kernel.form.outputs:
+                yield _equation(_name(name), expression)
     elif isinstance(system, MatrixForm):
         yield from _heading("Matrices")
         for name, matrix in system.arrays:
@@ -245,7 +255,9 @@ def _heading(words: str) -> Iterator[str]:
 
 
 def _equation(left: str, right: Any, factor: str = "") -> str:
-    """Return ``left = right``, broken between terms where it is long."""
+    """Return ``left = right``, broken between terms where it is long; a wide matrix by entries."""
+    if isinstance(right, sp.MatrixBase) and _row_width(right) > _WIDTH:
+        return _entries(left, right)
     terms = _terms(sp.sympify(right))
     if isinstance(right, sp.Expr) and max(map(_width, terms)) > _WIDTH:
         terms = _terms(sp.expand(right))
@@ -260,6 +272,23 @@ def _equation(left: str, right: Any, factor: str = "") -> str:
         length += _width(term)
     body = "\\\\\n&".join(line.rstrip() for line in lines)
     return f"\\begin{{align*}}\n{left} ={{}} &{body}\n\\end{{align*}}\n"
+
+
+def _row_width(matrix: sp.MatrixBase) -> int:
+    """Return about how wide a matrix is set: the sum of its widest entries."""
+    columns = (matrix[:, j] for j in range(matrix.cols))
+    return sum(max(_width(_tex(entry)) for entry in column) for column in columns)
+
+
+def _entries(left: str, matrix: sp.MatrixBase) -> str:
+    """Return the entries of a matrix that do not vanish, an equation each."""
+    found = []
+    for i in range(matrix.rows):
+        for j in range(matrix.cols):
+            if matrix[i, j] != 0:
+                place = f"{i + 1}" if matrix.cols == 1 else f"{i + 1},{j + 1}"
+                found.append(_equation(f"({left})_{{{place}}}", matrix[i, j]))
+    return "".join(found)
 
 
 def _terms(expression: Any) -> list[str]:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from .describe import Description
+from .folding import fold_scalars
 from .ir import Argument, Kernel, ModuleSpec, Result, Statement
 from .spec import ModelSpec
-from .staged import ClosedForm, Steps
+from .staged import ClosedForm, KernelForms, Steps
 
 _FUNCTIONS: dict[type[sp.Function], str] = {
     sp.sin: "sin",
@@ -30,79 +32,172 @@ class CannotPrint(TypeError):  # noqa: N818 - reads as what it is
     """An expression has no form in the emitted language."""
 
 
-def to_line(expression: sp.Expr) -> str:
-    """Return one expression as Python source, with functions taken from the namespace ``xp``."""
-    return _print(sp.sympify(expression))[0]
+def to_line(expression: sp.Expr, scalars: Iterable[sp.Symbol] = ()) -> str:
+    """Return one expression as Python source, with functions taken from the namespace ``xp``.
+
+    Parameters
+    ----------
+    expression : Expr
+        What to print.
+    scalars : iterable of Symbol
+        Symbols that stand for single numbers.  They come first in each product, so that they are
+        multiplied with each other before they meet an array.
+
+    Raises
+    ------
+    CannotPrint
+        If the expression has no form in an emitted module.
+    """
+    return _Printer(frozenset(scalars)).line(sp.sympify(expression))[0]
 
 
 _ATOM, _POWER, _PRODUCT, _SUM = 3, 2, 1, 0
 
 
-def _print(e: sp.Basic) -> tuple[str, int]:
-    if isinstance(e, sp.Symbol):
-        return e.name, _ATOM
-    if isinstance(e, sp.Integer):
-        return (str(int(e)), _ATOM) if e >= 0 else (f"-{abs(int(e))}", _SUM)
-    if isinstance(e, sp.Rational):
-        return f"{int(e.p)} / {int(e.q)}", _SUM if e < 0 else _PRODUCT
-    if isinstance(e, sp.Expr) and e.is_number:
-        return _print_number(e)
-    if isinstance(e, sp.Add):
-        return _print_sum(e), _SUM
-    if isinstance(e, sp.Mul):
-        return _print_product(e)
-    if isinstance(e, sp.Pow):
-        return _print_power(e)
-    if isinstance(e, sp.Piecewise):
-        return _print_choice(e), _ATOM
-    if isinstance(e, sp.Equality | sp.StrictGreaterThan):
-        sign = "==" if isinstance(e, sp.Equality) else ">"
-        return f"({_print(e.args[0])[0]} {sign} {_print(e.args[1])[0]})", _ATOM
-    if isinstance(e, sp.Mod):
-        return f"({_wrap(e.args[0], _PRODUCT)} % {_wrap(e.args[1], _POWER)})", _ATOM
-    for kind, name in _FUNCTIONS.items():
-        if isinstance(e, kind):
-            return f"xp.{name}({', '.join(_print(a)[0] for a in e.args)})", _ATOM
-    if isinstance(e, AppliedUndef):
-        raise CannotPrint(f"{e} is a function that no step defines")
-    raise CannotPrint(f"{type(e).__name__} {e} has no form in an emitted module")
+@dataclass(frozen=True)
+class _Printer:
+    """Source of expressions, each with how tightly it binds."""
 
+    scalars: frozenset[sp.Symbol]
 
-def _print_number(e: sp.Expr) -> tuple[str, int]:
-    """Print a number that is no fraction as the nearest double, rounded once."""
-    value = sp.N(e, 40)
-    if not value.is_Float:
-        raise CannotPrint(f"{e} is not a real number")
-    return repr(float(value)), _SUM if value < 0 else _ATOM
+    def line(self, e: sp.Basic) -> tuple[str, int]:
+        if isinstance(e, sp.Symbol):
+            return e.name, _ATOM
+        if isinstance(e, sp.Integer):
+            return (str(int(e)), _ATOM) if e >= 0 else (f"-{abs(int(e))}", _SUM)
+        if isinstance(e, sp.Rational):
+            return f"{int(e.p)} / {int(e.q)}", _SUM if e < 0 else _PRODUCT
+        if isinstance(e, sp.Expr) and e.is_number:
+            return self._number(e)
+        if isinstance(e, sp.Add):
+            return self._sum(e), _SUM
+        if isinstance(e, sp.Mul):
+            return self._product(e)
+        if isinstance(e, sp.Pow):
+            return self._power(e)
+        if isinstance(e, sp.Piecewise):
+            return self._choice(e), _ATOM
+        if isinstance(e, sp.Equality | sp.StrictGreaterThan):
+            sign = "==" if isinstance(e, sp.Equality) else ">"
+            return f"({self.line(e.args[0])[0]} {sign} {self.line(e.args[1])[0]})", _ATOM
+        if isinstance(e, sp.Mod):
+            return f"({self._wrap(e.args[0], _PRODUCT)} % {self._wrap(e.args[1], _POWER)})", _ATOM
+        for kind, name in _FUNCTIONS.items():
+            if isinstance(e, kind):
+                return f"xp.{name}({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
+        if isinstance(e, AppliedUndef):
+            raise CannotPrint(f"{e} is a function that no step defines")
+        raise CannotPrint(f"{type(e).__name__} {e} has no form in an emitted module")
 
+    def _number(self, e: sp.Expr) -> tuple[str, int]:
+        """Print a number that is no fraction as the nearest double, rounded once."""
+        value = sp.N(e, 40)
+        if not value.is_Float:
+            raise CannotPrint(f"{e} is not a real number")
+        return repr(float(value)), _SUM if value < 0 else _ATOM
 
-def _wrap(e: sp.Basic, least: int) -> str:
-    text, level = _print(e)
-    return text if level >= least else f"({text})"
+    def _wrap(self, e: sp.Basic, least: int) -> str:
+        text, level = self.line(e)
+        return text if level >= least else f"({text})"
 
+    def _sum(self, e: sp.Add) -> str:
+        """Print a sum; where the first term is negative, one that is not changes places with it.
 
-def _print_sum(e: sp.Add) -> str:
-    parts: list[str] = []
-    for term in e.as_ordered_terms():
-        negative = term.could_extract_minus_sign()
-        text = _wrap(-term if negative else term, _PRODUCT)
-        parts.append(
-            ("- " if negative else "+ ") + text if parts else ("-" if negative else "") + text
+        A sign in front of an array is an operation of its own, before a single number it is none.
+        """
+        terms = e.as_ordered_terms()
+        if _negative(terms[0]):
+            leading = sorted(terms, key=self._sign_costs)[0]
+            terms = [self._turned(leading), *(term for term in terms if term is not leading)]
+        parts: list[str] = []
+        for term in terms:
+            negative = _negative(term)
+            text = self._wrap(-term if negative else term, _PRODUCT)
+            if parts:
+                parts.append(("- " if negative else "+ ") + text)
+            else:
+                parts.append(f"-{text}" if negative else self.line(term)[0])
+        return " ".join(parts)
+
+    def _sign_costs(self, term: sp.Expr) -> int:
+        """Return 0 for a term without a sign, 1 for one at a single number, 2 for an array."""
+        if not _negative(self._turned(term)):
+            return 0
+        return 1 if any(f.free_symbols <= self.scalars for f in sp.Mul.make_args(-term)) else 2
+
+    def _turned(self, e: sp.Expr) -> sp.Expr:
+        """Return a negative product with the sign taken into a sum among its factors."""
+        if not isinstance(e, sp.Mul) or e.args[0] != -1:
+            return e
+        sums = [f for f in e.args if isinstance(f, sp.Add)]
+        if not sums:
+            return e
+        rest = [f for f in e.args[1:] if f is not sums[0]]
+        return sp.Mul(sp.Add(*(-term for term in sums[0].args)), *rest, evaluate=False)
+
+    def _product(self, e: sp.Mul) -> tuple[str, int]:
+        e = self._turned(e)
+        negative = _negative(e)
+        # Exact: exp(-x) stays as it is, for 1 / exp(x) would overflow.
+        numerator, denominator = sp.fraction(_one_number(-e if negative else e), exact=True)
+        upper = [f for f in sp.Mul.make_args(numerator) if f != 1]
+        lower = [f for f in sp.Mul.make_args(denominator) if f != 1]
+        upper.sort(key=lambda f: not f.free_symbols <= self.scalars)
+        if upper and upper[0].free_symbols <= self.scalars:
+            # The sign of a sum costs nothing where it goes to a scalar factor.
+            negative ^= sum(map(_all_negative, upper)) % 2 == 1
+            upper = [-f if _all_negative(f) else f for f in upper]
+        text = (
+            " * ".join(self._wrap(f, _POWER if i else _PRODUCT) for i, f in enumerate(upper)) or "1"
         )
-    return " ".join(parts)
+        if lower:
+            divisor = " * ".join(self._wrap(f, _POWER) for f in lower)
+            text = f"{text} / ({divisor})" if len(lower) > 1 else f"{text} / {divisor}"
+        return (f"-{text}", _SUM) if negative else (text, _PRODUCT)
+
+    def _power(self, e: sp.Pow) -> tuple[str, int]:
+        base, exponent = e.as_base_exp()
+        if base == -1:
+            return f"(1 - 2 * (({self.line(exponent)[0]}) % 2))", _ATOM
+        if exponent == sp.Rational(1, 2):
+            return f"xp.sqrt({self.line(base)[0]})", _ATOM
+        if exponent.is_number and exponent.could_extract_minus_sign():
+            return f"1 / {self._wrap(base**-exponent, _POWER)}", _PRODUCT
+        if isinstance(exponent, sp.Integer):
+            return f"{self._wrap(base, _ATOM)}**{int(exponent)}", _POWER
+        if exponent == sp.Rational(3, 2):
+            return f"{self._wrap(base, _ATOM)} * xp.sqrt({self.line(base)[0]})", _PRODUCT
+        if isinstance(exponent, sp.Rational):
+            return f"{self._wrap(base, _ATOM)}**({int(exponent.p)} / {int(exponent.q)})", _POWER
+        raise CannotPrint(f"power {e} has no form in an emitted module")
+
+    def _choice(self, e: sp.Piecewise) -> str:
+        if len(e.args) != 2 or e.args[1][1] is not sp.true:
+            raise CannotPrint(f"{e} is not a choice between two cases")
+        (first, condition), (second, _) = e.args
+        if first.is_number and second.is_number:
+            # The standard's ``where`` wants an array among its choices.
+            switch = f"xp.asarray({self.line(condition)[0]}, dtype=xp.float64)"
+            scaled = (
+                switch
+                if first - second == 1
+                else f"{self._wrap(first - second, _POWER)} * {switch}"
+            )
+            return (
+                scaled
+                if scaled == switch and second == 0
+                else f"({self.line(second)[0]} + {scaled})"
+            )
+        return f"xp.where({', '.join(self.line(part)[0] for part in (condition, first, second))})"
 
 
-def _print_product(e: sp.Mul) -> tuple[str, int]:
-    negative = e.could_extract_minus_sign() and e.args[0].is_number
-    # Exact: exp(-x) stays as it is, for 1 / exp(x) would overflow.
-    numerator, denominator = sp.fraction(_one_number(-e if negative else e), exact=True)
-    upper = [f for f in sp.Mul.make_args(numerator) if f != 1]
-    lower = [f for f in sp.Mul.make_args(denominator) if f != 1]
-    text = " * ".join(_wrap(f, _POWER if i else _PRODUCT) for i, f in enumerate(upper)) or "1"
-    if lower:
-        divisor = " * ".join(_wrap(f, _POWER) for f in lower)
-        text = f"{text} / ({divisor})" if len(lower) > 1 else f"{text} / {divisor}"
-    return (f"-{text}", _SUM) if negative else (text, _PRODUCT)
+def _negative(e: sp.Expr) -> bool:
+    """Return True where an expression begins with a negative number."""
+    return bool(e.as_coeff_Mul()[0] < 0)
+
+
+def _all_negative(e: sp.Expr) -> bool:
+    return isinstance(e, sp.Add) and all(term.could_extract_minus_sign() for term in e.args)
 
 
 def _one_number(e: sp.Expr) -> sp.Expr:
@@ -112,35 +207,6 @@ def _one_number(e: sp.Expr) -> sp.Expr:
         return e
     others = [f for f in sp.Mul.make_args(e) if not f.is_number]
     return sp.Mul(sp.N(sp.Mul(*numbers), 40), *others)
-
-
-def _print_power(e: sp.Pow) -> tuple[str, int]:
-    base, exponent = e.as_base_exp()
-    if base == -1:
-        return f"(1 - 2 * (({_print(exponent)[0]}) % 2))", _ATOM
-    if exponent == sp.Rational(1, 2):
-        return f"xp.sqrt({_print(base)[0]})", _ATOM
-    if exponent.is_number and exponent.could_extract_minus_sign():
-        return f"1 / {_wrap(base**-exponent, _POWER)}", _PRODUCT
-    if isinstance(exponent, sp.Integer):
-        return f"{_wrap(base, _ATOM)}**{int(exponent)}", _POWER
-    if exponent == sp.Rational(3, 2):
-        return f"{_wrap(base, _ATOM)} * xp.sqrt({_print(base)[0]})", _PRODUCT
-    if isinstance(exponent, sp.Rational):
-        return f"{_wrap(base, _ATOM)}**({int(exponent.p)} / {int(exponent.q)})", _POWER
-    raise CannotPrint(f"power {e} has no form in an emitted module")
-
-
-def _print_choice(e: sp.Piecewise) -> str:
-    if len(e.args) != 2 or e.args[1][1] is not sp.true:
-        raise CannotPrint(f"{e} is not a choice between two cases")
-    (first, condition), (second, _) = e.args
-    if first.is_number and second.is_number:
-        # The standard's ``where`` wants an array among its choices.
-        switch = f"xp.asarray({_print(condition)[0]}, dtype=xp.float64)"
-        scaled = switch if first - second == 1 else f"{_wrap(first - second, _POWER)} * {switch}"
-        return scaled if scaled == switch and second == 0 else f"({_print(second)[0]} + {scaled})"
-    return f"xp.where({', '.join(_print(part)[0] for part in (condition, first, second))})"
 
 
 def count_operations(expressions: Sequence[sp.Expr]) -> int:
@@ -189,7 +255,7 @@ def lower_kernel(
         If a symbol is neither an argument nor a step, or an expression has no emitted form.
     """
     finals = [sp.sympify(expression) for _, expression in outputs]
-    kept = steps.needed(finals)
+    kept, finals = _without_trivial(steps.needed(finals), finals)
     _require_parity([*finals, *(expression for _, expression in kept.steps)])
     named = [symbol for symbol, _ in kept.steps]
     replacements, reduced = sp.cse(
@@ -197,21 +263,100 @@ def lower_kernel(
         symbols=sp.numbered_symbols("x", cls=sp.Symbol),
         order="canonical",
     )
+    replacements, reduced = _without_negations(replacements, reduced)
     values = dict(replacements) | dict(zip(named, reduced, strict=False))
     returned = reduced[len(named) :]
     inputs = {argument.name for argument in arguments}
     ordered = _in_order_of_need(values, named, returned, inputs, name)
-    statements = tuple(Statement(symbol.name, to_line(values[symbol])) for symbol in ordered)
+    scalars = _scalars(arguments, ordered, values)
+    done = _released(ordered, values, returned, scalars)
+    statements = tuple(
+        Statement(symbol.name, to_line(values[symbol], scalars), done.get(symbol, ()))
+        for symbol in ordered
+    )
     return Kernel(
         name=name,
         summary=summary,
         arguments=tuple(arguments),
         results=tuple(result for result, _ in outputs),
         statements=statements,
-        returns=tuple(to_line(expression) for expression in returned),
+        returns=tuple(to_line(expression, scalars) for expression in returned),
         references=tuple(references),
         operations=count_operations([values[s] for s in ordered] + list(returned)),
     )
+
+
+def _without_trivial(steps: Steps, finals: list[sp.Expr]) -> tuple[Steps, list[sp.Expr]]:
+    """Put numbers, and symbols with or without a sign, in the place of the steps that name them."""
+    known: dict[sp.Symbol, sp.Expr] = {}
+    kept = []
+    for symbol, expression in steps.steps:
+        value = expression.xreplace(known)
+        if value.is_number or value.is_Symbol or (-value).is_Symbol:
+            known[symbol] = value
+        else:
+            kept.append((symbol, value))
+    outputs = [final.xreplace(known) for final in finals]
+    return Steps(tuple(kept)).needed(outputs), outputs
+
+
+def _is_negation(value: sp.Basic) -> bool:
+    return isinstance(value, sp.Mul) and (-value).is_Symbol
+
+
+_RELEASED_TOGETHER = 3
+
+
+def _released(
+    ordered: Sequence[sp.Symbol],
+    values: Mapping[sp.Symbol, sp.Expr],
+    returned: Sequence[sp.Expr],
+    scalars: set[sp.Symbol],
+) -> dict[sp.Symbol, tuple[str, ...]]:
+    """Return, after which statement which arrays are no longer needed, a few at a time.
+
+    Their memory then serves the next ones: what stays in the cache decides the speed.
+    """
+    last: dict[sp.Symbol, sp.Symbol] = {}
+    for symbol in ordered:
+        for needed in values[symbol].free_symbols & values.keys():
+            last[needed] = symbol
+    kept = set().union(*(expression.free_symbols for expression in returned), scalars)
+    found: dict[sp.Symbol, tuple[str, ...]] = {}
+    idle: list[str] = []
+    for symbol in ordered:
+        ended = [s for s in values[symbol].free_symbols - kept if last.get(s) == symbol]
+        idle += sorted(s.name for s in ended)
+        if len(idle) >= _RELEASED_TOGETHER:
+            found[symbol] = tuple(idle)
+            idle = []
+    return found
+
+
+def _without_negations(
+    replacements: Sequence[tuple[sp.Symbol, sp.Expr]], reduced: Sequence[sp.Expr]
+) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
+    """Put ``-a`` back where it was named: a sign costs nothing in a sum or before a number."""
+    signs = {symbol: value for symbol, value in replacements if _is_negation(value)}
+    kept = [(s, value.xreplace(signs)) for s, value in replacements if s not in signs]
+    return kept, [value.xreplace(signs) for value in reduced]
+
+
+def _scalars(
+    arguments: Sequence[Argument],
+    ordered: Sequence[sp.Symbol],
+    values: Mapping[sp.Symbol, sp.Expr],
+) -> set[sp.Symbol]:
+    """Return the symbols that single numbers determine: what depends on no array argument."""
+    plain = {argument.name for argument in arguments if argument.shape.startswith("float")}
+    found: set[sp.Symbol] = set()
+    for symbol in ordered:
+        for needed in values[symbol].free_symbols:
+            if needed.name in plain and needed not in values:
+                found.add(needed)
+        if values[symbol].free_symbols <= found:
+            found.add(symbol)
+    return found
 
 
 def _require_parity(expressions: Iterable[sp.Expr]) -> None:
@@ -275,5 +420,37 @@ def lower_closed_form(spec: ModelSpec, closed: ClosedForm, description: Descript
         notes=description.notes,
         references=description.references,
         kernels=(kernel,),
+        parameters=description.parameters,
+    )
+
+
+def lower_kernel_forms(spec: ModelSpec, forms: KernelForms, description: Description) -> ModuleSpec:
+    """Return the module of several closed forms, each a function with arguments of its own."""
+    known = {argument.name: argument for argument in description.arguments}
+    kernels = []
+    for kernel in forms.kernels:
+        arguments = [known[symbol.name] for symbol in kernel.form.inputs]
+        numbers = [argument.name for argument in arguments if argument.shape.startswith("float")]
+        results = [description.results[name] for name, _ in kernel.form.outputs]
+        steps, finals = fold_scalars(
+            kernel.form.steps, [value for _, value in kernel.form.outputs], numbers
+        )
+        kernels.append(
+            lower_kernel(
+                kernel.name,
+                kernel.summary,
+                arguments,
+                steps,
+                list(zip(results, finals, strict=True)),
+                description.references,
+            )
+        )
+    return ModuleSpec(
+        spec=spec,
+        family="closed_form",
+        title=description.title,
+        notes=description.notes,
+        references=description.references,
+        kernels=tuple(kernels),
         parameters=description.parameters,
     )

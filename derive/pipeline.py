@@ -24,16 +24,18 @@ from .entries import (
 )
 from .ir import ModuleSpec
 from .lagrange import euler_lagrange
-from .lowering import lower_closed_form
+from .lowering import lower_closed_form, lower_kernel_forms
 from .records import ActionDensity, EquationsOfMotion, FieldEquations, Lagrangian
 from .separation import StagedSystem, lower_linear_periodic
 from .spec import Choices, ModelSpec
-from .staged import ClosedForm
+from .staged import ClosedForm, KernelForms
 from .variational import hamilton
 
-Energies = ActionDensity | Lagrangian | MatrixForm | ClosedForm
-Equations = FieldEquations | EquationsOfMotion | MatrixForm | ClosedForm
-System = StagedSystem | ConstrainedSystem | TranscendentalSystem | MatrixForm | ClosedForm
+Energies = ActionDensity | Lagrangian | MatrixForm | ClosedForm | KernelForms
+Equations = FieldEquations | EquationsOfMotion | MatrixForm | ClosedForm | KernelForms
+System = (
+    StagedSystem | ConstrainedSystem | TranscendentalSystem | MatrixForm | ClosedForm | KernelForms
+)
 
 _WANTED: dict[type, tuple[str, ...]] = {
     StagedSystem: ("forcing", "stability"),
@@ -121,7 +123,7 @@ def only_wanted(spec: ModelSpec, system: System) -> System:
     """
     if not spec.outputs:
         return system
-    if isinstance(system, ClosedForm | MatrixForm):
+    if isinstance(system, ClosedForm | MatrixForm | KernelForms):
         return system.only(spec.outputs)
     known = _WANTED.get(type(system), ())
     unknown = sorted(set(spec.outputs) - set(known))
@@ -145,4 +147,6 @@ def lower(spec: ModelSpec, system: System, description: Description) -> ModuleSp
         return lower_transcendental(spec, system, description)
     if isinstance(system, MatrixForm):
         return lower_matrices(spec, system, description)
+    if isinstance(system, KernelForms):
+        return lower_kernel_forms(spec, system, description)
     return lower_closed_form(spec, system, description)

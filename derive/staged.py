@@ -82,3 +82,39 @@ class ClosedForm:
         outputs = tuple(item for item in self.outputs if item[0] in chosen)
         steps = self.steps.needed(expression for _, expression in outputs)
         return ClosedForm(self.inputs, steps, outputs)
+
+
+@dataclass(frozen=True)
+class KernelForm:
+    """One function of a module of several: its name, first line, and closed form."""
+
+    name: str
+    summary: str
+    form: ClosedForm
+
+
+@dataclass(frozen=True)
+class KernelForms:
+    """Several functions of one module, each with the steps that it needs.
+
+    Attributes
+    ----------
+    kernels : tuple of KernelForm
+        In order.
+    """
+
+    kernels: tuple[KernelForm, ...]
+
+    def only(self, names: Iterable[str]) -> KernelForms:
+        """Return some of the functions.
+
+        Raises
+        ------
+        ValueError
+            If one is not there.
+        """
+        chosen, known = set(names), [kernel.name for kernel in self.kernels]
+        unknown = sorted(chosen - set(known))
+        if unknown:
+            raise ValueError(f"unknown outputs {unknown}; expected some of {known}")
+        return KernelForms(tuple(kernel for kernel in self.kernels if kernel.name in chosen))

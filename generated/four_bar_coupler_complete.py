@@ -10,13 +10,13 @@ l3^3 / 2.
 
 Cost per evaluation:
     scales: 8 operations
-    angle_functions: 158 operations
-    acceleration_functions: 123 operations
-    forcing_functions: 126 operations
-    acceleration_forcing_functions: 96 operations
+    angle_functions: 153 operations
+    acceleration_functions: 120 operations
+    forcing_functions: 122 operations
+    acceleration_forcing_functions: 93 operations
     modal_matrices: 32 operations
     modal_vectors: 6 operations
-Content hash 71710d860b092f4c6b69a8169c6e17b0; derived with SymPy 1.14.0.
+Content hash 92641ae797c634cedc463158ee275475; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"complete","mechanism":"four_ba'
     'r","modes":null,"outputs":[]}'
 )
-CONTENT = "71710d860b092f4c6b69a8169c6e17b0"
+CONTENT = "92641ae797c634cedc463158ee275475"
 EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
@@ -238,7 +238,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     Smith (6.14); Smith (6.6), corrected.
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -246,22 +246,25 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    x3 = sin2 * crank
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    x3 = crank * sin2
     diagonal_y = -x3
-    diagonal2 = x1 * far**2 + x2 * near**2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x4 = folded * straight
     p = diagonal2 + x4
     q = diagonal2 - x4
-    x5 = -straight
-    stretch = -x1 * (far + x5) * (far + straight) - x2 * (near + x5) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
     x8 = 1 / (2 * diagonal2)
@@ -269,42 +272,52 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
     sin3 = x9 * (diagonal_y * p + x10)
+    del diagonal2, area, p, x9
     x11 = 1 / follower
     x12 = x11 * x8
-    cos4 = -x12 * (diagonal_x * q + x6)
-    sin4 = -x12 * (diagonal_y * q - x10)
+    cos4 = (-diagonal_x * q - x6) * x12
+    del x8, diagonal_x, x6
+    sin4 = (x10 - diagonal_y * q) * x12
+    del diagonal_y, q, x10, x12
     cosine_transmission = cos3 * cos4 + sin3 * sin4
-    sin23 = -cos2 * sin3 + cos3 * sin2
+    sin23 = cos3 * sin2 - cos2 * sin3
     cos23 = cos2 * cos3 + sin2 * sin3
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin24 = cos4 * sin2 - cos2 * sin4
     cos24 = cos2 * cos4 + sin2 * sin4
     x13 = 1 / far
     share = x13 * crank
     reduced = share * frame
     x14 = 1 / sine_transmission
-    x15 = x14 * x7
-    excess3 = -x15 * (-sin24 + sin4)
-    x16 = excess3 * reduced
+    del cos2, sin2, sine_transmission
+    x15 = x7 * x14
+    excess3 = (sin24 - sin4) * x15
+    x16 = reduced * excess3
     omega3 = share + x16
     x17 = -x13 * frame
-    slip3 = -x16 - x17
+    slip3 = -x17 - x16
+    del sin24, sin4, x16
     x18 = x11 * x14
-    excess4 = -x18 * (-sin23 + sin3)
-    x19 = excess4 * reduced
+    excess4 = (sin23 - sin3) * x18
+    x19 = reduced * excess4
     omega4 = share + x19
     slip4 = -x17 - x19
-    spread = x11 * x15 * x3 * frame
+    spread = x11 * frame * x15 * x3
+    del sin3, x19, x3
     x20 = x14 * cosine_transmission * spread
-    alpha3 = reduced * (x14 * x7 * cos24 * slip4 - x15 * cos4 * omega4 - x20 * excess3)
-    alpha4 = reduced * (x11 * x14 * cos23 * slip3 - x18 * cos3 * omega3 - x20 * excess4)
+    alpha3 = -reduced * (x20 * excess3 + x15 * (cos4 * omega4 - cos24 * slip4))
+    del spread, x14, cos24, cos4, excess3, omega4, slip4
+    alpha4 = -reduced * (x20 * excess4 + x18 * (cos3 * omega3 - cos23 * slip3))
+    del cos3, excess4, slip3, x20
     x21 = x15 * cosine_transmission
     end_load_coupler_inertia_speed = x21 * alpha3
-    end_load_coupler_first_moment_speed = -x21 * sin23 * crank
+    del cosine_transmission, x15, alpha3
+    end_load_coupler_first_moment_speed = -crank * x21 * sin23
     end_load_follower_inertia_speed = x18 * alpha4
+    del sin23, x21, alpha4, x18
     x22 = 1 / coupler**2
     return (
         omega3**2,
-        -x7 * cos23 * crank / 2,
+        -x7 * crank * cos23 / 2,
         -x22 * end_load_coupler_first_moment_speed,
         -x22 * end_load_coupler_inertia_speed,
         -x22 * end_load_follower_inertia_speed,
@@ -345,7 +358,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     Smith (6.14); Smith (6.6), corrected.
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -353,21 +366,24 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    diagonal_y = -sin2 * crank
-    diagonal2 = x1 * far**2 + x2 * near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    diagonal_y = -crank * sin2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x3 = folded * straight
     p = diagonal2 + x3
     q = diagonal2 - x3
-    x4 = -straight
-    stretch = -x1 * (far + x4) * (far + straight) - x2 * (near + x4) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
     x7 = 1 / (2 * diagonal2)
@@ -375,30 +391,38 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x
     sin3 = x8 * (diagonal_y * p + x9)
+    del diagonal2, area, p, x8
     x10 = 1 / follower
     x11 = x10 * x7
-    cos4 = -x11 * (diagonal_x * q + x5)
-    sin4 = -x11 * (diagonal_y * q - x9)
+    cos4 = (-diagonal_x * q - x5) * x11
+    del x7, diagonal_x, x5
+    sin4 = (x9 - diagonal_y * q) * x11
+    del diagonal_y, q, x11, x9
     cosine_transmission = cos3 * cos4 + sin3 * sin4
-    sin23 = -cos2 * sin3 + cos3 * sin2
+    sin23 = cos3 * sin2 - cos2 * sin3
     cos23 = cos2 * cos3 + sin2 * sin3
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin24 = cos4 * sin2 - cos2 * sin4
+    del cos3, cos2, cos4, sin2
     share = crank / far
     reduced = share * frame
     x12 = 1 / sine_transmission
-    x13 = x12 * x6
-    excess3 = -x13 * (-sin24 + sin4)
-    omega3 = excess3 * reduced + share
+    x13 = x6 * x12
+    excess3 = (sin24 - sin4) * x13
+    del sine_transmission, sin24, sin4
+    omega3 = reduced * excess3 + share
     x14 = x10 * x12
-    excess4 = -x14 * (-sin23 + sin3)
-    omega4 = excess4 * reduced + share
+    excess4 = (sin23 - sin3) * x14
+    del excess3, x12, sin3
+    omega4 = reduced * excess4 + share
     x15 = x13 * cosine_transmission
+    del excess4, cosine_transmission, x13
     end_load_coupler_inertia_acceleration = x15 * omega3
-    end_load_coupler_first_moment_acceleration = x15 * cos23 * crank
+    end_load_coupler_first_moment_acceleration = crank * x15 * cos23
+    del omega3, cos23, x15
     end_load_follower_inertia_acceleration = x14 * omega4
     x16 = 1 / coupler**2
     return (
-        -x6 * sin23 * crank / 2,
+        -x6 * crank * sin23 / 2,
         -x16 * end_load_coupler_first_moment_acceleration,
         -x16 * end_load_coupler_inertia_acceleration,
         -x16 * end_load_follower_inertia_acceleration,
@@ -435,7 +459,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     Smith (6.14); Smith (6.6), corrected.
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -443,22 +467,25 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    x3 = sin2 * crank
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    x3 = crank * sin2
     diagonal_y = -x3
-    diagonal2 = x1 * far**2 + x2 * near**2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x4 = folded * straight
     p = diagonal2 + x4
     q = diagonal2 - x4
-    x5 = -straight
-    stretch = -x1 * (far + x5) * (far + straight) - x2 * (near + x5) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
     x8 = 1 / (2 * diagonal2)
@@ -466,32 +493,39 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
     sin3 = x9 * (diagonal_y * p + x10)
+    del diagonal2, area, p, x9
     x11 = 1 / follower
     x12 = x11 * x8
-    cos4 = -x12 * (diagonal_x * q + x6)
-    sin4 = -x12 * (diagonal_y * q - x10)
+    cos4 = (-diagonal_x * q - x6) * x12
+    del x8, diagonal_x, x6
+    sin4 = (x10 - diagonal_y * q) * x12
+    del diagonal_y, q, x10, x12
     cosine_transmission = cos3 * cos4 + sin3 * sin4
-    sin23 = -cos2 * sin3 + cos3 * sin2
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin23 = cos3 * sin2 - cos2 * sin3
+    sin24 = cos4 * sin2 - cos2 * sin4
     cos24 = cos2 * cos4 + sin2 * sin4
+    del cos3, cos2, sin2
     x13 = 1 / far
     share = x13 * crank
     reduced = share * frame
     x14 = 1 / sine_transmission
-    x15 = x14 * x7
-    excess3 = -x15 * (-sin24 + sin4)
-    excess4 = -x11 * x14 * (-sin23 + sin3)
-    x16 = excess4 * reduced
+    x15 = x7 * x14
+    excess3 = (sin24 - sin4) * x15
+    del sine_transmission, sin24, sin4
+    excess4 = x11 * (sin23 - sin3) * x14
+    x16 = reduced * excess4
     omega4 = share + x16
     slip4 = x13 * frame - x16
-    spread = x11 * x15 * x3 * frame
+    del sin3, excess4, x16
+    spread = x11 * frame * x15 * x3
     alpha3 = (
-        reduced * (x14 * x7 * cos24 * slip4 - x15 * cos4 * omega4 - x14 * cosine_transmission *
-        excess3 * spread)
+        -reduced * (x14 * cosine_transmission * excess3 * spread + x15 * (cos4 * omega4 - cos24 *
+        slip4))
     )
+    del x3, cos24, cos4, cosine_transmission, excess3, omega4, slip4, spread, x14, x15
     return (
         2 * alpha3,
-        -2 * x7 * sin23 * crank,
+        -2 * x7 * crank * sin23,
     )
 
 
@@ -525,7 +559,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     Smith (6.14); Smith (6.6), corrected.
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -533,21 +567,24 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    diagonal_y = -sin2 * crank
-    diagonal2 = x1 * far**2 + x2 * near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    diagonal_y = -crank * sin2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x3 = folded * straight
     p = diagonal2 + x3
     q = diagonal2 - x3
-    x4 = -straight
-    stretch = -x1 * (far + x4) * (far + straight) - x2 * (near + x4) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
     x7 = 1 / (2 * diagonal2)
@@ -555,18 +592,23 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x
     sin3 = x8 * (diagonal_y * p + x9)
+    del diagonal2, area, p, x8
     x10 = x7 / follower
-    cos4 = -x10 * (diagonal_x * q + x5)
-    sin4 = -x10 * (diagonal_y * q - x9)
+    cos4 = (-diagonal_x * q - x5) * x10
+    del x7, diagonal_x, x5
+    sin4 = (x9 - diagonal_y * q) * x10
+    del diagonal_y, q, x10, x9
     cos23 = cos2 * cos3 + sin2 * sin3
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin24 = cos4 * sin2 - cos2 * sin4
+    del cos3, sin3, cos2, cos4, sin2
     share = crank / far
     reduced = share * frame
-    excess3 = -x6 * (-sin24 + sin4) / sine_transmission
-    omega3 = excess3 * reduced + share
+    excess3 = x6 * (sin24 - sin4) / sine_transmission
+    del sin24, sin4, sine_transmission
+    omega3 = reduced * excess3 + share
     return (
         2 * omega3,
-        2 * x6 * cos23 * crank,
+        2 * x6 * crank * cos23,
     )
 
 
@@ -602,6 +644,7 @@ def modal_matrices(m, n):
     x3 = m + n
     x4 = (1 - 2 * ((x3) % 2))
     x5 = m * n * (n**2 + x1) / (apart**2 * x3**2)
+    del apart, x1, x3
     return (
         xp.asarray(x0, dtype=xp.float64),
         xp.where(x0, 5 / 4 - x2 / 3, 2 * x4 * x5),

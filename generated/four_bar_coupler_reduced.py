@@ -12,13 +12,13 @@ Left out of the energies: axial_inertia, coupler_end_load, spin.
 
 Cost per evaluation:
     scales: 6 operations
-    angle_functions: 125 operations
-    acceleration_functions: 83 operations
-    forcing_functions: 126 operations
-    acceleration_forcing_functions: 96 operations
+    angle_functions: 121 operations
+    acceleration_functions: 80 operations
+    forcing_functions: 122 operations
+    acceleration_forcing_functions: 93 operations
     modal_matrices: 8 operations
     modal_vectors: 6 operations
-Content hash 230de0cdee9feb91a546f2cba2cbeb61; derived with SymPy 1.14.0.
+Content hash d682b0470ed94904ec9c79d8718aa1e3; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"reduced","mechanism":"four_bar'
     '","modes":null,"outputs":[]}'
 )
-CONTENT = "230de0cdee9feb91a546f2cba2cbeb61"
+CONTENT = "d682b0470ed94904ec9c79d8718aa1e3"
 EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
@@ -184,7 +184,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     Smith (6.14); Smith (6.18).
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -192,22 +192,25 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    x3 = sin2 * crank
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    x3 = crank * sin2
     diagonal_y = -x3
-    diagonal2 = x1 * far**2 + x2 * near**2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x4 = folded * straight
     p = diagonal2 + x4
     q = diagonal2 - x4
-    x5 = -straight
-    stretch = -x1 * (far + x5) * (far + straight) - x2 * (near + x5) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
     x8 = 1 / (2 * diagonal2)
@@ -215,30 +218,37 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
     sin3 = x9 * (diagonal_y * p + x10)
+    del diagonal2, area, p, x9
     x11 = 1 / follower
     x12 = x11 * x8
-    cos4 = -x12 * (diagonal_x * q + x6)
-    sin4 = -x12 * (diagonal_y * q - x10)
+    cos4 = (-diagonal_x * q - x6) * x12
+    del x8, diagonal_x, x6
+    sin4 = (x10 - diagonal_y * q) * x12
+    del diagonal_y, q, x10, x12
     cosine_transmission = cos3 * cos4 + sin3 * sin4
-    sin23 = -cos2 * sin3 + cos3 * sin2
+    sin23 = cos3 * sin2 - cos2 * sin3
     cos23 = cos2 * cos3 + sin2 * sin3
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin24 = cos4 * sin2 - cos2 * sin4
+    del cos2, cos4, sin2
     x13 = 1 / far
     share = x13 * crank
     reduced = share * frame
     x14 = 1 / sine_transmission
-    x15 = x14 * x7
-    excess3 = -x15 * (-sin24 + sin4)
-    x16 = excess3 * reduced
+    x15 = x7 * x14
+    excess3 = (sin24 - sin4) * x15
+    del sine_transmission, sin24, sin4
+    x16 = reduced * excess3
     omega3 = share + x16
     slip3 = x13 * frame - x16
     x17 = x11 * x14
-    excess4 = -x17 * (-sin23 + sin3)
-    spread = x11 * x15 * x3 * frame
+    excess4 = (sin23 - sin3) * x17
+    del excess3, x16, sin23, sin3
+    spread = x11 * frame * x15 * x3
     alpha4 = (
-        reduced * (x11 * x14 * cos23 * slip3 - x17 * cos3 * omega3 - x14 * cosine_transmission *
-        excess4 * spread)
+        -reduced * (x14 * cosine_transmission * excess4 * spread + x17 * (cos3 * omega3 - cos23 *
+        slip3))
     )
+    del x15, x3, cos23, cos3, cosine_transmission, excess4, omega3, slip3, spread, x14
     end_load_follower_inertia_speed = x17 * alpha4
     return -end_load_follower_inertia_speed / coupler**2
 
@@ -271,7 +281,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     Smith (6.14); Smith (6.18).
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -279,29 +289,36 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    diagonal_y = -sin2 * crank
-    diagonal2 = x1 * far**2 + x2 * near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    diagonal_y = -crank * sin2
+    diagonal2 = far**2 * x2 + near**2 * x1
     p = diagonal2 + folded * straight
-    x3 = -straight
-    stretch = -x1 * (far + x3) * (far + straight) - x2 * (near + x3) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x4 = 1 / (2 * diagonal2 * coupler)
-    cos3 = x4 * (-area * diagonal_y + diagonal_x * p)
+    cos3 = x4 * (diagonal_x * p - area * diagonal_y)
     sin3 = x4 * (area * diagonal_x + diagonal_y * p)
-    sin23 = -cos2 * sin3 + cos3 * sin2
+    del diagonal2, area, diagonal_x, diagonal_y, p, x4
+    sin23 = cos3 * sin2 - cos2 * sin3
+    del cos2, cos3, sin2
     share = crank / far
     reduced = share * frame
     x5 = 1 / (sine_transmission * follower)
-    excess4 = -x5 * (-sin23 + sin3)
-    omega4 = excess4 * reduced + share
+    excess4 = (sin23 - sin3) * x5
+    del sine_transmission, sin23, sin3
+    omega4 = reduced * excess4 + share
     end_load_follower_inertia_acceleration = x5 * omega4
+    del excess4, omega4, x5
     return -end_load_follower_inertia_acceleration / coupler**2
 
 
@@ -335,7 +352,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     Smith (6.14); Smith (6.18).
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -343,22 +360,25 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    x3 = sin2 * crank
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    x3 = crank * sin2
     diagonal_y = -x3
-    diagonal2 = x1 * far**2 + x2 * near**2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x4 = folded * straight
     p = diagonal2 + x4
     q = diagonal2 - x4
-    x5 = -straight
-    stretch = -x1 * (far + x5) * (far + straight) - x2 * (near + x5) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
     x8 = 1 / (2 * diagonal2)
@@ -366,32 +386,39 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
     sin3 = x9 * (diagonal_y * p + x10)
+    del diagonal2, area, p, x9
     x11 = 1 / follower
     x12 = x11 * x8
-    cos4 = -x12 * (diagonal_x * q + x6)
-    sin4 = -x12 * (diagonal_y * q - x10)
+    cos4 = (-diagonal_x * q - x6) * x12
+    del x8, diagonal_x, x6
+    sin4 = (x10 - diagonal_y * q) * x12
+    del diagonal_y, q, x10, x12
     cosine_transmission = cos3 * cos4 + sin3 * sin4
-    sin23 = -cos2 * sin3 + cos3 * sin2
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin23 = cos3 * sin2 - cos2 * sin3
+    sin24 = cos4 * sin2 - cos2 * sin4
     cos24 = cos2 * cos4 + sin2 * sin4
+    del cos3, cos2, sin2
     x13 = 1 / far
     share = x13 * crank
     reduced = share * frame
     x14 = 1 / sine_transmission
-    x15 = x14 * x7
-    excess3 = -x15 * (-sin24 + sin4)
-    excess4 = -x11 * x14 * (-sin23 + sin3)
-    x16 = excess4 * reduced
+    x15 = x7 * x14
+    excess3 = (sin24 - sin4) * x15
+    del sine_transmission, sin24, sin4
+    excess4 = x11 * (sin23 - sin3) * x14
+    x16 = reduced * excess4
     omega4 = share + x16
     slip4 = x13 * frame - x16
-    spread = x11 * x15 * x3 * frame
+    del sin3, excess4, x16
+    spread = x11 * frame * x15 * x3
     alpha3 = (
-        reduced * (x14 * x7 * cos24 * slip4 - x15 * cos4 * omega4 - x14 * cosine_transmission *
-        excess3 * spread)
+        -reduced * (x14 * cosine_transmission * excess3 * spread + x15 * (cos4 * omega4 - cos24 *
+        slip4))
     )
+    del x3, cos24, cos4, cosine_transmission, excess3, omega4, slip4, spread, x14, x15
     return (
         2 * alpha3,
-        -2 * x7 * sin23 * crank,
+        -2 * x7 * crank * sin23,
     )
 
 
@@ -425,7 +452,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     Smith (6.14); Smith (6.18).
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -433,21 +460,24 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = half_cosine**2
-    diagonal_x = x1 * far + x2 * near
-    diagonal_y = -sin2 * crank
-    diagonal2 = x1 * far**2 + x2 * near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    diagonal_x = far * x2 + near * x1
+    diagonal_y = -crank * sin2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x3 = folded * straight
     p = diagonal2 + x3
     q = diagonal2 - x3
-    x4 = -straight
-    stretch = -x1 * (far + x4) * (far + straight) - x2 * (near + x4) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x2 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     sine_transmission = 2 * assembly * root / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, fold, root, stretch
+    area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
     x7 = 1 / (2 * diagonal2)
@@ -455,18 +485,23 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x
     sin3 = x8 * (diagonal_y * p + x9)
+    del diagonal2, area, p, x8
     x10 = x7 / follower
-    cos4 = -x10 * (diagonal_x * q + x5)
-    sin4 = -x10 * (diagonal_y * q - x9)
+    cos4 = (-diagonal_x * q - x5) * x10
+    del x7, diagonal_x, x5
+    sin4 = (x9 - diagonal_y * q) * x10
+    del diagonal_y, q, x10, x9
     cos23 = cos2 * cos3 + sin2 * sin3
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin24 = cos4 * sin2 - cos2 * sin4
+    del cos3, sin3, cos2, cos4, sin2
     share = crank / far
     reduced = share * frame
-    excess3 = -x6 * (-sin24 + sin4) / sine_transmission
-    omega3 = excess3 * reduced + share
+    excess3 = x6 * (sin24 - sin4) / sine_transmission
+    del sin24, sin4, sine_transmission
+    omega3 = reduced * excess3 + share
     return (
         2 * omega3,
-        2 * x6 * cos23 * crank,
+        2 * x6 * crank * cos23,
     )
 
 

@@ -12,8 +12,8 @@ one of crank and frame as a factor.
 At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
-    motion: 163 operations
-Content hash 8abc99cafeb7f9fc7a39f9b332fc0306; derived with SymPy 1.14.0.
+    motion: 158 operations
+Content hash 451e01798c6b619e59c3e10c3f6a7d54; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "8abc99cafeb7f9fc7a39f9b332fc0306"
+CONTENT = "451e01798c6b619e59c3e10c3f6a7d54"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -96,7 +96,7 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     Smith (2.1)-(2.10); Smith (A.1)-(A.8).
     """
     xp = _namespace(theta2)
-    near = -crank + frame
+    near = frame - crank
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
@@ -104,25 +104,28 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     half_sine = xp.sin(x0)
     half_cosine = xp.cos(x0)
     sin2 = 2 * half_cosine * half_sine
-    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
-    x1 = half_sine**2
-    x2 = x1 * far
-    x3 = half_cosine**2
-    x4 = x3 * near
-    diagonal_x = x2 + x4
-    x5 = sin2 * crank
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    cos2 = x1 - x2
+    x3 = far * x2
+    x4 = near * x1
+    diagonal_x = x3 + x4
+    x5 = crank * sin2
     diagonal_y = -x5
-    diagonal2 = x1 * far**2 + x3 * near**2
+    diagonal2 = far**2 * x2 + near**2 * x1
     x6 = folded * straight
     p = diagonal2 + x6
     q = diagonal2 - x6
-    x7 = -straight
-    stretch = -x1 * (far + x7) * (far + straight) - x3 * (near + x7) * (near + straight)
-    fold = x1 * (far + folded) * (far - folded) - x3 * (folded + near) * (folded - near)
+    stretch = (
+        -(near + straight) * (near - straight) * x1 - (far + straight) * (far - straight) * x2
+    )
+    fold = -(folded + near) * (folded - near) * x1 + (far + folded) * (far - folded) * x2
     root = xp.sqrt(fold * stretch)
     x8 = 2 * root
-    sine_transmission = x8 * assembly / (fold + stretch)
-    area = 2 * sine_transmission * coupler * follower
+    del x1, x2, root
+    sine_transmission = assembly * x8 / (fold + stretch)
+    area = 2 * coupler * follower * sine_transmission
     x9 = area * diagonal_y
     x10 = 1 / coupler
     x11 = 1 / (2 * diagonal2)
@@ -131,45 +134,52 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     x13 = area * diagonal_x
     sin3 = x12 * (diagonal_y * p + x13)
     x14 = 1 / follower
-    x15 = x11 * x14
-    cos4 = -x15 * (diagonal_x * q + x9)
-    sin4 = -x15 * (diagonal_y * q - x13)
+    x15 = x14 * x11
+    del diagonal2, x12, x11
+    cos4 = (-diagonal_x * q - x9) * x15
+    sin4 = (x13 - diagonal_y * q) * x15
+    del diagonal_x, x9, diagonal_y, x13, x15
     cosine_transmission = cos3 * cos4 + sin3 * sin4
-    sin23 = -cos2 * sin3 + cos3 * sin2
+    sin23 = cos3 * sin2 - cos2 * sin3
     cos23 = cos2 * cos3 + sin2 * sin3
-    sin24 = -cos2 * sin4 + cos4 * sin2
+    sin24 = cos4 * sin2 - cos2 * sin4
     cos24 = cos2 * cos4 + sin2 * sin4
     x16 = 1 / far
     share = x16 * crank
     reduced = share * frame
     x17 = 1 / sine_transmission
     x18 = x10 * x17
-    excess3 = -x18 * (-sin24 + sin4)
-    x19 = excess3 * reduced
+    excess3 = (sin24 - sin4) * x18
+    del cos2, sine_transmission, sin24, sin4
+    x19 = reduced * excess3
     omega3 = share + x19
     x20 = -x16 * frame
-    slip3 = -x19 - x20
+    slip3 = -x20 - x19
     x21 = x14 * x17
-    excess4 = -x21 * (-sin23 + sin3)
-    x22 = excess4 * reduced
+    excess4 = (sin23 - sin3) * x21
+    del x19, sin23, sin3
+    x22 = reduced * excess4
     omega4 = share + x22
     slip4 = -x20 - x22
-    spread = x14 * x18 * x5 * frame
+    spread = x14 * frame * x18 * x5
     x23 = x17 * cosine_transmission * spread
-    alpha3 = reduced * (x10 * x17 * cos24 * slip4 - x18 * cos4 * omega4 - x23 * excess3)
-    alpha4 = reduced * (x14 * x17 * cos23 * slip3 - x21 * cos3 * omega3 - x23 * excess4)
+    del x22, x5, cosine_transmission, spread, x17
+    alpha3 = -reduced * (x23 * excess3 + x18 * (cos4 * omega4 - cos24 * slip4))
+    del cos24, cos4, excess3, slip4, x18
+    alpha4 = -reduced * (x23 * excess4 + x21 * (cos3 * omega3 - cos23 * slip3))
+    del cos23, cos3, excess4, slip3, x21, x23
     x24 = 2 * winding - 1
-    x25 = -x24
     phi = (
-        theta2 * winding + xp.atan2(x24 * sin2 * (crank * (1 - winding) + winding * frame), x2 +
-        x25 * x4)
+        winding * theta2 + xp.atan2(x24 * (crank * (1 - winding) + winding * frame) * sin2, x3 -
+        x24 * x4)
     )
+    del sin2, x3, x4
     return (
-        phi + x25 * xp.atan2(area, x25 * p),
-        phi + x25 * xp.atan2(area, x24 * q),
+        phi - x24 * xp.atan2(area, -x24 * p),
+        phi - x24 * xp.atan2(area, x24 * q),
         omega3,
         omega4,
         alpha3,
         alpha4,
-        xp.atan2(x8, -fold + stretch),
+        xp.atan2(x8, stretch - fold),
     )

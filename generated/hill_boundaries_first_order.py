@@ -7,7 +7,7 @@ Equations: Smith (7.23), (7.25); Smith (7.46), (7.49).
 
 Cost per evaluation:
     first_order: 14 operations
-Content hash cda36274930469ec778141d9e5816e58; derived with SymPy 1.14.0.
+Content hash df874653dc0d10b1549d8cab4673f9e4; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hi'
     'll","modes":null,"outputs":[]}'
 )
-CONTENT = "cda36274930469ec778141d9e5816e58"
+CONTENT = "df874653dc0d10b1549d8cab4673f9e4"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -75,6 +75,6 @@ def first_order(n, mu, a0, an, bn, damping):
     x0 = n**2
     x1 = mu**2 / 4
     return (
-        -a0 * mu + x0 / 4,
+        x0 / 4 - a0 * mu,
         x1 * an**2 + x1 * bn**2 - x0 * damping**2,
     )

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash a137d7f6d94aae1b74358c6372e2f568; derived with SymPy 1.14.0.
+Content hash b22188f489269c4c7ff6065ec06568fe; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "a137d7f6d94aae1b74358c6372e2f568"
+CONTENT = "b22188f489269c4c7ff6065ec06568fe"
 EXTERNAL = ('f',)
 MODAL_1 = ((1.0,),)
 MODAL_2 = ((2.0,),)

@@ -64,7 +64,10 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
         "bending_stiffness": Dimension("a bending stiffness", "N*m**2", "171.5 lbf*in**2"),
         "stiffness": Dimension("a spring stiffness", "N/m", "200 N/m"),
         "damping_per_length": Dimension("a damping per length", "N*s/m**2", "0.1 N*s/m**2"),
+        "rotational_stiffness": Dimension("a torsional stiffness", "N*m/rad", "3 N*m/rad"),
+        "rotational_damping": Dimension("a torsional damping", "N*m*s/rad", "0.1 N*m*s/rad"),
         "damping": Dimension("a viscous damping", "N*s/m", "0.1 N*s/m"),
+        "angular_acceleration": Dimension("an angular acceleration", "rad/s**2", "25 rad/s**2"),
         "acceleration": Dimension("an acceleration", "m/s**2", "384 in/s**2"),
     }
 )

@@ -100,7 +100,14 @@ def test_what_is_required_and_declared():
     project = PROJECT["project"]
     names = {re.match(r"[\w-]+", text)[0] for text in project["dependencies"]}
     assert names == {"numpy", "scipy", "sympy", "jinja2", "matplotlib", "pint", "tqdm"}
-    assert set(project["optional-dependencies"]) == {"test", "fast", "data", "cluster", "dev"}
+    assert set(project["optional-dependencies"]) == {
+        "test",
+        "fast",
+        "data",
+        "benchmark",
+        "cluster",
+        "dev",
+    }
     for minor in (11, 12, 13):
         assert f"Programming Language :: Python :: 3.{minor}" in project["classifiers"]
     assert project["license"] == "BSD-3-Clause"

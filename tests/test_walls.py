@@ -16,7 +16,17 @@ PACKAGES = {folder: f"elastolink.{folder}" for folder in FOLDERS}
 STANDARD = frozenset(sys.stdlib_module_names)
 NUMERIC = {"numpy", "scipy"}
 # What the run-time side may load inside a function, when it is asked for.
-LAZY = {"matplotlib", "mpl_toolkits", "pint", "tqdm", "xarray", "heyoka", "numba", "flint"}
+LAZY = {
+    "matplotlib",
+    "mpl_toolkits",
+    "pint",
+    "tqdm",
+    "xarray",
+    "exudyn",
+    "heyoka",
+    "numba",
+    "flint",
+}
 # Proofs of emitted functions at many digits; nothing else of derive/ may import the module.
 CHECKS = "derive/checks.py"
 

@@ -162,7 +162,7 @@ def kinematics() -> Kinematics:
         (k.half_sine, sp.sin(theta2 / 2)),
         (k.half_cosine, sp.cos(theta2 / 2)),
         (k.sin2, 2 * k.half_sine * k.half_cosine),
-        (k.cos2, (k.half_cosine - k.half_sine) * (k.half_cosine + k.half_sine)),
+        (k.cos2, k.half_cosine**2 - k.half_sine**2),
     )
     differences = (
         (k.sin23, k.sin2 * k.cos3 - k.cos2 * k.sin3),
@@ -248,13 +248,14 @@ def _rates(k: Kinematics) -> tuple[Step, ...]:
     ):
         by_frame = _by_closure(below - above, loop, crank)
         dividend = _by_differences(k, sp.expand(above / crank - by_frame / frame))
-        slope = (_derivative(k, dividend) - excess * _derivative(k, divisor)) / divisor
+        slope = sp.factor_terms(_derivative(k, dividend) / divisor)
+        slope -= sp.factor_terms(excess * _derivative(k, divisor) / divisor)
         excesses += [
             (excess, sp.factor_terms(dividend / divisor)),
             (w, k.share + k.reduced * excess),
             (slip, frame / k.far - k.reduced * excess),
         ]
-        accelerations.append((a, k.reduced * sp.expand(slope)))
+        accelerations.append((a, k.reduced * slope))
     return (
         (k.share, crank / k.far),
         (k.reduced, k.share * frame),

@@ -1,7 +1,8 @@
 """Run time and error beside what a user would pick instead, measured in one run."""
 
 from .chart import benchmark_chart
+from .forces import benchmark_forces
 from .records import Benchmark, Row
 from .slices import benchmark_slices
 
-__all__ = ["Benchmark", "Row", "benchmark_chart", "benchmark_slices"]
+__all__ = ["Benchmark", "Row", "benchmark_chart", "benchmark_forces", "benchmark_slices"]

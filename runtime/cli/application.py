@@ -17,9 +17,33 @@ from pathlib import Path
 from typing import NoReturn
 
 from ..errors import BadInput, ElastolinkError, ElastolinkWarning, bad
-from . import linkages, proofs, scenes, stability
+from . import (
+    balancing,
+    classification,
+    clearance,
+    curves,
+    forces,
+    linkages,
+    proofs,
+    scenes,
+    stability,
+    tolerances,
+)
 from .options import HelpFormatter
 
+# In the order of the help.
+_GROUPS = (
+    scenes,
+    linkages,
+    classification,
+    curves,
+    clearance,
+    tolerances,
+    forces,
+    balancing,
+    stability,
+    proofs,
+)
 _BAD_INPUT = 2
 _INTERRUPTED = 130
 _MODULES = "ELASTOLINK_GENERATED"
@@ -59,7 +83,7 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, parser_class=_Parser
     )
-    for group in (scenes, linkages, stability, proofs):
+    for group in _GROUPS:
         group.add(commands)
     return parser
 

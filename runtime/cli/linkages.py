@@ -12,6 +12,7 @@ from ..errors import BadInput, bad
 from . import options as opt
 
 if TYPE_CHECKING:
+    from ..mechanisms import Motion
     from ..scenes import Scene
 
 _ROWS = 13
@@ -23,10 +24,11 @@ def add(commands: Any) -> None:
         commands,
         "kinematics",
         _kinematics,
-        summary="Angles, speeds and accelerations of coupler and follower, in closed form.",
+        summary="Angles and places, speeds and accelerations of all links, in closed form.",
         example=(
             "elastolink kinematics smith_1972_2122 --angles 0:360:13deg\n"
-            "  elastolink kinematics smith_1972_2122 --set links.assembly=crossed --plot motion.png"
+            "  elastolink kinematics smith_1972_2122 --set links.assembly=crossed --plot a.png\n"
+            "  elastolink kinematics slider_crank_example --speed '1500 rpm' --animate engine.gif"
         ),
     )
     opt.scene_options(kinematics)
@@ -35,6 +37,19 @@ def add(commands: Any) -> None:
         default="0:360:361deg",
         metavar="START:STOP:COUNT[UNIT]",
         help="crank angles; default %(default)s",
+    )
+    kinematics.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="crank speed, e.g. '195 rpm', rad/s without a unit; by default rates are over it",
+    )
+    kinematics.add_argument(
+        "--acceleration",
+        metavar="ALPHA",
+        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default 0",
+    )
+    kinematics.add_argument(
+        "--animate", metavar="FILE", help="draw the moving linkage: a .gif file"
     )
     simulate = opt.command(
         commands,
@@ -86,25 +101,48 @@ def _kinematics(options: argparse.Namespace) -> int:
     import numpy as np
 
     opt.picture(options)
+    if options.animate is not None:
+        from ..kinematics.animation import animate, check_animation_path
+
+        check_animation_path(options.animate)
     theta = np.array(opt.values(options.angles, "angle", "--angles"))
-    motion = opt.load(options).mechanism().motion(theta)
-    chosen = np.unique(np.linspace(0, len(theta) - 1, min(_ROWS, len(theta))).round().astype(int))
-    angles = ("theta2", "theta3", "theta4", "transmission_angle")
-    rates = ("omega3", "omega4", "alpha3", "alpha4")
-    header = [f"{name} [deg]" for name in angles] + list(rates)
-    rows = [
-        [f"{np.degrees(getattr(motion, name)[i]):.4f}" for name in angles]
-        + [f"{getattr(motion, name)[i]:.6f}" for name in rates]
-        for i in chosen
-    ]
-    low, high = np.degrees([motion.transmission_angle.min(), motion.transmission_angle.max()])
-    lines = [
-        *opt.table(header, rows),
-        "",
-        f"transmission angle from {low:.4f} to {high:.4f} deg over {len(theta)} angles;"
-        " speeds over omega2, accelerations over omega2^2",
-    ]
-    return opt.finish(options, motion, lines)
+    drive = {}
+    if options.speed is not None:
+        drive["speed"] = opt.quantity(options.speed, "frequency", "--speed")
+    if options.acceleration is not None:
+        where = "--acceleration"
+        drive["acceleration"] = opt.quantity(options.acceleration, "angular_acceleration", where)
+    linkage = opt.load(options).mechanism()
+    motion = linkage.motion(theta, **drive)
+    if options.animate is not None:
+        animate(linkage, options.animate)
+    return opt.finish(options, motion, _table(motion))
+
+
+def _table(motion: Motion) -> list[str]:
+    """Return the lines that show a motion: some of its angles, and how it is to be read."""
+    import numpy as np
+
+    count = motion.theta2.size
+    chosen = np.unique(np.linspace(0, count - 1, min(_ROWS, count)).round().astype(int))
+    header, columns = [], []
+    for name in ("theta2", *motion.places, *motion.rates):
+        unit = "rad" if name == "theta2" else motion.unit(name)
+        values = getattr(motion, name)[chosen]
+        if unit == "rad":
+            unit, values = "deg", np.degrees(values)
+        header.append(name if unit == "1" else f"{name} [{unit}]")
+        form = ".4f" if unit == "deg" else ".6f" if name in motion.rates else ".6g"
+        # No minus before a zero.
+        columns.append([format(float(value), f"z{form}") for value in values])
+    lines = [*opt.table(header, list(zip(*columns, strict=True))), ""]
+    crossing = getattr(motion, "transmission_angle", None)
+    if crossing is not None:
+        low, high = np.degrees([crossing.min(), crossing.max()])
+        lines.append(f"transmission angle from {low:.4f} to {high:.4f} deg over {count} angles")
+    if motion.relative:
+        lines.append("speeds over omega2, accelerations over omega2^2, at constant crank speed")
+    return lines
 
 
 def speed_of(options: argparse.Namespace, scene: Scene) -> float:

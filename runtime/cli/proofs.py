@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import bad
 from . import options as opt
 
-_BENCHMARKS = ("chart", "slices")
+_BENCHMARKS = ("chart", "slices", "forces")
 
 
 def add(commands: Any) -> None:
@@ -25,10 +25,13 @@ def add(commands: Any) -> None:
         example="elastolink reproduce smith --figure 84 --out gallery",
     )
     reproduce.add_argument(
-        "document", nargs="?", metavar="DOCUMENT", help="smith; all documents by default"
+        "document",
+        nargs="?",
+        metavar="DOCUMENT",
+        help="smith or aannaque; all documents by default",
     )
     reproduce.add_argument(
-        "--figure", metavar="N", help="one figure or table, e.g. 27, 27c, 84, table_coupler"
+        "--figure", metavar="N", help="one figure or table, e.g. 23, 23d, 3.8, table_coupler"
     )
     reproduce.add_argument(
         "--out", default="gallery", metavar="DIR", help="folder to write; default %(default)s"
@@ -43,7 +46,7 @@ def add(commands: Any) -> None:
     benchmark.add_argument(
         "subject",
         choices=_BENCHMARKS,
-        help="chart: a million half traces; slices: exact boundaries",
+        help="chart: a million half traces; slices: exact boundaries; forces: a million crank angles",
     )
 
 
@@ -76,7 +79,7 @@ def _reproduce(options: argparse.Namespace) -> int:
 
 def _benchmark(options: argparse.Namespace) -> int:
     opt.picture(options)
-    from ..benchmarking import benchmark_chart, benchmark_slices
+    from .. import benchmarking
 
-    result = benchmark_chart() if options.subject == "chart" else benchmark_slices()
+    result = getattr(benchmarking, f"benchmark_{options.subject}")()
     return opt.finish(options, result, result.table().splitlines())

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Any
 from . import options as opt
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from matplotlib.axes import Axes
 
     from ..scenes import Scene
+    from ..scenes.schema import Table
 
 
 def add(commands: Any) -> None:
@@ -78,8 +81,7 @@ def _lines(scene: Scene) -> list[str]:
     from ..units import describe
 
     lines = [scene.title, f"source: {scene.source}", f"module: {scene.model_spec().name()}"]
-    for name, table in scene.tables.items():
-        layout = scene.layout.table(name)
+    for name, layout, table in _all_tables(scene):
         lines += ["", f"[{name}]" + (f"  {layout.meaning}" if layout else "")]
         for key, value in table.items():
             dimension = scene.dimension(f"{name}.{key}")
@@ -93,6 +95,17 @@ def _lines(scene: Scene) -> list[str]:
             meaning = f"  ({known.meaning})" if known else ""
             lines.append(f"  {key} = {text or 'none'}{meaning}")
     return lines
+
+
+def _all_tables(scene: Scene) -> Iterator[tuple[str, Table | None, Mapping[str, Any]]]:
+    """Yield every table with its description; those under a name of their own one by one."""
+    for name, table in scene.tables.items():
+        layout = scene.layout.table(name)
+        if layout is None or not layout.named:
+            yield name, layout, table
+            continue
+        for inner, content in table.items():
+            yield f"{name}.{inner}", layout, content
 
 
 def _several(numbers: tuple[float, ...], dimension: str) -> str:
@@ -117,8 +130,10 @@ def draw_scene(scene: Scene, ax: Axes) -> Axes:
     Axes
         The same axes.
     """
+    from ..scenes.scene import LINKAGES
+
     ax.set_title(scene.name, fontsize="medium")
-    if "links" in scene and scene.model["mechanism"] == "four_bar":
+    if scene.model["mechanism"] in LINKAGES and scene.layout.formulations:
         return _draw_linkage(scene, ax)
     if "function" in scene:
         return _draw_function(scene, ax)
@@ -130,20 +145,19 @@ def _draw_linkage(scene: Scene, ax: Axes) -> Axes:
     import numpy as np
 
     linkage = scene.mechanism()
-    turns = linkage.crank_turns
-    start, stop = (0.0, 2 * np.pi) if turns else (0.45 * np.pi, 0.55 * np.pi)
-    theta = np.linspace(start, stop, 13)[:-1]
-    motion = linkage.motion(theta)
-    pin = linkage.crank * np.exp(1j * theta)
-    joint = linkage.frame + linkage.follower * np.exp(1j * motion.theta4)
-    for i in range(len(theta)):
-        chain = np.array([0.0, pin[i], joint[i], linkage.frame])
-        first = i == 2
-        (line,) = ax.plot(chain.real, chain.imag, "-o", color="0.75", linewidth=0.7, markersize=3)
-        if first:
-            line.set(color="C0", linewidth=1.8, zorder=3)
-    ax.plot([0.0, linkage.frame], [0.0, 0.0], "^", color="black", markersize=7, zorder=4)
-    ax.set_aspect("equal")
+    low, high = linkage.crank_ranges()[0]
+    # Well inside a range that ends in folds.
+    inset = 0.0 if linkage.crank_turns else 0.02 * (high - low)
+    motion = linkage.motion(np.linspace(low + inset, high - inset, 13)[:-1])
+    joints = motion.joints
+    for i in range(motion.theta2.size):
+        colour, width = ("C0", 1.8) if i == 2 else ("0.75", 0.7)
+        for ends in linkage.bars.values():
+            x, y = np.transpose([joints[end][i] for end in ends])
+            ax.plot(x, y, "-o", markersize=3, color=colour, linewidth=width, zorder=2 + (i == 2))
+    fixed = [place[0] for place in joints.values() if np.ptp(place, axis=0).max() == 0.0]
+    ax.plot(*np.transpose(fixed), "^", color="black", markersize=7, zorder=4)
+    ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
     return ax

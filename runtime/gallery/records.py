@@ -174,9 +174,12 @@ class FigureEntry:
     @property
     def stem(self) -> str:
         """Name of the picture's file, without its ending."""
-        plain = "".join(c for c in self.label if c.isalnum() or c == "_")
-        digits = len(plain) - len(plain.lstrip("0123456789"))
-        return f"{self.document}_{plain[:digits].zfill(2) if digits else ''}{plain[digits:]}"
+        parts = []
+        for part in self.label.split("."):
+            plain = "".join(c for c in part if c.isalnum() or c == "_")
+            digits = len(plain) - len(plain.lstrip("0123456789"))
+            parts.append((plain[:digits].zfill(2) if digits else "") + plain[digits:])
+        return "_".join([self.document, *parts])
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from . import (
+    aannaque_forces,
+    aannaque_kinematics,
+    aannaque_pulses,
+    aannaque_space,
+    smith_balanced_link,
+    smith_balancing,
     smith_charts,
+    smith_clearance,
     smith_coupler_equation,
+    smith_forces,
     smith_kinematics,
     smith_solutions,
     smith_speeds,
@@ -46,6 +54,106 @@ _CHARTS = tuple(
     for rig in RIGS
 )
 
+_CLEARANCE = (
+    FigureEntry(
+        "smith", "8", "Kinematic effects of clearance", smith_clearance.figure_8, size=(6.4, 4.6)
+    ),
+    FigureEntry(
+        "smith",
+        "9(a)",
+        "Kinematic effects of clearance: extreme position, phi = 0 deg",
+        smith_clearance.figure_9a,
+        size=(6.4, 4.2),
+    ),
+    FigureEntry(
+        "smith",
+        "9(b)",
+        "Kinematic effects of clearance: extreme position, phi = 90 deg",
+        smith_clearance.figure_9b,
+        size=(6.4, 4.2),
+    ),
+    FigureEntry(
+        "smith", "10", "Kinematic effects of clearance: free motion", smith_clearance.figure_10
+    ),
+)
+
+_FORCES = (
+    FigureEntry(
+        "smith", "11", "Free bodies of the four links", smith_forces.figure_11, size=(7.4, 5.4)
+    ),
+    *(
+        FigureEntry("smith", str(number), title, smith_forces.polar_figure(joint), size=(5.8, 5.0))
+        for number, joint, title in (
+            (12, "12", "Pin force of the frame upon the crank"),
+            (13, "23", "Pin force of the crank upon the coupler"),
+            (14, "34", "Pin force of the coupler upon the follower"),
+            (15, "41", "Pin force of the follower upon the frame"),
+            (16, "frame", "Force on the frame"),
+        )
+    ),
+    *(
+        FigureEntry(
+            "smith",
+            label,
+            "Follower-frame force: effect of the dimensions",
+            smith_forces.family_figure(label),
+            size=(6.0, 5.4),
+        )
+        for label in ("17", "18", "19")
+    ),
+)
+
+_BALANCING = (
+    FigureEntry(
+        "smith",
+        "20",
+        "Unbalanced, partially and fully balanced configurations",
+        smith_balancing.figure_20,
+        panels=(2, 2),
+        size=(7.6, 6.2),
+    ),
+    FigureEntry(
+        "smith",
+        "21",
+        "Force on the frame: effect of balancing",
+        smith_balancing.figure_21,
+        size=(6.0, 5.2),
+    ),
+    FigureEntry(
+        "smith",
+        "22",
+        "Torque on the frame: effect of balancing",
+        smith_balancing.figure_22,
+        panels=(1, 2),
+        size=(9.0, 4.4),
+    ),
+    FigureEntry(
+        "smith",
+        "23(a)",
+        "Place of the counterweight for the least inertia of a balanced link",
+        smith_balanced_link.figure_23a,
+    ),
+    FigureEntry(
+        "smith",
+        "23(b)",
+        "Inertia of a balanced link: density and place of the counterweight",
+        smith_balanced_link.figure_23b,
+    ),
+    FigureEntry(
+        "smith",
+        "23(c)",
+        "Place of the least inertia: density of the counterweight",
+        smith_balanced_link.figure_23c,
+    ),
+    FigureEntry(
+        "smith",
+        "23(d)",
+        "Crank-pin force: effect of the counterweights' offset",
+        smith_balancing.figure_23d,
+        size=(6.0, 5.2),
+    ),
+)
+
 _SMITH = (
     FigureEntry("smith", "6(a)", "Output angle against input angle", smith_kinematics.figure_6a),
     FigureEntry("smith", "6(b)", "Output angular velocity", smith_kinematics.figure_6b),
@@ -58,6 +166,9 @@ _SMITH = (
         panels=(1, 2),
         size=(8.4, 4.2),
     ),
+    *_CLEARANCE,
+    *_FORCES,
+    *_BALANCING,
     *_END_LOADS,
     FigureEntry(
         "smith",
@@ -137,4 +248,74 @@ _SMITH = (
     ),
 )
 
-DOCUMENTS: Mapping[str, tuple[FigureEntry, ...]] = {"smith": _SMITH}
+_AANNAQUE = (
+    FigureEntry(
+        "aannaque",
+        "3.4",
+        "Zero-mobility planes and base plane",
+        aannaque_space.figure_3_4,
+        size=(7.2, 5.4),
+    ),
+    FigureEntry(
+        "aannaque",
+        "3.5",
+        "Base planes for typical values of lambda",
+        aannaque_space.figure_3_5,
+        panels=(1, 3),
+        size=(10.5, 3.8),
+    ),
+    FigureEntry(
+        "aannaque",
+        "3.6",
+        "The two mechanisms for one input angle",
+        aannaque_kinematics.figure_3_6,
+        size=(6.4, 5.0),
+    ),
+    FigureEntry(
+        "aannaque",
+        "3.7",
+        "Relative angular velocity of coupler and follower",
+        aannaque_kinematics.figure_3_7,
+    ),
+    FigureEntry(
+        "aannaque",
+        "3.8",
+        "Relative angular accelerations of coupler and follower",
+        aannaque_kinematics.figure_3_8,
+    ),
+    FigureEntry(
+        "aannaque",
+        "3.9",
+        "Transmission angle against input angle",
+        aannaque_kinematics.figure_3_9,
+    ),
+    FigureEntry(
+        "aannaque",
+        "3.10",
+        "Paths of some points of the coupler",
+        aannaque_kinematics.figure_3_10,
+        size=(6.6, 5.4),
+    ),
+    *(
+        FigureEntry(
+            "aannaque",
+            f"3.11({letter})",
+            f"Free body of the {name}",
+            aannaque_forces.body_figure(link),
+            size=(5.6, 4.8),
+        )
+        for letter, link, name in (
+            ("a", "crank", "input link"),
+            ("b", "coupler", "coupler"),
+            ("c", "follower", "follower"),
+        )
+    ),
+    FigureEntry(
+        "aannaque",
+        "7.12",
+        "Acceleration of the follower for various transmission angles",
+        aannaque_pulses.figure_7_12,
+    ),
+)
+
+DOCUMENTS: Mapping[str, tuple[FigureEntry, ...]] = {"smith": _SMITH, "aannaque": _AANNAQUE}

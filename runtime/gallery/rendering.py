@@ -168,7 +168,7 @@ def _title(chosen: Sequence[FigureEntry]) -> str:
 
 
 def _plain(label: str) -> str:
-    return "".join(c for c in label.lower() if c.isalnum() or c == "_")
+    return "".join(c for c in label.lower() if c.isalnum() or c in "_.")
 
 
 def _number(label: str) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..mechanisms import FourBar, Motion
+from ..mechanisms import FourBar, FourBarMotion
 from ..series.periodic import PeriodicFunction
 from .records import Drawn, Quoted
 from .smith_linkages import PROPORTIONS, Array, EndLoad, end_load, linkage_of
@@ -32,11 +32,11 @@ _HALF_TURN = (
 _NEAR = 1e-7
 
 
-def _follower(crank: float, theta: Array) -> Motion:
+def _follower(crank: float, theta: Array) -> FourBarMotion:
     return FourBar(frame=10.0, crank=crank, coupler=10.0, follower=10.0).motion(theta)
 
 
-def _family(ax: Axes, value: Callable[[Motion], Array], label: str) -> None:
+def _family(ax: Axes, value: Callable[[FourBarMotion], Array], label: str) -> None:
     """Draw one quantity of the follower for all cranks."""
     # Closer angles where the follower turns back within a few degrees.
     near = np.concatenate([np.linspace(0.0, 0.35, 701), np.linspace(0.35, 2 * pi - 0.35, 721)])

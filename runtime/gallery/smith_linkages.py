@@ -10,6 +10,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import bad
 from ..families import LinearPeriodic
 from ..hill.form import HillForm, hill_form
 from ..hill.matrix import hill_boundaries
@@ -75,7 +76,21 @@ def end_load(linkage: FourBar, theta: ArrayLike) -> EndLoad:
 
 def linkage_of(proportions: str) -> FourBar:
     """Return the linkage that the thesis names by its proportions."""
-    return load_scene(PROPORTIONS[proportions]).mechanism()
+    return four_bar_of(PROPORTIONS[proportions])
+
+
+def four_bar_of(scene: str) -> FourBar:
+    """Return the four-bar linkage of a built-in scene.
+
+    Raises
+    ------
+    BadInput
+        If the scene has another linkage.
+    """
+    linkage = load_scene(scene).mechanism()
+    if not isinstance(linkage, FourBar):
+        raise bad(f"scene {scene}", type(linkage).__name__, "a four-bar linkage", "choose another")
+    return linkage
 
 
 @lru_cache(maxsize=8)

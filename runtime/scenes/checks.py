@@ -7,7 +7,8 @@ from typing import Any
 
 from ..errors import BadInput, Problem
 from ..units import describe, to_si
-from .schema import LINKS, Layout
+from .layouts import LINKS
+from .schema import Layout
 
 Values = Mapping[str, dict[str, Any]]
 # Data are rounded: an inertia may fall short of the least possible one by so much.
@@ -31,6 +32,10 @@ def geometry_problems(values: Values, layout: Layout) -> list[Problem]:
         Says which links bend.
     """
     links = values.get("links", {})
+    if layout.mechanism == "slider_crank":
+        return _slider_problems(links)
+    if layout.mechanism == "quick_return":
+        return _rod_problems(links)
     if layout.mechanism != "four_bar" or any(name not in links for name in LINKS):
         return []
     lengths = {name: float(links[name]) for name in LINKS}
@@ -42,6 +47,35 @@ def geometry_problems(values: Values, layout: Layout) -> list[Problem]:
         fix = f"the lengths cannot close: shorten the {longest} or lengthen another link"
         return [Problem(f"links.{longest}", found, expected, fix)]
     return _turning_problems(*(lengths[name] for name in LINKS)) if layout.flexible else []
+
+
+def _slider_problems(links: Mapping[str, Any]) -> list[Problem]:
+    """Check that coupler and crank together reach the line of the slider."""
+    if any(name not in links for name in ("crank", "coupler", "offset")):
+        return []
+    crank, coupler, offset = links["crank"], links["coupler"], abs(links["offset"])
+    if offset < crank + coupler:
+        return []
+    limit = describe(crank + coupler, "length")
+    fix = "the slider's line is out of reach: lower the offset or lengthen a link"
+    found = describe(links["offset"], "length")
+    return [Problem("links.offset", found, f"less than {limit}, crank and coupler", fix)]
+
+
+def _rod_problems(links: Mapping[str, Any]) -> list[Problem]:
+    """Check that the rod reaches the crank pin wherever it is, and never passes its own pivot."""
+    if any(name not in links for name in ("frame", "crank", "rod")):
+        return []
+    frame, crank, rod = links["frame"], links["crank"], links["rod"]
+    if frame == crank:
+        fix = "the crank pin would pass the rod's pivot: change one of the two"
+        return [Problem("links.crank", describe(crank, "length"), "another length than frame", fix)]
+    if rod < frame + crank:
+        limit = describe(frame + crank, "length")
+        fix = "the block would leave the rod: lengthen it"
+        found = describe(rod, "length")
+        return [Problem("links.rod", found, f"at least {limit}, frame and crank", fix)]
+    return []
 
 
 def _turning_problems(frame: float, crank: float, coupler: float, follower: float) -> list[Problem]:
@@ -77,12 +111,12 @@ def body_problems(values: Values, layout: Layout) -> list[Problem]:
         Of a linkage; others pass.
     """
     problems: list[Problem] = []
-    for link in LINKS[1:] if layout.mechanism == "four_bar" else ():
+    for link in layout.links:
         body = values.get(link, {})
         if not {"mass", "first_moment", "inertia"} <= set(body):
             continue
         mass, moment, inertia = (body[key] for key in ("mass", "first_moment", "inertia"))
-        least = moment * moment / mass
+        least = (moment * moment + body.get("transverse_moment", 0.0) ** 2) / mass
         if inertia < least * (1.0 - _ROUNDED):
             found = f"{describe(inertia, 'inertia')}, with mass {describe(mass, 'mass')}"
             found += f" and first moment {moment:.6g} kg m"

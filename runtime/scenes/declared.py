@@ -7,7 +7,8 @@ from typing import Any
 
 from ..errors import Problem
 from ..units import DIMENSIONS
-from .schema import Key, Layout, Table, chart_table
+from .layouts import chart_table
+from .schema import Key, Layout, Table
 
 _KINDS = ("quantity", "quantities", "count", "counts", "text", "texts")
 _FIELDS = ("meaning", "kind", "dimension", "default", "limit", "choices", "required")

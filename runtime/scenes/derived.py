@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import BadInput, Problem
 from .checks import body_problems
-from .schema import LINKS, Layout
+from .schema import Layout
 
 Values = dict[str, dict[str, Any]]
 
@@ -30,27 +30,33 @@ def complete(values: Values, layout: Layout) -> None:
     """
     if layout.mechanism == "hill":
         _pad_series(values["function"])
-    if layout.mechanism != "four_bar":
+    if not layout.links:
         return
     balanced = values["model"]["balanced"]
     contradictions = [
         Problem(
-            f"{link}.first_moment",
-            f"{values[link]['first_moment']:g} kg m",
+            f"{link}.{key}",
+            f"{values[link][key]:g}",
             "0, since model.balanced names this link",
             "remove one of the two",
         )
         for link in balanced
-        if values.get(link, {}).get("first_moment", 0.0) != 0.0
+        for key in ("first_moment", "centre_along")
+        if values.get(link, {}).get(key, 0.0) != 0.0
     ]
     if contradictions:
         raise BadInput(*contradictions)
     if "coupler" in layout.flexible:
         _flexible_bar(values["coupler"], values["links"]["coupler"])
     gravity = values["gravity"]["acceleration"]
-    for link in LINKS[1:]:
+    missing: list[Problem] = []
+    for link in layout.links:
         if link in values:
-            _rigid_bar(values[link], values["links"][link], gravity, balanced=link in balanced)
+            # A slider and a block have no length: their mass is at the pin unless they say more.
+            length = values["links"].get(link, 0.0)
+            missing += _rigid_bar(link, values[link], length, gravity, balanced=link in balanced)
+    if missing:
+        raise BadInput(*missing)
     impossible = body_problems(values, layout)
     if impossible:
         raise BadInput(*impossible)
@@ -83,12 +89,36 @@ def _flexible_bar(bar: dict[str, Any], length: float) -> None:
     bar["mass"] = bar["mass_per_length"] * length
 
 
-def _rigid_bar(bar: dict[str, Any], length: float, gravity: float, *, balanced: bool) -> None:
-    """Mass from weight; first moment and inertia of a uniform bar where none are given."""
+def _rigid_bar(
+    link: str, bar: dict[str, Any], length: float, gravity: float, *, balanced: bool
+) -> list[Problem]:
+    """Mass, first moments and inertia from whatever gives them; a uniform bar's by default."""
     if "weight" in bar:
         bar["mass"] = bar["weight"] / gravity
+    if "density" in bar:
+        absent = [key for key in ("width", "thickness") if key not in bar]
+        if absent:
+            fix = f"add {' and '.join(absent)}, or give mass instead of density"
+            return [Problem(f"{link}.density", "no section", "width and thickness beside it", fix)]
+        bar["mass"] = bar["density"] * bar["width"] * bar["thickness"] * length
+    given = sorted({"centre_along", "centre_across", "inertia_about_centre"} & set(bar))
+    if given and "mass" not in bar:
+        expected = "mass, weight or density beside it"
+        return [Problem(f"{link}.{given[0]}", "no mass", expected, "add the mass")]
     if balanced:
         bar["first_moment"] = 0.0
     if "mass" in bar:
-        bar.setdefault("first_moment", bar["mass"] * length / 2.0)
-        bar.setdefault("inertia", bar["mass"] * length**2 / 3.0)
+        _about_first_joint(bar, bar["mass"], length)
+    return []
+
+
+def _about_first_joint(bar: dict[str, Any], mass: float, length: float) -> None:
+    """First moments and inertia about the first joint, from centre and inertia about it."""
+    moment = mass * bar["centre_along"] if "centre_along" in bar else mass * length / 2.0
+    bar.setdefault("first_moment", moment)
+    if "centre_across" in bar:
+        bar["transverse_moment"] = mass * bar["centre_across"]
+    if "inertia_about_centre" in bar:
+        squares = bar["first_moment"] ** 2 + bar.get("transverse_moment", 0.0) ** 2
+        bar["inertia"] = bar["inertia_about_centre"] + squares / mass
+    bar.setdefault("inertia", mass * length**2 / 3.0)

@@ -88,7 +88,7 @@ def scene_from_document(
     _override(tables, overrides or {})
     layout, values = validate(tables)
     complete(values, layout)
-    read_only = {key: ReadOnlyTable(key, table) for key, table in values.items()}
+    read_only = {key: _read_only(key, table) for key, table in values.items()}
     return Scene(
         name=name,
         title=str(tables.get("title", name)),
@@ -96,6 +96,15 @@ def scene_from_document(
         tables=ReadOnlyTable(name, read_only),
         layout=layout,
     )
+
+
+def _read_only(name: str, table: Mapping[str, Any]) -> ReadOnlyTable:
+    """Return a table that cannot be changed, nor can the ones inside it."""
+    inner = {
+        key: _read_only(f"{name}.{key}", value) if isinstance(value, Mapping) else value
+        for key, value in table.items()
+    }
+    return ReadOnlyTable(name, inner)
 
 
 def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:
@@ -109,6 +118,11 @@ def _override(tables: dict[str, Any], overrides: Mapping[str, Any]) -> None:
             continue
         plain = value.tolist() if hasattr(value, "tolist") else value
         target = tables.setdefault(table, {}) if key else tables
+        if isinstance(target, dict) and "." in key:
+            # [springs.NAME]: a table under a name, copied so that the caller's stays as it is.
+            inner, _, key = key.partition(".")
+            named = target.get(inner, {})
+            target[inner] = target = dict(named) if isinstance(named, Mapping) else named
         if not isinstance(target, dict):
             problems.append(Problem(f"override {dotted!r}", show(target), "a table", "correct it"))
         elif plain is None:

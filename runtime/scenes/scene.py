@@ -15,8 +15,9 @@ from .schema import Layout
 from .validation import nearest
 
 if TYPE_CHECKING:
+    from ..dynamics import Machine
     from ..families import LinearPeriodic
-    from ..mechanisms import FourBar
+    from ..mechanisms import Linkage
 
 # Where each mechanism's equations become a family object; imported when one is asked for.
 _BUILDERS = {
@@ -24,6 +25,7 @@ _BUILDERS = {
     "hill": ("..systems.hill", "hill_system"),
 }
 _OWN_BUILDER = (".own", "own_system")
+LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
 # Keys that no file gives and that follow from the others.
 _DERIVED = {"mass": "mass"}
 _MISSING = object()
@@ -91,6 +93,17 @@ class MissingKeyError(KeyError):
         return f"{self.where}: found nothing; expected one of {self.known}; {fix}"
 
 
+def _plain(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table, and those inside it, as dicts and lists."""
+    plain: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            plain[key] = _plain(value)
+        else:
+            plain[key] = list(value) if isinstance(value, tuple) else value
+    return plain
+
+
 @dataclass(frozen=True)
 class Scene:
     """The numbers of one machine, validated and in SI units.
@@ -136,13 +149,24 @@ class Scene:
         """The ``[model]`` table, defaults filled in."""
         return self["model"]
 
+    @property
+    def _declared(self) -> bool:
+        """True where the scene declares its own tables, for a model of the user's."""
+        return not self.layout.formulations
+
+    @property
+    def _of_rigid_links(self) -> bool:
+        return (
+            self.model["mechanism"] in LINKAGES and not self.layout.flexible and not self._declared
+        )
+
     def get(self, key: str, default: Any = _MISSING) -> Any:
         """Return the value of a dotted key, in SI units.
 
         Parameters
         ----------
         key : str
-            Table and key, for example ``"links.crank"``.
+            Table and key, for example ``"links.crank"`` or ``"loads.tool.couple"``.
         default : object, optional
             Returned where the scene holds no such key.
 
@@ -151,9 +175,11 @@ class Scene:
         KeyError
             If the scene holds no such key and no default is given.
         """
-        table, _, name = key.partition(".")
         try:
-            return self.tables[table][name] if name else self.tables[table]
+            found: Any = self.tables
+            for name in key.split("."):
+                found = found[name]
+            return found
         except MissingKeyError:
             if default is _MISSING:
                 raise
@@ -165,6 +191,8 @@ class Scene:
         if table == "chart" and name.endswith("_range"):
             return self.layout.parameters.get(self.get(f"chart.{name[0]}"))
         known = self.layout.table(table)
+        if known and known.named:
+            name = name.rpartition(".")[2]
         found = known.key(name) if known else None
         if found is None:
             return _DERIVED.get(name)
@@ -172,10 +200,7 @@ class Scene:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists, numbers and strings, ready for JSON."""
-        tables = {
-            name: {key: list(v) if isinstance(v, tuple) else v for key, v in table.items()}
-            for name, table in self.tables.items()
-        }
+        tables = {name: _plain(table) for name, table in self.tables.items()}
         return {"name": self.name, "title": self.title, "source": self.source, **tables}
 
     def digest(self) -> str:
@@ -198,36 +223,50 @@ class Scene:
         Raises
         ------
         BadInput
-            If the scene is about kinematics alone, or its module was not emitted yet.
+            If the scene is about rigid links alone, or its module was not emitted yet.
         """
         mechanism = self.model["mechanism"]
-        if mechanism == "four_bar" and not self.layout.flexible:
+        if self._of_rigid_links:
             raise bad(
                 f"scene {self.name}",
                 f"formulation '{self.model['formulation']}', in which nothing vibrates",
                 "a scene with a flexible link",
-                "use kinematics, or choose one of `elastolink scenes` with a flexible coupler",
+                "use kinematics or forces, or choose a scene with a flexible link",
             )
         module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
         builder = getattr(importlib.import_module(module, __package__), function)
         built: LinearPeriodic = builder(self)
         return built
 
-    def mechanism(self) -> FourBar:
-        """Return the four-bar linkage of the scene.
+    def mechanism(self) -> Linkage:
+        """Return the linkage of the scene: lengths and assembly.
 
         Raises
         ------
         BadInput
             If the scene has no linkage.
         """
-        if self.model["mechanism"] != "four_bar":
+        kind = LINKAGES.get(self.model["mechanism"])
+        if kind is None or self._declared:
             raise bad(
                 f"scene {self.name}",
                 f"mechanism '{self.model['mechanism']}'",
-                "a linkage",
+                f"a linkage: one of {sorted(LINKAGES)}",
                 "choose a scene with a [links] table",
             )
-        from ..mechanisms import FourBar
+        from .. import mechanisms
 
-        return FourBar(**self["links"])
+        linkage: Linkage = getattr(mechanisms, kind)(**self["links"])
+        return linkage
+
+    def machine(self) -> Machine:
+        """Return the linkage with its masses, loads, springs and weight.
+
+        Raises
+        ------
+        BadInput
+            If the scene has no linkage, a link bends, or no link has a mass.
+        """
+        from .rigid import machine
+
+        return machine(self)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -11,7 +12,8 @@ from ..errors import BadInput, Problem
 from ..units import DIMENSIONS, expected, to_si
 from .checks import chart_problems, geometry_problems, measured_problems, series_problems
 from .declared import declared_layout
-from .schema import LAYOUTS, Key, Layout, Table
+from .layouts import LAYOUTS
+from .schema import Key, Layout, Table
 
 Values = dict[str, dict[str, Any]]
 _TOP = ("title", "source", "model")
@@ -128,7 +130,7 @@ def _table(
     given = document.get(table.name)
     if given is None:
         if not table.required:
-            return _defaults(table) or None
+            return None if table.named else _defaults(table) or None
         need = ", ".join(key.name for key in table.keys if key.required)
         fix = f"add it, with {need}" if need else "add it"
         problems.append(Problem(f"[{table.name}]", "nothing", f"a table: {table.meaning}", fix))
@@ -136,6 +138,8 @@ def _table(
     if not isinstance(given, Mapping):
         problems.append(Problem(table.name, show(given), "a table", f"write [{table.name}]"))
         return None
+    if table.named:
+        return _named_tables(given, table, layout, problems)
     _unknown_keys(given, table, layout, problems)
     values: dict[str, Any] = {}
     for key in table.keys:
@@ -151,6 +155,22 @@ def _table(
             problems.append(Problem(where, "nothing", what, f"add it to [{table.name}]"))
     _groups(given, table, problems)
     return values
+
+
+def _named_tables(
+    given: Mapping[str, Any], table: Table, layout: Layout, problems: list[Problem]
+) -> dict[str, Any]:
+    """Read every table of ``[table.NAME]``."""
+    found = {}
+    for name, content in given.items():
+        full = f"{table.name}.{name}"
+        one = replace(table, name=full, named=False)
+        if isinstance(content, Mapping):
+            found[name] = _table({full: content}, one, layout, problems)
+        else:
+            fix = f"write [{table.name}.NAME] above the keys"
+            problems.append(Problem(full, show(content), "a table under a name", fix))
+    return found
 
 
 def _defaults(table: Table) -> dict[str, Any]:

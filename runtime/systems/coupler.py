@@ -49,7 +49,7 @@ def coupler_system(scene: Scene) -> LinearPeriodic:
         parameters=parameters,
         modes=modes,
         labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
-        reference_length=linkage.coupler,
+        reference_length=linkage.lengths["coupler"],
         shape=PinnedModes(modes),
         provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
     )

@@ -156,7 +156,7 @@ def test_linkages_of_the_points_turn_fully():
 # ---------------------------------------------------------------- namespaces
 
 GEOMETRY = {"frame": 5.0, "crank": 1.0, "coupler": 4.5, "follower": 2.0}
-ANY = {**GEOMETRY, "assembly": -1.0, "winding": 0.0}
+ANY = {**GEOMETRY, "offset": 0.5, "assembly": -1.0, "winding": 0.0}
 
 
 @pytest.mark.parametrize("shared", [True, False], ids=["first is an array", "all are arrays"])
@@ -166,7 +166,9 @@ def test_every_function_runs_in_any_array_namespace(module, function, shared):
 
     Vector loops may round the last digit differently with the alignment of an array.
     """
-    emitted = getattr(importlib.import_module(f"elastolink.generated.{module}"), function)
+    home = importlib.import_module(f"elastolink.generated.{module}")
+    emitted = getattr(home, function)
+    shared = shared and home.FAMILY != "constrained"  # there the whole state is one shape
     values = {}
     for i, name in enumerate(inspect.signature(emitted).parameters):
         value = ANY.get(name, 0.25 + i)

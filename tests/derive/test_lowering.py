@@ -113,7 +113,7 @@ def test_a_printed_line_means_the_expression(expression):
         (x - y, "x - y"),
         (x / y, "x / y"),
         (x / (y * z), "x / (y * z)"),
-        (-x * (y - z), "-x * (y - z)"),
+        (-x * (y - z), "(z - y) * x"),
         (1 / x, "1 / x"),
         (x**-2, "1 / x**2"),
         (x**2 / y**3, "x**2 / y**3"),

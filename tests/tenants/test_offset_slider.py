@@ -13,7 +13,7 @@ CRANK, ROD = 0.11, 0.31
 
 @pytest.fixture(scope="module")
 def module(emit):
-    return emit("slider_crank", ModelSpec("slider_crank", "kinematics")).module
+    return emit("offset_slider", ModelSpec("offset_slider", "kinematics")).module
 
 
 def motion(module, theta, offset):
@@ -64,8 +64,8 @@ def test_dead_centres_in_line(module):
 
 
 def test_only_what_is_wanted_is_emitted(emit, module):
-    spec = ModelSpec("slider_crank", "kinematics", outputs=("position",))
-    lean = emit("slider_crank", spec).module
+    spec = ModelSpec("offset_slider", "kinematics", outputs=("position",))
+    lean = emit("offset_slider", spec).module
     assert lean.RETURNS["motion"] == ("position",)
     theta = np.linspace(0.0, 6.0, 7)
     expected = motion(module, theta, 0.02)["position"]

@@ -76,12 +76,12 @@ def _describe(spec: au.ModelSpec) -> au.Description:
 
 
 MODEL = au.Model(
-    mechanism="slider_crank",
+    mechanism="offset_slider",
     formulations=("kinematics",),
     energies=_closed_form,
     describe=_describe,
 )
 SPECS = (
-    au.ModelSpec("slider_crank", "kinematics"),
-    au.ModelSpec("slider_crank", "kinematics", outputs=("position",)),
+    au.ModelSpec("offset_slider", "kinematics"),
+    au.ModelSpec("offset_slider", "kinematics", outputs=("position",)),
 )

@@ -1,0 +1,1068 @@
+"""Forces of the rigid four-bar linkage in closed form.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism four_bar, formulation forces, without crank_acceleration.
+Equations: Smith (4.1)-(4.13).
+
+Link 1 is the frame, 2 the crank; each moving link has axes of its own from its first joint along
+the link.  The forces are linear in masses, moments and inertias: at unit values of one of these
+they are the derivatives by it.
+
+For a crank of constant speed.
+
+Cost per evaluation:
+    forces: 210 operations
+    pin_forces: 175 operations
+    driving_torque: 121 operations
+    shaking_force: 155 operations
+    shaking_moment: 139 operations
+    load_forces: 98 operations
+Content hash 5ccab6de043a85fb83085e6c416a12f4; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = [
+    "driving_torque",
+    "forces",
+    "load_forces",
+    "pin_forces",
+    "shaking_force",
+    "shaking_moment",
+]
+
+FAMILY = "closed_form"
+SPEC = (
+    '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
+    ':"four_bar","modes":null,"outputs":[]}'
+)
+CONTENT = "5ccab6de043a85fb83085e6c416a12f4"
+
+# Parameters: name, unit, meaning.
+PARAMETERS = (
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "torque",
+        "shaking_x",
+        "shaking_y",
+        "shaking_moment",
+    ),
+    "pin_forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+    ),
+    "driving_torque": (
+        "torque",
+    ),
+    "shaking_force": (
+        "shaking_x",
+        "shaking_y",
+    ),
+    "shaking_moment": (
+        "shaking_moment",
+    ),
+    "load_forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "torque",
+        "shaking_x",
+        "shaking_y",
+        "shaking_moment",
+    ),
+}
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def forces(
+    theta2, speed, frame, crank, coupler, follower, assembly, mass2, along2, across2, inertia2,
+    mass3, along3, across3, inertia3, mass4, along4, across4, inertia4,
+):
+    """Return every joint force, the torque, and the force and moment on the frame.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Smith (4.1)-(4.13).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    c0 = 2 * crank
+    x1 = half_sine**2
+    rise = c0 * x1
+    travel = frame * rise
+    crank_x = crank - rise
+    crank_y = c0 * half_cosine * half_sine
+    base_x = near + rise
+    del x0, half_sine, rise
+    x2 = near**2
+    c1 = x2 / 2
+    diagonal = c1 + travel
+    x3 = folded * straight
+    c2 = x2 / 2 + x3 / 2
+    p = c2 + travel
+    c3 = x3 / 2 - x2 / 2
+    q = travel - c3
+    c4 = (near + straight) * (near - straight) / 2
+    c5 = (far + straight) * (far - straight) / 2
+    stretch = -c4 * half_cosine**2 - c5 * x1
+    c6 = (folded + near) * (folded - near) / 2
+    fold = travel - c6
+    area = assembly * xp.sqrt(fold * stretch)
+    del half_cosine, x1, fold, stretch
+    inverse = -1 / area
+    x6 = 1 / (2 * diagonal)
+    per_x = x6 * base_x
+    per_y = x6 * crank_y
+    del diagonal, base_x, x6
+    x7 = area * per_y
+    coupler_x = p * per_x + x7
+    x8 = area * per_x
+    coupler_y = x8 - p * per_y
+    follower_x = x7 - per_x * q
+    del p, per_x, x7
+    follower_y = per_y * q + x8
+    del per_y, q, x8
+    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    dot = travel - c7
+    lean = -frame * inverse
+    slip3 = follower_y * lean
+    slip4 = coupler_y * lean
+    spread = crank_y * lean
+    w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
+    w4 = spread + w3
+    pace = dot * inverse * spread
+    del travel, dot, spread
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = pace * slip4 - coupler_x * lean * w3
+    del lean, pace, slip4
+    facing = coupler_x * crank_x + coupler_y * crank_y
+    square = speed**2
+    along2_s = along2 * square
+    across2_s = across2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    inertia4_s = inertia4 * square
+    spin_th3 = w3**2
+    spin_th4 = w4**2
+    x9 = 1 / crank
+    c8 = x9 * across2_s
+    c9 = x9 * along2_s
+    push2_x = c8 * crank_y - c9 * crank_x
+    push2_y = -c8 * crank_x - c9 * crank_y
+    x10 = 1 / coupler
+    c10 = x10 * across3_s
+    c11 = x10 * along3_s
+    x11 = a3 * coupler_y + coupler_x * spin_th3
+    x13 = a3 * coupler_x - coupler_y * spin_th3
+    push3_x = -c10 * x13 - c11 * x11 - mass3_s * crank_x
+    push3_y = c11 * x13 - c10 * x11 - mass3_s * crank_y
+    del spin_th3, crank_x, crank_y, x11, x13
+    x14 = inertia3_s * a3
+    x15 = area * w4
+    push3_moment = c10 * facing - c11 * x15 + x14
+    x16 = 1 / follower
+    c12 = x16 * across4_s
+    c13 = x16 * along4_s
+    x17 = a4 * follower_x - follower_y * spin_th4
+    x18 = a4 * follower_y + follower_x * spin_th4
+    push4_x = -c12 * x17 - c13 * x18
+    push4_y = c13 * x17 - c12 * x18
+    del spin_th4, x17, x18
+    push4_moment = inertia4_s * a4
+    x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
+    del a4, coupler_x, follower_x
+    y34 = inverse * (coupler_y * push4_moment + follower_y * push3_moment)
+    del coupler_y, follower_y, inverse, push3_moment
+    x23 = push3_x + x34
+    x12 = push2_x + x23
+    y23 = push3_y + y34
+    y12 = push2_y + y23
+    x41 = x34 - push4_x
+    y41 = y34 - push4_y
+    x19 = x15 * a3
+    x20 = facing * slip3
+    x21 = a3 * facing
+    x22 = 2 - slip3
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        x34,
+        y34,
+        x41,
+        y41,
+        c10 * (x20 * w3 + x19) + c11 * (x21 - x15 * slip3 * w3) + push4_moment * w4 + x14 * w3,
+        -push2_x - push3_x - push4_x,
+        -push2_y - push3_y - push4_y,
+        (
+            -c10 * (x19 + x20 * x22) + c11 * (x22 * area * slip3 * w4 - x21) - frame * push4_y -
+            push4_moment - x14
+        ),
+    )
+
+
+def pin_forces(
+    theta2, speed, frame, crank, coupler, follower, assembly, mass2, along2, across2, inertia2,
+    mass3, along3, across3, inertia3, mass4, along4, across4, inertia4,
+):
+    """Return every joint force.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+
+    Notes
+    -----
+    Smith (4.1)-(4.13).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    c0 = 2 * crank
+    x1 = half_sine**2
+    rise = c0 * x1
+    travel = frame * rise
+    crank_x = crank - rise
+    crank_y = c0 * half_cosine * half_sine
+    base_x = near + rise
+    del x0, half_sine, rise
+    x2 = near**2
+    c1 = x2 / 2
+    diagonal = c1 + travel
+    x3 = folded * straight
+    c2 = x2 / 2 + x3 / 2
+    p = c2 + travel
+    c3 = x3 / 2 - x2 / 2
+    q = travel - c3
+    c4 = (near + straight) * (near - straight) / 2
+    c5 = (far + straight) * (far - straight) / 2
+    stretch = -c4 * half_cosine**2 - c5 * x1
+    c6 = (folded + near) * (folded - near) / 2
+    fold = travel - c6
+    area = assembly * xp.sqrt(fold * stretch)
+    del half_cosine, x1, fold, stretch
+    inverse = -1 / area
+    x6 = 1 / (2 * diagonal)
+    per_x = x6 * base_x
+    per_y = x6 * crank_y
+    del diagonal, base_x, x6
+    x7 = area * per_y
+    coupler_x = p * per_x + x7
+    x8 = area * per_x
+    coupler_y = x8 - p * per_y
+    follower_x = x7 - per_x * q
+    del p, per_x, x7
+    follower_y = per_y * q + x8
+    del per_y, q, x8
+    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    dot = travel - c7
+    lean = -frame * inverse
+    slip3 = follower_y * lean
+    slip4 = coupler_y * lean
+    spread = crank_y * lean
+    w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
+    w4 = spread + w3
+    pace = dot * inverse * spread
+    del travel, dot, spread
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = pace * slip4 - coupler_x * lean * w3
+    del slip3, lean, pace, slip4
+    facing = coupler_x * crank_x + coupler_y * crank_y
+    square = speed**2
+    along2_s = along2 * square
+    across2_s = across2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    inertia4_s = inertia4 * square
+    spin_th3 = w3**2
+    spin_th4 = w4**2
+    x9 = 1 / crank
+    c8 = x9 * across2_s
+    c9 = x9 * along2_s
+    push2_x = c8 * crank_y - c9 * crank_x
+    push2_y = -c8 * crank_x - c9 * crank_y
+    x10 = 1 / coupler
+    c10 = x10 * across3_s
+    c11 = x10 * along3_s
+    x11 = a3 * coupler_y + coupler_x * spin_th3
+    x13 = a3 * coupler_x - coupler_y * spin_th3
+    push3_x = -c10 * x13 - c11 * x11 - mass3_s * crank_x
+    del w3, spin_th3, crank_x
+    push3_y = c11 * x13 - c10 * x11 - mass3_s * crank_y
+    del crank_y, x11, x13
+    push3_moment = inertia3_s * a3 - c11 * area * w4 + c10 * facing
+    del a3, area, facing, w4
+    x14 = 1 / follower
+    c12 = x14 * across4_s
+    c13 = x14 * along4_s
+    x15 = a4 * follower_x - follower_y * spin_th4
+    x16 = a4 * follower_y + follower_x * spin_th4
+    push4_x = -c12 * x15 - c13 * x16
+    push4_y = c13 * x15 - c12 * x16
+    del spin_th4, x15, x16
+    push4_moment = inertia4_s * a4
+    x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
+    del a4, coupler_x, follower_x
+    y34 = inverse * (coupler_y * push4_moment + follower_y * push3_moment)
+    del coupler_y, follower_y, inverse, push3_moment, push4_moment
+    x23 = push3_x + x34
+    x12 = push2_x + x23
+    y23 = push3_y + y34
+    del push3_x, push2_x, push3_y
+    y12 = push2_y + y23
+    x41 = x34 - push4_x
+    y41 = y34 - push4_y
+    del push2_y, push4_x, push4_y
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        x34,
+        y34,
+        x41,
+        y41,
+    )
+
+
+def driving_torque(
+    theta2, speed, frame, crank, coupler, follower, assembly, mass2, along2, across2, inertia2,
+    mass3, along3, across3, inertia3, mass4, along4, across4, inertia4,
+):
+    """Return the torque on the crank, by virtual power.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+
+    Notes
+    -----
+    Smith (4.1)-(4.13).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    c0 = 2 * crank
+    x1 = half_sine**2
+    rise = c0 * x1
+    travel = frame * rise
+    crank_x = crank - rise
+    crank_y = c0 * half_cosine * half_sine
+    base_x = near + rise
+    del x0, half_sine, rise
+    x2 = near**2
+    c1 = x2 / 2
+    diagonal = c1 + travel
+    x3 = folded * straight
+    c2 = x2 / 2 + x3 / 2
+    p = c2 + travel
+    c3 = x3 / 2 - x2 / 2
+    q = travel - c3
+    c4 = (near + straight) * (near - straight) / 2
+    c5 = (far + straight) * (far - straight) / 2
+    stretch = -c4 * half_cosine**2 - c5 * x1
+    c6 = (folded + near) * (folded - near) / 2
+    fold = travel - c6
+    area = assembly * xp.sqrt(fold * stretch)
+    del half_cosine, x1, fold, stretch
+    inverse = -1 / area
+    x6 = 1 / (2 * diagonal)
+    per_x = x6 * base_x
+    per_y = x6 * crank_y
+    del diagonal, base_x, x6
+    x7 = area * per_y
+    coupler_x = p * per_x + x7
+    x8 = area * per_x
+    coupler_y = x8 - p * per_y
+    follower_x = x7 - per_x * q
+    del p, per_x, x7
+    follower_y = per_y * q + x8
+    del per_y, q, x8
+    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    dot = travel - c7
+    lean = -frame * inverse
+    slip3 = follower_y * lean
+    slip4 = coupler_y * lean
+    spread = crank_y * lean
+    w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
+    w4 = spread + w3
+    pace = dot * inverse * spread
+    del travel, follower_y, dot, inverse, spread
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = pace * slip4 - coupler_x * lean * w3
+    del follower_x, lean, pace, slip4
+    facing = coupler_x * crank_x + coupler_y * crank_y
+    del coupler_x, coupler_y, crank_x, crank_y
+    square = speed**2
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    inertia4_s = inertia4 * square
+    push4_moment = inertia4_s * a4
+    x9 = 1 / coupler
+    c8 = x9 * across3_s
+    c9 = x9 * along3_s
+    x10 = area * w4
+    x11 = slip3 * w3
+    del a4, area, slip3
+    return (
+        inertia3_s * a3 * w3 + c8 * (x10 * a3 + x11 * facing) + c9 * (a3 * facing - x10 * x11) +
+        push4_moment * w4
+    )
+
+
+def shaking_force(
+    theta2, speed, frame, crank, coupler, follower, assembly, mass2, along2, across2, inertia2,
+    mass3, along3, across3, inertia3, mass4, along4, across4, inertia4,
+):
+    """Return the force on the frame, the change of momentum.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+
+    Notes
+    -----
+    Smith (4.1)-(4.13).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    c0 = 2 * crank
+    x1 = half_sine**2
+    rise = c0 * x1
+    travel = frame * rise
+    crank_x = crank - rise
+    crank_y = c0 * half_cosine * half_sine
+    base_x = near + rise
+    del x0, half_sine, rise
+    x2 = near**2
+    c1 = x2 / 2
+    diagonal = c1 + travel
+    x3 = folded * straight
+    c2 = x2 / 2 + x3 / 2
+    p = c2 + travel
+    c3 = x3 / 2 - x2 / 2
+    q = travel - c3
+    c4 = (near + straight) * (near - straight) / 2
+    c5 = (far + straight) * (far - straight) / 2
+    stretch = -c4 * half_cosine**2 - c5 * x1
+    c6 = (folded + near) * (folded - near) / 2
+    fold = travel - c6
+    area = assembly * xp.sqrt(fold * stretch)
+    del half_cosine, x1, fold, stretch
+    inverse = -1 / area
+    x6 = 1 / (2 * diagonal)
+    per_x = x6 * base_x
+    per_y = x6 * crank_y
+    del diagonal, base_x, x6
+    x7 = area * per_y
+    coupler_x = p * per_x + x7
+    x8 = area * per_x
+    coupler_y = x8 - p * per_y
+    follower_x = x7 - per_x * q
+    del area, p, per_x, x7
+    follower_y = per_y * q + x8
+    del per_y, q, x8
+    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    dot = travel - c7
+    lean = -frame * inverse
+    slip3 = follower_y * lean
+    slip4 = coupler_y * lean
+    spread = crank_y * lean
+    w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
+    w4 = spread + w3
+    pace = dot * inverse * spread
+    del travel, dot, inverse, spread
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = pace * slip4 - coupler_x * lean * w3
+    del slip3, lean, pace, slip4
+    square = speed**2
+    along2_s = along2 * square
+    across2_s = across2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    across3_s = across3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    spin_th3 = w3**2
+    spin_th4 = w4**2
+    x9 = 1 / crank
+    c8 = x9 * across2_s
+    c9 = x9 * along2_s
+    push2_x = c8 * crank_y - c9 * crank_x
+    push2_y = -c8 * crank_x - c9 * crank_y
+    x10 = 1 / coupler
+    c10 = x10 * across3_s
+    c11 = x10 * along3_s
+    x11 = a3 * coupler_y + coupler_x * spin_th3
+    x12 = a3 * coupler_x - coupler_y * spin_th3
+    del w3, w4, a3, coupler_x, coupler_y, spin_th3
+    push3_x = -c10 * x12 - c11 * x11 - mass3_s * crank_x
+    push3_y = c11 * x12 - c10 * x11 - mass3_s * crank_y
+    del crank_x, crank_y, x11, x12
+    x13 = 1 / follower
+    c12 = x13 * across4_s
+    c13 = x13 * along4_s
+    x14 = a4 * follower_x - follower_y * spin_th4
+    x15 = a4 * follower_y + follower_x * spin_th4
+    del a4, follower_x, follower_y, spin_th4
+    push4_x = -c12 * x14 - c13 * x15
+    push4_y = c13 * x14 - c12 * x15
+    return (
+        -push2_x - push3_x - push4_x,
+        -push2_y - push3_y - push4_y,
+    )
+
+
+def shaking_moment(
+    theta2, speed, frame, crank, coupler, follower, assembly, mass2, along2, across2, inertia2,
+    mass3, along3, across3, inertia3, mass4, along4, across4, inertia4,
+):
+    """Return the moment on the frame about A, the change of moment of momentum.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Smith (4.1)-(4.13).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    c0 = 2 * crank
+    x1 = half_sine**2
+    rise = c0 * x1
+    travel = frame * rise
+    crank_x = crank - rise
+    crank_y = c0 * half_cosine * half_sine
+    base_x = near + rise
+    del x0, half_sine, rise
+    x2 = near**2
+    c1 = x2 / 2
+    diagonal = c1 + travel
+    x3 = folded * straight
+    c2 = x2 / 2 + x3 / 2
+    p = c2 + travel
+    c3 = x3 / 2 - x2 / 2
+    q = travel - c3
+    c4 = (near + straight) * (near - straight) / 2
+    c5 = (far + straight) * (far - straight) / 2
+    stretch = -c4 * half_cosine**2 - c5 * x1
+    c6 = (folded + near) * (folded - near) / 2
+    fold = travel - c6
+    area = assembly * xp.sqrt(fold * stretch)
+    del half_cosine, x1, fold, stretch
+    inverse = -1 / area
+    x6 = 1 / (2 * diagonal)
+    per_x = x6 * base_x
+    per_y = x6 * crank_y
+    del diagonal, base_x, x6
+    x7 = area * per_y
+    coupler_x = p * per_x + x7
+    x8 = area * per_x
+    coupler_y = x8 - p * per_y
+    follower_x = x7 - per_x * q
+    del p, per_x, x7
+    follower_y = per_y * q + x8
+    del per_y, q, x8
+    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    dot = travel - c7
+    lean = -frame * inverse
+    slip3 = follower_y * lean
+    slip4 = coupler_y * lean
+    spread = crank_y * lean
+    w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
+    w4 = spread + w3
+    pace = dot * inverse * spread
+    del travel, dot, inverse, spread
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = pace * slip4 - coupler_x * lean * w3
+    del lean, pace, slip4, w3
+    facing = coupler_x * crank_x + coupler_y * crank_y
+    del coupler_x, coupler_y, crank_x, crank_y
+    square = speed**2
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    inertia4_s = inertia4 * square
+    spin_th4 = w4**2
+    x9 = 1 / follower
+    c8 = x9 * along4_s
+    c9 = x9 * across4_s
+    push4_y = (
+        c8 * (a4 * follower_x - follower_y * spin_th4) - c9 * (a4 * follower_y + follower_x *
+        spin_th4)
+    )
+    del follower_x, follower_y, spin_th4
+    push4_moment = inertia4_s * a4
+    x10 = 1 / coupler
+    c10 = x10 * along3_s
+    c11 = x10 * across3_s
+    x11 = 2 - slip3
+    return (
+        c10 * (x11 * area * slip3 * w4 - a3 * facing) - inertia3_s * a3 - c11 * (a3 * area * w4 +
+        x11 * facing * slip3) - frame * push4_y - push4_moment
+    )
+
+
+def load_forces(
+    theta2, frame, crank, coupler, follower, assembly, fx2, fy2, couple2, fx3, fy3, couple3, fx4,
+    fy4, couple4,
+):
+    """Return what external loads alone call forth.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle [rad].
+    frame : float
+        Length of the fixed link AD [m].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    follower : float
+        Length of the follower DC [m].
+    assembly : float
+        +1 for the open, -1 for the crossed assembly.
+    fx2 : float or ndarray
+        Force along x at the first joint of link 2 [N].
+    fy2 : float or ndarray
+        Force along y at the first joint of link 2 [N].
+    couple2 : float or ndarray
+        Couple on link 2 [N m].
+    fx3 : float or ndarray
+        Force along x at the first joint of link 3 [N].
+    fy3 : float or ndarray
+        Force along y at the first joint of link 3 [N].
+    couple3 : float or ndarray
+        Couple on link 3 [N m].
+    fx4 : float or ndarray
+        Force along x at the first joint of link 4 [N].
+    fy4 : float or ndarray
+        Force along y at the first joint of link 4 [N].
+    couple4 : float or ndarray
+        Couple on link 4 [N m].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Smith (4.1)-(4.13).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    straight = coupler + follower
+    folded = coupler - follower
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    c0 = 2 * crank
+    x1 = half_sine**2
+    rise = c0 * x1
+    travel = frame * rise
+    crank_x = crank - rise
+    crank_y = c0 * half_cosine * half_sine
+    base_x = near + rise
+    del x0, half_sine, rise
+    x2 = near**2
+    c1 = x2 / 2
+    diagonal = c1 + travel
+    x3 = folded * straight
+    c2 = x2 / 2 + x3 / 2
+    p = c2 + travel
+    c3 = x3 / 2 - x2 / 2
+    q = travel - c3
+    c4 = (near + straight) * (near - straight) / 2
+    c5 = (far + straight) * (far - straight) / 2
+    stretch = -c4 * half_cosine**2 - c5 * x1
+    c6 = (folded + near) * (folded - near) / 2
+    fold = travel - c6
+    del half_cosine, x1, travel
+    area = assembly * xp.sqrt(fold * stretch)
+    inverse = -1 / area
+    x6 = 1 / (2 * diagonal)
+    del fold, stretch, diagonal
+    per_x = x6 * base_x
+    per_y = x6 * crank_y
+    x7 = area * per_y
+    coupler_x = p * per_x + x7
+    x8 = area * per_x
+    del base_x, x6, area
+    coupler_y = x8 - p * per_y
+    follower_x = x7 - per_x * q
+    del p, per_x, x7
+    follower_y = per_y * q + x8
+    del per_y, q, x8
+    x34 = inverse * (-couple3 * follower_x - couple4 * coupler_x)
+    y34 = inverse * (-couple3 * follower_y - couple4 * coupler_y)
+    del coupler_x, follower_x, coupler_y, follower_y, inverse
+    x23 = x34 - fx3
+    x12 = x23 - fx2
+    y23 = y34 - fy3
+    y12 = y23 - fy2
+    torque = crank_x * y23 - couple2 - crank_y * x23
+    x41 = fx4 + x34
+    y41 = fy4 + y34
+    c7 = -couple2 - couple3 - couple4 - fy4 * frame
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        x34,
+        y34,
+        x41,
+        y41,
+        torque,
+        fx2 + fx3 + fx4,
+        fy2 + fy3 + fy4,
+        fy3 * crank_x - c7 - fx3 * crank_y,
+    )

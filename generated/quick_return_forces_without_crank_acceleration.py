@@ -1,0 +1,836 @@
+"""Forces of the rigid quick-return mechanism in closed form.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism quick_return, formulation forces, without crank_acceleration.
+Equations: Newton and Euler's, as Smith (4.4)-(4.6).
+
+Link 1 is the frame, 2 the crank; each moving link has axes of its own from its first joint along
+the link.  The forces are linear in masses, moments and inertias: at unit values of one of these
+they are the derivatives by it.
+
+For a crank of constant speed.
+
+Cost per evaluation:
+    forces: 138 operations
+    pin_forces: 102 operations
+    driving_torque: 58 operations
+    shaking_force: 83 operations
+    shaking_moment: 74 operations
+    load_forces: 59 operations
+Content hash b6fa40b05d408d7eefa878597b8965de; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = [
+    "driving_torque",
+    "forces",
+    "load_forces",
+    "pin_forces",
+    "shaking_force",
+    "shaking_moment",
+]
+
+FAMILY = "closed_form"
+SPEC = (
+    '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
+    ':"quick_return","modes":null,"outputs":[]}'
+)
+CONTENT = "b6fa40b05d408d7eefa878597b8965de"
+
+# Parameters: name, unit, meaning.
+PARAMETERS = (
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "couple34",
+        "torque",
+        "shaking_x",
+        "shaking_y",
+        "shaking_moment",
+    ),
+    "pin_forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "couple34",
+    ),
+    "driving_torque": (
+        "torque",
+    ),
+    "shaking_force": (
+        "shaking_x",
+        "shaking_y",
+    ),
+    "shaking_moment": (
+        "shaking_moment",
+    ),
+    "load_forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "couple34",
+        "torque",
+        "shaking_x",
+        "shaking_y",
+        "shaking_moment",
+    ),
+}
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def forces(
+    theta2, speed, frame, crank, mass2, along2, across2, inertia2, mass3, along3, across3,
+    inertia3, mass4, along4, across4, inertia4,
+):
+    """Return every joint force, the torque, and the force and moment on the frame.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    couple34 : ndarray, shape (...)
+        Couple of link 3 on link 4 [N m].
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    c0 = far**2
+    c1 = near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = c0 * x1 + c1 * x2
+    slide = xp.sqrt(slide2)
+    x3 = 1 / slide
+    x4 = far * x1
+    x5 = near * x2
+    del slide, x1, x2
+    cos4 = x3 * (x4 + x5)
+    x6 = x3 * sin2
+    sin4 = crank * x6
+    sin24 = frame * x6
+    x7 = x4 - x5
+    del x6, x4, x5
+    cos24 = x3 * x7
+    omega4 = crank * x7 / slide2
+    c2 = far * near * crank * frame
+    alpha4 = -c2 * sin2 / slide2**2
+    slip4 = frame * x3 * cos4
+    square = speed**2
+    along2_s = along2 * square
+    across2_s = across2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    inertia4_s = inertia4 * square
+    spin_th4 = omega4**2
+    push2_x = across2_s * sin2 - along2_s * cos2
+    push2_y = -across2_s * cos2 - along2_s * sin2
+    c3 = mass3_s * crank
+    x8 = alpha4 * sin4 + cos4 * spin_th4
+    x9 = alpha4 * cos4 - sin4 * spin_th4
+    del x7, slide2, spin_th4
+    push3_x = -across3_s * x9 - along3_s * x8 - c3 * cos2
+    push3_y = along3_s * x9 - across3_s * x8 - c3 * sin2
+    c4 = across3_s * crank
+    c5 = along3_s * crank
+    x11 = inertia3_s * alpha4
+    push3_moment = c4 * cos24 - c5 * sin24 + x11
+    push4_x = -across4_s * x9 - along4_s * x8
+    push4_y = along4_s * x9 - across4_s * x8
+    del cos2, sin2, x8, x9
+    push4_moment = inertia4_s * alpha4
+    normal34 = x3 * (push3_moment + push4_moment)
+    x13 = normal34 * sin4
+    x23 = push3_x - x13
+    x12 = push2_x + x23
+    x14 = cos4 * normal34
+    del x3, sin4, cos4, normal34
+    y23 = push3_y + x14
+    y12 = push2_y + y23
+    x41 = -push4_x - x13
+    y41 = x14 - push4_y
+    x15 = alpha4 * sin24
+    x16 = omega4 * slip4
+    x17 = alpha4 * cos24
+    x18 = 2 - slip4
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        -x13,
+        x14,
+        x41,
+        y41,
+        -push3_moment,
+        c4 * (x16 * cos24 + x15) + c5 * (x17 - x16 * sin24) + omega4 * push4_moment + x11 * omega4,
+        -push2_x - push3_x - push4_x,
+        -push2_y - push3_y - push4_y,
+        (
+            -c4 * (x18 * cos24 * slip4 + x15) + c5 * (x18 * sin24 * slip4 - x17) + frame * push4_y
+            - push4_moment - x11
+        ),
+    )
+
+
+def pin_forces(
+    theta2, speed, frame, crank, mass2, along2, across2, inertia2, mass3, along3, across3,
+    inertia3, mass4, along4, across4, inertia4,
+):
+    """Return every joint force.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    couple34 : ndarray, shape (...)
+        Couple of link 3 on link 4 [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    c0 = far**2
+    c1 = near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = c0 * x1 + c1 * x2
+    slide = xp.sqrt(slide2)
+    x3 = 1 / slide
+    x4 = far * x1
+    x5 = near * x2
+    del slide, x1, x2
+    cos4 = x3 * (x4 + x5)
+    x6 = x3 * sin2
+    sin4 = crank * x6
+    sin24 = frame * x6
+    x7 = x4 - x5
+    del x6, x4, x5
+    cos24 = x3 * x7
+    omega4 = crank * x7 / slide2
+    c2 = far * near * crank * frame
+    alpha4 = -c2 * sin2 / slide2**2
+    square = speed**2
+    along2_s = along2 * square
+    across2_s = across2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    inertia4_s = inertia4 * square
+    spin_th4 = omega4**2
+    del x7, slide2, omega4
+    push2_x = across2_s * sin2 - along2_s * cos2
+    push2_y = -across2_s * cos2 - along2_s * sin2
+    c3 = mass3_s * crank
+    x8 = alpha4 * sin4 + cos4 * spin_th4
+    x9 = alpha4 * cos4 - sin4 * spin_th4
+    push3_x = -across3_s * x9 - along3_s * x8 - c3 * cos2
+    push3_y = along3_s * x9 - across3_s * x8 - c3 * sin2
+    del spin_th4, cos2, sin2
+    c4 = across3_s * crank
+    c5 = along3_s * crank
+    push3_moment = inertia3_s * alpha4 + c4 * cos24 - c5 * sin24
+    push4_x = -across4_s * x9 - along4_s * x8
+    push4_y = along4_s * x9 - across4_s * x8
+    del cos24, sin24, x8, x9
+    push4_moment = inertia4_s * alpha4
+    normal34 = x3 * (push3_moment + push4_moment)
+    del alpha4, push4_moment, x3
+    x11 = normal34 * sin4
+    x23 = push3_x - x11
+    x12 = push2_x + x23
+    del sin4, push3_x, push2_x
+    x13 = cos4 * normal34
+    y23 = push3_y + x13
+    del cos4, normal34, push3_y
+    y12 = push2_y + y23
+    x41 = -push4_x - x11
+    y41 = x13 - push4_y
+    del push2_y, push4_x, push4_y
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        -x11,
+        x13,
+        x41,
+        y41,
+        -push3_moment,
+    )
+
+
+def driving_torque(
+    theta2, speed, frame, crank, mass2, along2, across2, inertia2, mass3, along3, across3,
+    inertia3, mass4, along4, across4, inertia4,
+):
+    """Return the torque on the crank, by virtual power.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    c0 = far**2
+    c1 = near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = c0 * x1 + c1 * x2
+    slide = xp.sqrt(slide2)
+    x3 = 1 / slide
+    x4 = far * x1
+    x5 = near * x2
+    del slide, x1, x2
+    cos4 = x3 * (x4 + x5)
+    x6 = frame * x3
+    sin24 = x6 * sin2
+    x7 = x4 - x5
+    cos24 = x3 * x7
+    del x4, x5, x3
+    omega4 = crank * x7 / slide2
+    c2 = far * near * crank * frame
+    alpha4 = -c2 * sin2 / slide2**2
+    del x7, sin2, slide2
+    slip4 = x6 * cos4
+    square = speed**2
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    inertia4_s = inertia4 * square
+    push4_moment = inertia4_s * alpha4
+    c3 = across3_s * crank
+    c4 = along3_s * crank
+    x8 = omega4 * slip4
+    del cos4, x6, slip4
+    return (
+        inertia3_s * alpha4 * omega4 + c3 * (alpha4 * sin24 + x8 * cos24) + c4 * (alpha4 * cos24 -
+        x8 * sin24) + omega4 * push4_moment
+    )
+
+
+def shaking_force(
+    theta2, speed, frame, crank, mass2, along2, across2, inertia2, mass3, along3, across3,
+    inertia3, mass4, along4, across4, inertia4,
+):
+    """Return the force on the frame, the change of momentum.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    c0 = far**2
+    c1 = near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = c0 * x1 + c1 * x2
+    slide = xp.sqrt(slide2)
+    x3 = 1 / slide
+    x4 = far * x1
+    x5 = near * x2
+    del slide, x1, x2
+    cos4 = x3 * (x4 + x5)
+    sin4 = crank * x3 * sin2
+    omega4 = crank * (x4 - x5) / slide2
+    del x3, x4, x5
+    c2 = far * near * crank * frame
+    alpha4 = -c2 * sin2 / slide2**2
+    square = speed**2
+    along2_s = along2 * square
+    across2_s = across2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    across3_s = across3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    spin_th4 = omega4**2
+    push2_x = across2_s * sin2 - along2_s * cos2
+    push2_y = -across2_s * cos2 - along2_s * sin2
+    c3 = mass3_s * crank
+    x6 = alpha4 * sin4 + cos4 * spin_th4
+    x7 = alpha4 * cos4 - sin4 * spin_th4
+    del slide2, omega4, alpha4, cos4, sin4, spin_th4
+    push3_x = -across3_s * x7 - along3_s * x6 - c3 * cos2
+    push3_y = along3_s * x7 - across3_s * x6 - c3 * sin2
+    push4_x = -across4_s * x7 - along4_s * x6
+    push4_y = along4_s * x7 - across4_s * x6
+    del cos2, sin2, x6, x7
+    return (
+        -push2_x - push3_x - push4_x,
+        -push2_y - push3_y - push4_y,
+    )
+
+
+def shaking_moment(
+    theta2, speed, frame, crank, mass2, along2, across2, inertia2, mass3, along3, across3,
+    inertia3, mass4, along4, across4, inertia4,
+):
+    """Return the moment on the frame about A, the change of moment of momentum.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    across2 : float or ndarray
+        First moment across link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    across3 : float or ndarray
+        First moment across link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    across4 : float or ndarray
+        First moment across link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    c0 = far**2
+    c1 = near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = c0 * x1 + c1 * x2
+    slide = xp.sqrt(slide2)
+    x3 = 1 / slide
+    x4 = far * x1
+    x5 = near * x2
+    del slide, x1, x2
+    cos4 = x3 * (x4 + x5)
+    x6 = x3 * sin2
+    sin4 = crank * x6
+    sin24 = frame * x6
+    x7 = x4 - x5
+    del x6, x4, x5
+    cos24 = x3 * x7
+    omega4 = crank * x7 / slide2
+    c2 = far * near * crank * frame
+    alpha4 = -c2 * sin2 / slide2**2
+    del x7, sin2, slide2
+    slip4 = frame * x3 * cos4
+    square = speed**2
+    along3_s = along3 * square
+    across3_s = across3 * square
+    inertia3_s = inertia3 * square
+    along4_s = along4 * square
+    across4_s = across4 * square
+    inertia4_s = inertia4 * square
+    spin_th4 = omega4**2
+    push4_y = (
+        -across4_s * (alpha4 * sin4 + cos4 * spin_th4) + along4_s * (alpha4 * cos4 - sin4 *
+        spin_th4)
+    )
+    del x3, omega4, cos4, sin4, spin_th4
+    push4_moment = inertia4_s * alpha4
+    c3 = along3_s * crank
+    c4 = across3_s * crank
+    x8 = 2 - slip4
+    return (
+        c3 * (x8 * sin24 * slip4 - alpha4 * cos24) - inertia3_s * alpha4 - c4 * (alpha4 * sin24 +
+        x8 * cos24 * slip4) + frame * push4_y - push4_moment
+    )
+
+
+def load_forces(theta2, frame, crank, fx2, fy2, couple2, fx3, fy3, couple3, fx4, fy4, couple4):
+    """Return what external loads alone call forth.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    fx2 : float or ndarray
+        Force along x at the first joint of link 2 [N].
+    fy2 : float or ndarray
+        Force along y at the first joint of link 2 [N].
+    couple2 : float or ndarray
+        Couple on link 2 [N m].
+    fx3 : float or ndarray
+        Force along x at the first joint of link 3 [N].
+    fy3 : float or ndarray
+        Force along y at the first joint of link 3 [N].
+    couple3 : float or ndarray
+        Couple on link 3 [N m].
+    fx4 : float or ndarray
+        Force along x at the first joint of link 4 [N].
+    fy4 : float or ndarray
+        Force along y at the first joint of link 4 [N].
+    couple4 : float or ndarray
+        Couple on link 4 [N m].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    couple34 : ndarray, shape (...)
+        Couple of link 3 on link 4 [N m].
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    cos2 = (half_cosine + half_sine) * (half_cosine - half_sine)
+    c0 = far**2
+    c1 = near**2
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = c0 * x1 + c1 * x2
+    slide = xp.sqrt(slide2)
+    x3 = 1 / slide
+    cos4 = x3 * (far * x1 + near * x2)
+    del slide2, slide, x1, x2
+    x4 = crank * sin2
+    sin4 = x3 * x4
+    x5 = couple3 + couple4
+    c2 = x5
+    normal34 = -c2 * x3
+    x6 = normal34 * sin4
+    x23 = -fx3 - x6
+    x12 = x23 - fx2
+    x7 = cos4 * normal34
+    del x3, sin4, cos4, normal34
+    y23 = x7 - fy3
+    y12 = y23 - fy2
+    torque = crank * cos2 * y23 - couple2 - x4 * x23
+    x41 = fx4 - x6
+    y41 = fy4 + x7
+    c3 = -fx3 * crank
+    c4 = -fy3 * crank
+    c5 = fy4 * frame - couple2 - x5
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        -x6,
+        x7,
+        x41,
+        y41,
+        couple3,
+        torque,
+        fx2 + fx3 + fx4,
+        fy2 + fy3 + fy4,
+        c3 * sin2 - c4 * cos2 - c5,
+    )

@@ -1,0 +1,122 @@
+"""Kinematics of the quick-return mechanism in closed form.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism quick_return, formulation kinematics.
+Equations: closure of the loop DA + AB = DB.
+
+Every rate is a product of factors that are linear in the cosine of the crank angle, each written
+by its values at the ends; so no digit is lost where the rod swings fastest, with the block near
+the rod's pivot.
+
+At theta2 = 0 the rod's angle is 0.
+
+Cost per evaluation:
+    motion: 48 operations
+Content hash cad09242cbc857e5f833eda27d12d29c; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = [
+    "motion",
+]
+
+FAMILY = "closed_form"
+SPEC = (
+    '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"quick_return",'
+    '"modes":null,"outputs":[]}'
+)
+CONTENT = "cad09242cbc857e5f833eda27d12d29c"
+
+# Parameters: name, unit, meaning.
+PARAMETERS = (
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "motion": (
+        "theta4",
+        "slide",
+        "omega4",
+        "alpha4",
+        "slide_velocity",
+        "slide_acceleration",
+    ),
+}
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def motion(theta2, frame, crank, winding):
+    """Return angle, speed and acceleration of the rod, and the block's slide along it.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the line DA [rad].
+    frame : float
+        Distance DA of the rod's pivot from the crank's [m].
+    crank : float
+        Length of the crank AB [m].
+    winding : float
+        1 where the crank is longer than the frame (the rod turns), else 0.
+
+    Returns
+    -------
+    theta4 : ndarray, shape (...)
+        Rod angle from D to B, continuous over any number of turns [rad].
+    slide : ndarray, shape (...)
+        Distance DB of the block along the rod [m].
+    omega4 : ndarray, shape (...)
+        Rod speed over crank speed, d theta4 / d theta2.
+    alpha4 : ndarray, shape (...)
+        Rod acceleration over crank speed squared, at constant crank speed.
+    slide_velocity : ndarray, shape (...)
+        Velocity of the block along the rod over crank speed [m].
+    slide_acceleration : ndarray, shape (...)
+        Second derivative of slide by the crank angle [m].
+
+    Notes
+    -----
+    closure of the loop DA + AB = DB.
+    """
+    xp = _namespace(theta2)
+    near = frame - crank
+    far = crank + frame
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine**2
+    x2 = half_sine**2
+    del x0, half_cosine, half_sine
+    slide2 = far**2 * x1 + near**2 * x2
+    slide = xp.sqrt(slide2)
+    x3 = far * x1
+    x4 = near * x2
+    x5 = crank * (x3 - x4) / slide2
+    omega4 = x5
+    x6 = frame / slide
+    x7 = crank * sin2
+    slide_velocity = -x6 * x7
+    alpha4 = -far * near * frame * x7 / slide2**2
+    del x1, x2, slide2, x7
+    slide_acceleration = (-x3 - x4) * x5 * x6
+    x8 = 1 - 2 * winding
+    return (
+        (
+            winding * theta2 + xp.atan2(x8 * (crank * (1 - winding) + winding * frame) * sin2, x3 +
+            x8 * x4)
+        ),
+        slide,
+        omega4,
+        alpha4,
+        slide_velocity,
+        slide_acceleration,
+    )

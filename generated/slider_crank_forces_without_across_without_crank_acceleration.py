@@ -1,0 +1,869 @@
+"""Forces of the rigid slider-crank in closed form.
+
+Emitted by regenerate-equations from a symbolic derivation.  Do not edit.
+
+Model: mechanism slider_crank, formulation forces, without across, crank_acceleration.
+Equations: Newton and Euler's, as Smith (4.4)-(4.6).
+
+Link 1 is the frame, 2 the crank; each moving link has axes of its own from its first joint along
+the link.  The forces are linear in masses, moments and inertias: at unit values of one of these
+they are the derivatives by it.
+
+For a crank of constant speed.
+
+For links whose masses lie along their lines.
+
+Cost per evaluation:
+    forces: 130 operations
+    pin_forces: 103 operations
+    driving_torque: 93 operations
+    shaking_force: 91 operations
+    shaking_moment: 87 operations
+    load_forces: 75 operations
+Content hash 34780c1b27dd745df4d655fa3ad3cb86; derived with SymPy 1.14.0.
+"""
+
+import numpy as np
+
+__all__ = [
+    "driving_torque",
+    "forces",
+    "load_forces",
+    "pin_forces",
+    "shaking_force",
+    "shaking_moment",
+]
+
+FAMILY = "closed_form"
+SPEC = (
+    '{"balanced":[],"drop":["across","crank_acceleration"],"flexible":[],"formulation":"forces","m'
+    'echanism":"slider_crank","modes":null,"outputs":[]}'
+)
+CONTENT = "34780c1b27dd745df4d655fa3ad3cb86"
+
+# Parameters: name, unit, meaning.
+PARAMETERS = (
+)
+
+# Names of what each function returns, in order.
+RETURNS = {
+    "forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "couple41",
+        "torque",
+        "shaking_x",
+        "shaking_y",
+        "shaking_moment",
+    ),
+    "pin_forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "couple41",
+    ),
+    "driving_torque": (
+        "torque",
+    ),
+    "shaking_force": (
+        "shaking_x",
+        "shaking_y",
+    ),
+    "shaking_moment": (
+        "shaking_moment",
+    ),
+    "load_forces": (
+        "x12",
+        "y12",
+        "x23",
+        "y23",
+        "x34",
+        "y34",
+        "x41",
+        "y41",
+        "couple41",
+        "torque",
+        "shaking_x",
+        "shaking_y",
+        "shaking_moment",
+    ),
+}
+
+
+def _namespace(array):
+    """Return the array namespace of an argument, NumPy where it has none."""
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    return np
+
+
+def forces(
+    theta2, speed, crank, coupler, offset, assembly, mass2, along2, inertia2, mass3, along3,
+    inertia3, mass4, along4, inertia4,
+):
+    """Return every joint force, the torque, and the force and moment on the frame.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the guide [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    offset : float
+        Height of the guide over the crank's pivot A [m].
+    assembly : float
+        +1 where the slider is right of B (open), -1 left.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    couple41 : ndarray, shape (...)
+        Couple of link 4 on link 1 [N m].
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    reach = coupler - crank
+    total = coupler + crank
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine + half_sine
+    x2 = half_cosine - half_sine
+    del x0, half_cosine, half_sine
+    cos2 = x1 * x2
+    raised = x1**2 / 2
+    lowered = x2**2 / 2
+    x3 = offset + total
+    c0 = x3
+    x4 = offset + reach
+    c1 = x4
+    above = c0 * lowered + c1 * raised
+    x5 = offset - reach
+    c2 = x5
+    x6 = offset - total
+    c3 = x6
+    below = -c2 * lowered - c3 * raised
+    root = xp.sqrt(above * below)
+    x7 = 1 / coupler
+    c4 = x7
+    sin3 = c4 * (offset - crank * sin2)
+    c5 = 2 * assembly
+    cos3 = c5 * root / (above + below)
+    del x1, x2, above, below, root
+    x8 = cos2 * sin3
+    sin23 = cos3 * sin2 - x8
+    x9 = x7 * crank
+    c6 = x9
+    x10 = 1 / cos3
+    x11 = c6 * cos2
+    omega3 = -x10 * x11
+    c7 = x3 * x5
+    c8 = x4 * x6
+    c9 = offset * crank
+    c10 = crank / coupler**3
+    alpha3 = c10 * (c9 * cos2**2 + sin2 * (-c7 * lowered - c8 * raised)) / cos3**3
+    slider_velocity = -crank * x10 * sin23
+    x13 = alpha3 * sin3
+    x14 = omega3**2
+    slider_acceleration = -crank * cos2 - coupler * x14 * cos3 - coupler * x13
+    square = speed**2
+    along2_s = along2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    inertia3_s = inertia3 * square
+    mass4_s = mass4 * square
+    spin_th3 = x14
+    push2_x = -along2_s * cos2
+    push2_y = -along2_s * sin2
+    c11 = mass3_s * crank
+    push3_x = -along3_s * (cos3 * spin_th3 + x13) - c11 * cos2
+    del lowered, raised, cos2, cos3, spin_th3
+    c12 = x9 * along3_s
+    push3_y = c12 * sin2 - c11 * sin2
+    c13 = along3_s * crank
+    x15 = inertia3_s * alpha3
+    push3_moment = x15 - c13 * sin23
+    x16 = mass4_s * slider_acceleration
+    push4_x = x16
+    x17 = push3_x + push4_x
+    x23 = x17
+    x12 = push2_x + x23
+    y34 = x10 * (push4_x * sin3 - c4 * push3_moment)
+    del alpha3, push3_x, push3_moment, sin3, x10
+    y23 = push3_y + y34
+    y12 = push2_y + y23
+    c14 = mass4_s * offset
+    x18 = x11 * sin2 + x13 * sin2 + x14 * sin23 + x14 * x8
+    del sin2, x11, x13, x14, x8
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        push4_x,
+        y34,
+        0,
+        y34,
+        0,
+        c13 * (x18 - omega3 * sin23) + x15 * omega3 + x16 * slider_velocity,
+        -push2_x - x17,
+        -push2_y - push3_y,
+        c13 * (sin23 - x18) + c14 * slider_acceleration - x15,
+    )
+
+
+def pin_forces(
+    theta2, speed, crank, coupler, offset, assembly, mass2, along2, inertia2, mass3, along3,
+    inertia3, mass4, along4, inertia4,
+):
+    """Return every joint force.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the guide [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    offset : float
+        Height of the guide over the crank's pivot A [m].
+    assembly : float
+        +1 where the slider is right of B (open), -1 left.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    couple41 : ndarray, shape (...)
+        Couple of link 4 on link 1 [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    reach = coupler - crank
+    total = coupler + crank
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine + half_sine
+    x2 = half_cosine - half_sine
+    del x0, half_cosine, half_sine
+    cos2 = x1 * x2
+    raised = x1**2 / 2
+    lowered = x2**2 / 2
+    x3 = offset + total
+    c0 = x3
+    x4 = offset + reach
+    c1 = x4
+    above = c0 * lowered + c1 * raised
+    x5 = offset - reach
+    c2 = x5
+    x6 = offset - total
+    c3 = x6
+    below = -c2 * lowered - c3 * raised
+    root = xp.sqrt(above * below)
+    x7 = 1 / coupler
+    c4 = x7
+    sin3 = c4 * (offset - crank * sin2)
+    c5 = 2 * assembly
+    cos3 = c5 * root / (above + below)
+    del x1, x2, above, below, root
+    sin23 = cos3 * sin2 - cos2 * sin3
+    x8 = x7 * crank
+    c6 = x8
+    x9 = 1 / cos3
+    omega3 = -c6 * x9 * cos2
+    c7 = x3 * x5
+    c8 = x4 * x6
+    c9 = offset * crank
+    c10 = crank / coupler**3
+    alpha3 = c10 * (c9 * cos2**2 + sin2 * (-c7 * lowered - c8 * raised)) / cos3**3
+    x10 = alpha3 * sin3
+    x11 = omega3**2
+    del lowered, raised, omega3
+    slider_acceleration = -crank * cos2 - coupler * x11 * cos3 - coupler * x10
+    square = speed**2
+    along2_s = along2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    inertia3_s = inertia3 * square
+    mass4_s = mass4 * square
+    spin_th3 = x11
+    push2_x = -along2_s * cos2
+    push2_y = -along2_s * sin2
+    c11 = mass3_s * crank
+    push3_x = -along3_s * (cos3 * spin_th3 + x10) - c11 * cos2
+    del x11, cos2, cos3, spin_th3, x10
+    c12 = x8 * along3_s
+    push3_y = c12 * sin2 - c11 * sin2
+    c13 = along3_s * crank
+    push3_moment = inertia3_s * alpha3 - c13 * sin23
+    del sin2, alpha3, sin23
+    push4_x = mass4_s * slider_acceleration
+    x23 = push3_x + push4_x
+    x12 = push2_x + x23
+    del slider_acceleration, push3_x, push2_x
+    y34 = x9 * (push4_x * sin3 - c4 * push3_moment)
+    del push3_moment, sin3, x9
+    y23 = push3_y + y34
+    y12 = push2_y + y23
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        push4_x,
+        y34,
+        0,
+        y34,
+        0,
+    )
+
+
+def driving_torque(
+    theta2, speed, crank, coupler, offset, assembly, mass2, along2, inertia2, mass3, along3,
+    inertia3, mass4, along4, inertia4,
+):
+    """Return the torque on the crank, by virtual power.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the guide [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    offset : float
+        Height of the guide over the crank's pivot A [m].
+    assembly : float
+        +1 where the slider is right of B (open), -1 left.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    reach = coupler - crank
+    total = coupler + crank
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine + half_sine
+    x2 = half_cosine - half_sine
+    del x0, half_cosine, half_sine
+    cos2 = x1 * x2
+    raised = x1**2 / 2
+    lowered = x2**2 / 2
+    x3 = offset + total
+    c0 = x3
+    x4 = offset + reach
+    c1 = x4
+    above = c0 * lowered + c1 * raised
+    x5 = offset - reach
+    c2 = x5
+    x6 = offset - total
+    c3 = x6
+    below = -c2 * lowered - c3 * raised
+    root = xp.sqrt(above * below)
+    x7 = 1 / coupler
+    c4 = x7
+    sin3 = c4 * (offset - crank * sin2)
+    c5 = 2 * assembly
+    cos3 = c5 * root / (above + below)
+    del x1, x2, above, below, root
+    x8 = cos2 * sin3
+    sin23 = cos3 * sin2 - x8
+    c6 = x7 * crank
+    x9 = 1 / cos3
+    x10 = c6 * cos2
+    omega3 = -x10 * x9
+    c7 = x3 * x5
+    c8 = x4 * x6
+    c9 = offset * crank
+    c10 = crank / coupler**3
+    alpha3 = c10 * (c9 * cos2**2 + sin2 * (-c7 * lowered - c8 * raised)) / cos3**3
+    slider_velocity = -crank * x9 * sin23
+    del lowered, raised, x9
+    x11 = alpha3 * sin3
+    x12 = omega3**2
+    slider_acceleration = -crank * cos2 - coupler * x12 * cos3 - coupler * x11
+    del sin3, cos2, cos3
+    square = speed**2
+    along3_s = along3 * square
+    inertia3_s = inertia3 * square
+    mass4_s = mass4 * square
+    c11 = along3_s * crank
+    return (
+        inertia3_s * alpha3 * omega3 + c11 * (x10 * sin2 - omega3 * sin23 + x11 * sin2 + x12 *
+        sin23 + x12 * x8) + mass4_s * slider_acceleration * slider_velocity
+    )
+
+
+def shaking_force(
+    theta2, speed, crank, coupler, offset, assembly, mass2, along2, inertia2, mass3, along3,
+    inertia3, mass4, along4, inertia4,
+):
+    """Return the force on the frame, the change of momentum.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the guide [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    offset : float
+        Height of the guide over the crank's pivot A [m].
+    assembly : float
+        +1 where the slider is right of B (open), -1 left.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    reach = coupler - crank
+    total = coupler + crank
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine + half_sine
+    x2 = half_cosine - half_sine
+    del x0, half_cosine, half_sine
+    cos2 = x1 * x2
+    raised = x1**2 / 2
+    lowered = x2**2 / 2
+    x3 = offset + total
+    c0 = x3
+    x4 = offset + reach
+    c1 = x4
+    above = c0 * lowered + c1 * raised
+    x5 = offset - reach
+    c2 = x5
+    x6 = offset - total
+    c3 = x6
+    below = -c2 * lowered - c3 * raised
+    root = xp.sqrt(above * below)
+    x7 = 1 / coupler
+    c4 = x7
+    sin3 = c4 * (offset - crank * sin2)
+    c5 = 2 * assembly
+    cos3 = c5 * root / (above + below)
+    del x1, x2, above, below, root
+    x8 = x7 * crank
+    c6 = x8
+    omega3 = -c6 * cos2 / cos3
+    c7 = x3 * x5
+    c8 = x4 * x6
+    c9 = offset * crank
+    c10 = crank / coupler**3
+    alpha3 = c10 * (c9 * cos2**2 + sin2 * (-c7 * lowered - c8 * raised)) / cos3**3
+    x9 = alpha3 * sin3
+    del lowered, raised, alpha3, sin3
+    x10 = omega3**2
+    slider_acceleration = -crank * cos2 - coupler * x10 * cos3 - coupler * x9
+    square = speed**2
+    along2_s = along2 * square
+    mass3_s = mass3 * square
+    along3_s = along3 * square
+    mass4_s = mass4 * square
+    spin_th3 = x10
+    push2_x = -along2_s * cos2
+    push2_y = -along2_s * sin2
+    c11 = mass3_s * crank
+    push3_x = -along3_s * (cos3 * spin_th3 + x9) - c11 * cos2
+    del omega3, x10, cos2, cos3, spin_th3, x9
+    c12 = x8 * along3_s
+    push3_y = c12 * sin2 - c11 * sin2
+    push4_x = mass4_s * slider_acceleration
+    return (
+        -push2_x - push3_x - push4_x,
+        -push2_y - push3_y,
+    )
+
+
+def shaking_moment(
+    theta2, speed, crank, coupler, offset, assembly, mass2, along2, inertia2, mass3, along3,
+    inertia3, mass4, along4, inertia4,
+):
+    """Return the moment on the frame about A, the change of moment of momentum.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the guide [rad].
+    speed : float or ndarray, shape (...)
+        Crank speed [rad/s].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    offset : float
+        Height of the guide over the crank's pivot A [m].
+    assembly : float
+        +1 where the slider is right of B (open), -1 left.
+    mass2 : float or ndarray
+        Mass of link 2 [kg].
+    along2 : float or ndarray
+        First moment along link 2 [kg m].
+    inertia2 : float or ndarray
+        Inertia, about its first joint, of link 2 [kg m^2].
+    mass3 : float or ndarray
+        Mass of link 3 [kg].
+    along3 : float or ndarray
+        First moment along link 3 [kg m].
+    inertia3 : float or ndarray
+        Inertia, about its first joint, of link 3 [kg m^2].
+    mass4 : float or ndarray
+        Mass of link 4 [kg].
+    along4 : float or ndarray
+        First moment along link 4 [kg m].
+    inertia4 : float or ndarray
+        Inertia, about its first joint, of link 4 [kg m^2].
+
+    Returns
+    -------
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    reach = coupler - crank
+    total = coupler + crank
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine + half_sine
+    x2 = half_cosine - half_sine
+    del x0, half_cosine, half_sine
+    cos2 = x1 * x2
+    raised = x1**2 / 2
+    lowered = x2**2 / 2
+    x3 = offset + total
+    c0 = x3
+    x4 = offset + reach
+    c1 = x4
+    above = c0 * lowered + c1 * raised
+    x5 = offset - reach
+    c2 = x5
+    x6 = offset - total
+    c3 = x6
+    below = -c2 * lowered - c3 * raised
+    root = xp.sqrt(above * below)
+    x7 = 1 / coupler
+    c4 = x7
+    sin3 = c4 * (offset - crank * sin2)
+    c5 = 2 * assembly
+    cos3 = c5 * root / (above + below)
+    del x1, x2, above, below, root
+    x8 = cos2 * sin3
+    sin23 = cos3 * sin2 - x8
+    c6 = x7 * crank
+    x9 = c6 * cos2
+    omega3 = -x9 / cos3
+    c7 = x3 * x5
+    c8 = x4 * x6
+    c9 = offset * crank
+    c10 = crank / coupler**3
+    alpha3 = c10 * (c9 * cos2**2 + sin2 * (-c7 * lowered - c8 * raised)) / cos3**3
+    x10 = alpha3 * sin3
+    del lowered, raised, sin3
+    x11 = omega3**2
+    slider_acceleration = -crank * cos2 - coupler * x11 * cos3 - coupler * x10
+    del omega3, cos2, cos3
+    square = speed**2
+    along3_s = along3 * square
+    inertia3_s = inertia3 * square
+    mass4_s = mass4 * square
+    c11 = along3_s * crank
+    c12 = mass4_s * offset
+    return (
+        c11 * (sin23 - x10 * sin2 - x9 * sin2 - x11 * sin23 - x11 * x8) - inertia3_s * alpha3 + c12
+        * slider_acceleration
+    )
+
+
+def load_forces(
+    theta2, crank, coupler, offset, assembly, fx2, fy2, couple2, fx3, fy3, couple3, fx4, fy4,
+    couple4,
+):
+    """Return what external loads alone call forth.
+
+    Parameters
+    ----------
+    theta2 : ndarray or float, shape (...)
+        Crank angle from the guide [rad].
+    crank : float
+        Length of the crank AB [m].
+    coupler : float
+        Length of the coupler BC [m].
+    offset : float
+        Height of the guide over the crank's pivot A [m].
+    assembly : float
+        +1 where the slider is right of B (open), -1 left.
+    fx2 : float or ndarray
+        Force along x at the first joint of link 2 [N].
+    fy2 : float or ndarray
+        Force along y at the first joint of link 2 [N].
+    couple2 : float or ndarray
+        Couple on link 2 [N m].
+    fx3 : float or ndarray
+        Force along x at the first joint of link 3 [N].
+    fy3 : float or ndarray
+        Force along y at the first joint of link 3 [N].
+    couple3 : float or ndarray
+        Couple on link 3 [N m].
+    fx4 : float or ndarray
+        Force along x at the first joint of link 4 [N].
+    fy4 : float or ndarray
+        Force along y at the first joint of link 4 [N].
+    couple4 : float or ndarray
+        Couple on link 4 [N m].
+
+    Returns
+    -------
+    x12 : ndarray, shape (...)
+        Force of link 1 on link 2 along x [N].
+    y12 : ndarray, shape (...)
+        Force of link 1 on link 2 along y [N].
+    x23 : ndarray, shape (...)
+        Force of link 2 on link 3 along x [N].
+    y23 : ndarray, shape (...)
+        Force of link 2 on link 3 along y [N].
+    x34 : ndarray, shape (...)
+        Force of link 3 on link 4 along x [N].
+    y34 : ndarray, shape (...)
+        Force of link 3 on link 4 along y [N].
+    x41 : ndarray, shape (...)
+        Force of link 4 on link 1 along x [N].
+    y41 : ndarray, shape (...)
+        Force of link 4 on link 1 along y [N].
+    couple41 : ndarray, shape (...)
+        Couple of link 4 on link 1 [N m].
+    torque : ndarray, shape (...)
+        Torque of the drive on the crank, anticlockwise [N m].
+    shaking_x : ndarray, shape (...)
+        Force on the frame along x [N].
+    shaking_y : ndarray, shape (...)
+        Force on the frame along y [N].
+    shaking_moment : ndarray, shape (...)
+        Moment on the frame about A, the drive's reaction in it [N m].
+
+    Notes
+    -----
+    Newton and Euler's, as Smith (4.4)-(4.6).
+    """
+    xp = _namespace(theta2)
+    reach = coupler - crank
+    total = coupler + crank
+    x0 = theta2 / 2
+    half_sine = xp.sin(x0)
+    half_cosine = xp.cos(x0)
+    sin2 = 2 * half_cosine * half_sine
+    x1 = half_cosine + half_sine
+    x2 = half_cosine - half_sine
+    del x0, half_cosine, half_sine
+    cos2 = x1 * x2
+    raised = x1**2 / 2
+    lowered = x2**2 / 2
+    c0 = offset + total
+    c1 = offset + reach
+    above = c0 * lowered + c1 * raised
+    c2 = offset - reach
+    c3 = offset - total
+    below = -c2 * lowered - c3 * raised
+    del x1, x2, lowered, raised
+    root = xp.sqrt(above * below)
+    x3 = 1 / coupler
+    c4 = x3
+    sin3 = c4 * (offset - crank * sin2)
+    c5 = 2 * assembly
+    cos3 = c5 * root / (above + below)
+    del above, below, root
+    position = crank * cos2 + coupler * cos3
+    x4 = fx3 + fx4
+    x23 = -x4
+    x12 = x23 - fx2
+    c6 = -x3 * couple3
+    y34 = (-c6 - fx4 * sin3) / cos3
+    y23 = y34 - fy3
+    y12 = y23 - fy2
+    c7 = x23 * crank
+    torque = crank * cos2 * y23 - c7 * sin2 - couple2
+    normal41 = fy4 + y34
+    c8 = -fx3 * crank
+    c9 = -fy3 * crank
+    c10 = fx4 * offset - couple2 - couple3 - couple4
+    return (
+        x12,
+        y12,
+        x23,
+        y23,
+        -fx4,
+        y34,
+        0,
+        normal41,
+        couple4,
+        torque,
+        fx2 + x4,
+        fy2 + fy3 + fy4,
+        c8 * sin2 - c10 - c9 * cos2 + fy4 * position,
+    )

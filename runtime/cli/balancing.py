@@ -1,0 +1,202 @@
+"""``elastolink balance``: counterweights of the classic cases, the best ones, and the trade-off."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+from .linkages import speed_of
+
+if TYPE_CHECKING:
+    from ..balancing import Balancing, Counterweight
+    from ..dynamics import Machine
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand."""
+    parser = opt.command(
+        commands,
+        "balance",
+        _balance,
+        summary="Counterweights: the classic cases, the best ones within bounds, the trade-off.",
+        example=(
+            "elastolink balance smith_1972_12_6_12_12 --speed 10 --offset '6 in'\n"
+            "  elastolink balance smith_1972_12_6_12_12 --speed 10 --case d --offset '3 in'\n"
+            "  elastolink balance smith_1972_12_6_12_12 --speed 10 --links crank,coupler,follower"
+            " --weights shaking_force=1,torque=1,f23=1\n"
+            "  elastolink balance smith_1972_12_6_12_12 --speed 10"
+            " --trade-off shaking_force,torque --plot curve.png"
+        ),
+    )
+    opt.scene_options(parser)
+    parser.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="crank speed, e.g. '500 rpm', rad/s without a unit; default operation.speed",
+    )
+    parser.add_argument(
+        "--case",
+        choices=("b", "c", "d"),
+        help="b: crank and follower about their pivots; c, d: full force balance, with three or"
+        " two counterweights; default: optimise",
+    )
+    parser.add_argument(
+        "--offset",
+        metavar="LENGTH",
+        help="of the counterweights from the first joints of their links: at most this when"
+        " optimising; default the length of the link",
+    )
+    parser.add_argument(
+        "--mass", metavar="MASS", help="greatest mass of one counterweight; default all links'"
+    )
+    _choices(parser)
+
+
+def _choices(parser: argparse.ArgumentParser) -> None:
+    """Add what says which forces count, and how."""
+    parser.add_argument(
+        "--weights",
+        metavar="NAME=W,...",
+        help="of shaking_force, shaking_moment, torque, f12, f23, f34, f41;"
+        " default shaking_force=1,torque=1,f23=1",
+    )
+    parser.add_argument(
+        "--limits", metavar="NAME=R,...", help="relative peaks that must not be passed"
+    )
+    parser.add_argument(
+        "--links", metavar="LINK,...", help="that may carry one; default those on the frame"
+    )
+    parser.add_argument(
+        "--measure", choices=("peak", "rms"), default="peak", help="default %(default)s"
+    )
+    parser.add_argument(
+        "--trade-off",
+        metavar="FIRST,SECOND",
+        help="least second peak over the first one, cases (a)-(d) marked",
+    )
+    parser.add_argument(
+        "--points", type=int, default=13, metavar="N", help="of that curve; default %(default)s"
+    )
+
+
+def _balance(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    chosen = [name for name in ("case", "trade_off") if getattr(options, name) is not None]
+    if len(chosen) == 2:
+        raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
+    scene = opt.load(options)
+    speed, machine = speed_of(options, scene), scene.machine()
+    offset = _size(options.offset, "length", "--offset")
+    mass = _size(options.mass, "mass", "--mass")
+    if options.case is not None:
+        return _case(options, machine, speed, offset)
+
+    from ..balancing import Bounds
+
+    bounds = Bounds(mass=mass, offset=offset)
+    links = None if options.links is None else [name.strip() for name in options.links.split(",")]
+    if options.trade_off is not None:
+        return _trade_off(options, machine, speed, {"links": links, "bounds": bounds}, offset)
+
+    from ..balancing import balance
+
+    found = balance(
+        machine,
+        speed,
+        weights=_pairs(options.weights, "--weights"),
+        limits=_pairs(options.limits, "--limits"),
+        links=links,
+        bounds=bounds,
+        measure=options.measure,
+    )
+    return opt.finish(options, found, _lines(found))
+
+
+def _case(options: argparse.Namespace, machine: Machine, speed: float, offset: float | None) -> int:
+    from ..balancing import compare_case
+
+    found = compare_case(machine, options.case, speed, offset)
+    return opt.finish(options, found, _lines(found))
+
+
+def _trade_off(
+    options: argparse.Namespace,
+    machine: Machine,
+    speed: float,
+    where: dict[str, Any],
+    offset: float | None,
+) -> int:
+    names = [name.strip() for name in options.trade_off.split(",")]
+    if len(names) != 2:
+        fix = "write --trade-off shaking_force,torque"
+        raise bad("--trade-off", repr(options.trade_off), "two forces", fix)
+    from ..balancing import trade_off
+
+    first, second = names
+    curve = trade_off(machine, speed, first, second, options.points, offsets=offset, **where)
+    rows = [
+        (f"{x:.6f}", f"{y:.6f}")
+        for x, y in zip(curve.first_values, curve.second_values, strict=True)
+    ]
+    lines = opt.table((first, second), rows)
+    lines += ["", *opt.table(("case", first, second), _case_rows(curve.cases)), ""]
+    return opt.finish(options, curve, lines)
+
+
+def _case_rows(cases: Any) -> list[tuple[str, str, str]]:
+    return [(f"({name})", f"{x:.6f}", f"{y:.6f}") for name, (x, y) in cases.items()]
+
+
+def _lines(found: Balancing) -> list[str]:
+    moments = ("torque", "shaking_moment")
+    rows = [
+        (
+            f"{name} [{'N m' if name in moments else 'N'}]",
+            f"{found.unbalanced[name]:.6g}",
+            f"{relative * found.unbalanced[name]:.6g}",
+            f"{relative:.6f}",
+            f"{found.weights[name]:g}" if name in found.weights else "",
+        )
+        for name, relative in found.relative.items()
+    ]
+    lines = opt.table((found.measure, "unbalanced", "balanced", "relative", "weight"), rows)
+    weights = [_weight_row(item) for item in found.counterweights.values()]
+    header = ("counterweight", "mass [kg]", "along [m]", "across [m]", "radius [m]")
+    lines += ["", *(opt.table(header, weights) if weights else ["no counterweights"]), ""]
+    if found.weights:
+        text = f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
+        lines.append(text)
+    return lines
+
+
+def _weight_row(item: Counterweight) -> tuple[str, ...]:
+    numbers = (item.mass, item.along, item.across, item.disc_radius)
+    return (item.link, *(f"{number:.6g}" for number in numbers))
+
+
+def _size(text: str | None, dimension: str, where: str) -> float | None:
+    if text is None:
+        return None
+    value = opt.quantity(text, dimension, where)
+    if not value > 0.0:
+        raise bad(where, repr(text), "a positive quantity", "correct the sign")
+    return value
+
+
+def _pairs(text: str | None, where: str) -> dict[str, float] | None:
+    if text is None:
+        return None
+    found = {}
+    for pair in text.split(","):
+        name, sign, value = pair.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not sign or not math.isfinite(number):
+            raise bad(where, repr(pair), "NAME=NUMBER", "write torque=1,f23=0.5")
+        found[name.strip()] = number
+    return found

@@ -1,0 +1,123 @@
+"""``elastolink classify``: class, change points, transmission angle and dead centres."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+from ..errors import bad
+from . import options as opt
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand."""
+    parser = opt.command(
+        commands,
+        "classify",
+        _classify,
+        summary="Grashof's and Barker's class, change points, transmission angle, dead centres.",
+        example=(
+            "elastolink classify smith_1972_12_6_12_12 --plot transmission.png\n"
+            "  elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png"
+        ),
+    )
+    opt.scene_options(parser)
+    for action in parser._actions:
+        if action.dest == "scene":
+            action.nargs, action.required, action.default = "?", False, None
+    parser.add_argument(
+        "--lengths", metavar="A,B,C,D", help="frame, crank, coupler, follower, instead of a scene"
+    )
+    parser.add_argument("--input", choices=("crank", "follower"), default="crank")
+    parser.add_argument(
+        "--tolerance", type=float, default=0.0, help="relative, of every length; default 0"
+    )
+    parser.add_argument(
+        "--base-plane",
+        action="store_true",
+        help="draw Barker's base plane instead of the transmission angle",
+    )
+
+
+def _classify(options: argparse.Namespace) -> int:
+    from ..kinematics.classification import Classification, classify
+    from ..kinematics.transmission import transmission_angle
+
+    opt.picture(options)
+    linkage: Any = _linkage(options)
+    found: Any = classify(linkage, input=options.input, tolerance=options.tolerance)
+    passed_on = transmission_angle(linkage)
+    if options.base_plane and not isinstance(found, Classification):
+        raise bad("--base-plane", found.mechanism, "a four-bar linkage", "leave it out")
+    draw = found.plot if options.base_plane else passed_on.plot
+    if options.json:
+        path = opt.picture(options)
+        if path is not None:
+            from ..plotting import new_figure
+
+            figure = new_figure()
+            draw(figure.add_subplot())
+            opt.save(figure, path)
+        opt.print_json({**found.to_dict(), "transmission": passed_on.to_dict()})
+        return 0 if found.passed and passed_on.passed else 1
+    lines = [*_class_lines(found), "", *_transmission_lines(passed_on)]
+    return opt.finish(options, found, lines, draw)
+
+
+def _linkage(options: argparse.Namespace) -> Any:
+    """Return the linkage of the scene or of ``--lengths``."""
+    if (options.scene is None) == (options.lengths is None):
+        expected = "either SCENE or --lengths A,B,C,D"
+        raise bad("classify", "both or neither", expected, "give one of them")
+    if options.scene is not None:
+        return opt.load(options).mechanism()
+    from ..kinematics.classification import classify
+    from ..mechanisms import FourBar
+
+    try:
+        lengths = [float(text) for text in options.lengths.split(",")]
+    except ValueError as refusal:
+        raise bad(
+            "--lengths", repr(options.lengths), "four numbers", "write --lengths 12,6,12,12"
+        ) from refusal
+    checked = classify(lengths)
+    return FourBar(checked.frame, checked.crank, checked.coupler, checked.follower)
+
+
+def _class_lines(found: Any) -> list[str]:
+    symbol = found.symbol if hasattr(found, "symbol") else found.mechanism
+    turning = ", ".join(link for link, full in found.turns.items() if full) or "no link"
+    lines = [f"{symbol}: {found.name} ({found.category})"]
+    if hasattr(found, "also"):
+        lines.append(f"also called: {found.also}; {found.characteristic}")
+        kinds = ", ".join(f"{link} {kind}" for link, kind in found.inversions.items())
+        lines.append(f"inversions, by fixed link: {kinds}")
+    lines.append(f"turning fully against the frame: {turning}")
+    lines.append(
+        f"change point {found.nearest_change}: {found.distance:+.6g} of the sum of lengths away"
+    )
+    return lines
+
+
+def _transmission_lines(found: Any) -> list[str]:
+    low, high = (math.degrees(value) for value in (found.least, found.greatest))
+    band = "within" if found.within_band else "outside"
+    first, last = (math.degrees(value) for value in found.band)
+    lines = [
+        f"transmission angle: {low:.6g} to {high:.6g} deg, {band} {first:g} to {last:g} deg",
+    ]
+    for name, angle in found.dead_centres.items():
+        at = math.degrees(angle)
+        lines.append(f"dead centre, {name}: crank at {at:.6g} deg")
+    for name, angles in found.toggles.items():
+        if len(angles):
+            shown = ", ".join(f"{math.degrees(angle):.6g}" for angle in angles)
+            lines.append(f"coupler and follower in line, {name}: crank at {shown} deg")
+    if found.swing is not None:
+        slides = found.mechanism == "slider-crank"
+        size = f"{found.swing:.6g}" if slides else f"{math.degrees(found.swing):.6g} deg"
+        lines.append(f"{'stroke' if slides else 'swing'} of the output: {size}")
+    if found.time_ratio is not None:
+        lines.append(f"time ratio: {found.time_ratio:.6g}")
+    return lines

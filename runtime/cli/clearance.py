@@ -1,0 +1,173 @@
+"""``elastolink clearance``: free movement of follower, slider or rod that play leaves."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..kinematics.clearance import ClearanceRange
+
+_JOINTS = ("12", "23", "34", "41")
+_ROWS = 13
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand."""
+    parser = opt.command(
+        commands,
+        "clearance",
+        _clearance,
+        summary="Free movement of follower, slider or rod that clearance at the joints leaves.",
+        example=(
+            "elastolink clearance smith_1972_10_8_10_10 --clearance '0.1 in' --plot fig10.png\n"
+            "  elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'"
+        ),
+    )
+    opt.scene_options(parser)
+    parser.add_argument(
+        "--clearance",
+        action="append",
+        default=[],
+        metavar="SIZE",
+        help="diametral clearance of one joint, e.g. '0.1 mm'; repeated, one curve each",
+    )
+    parser.add_argument(
+        "--joint", choices=_JOINTS, help="the joint with --clearance; default 34, at the follower"
+    )
+    parser.add_argument(
+        "--at",
+        action="append",
+        default=[],
+        metavar="JOINT=SIZE",
+        help="clearance of one of several joints, e.g. 23='0.1 mm'; instead of --clearance",
+    )
+    parser.add_argument("--link", help="coupler, instead of the link that gives the output")
+    parser.add_argument(
+        "--angles",
+        metavar="START:STOP:COUNT[UNIT]",
+        help="crank angles; default 361 over a turn, or what the crank reaches",
+    )
+
+
+def _clearance(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    from ..kinematics.clearance import clearance_range
+
+    opt.picture(options)
+    cases = _cases(options)
+    theta = None
+    if options.angles is not None:
+        theta = np.array(opt.values(options.angles, "angle", "--angles"))
+    linkage: Any = opt.load(options).mechanism()
+    found = [
+        clearance_range(linkage, size, theta, joint=joint, link=options.link)
+        for _, size, joint in cases
+    ]
+
+    def draw(ax: Axes) -> Axes:
+        for (label, *_), result in zip(cases, found, strict=True):
+            result.plot(ax, label=label)
+        return ax
+
+    if len(found) == 1:
+        return opt.finish(options, found[0], _lines(found[0]), draw)
+    return _finish_all(options, found, draw)
+
+
+def _cases(options: argparse.Namespace) -> list[tuple[str, Any, str | None]]:
+    """Return label, clearance and joint of each curve."""
+    if options.at:
+        if options.clearance or options.joint:
+            fix = "name every joint with --at, or one with --joint"
+            raise bad("--at", "--clearance or --joint beside it", "one of the two ways", fix)
+        return [("clearance " + ", ".join(options.at), _by_joint(options.at), None)]
+    if not options.clearance:
+        raise bad("--clearance", "nothing", "a clearance", "give --clearance '0.1 mm'")
+    return [
+        (f"clearance {text}", opt.quantity(text, "length", "--clearance"), options.joint)
+        for text in options.clearance
+    ]
+
+
+def _by_joint(texts: Sequence[str]) -> dict[str, float]:
+    found = {}
+    for text in texts:
+        joint, sign, size = (part.strip() for part in text.partition("="))
+        if not sign or joint not in _JOINTS:
+            expected = f"JOINT=SIZE, JOINT one of {', '.join(_JOINTS)}"
+            raise bad("--at", repr(text), expected, "write it like --at 23='0.1 mm'")
+        found[joint] = opt.quantity(size, "length", "--at")
+    return found
+
+
+def _finish_all(options: argparse.Namespace, found: Sequence[ClearanceRange], draw: Any) -> int:
+    """Write several results: one table each, or a JSON list, and one picture."""
+    path = opt.picture(options)
+    if path is not None:
+        from ..plotting import new_figure
+
+        figure = new_figure()
+        draw(figure.add_subplot())
+        opt.save(figure, path)
+    if options.json:
+        opt.print_json({"ranges": [result.to_dict() for result in found]})
+    else:
+        print("\n\n".join("\n".join(_lines(result)) for result in found))
+    failed = 0
+    for result in found:
+        for name, check in result.checks.items():
+            if not check.passed:
+                failed = 1
+                text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
+                print(f"elastolink {options.command}: {text}", file=sys.stderr)
+    return failed
+
+
+def _lines(found: ClearanceRange) -> list[str]:
+    """Return the extremes over the crank's range, and where the linkage can fold."""
+    import numpy as np
+
+    scale, unit = (1.0, "m") if found.unit == "m" else (180.0 / math.pi, "deg")
+    sizes = ", ".join(f"{joint}: {size:.6g} m" for joint, size in found.clearances.items())
+    rows = [
+        (word, f"{math.degrees(extreme.theta2):.2f}", f"{scale * extreme.width:.6g}")
+        for word, extreme in (("greatest", found.greatest), ("least", found.least))
+    ]
+    header = (f"free movement of the {found.link}", "crank angle [deg]", f"width [{unit}]")
+    lines = [*_table(found), "", f"clearance at {sizes}", *opt.table(header, rows)]
+    if np.any(found.folds):
+        first = math.degrees(float(np.ravel(found.theta2)[np.argmax(np.ravel(found.folds))]))
+        lines.append(
+            f"at {int(np.sum(found.folds))} of {found.folds.size} angles, the first at"
+            f" {first:.4g} deg, the clearance lets the linkage pass into its other assembly"
+        )
+    return lines
+
+
+def _table(found: ClearanceRange) -> list[str]:
+    """Return the range at some of the crank angles."""
+    import numpy as np
+
+    unit = "m" if found.unit == "m" else "deg"
+    shown = np.asarray if found.unit == "m" else np.degrees
+    count = found.theta2.size
+    chosen = np.unique(np.linspace(0, count - 1, min(_ROWS, count)).round().astype(int))
+    names = {"nominal": "nominal", "lower": "lower", "upper": "upper", "width": "width"}
+    names["small"] = "first order"
+    columns = [[format(float(angle), "z.4f") for angle in np.degrees(found.theta2[chosen])]]
+    for name in names:
+        values = shown(getattr(found, name)[chosen])
+        columns.append([format(float(value), "z.7g") for value in values])
+    columns.append(["folds" if folds else "" for folds in found.folds[chosen]])
+    header = ["theta2 [deg]", *(f"{words} [{unit}]" for words in names.values()), ""]
+    return opt.table(header, list(zip(*columns, strict=True)))

@@ -1,0 +1,228 @@
+"""``elastolink curve`` and ``elastolink harmonics``: paths of points, and Fourier coefficients."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+from .linkages import speed_of
+
+if TYPE_CHECKING:
+    from ..kinematics.coupler_curve import CouplerCurve
+    from ..kinematics.harmonics import Harmonics, Source
+    from ..mechanisms.linkage import Linkage
+    from ..scenes import Scene
+
+
+def add(commands: Any) -> None:
+    """Add the two subcommands."""
+    _add_curve(commands)
+    _add_harmonics(commands)
+
+
+def _add_curve(commands: Any) -> None:
+    curve = opt.command(
+        commands,
+        "curve",
+        _curve,
+        summary="Path of a point of a moving link: length, area, cusps and double points.",
+        example=(
+            "elastolink curve smith_1972_2122 --point 0.5,-0.75 --plot curve.png\n"
+            "  elastolink curve slider_crank_example --point 0.5,0.2 --animate motion.gif"
+        ),
+    )
+    opt.scene_options(curve)
+    curve.add_argument(
+        "--point",
+        default="0.5,0",
+        metavar="ALONG,ACROSS",
+        help="place in the link, from its first joint: plain numbers in lengths of the link, or "
+        "with units, '6 in,2 in'; default %(default)s",
+    )
+    curve.add_argument("--link", metavar="NAME", help="moving link; default coupler, or the rod")
+    curve.add_argument(
+        "--points", type=int, default=720, metavar="N", help="positions; default %(default)s"
+    )
+    curve.add_argument(
+        "--circuit",
+        type=int,
+        default=0,
+        metavar="N",
+        help="1 for the other assembly of a crank that turns, or its other range; default 0",
+    )
+    curve.add_argument("--animate", metavar="FILE", help="write the motion as a .gif file")
+
+
+def _add_harmonics(commands: Any) -> None:
+    harmonics = opt.command(
+        commands,
+        "harmonics",
+        _harmonics,
+        summary="Harmonics of any place, rate or force over a turn of the crank.",
+        example=(
+            "elastolink harmonics smith_1972_10_8_10_10 --of theta4 --plot fig7.png\n"
+            "  elastolink harmonics smith_1972_12_6_12_12 --of torque --speed '10 rad/s'"
+        ),
+    )
+    opt.scene_options(harmonics)
+    harmonics.add_argument(
+        "--of",
+        required=True,
+        metavar="NAME",
+        help="a place or rate (theta4, omega3, position ...) or a force (x34, torque ...)",
+    )
+    harmonics.add_argument(
+        "--order", type=int, default=8, metavar="N", help="highest harmonic; default %(default)s"
+    )
+    harmonics.add_argument(
+        "--method",
+        choices=("fft", "simpson"),
+        default="fft",
+        help="fft, or Smith's procedure of appendix 3; default %(default)s",
+    )
+    harmonics.add_argument(
+        "--stop",
+        choices=("printed", "every"),
+        default="printed",
+        help="Smith's procedure: stop as printed, or when every harmonic has converged",
+    )
+    harmonics.add_argument(
+        "--accuracy",
+        type=float,
+        metavar="EPS",
+        help="fft: relative, default 1e-12; simpson: of an integral, default 1e-6",
+    )
+    harmonics.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="crank speed for forces, e.g. '195 rpm'; default operation.speed",
+    )
+
+
+def _curve(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    if options.animate is not None:
+        from ..kinematics.animation import check_animation_path
+
+        check_animation_path(options.animate)
+    linkage = opt.load(options).mechanism()
+    link = options.link or ("coupler" if "coupler" in linkage.links else linkage.links[-1])
+    along, across = _point(options.point, linkage, link)
+    from ..kinematics.coupler_curve import coupler_curve
+
+    curve = coupler_curve(
+        linkage, along, across, link=link, points=options.points, circuit=options.circuit
+    )
+    if options.animate is not None:
+        from ..kinematics.animation import animate
+
+        animate(linkage, options.animate, curves=(curve,), circuit=options.circuit)
+    return opt.finish(options, curve, _described(curve))
+
+
+def _point(text: str, linkage: Linkage, link: str) -> tuple[float, float]:
+    """Return the place of a point in its link [m].
+
+    Raises
+    ------
+    BadInput
+        If these are no two lengths, or the link has no length to count plain numbers in.
+    """
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise bad("--point", repr(text), "ALONG,ACROSS", "write it like 0.5,0.3 or '6 in,2 in'")
+    if link not in linkage.links:
+        raise bad("--link", repr(link), f"one of {', '.join(linkage.links)}", "choose one")
+    return _coordinate(parts[0], linkage, link), _coordinate(parts[1], linkage, link)
+
+
+def _coordinate(text: str, linkage: Linkage, link: str) -> float:
+    try:
+        share = float(text)
+    except ValueError:
+        return opt.quantity(text.strip(), "length", "--point")
+    if share == 0.0:
+        return 0.0
+    if link not in linkage.lengths:
+        raise bad(
+            "--point", repr(text), f"a length with a unit: the {link} has none", "write '20 mm'"
+        )
+    return share * float(linkage.lengths[link])
+
+
+def _described(curve: CouplerCurve) -> list[str]:
+    import numpy as np
+
+    lines = [
+        f"length {curve.length:.9g} m (error {curve.length_error:.1g}), "
+        f"area {curve.area:.9g} m^2 (error {curve.area_error:.1g})",
+        f"least speed over the largest: {curve.slowest:.3g}",
+    ]
+    rows = []
+    for i, place in enumerate(curve.cusp_position):
+        angle = f"{np.degrees(curve.cusp_theta2[i]):.6f}"
+        rows.append(("cusp", *(f"{x:.9g}" for x in place), angle, "", ""))
+    for i, place in enumerate(curve.double_position):
+        angles = [f"{angle:.6f}" for angle in np.degrees(curve.double_theta2[i])]
+        crossing = f"{np.degrees(curve.crossing_angle[i]):.4f}"
+        rows.append(("double point", *(f"{x:.9g}" for x in place), *angles, crossing))
+    if rows:
+        header = ("point", "x [m]", "y [m]", "crank [deg]", "and [deg]", "crossing [deg]")
+        return [*opt.table(header, rows), "", *lines]
+    return [*lines, "no cusp and no double point"]
+
+
+def _harmonics(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    scene = opt.load(options)
+    source = _source(options, scene)
+    given = {} if options.accuracy is None else {"accuracy": options.accuracy}
+    found: Harmonics
+    if options.method == "simpson":
+        from ..kinematics.simpson import simpson_harmonics
+
+        found = simpson_harmonics(source, order=options.order, stop=options.stop, **given)
+    else:
+        from ..kinematics.harmonics import harmonics
+
+        found = harmonics(source, order=options.order, **given)
+    rows = [
+        (str(m), f"{a:.12g}", f"{b:.12g}", f"{size:.6g}", f"{phase:.4f}")
+        for m, (a, b, size, phase) in enumerate(
+            zip(found.a, found.b, found.amplitude, found.phase, strict=True)
+        )
+    ]
+    lines = opt.table(("harmonic", "cosine", "sine", "amplitude", "phase [rad]"), rows)
+    if found.secular:
+        lines.append(f"beside {found.secular:g} times the crank angle")
+    return opt.finish(options, found, [*lines, "", f"{found.evaluations} angles"])
+
+
+def _source(options: argparse.Namespace, scene: Scene) -> Source:
+    """Return what is to be analysed: a field of the motion, or else a force.
+
+    Raises
+    ------
+    BadInput
+        If the name is neither.
+    """
+    import numpy as np
+
+    linkage = scene.mechanism()
+    linkage.require_full_turn()
+    motion = linkage.motion(np.zeros(1))
+    known = [*motion.places, *motion.rates]
+    if options.of in known:
+        return linkage, options.of
+    if options.of not in _FORCES:
+        expected = f"one of {', '.join(known)}; or a force: {', '.join(_FORCES)}"
+        raise bad("--of", repr(options.of), expected, "choose one")
+    return scene.machine(), options.of, speed_of(options, scene)
+
+
+_FORCES = (
+    *(axis + joint for joint in ("12", "23", "34", "41") for axis in "xy"),
+    *("couple34", "couple41", "torque", "shaking_x", "shaking_y", "shaking_moment"),
+)

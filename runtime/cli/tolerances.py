@@ -1,0 +1,179 @@
+"""``elastolink tolerances``: what tolerances of lengths and masses do to motion and forces."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+from .linkages import speed_of
+
+if TYPE_CHECKING:
+    from ..kinematics.tolerance_result import Tolerances
+    from ..kinematics.tolerance_trial import ToleranceTrial
+    from ..mechanisms.linkage import Linkage
+    from ..scenes import Scene
+
+_WHOLE_TURN = "0:360:721deg"
+_DIMENSIONS = {
+    "theta2": "angle",
+    "mass": "mass",
+    "along": "first_moment",
+    "across": "first_moment",
+    "inertia": "inertia",
+}
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand."""
+    parser = opt.command(
+        commands,
+        "tolerances",
+        _tolerances,
+        summary="Worst case and root sum square of tolerances, in motion and forces.",
+        example=(
+            "elastolink tolerances smith_1972_12_6_12_12 --tolerance crank='0.05 mm'"
+            " --tolerance coupler='0.1 mm' --plot band.png\n"
+            "  elastolink tolerances slider_crank_example --tolerance crank='20 um' --forces"
+            " --speed '1500 rpm' --monte-carlo 2000"
+        ),
+    )
+    opt.scene_options(parser)
+    parser.add_argument(
+        "--tolerance",
+        action="append",
+        default=[],
+        metavar="NAME=WIDTH",
+        help="greatest deviation to either side: crank='0.05 mm', theta2='0.1 deg', "
+        "coupler.mass='1 g'; may be repeated",
+    )
+    parser.add_argument(
+        "--angles",
+        metavar="START:STOP:COUNT[UNIT]",
+        help=f"crank angles; default {_WHOLE_TURN}, or the range that the crank reaches",
+    )
+    parser.add_argument("--forces", action="store_true", help="forces too; needs a crank speed")
+    parser.add_argument(
+        "--masses",
+        choices=("fixed", "bars"),
+        default="fixed",
+        help="whether masses stay, or grow with the links as those of bars; default %(default)s",
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="crank speed, e.g. '195 rpm', rad/s without a unit; without it rates are over the "
+        "crank's; default with --forces operation.speed",
+    )
+    parser.add_argument(
+        "--acceleration",
+        metavar="ALPHA",
+        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default 0",
+    )
+    parser.add_argument(
+        "--monte-carlo",
+        type=int,
+        metavar="N",
+        help="check with N random linkages, the tolerances being three standard deviations",
+    )
+    parser.add_argument("--output", metavar="NAME", help="what --plot draws, e.g. theta4")
+
+
+def _tolerances(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    from ..kinematics.tolerances import tolerances
+
+    opt.picture(options)
+    scene = opt.load(options)
+    subject: Any = scene.machine() if options.forces else scene.mechanism()
+    linkage = subject.linkage if options.forces else subject
+    theta = np.array(_angles(options, linkage))
+    speed, acceleration = _drive(options, scene)
+    widths = dict(_width(pair) for pair in options.tolerance)
+    if not widths:
+        raise bad("--tolerance", "nothing", "NAME=WIDTH", "write --tolerance crank='0.05 mm'")
+    found = tolerances(subject, widths, theta, speed, acceleration, masses=options.masses)
+    if options.output is not None:
+        found.place(options.output)
+    lines = _table(found)
+    if not found.keeps_turning and linkage.crank_turns:
+        lines.append("within the tolerances the crank may cease to turn fully")
+    status = 0
+    if options.monte_carlo is not None:
+        trial = found.monte_carlo(options.monte_carlo)
+        lines += ["", *_trial(trial)]
+        status = 0 if trial.passed else 1
+    done = opt.finish(options, found, lines, lambda ax: found.plot(ax, output=options.output))
+    return max(status, done)
+
+
+def _angles(options: argparse.Namespace, linkage: Linkage) -> list[float]:
+    """Return the wanted angles; by default a turn, or the first range that the crank reaches."""
+    if options.angles is not None:
+        return opt.values(options.angles, "angle", "--angles")
+    if linkage.crank_turns:
+        return opt.values(_WHOLE_TURN, "angle", "--angles")
+    low, high = linkage.crank_ranges()[-1]
+    # At the folds themselves the sensitivities are infinite: stay a twentieth of the range away.
+    margin = 0.05 * (high - low)
+    return opt.spaced(low + margin, high - margin, 721)
+
+
+def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
+    """Return crank speed and acceleration; without either, rates are over the crank's."""
+    speed, acceleration = 1.0, 0.0
+    if options.forces or options.speed is not None:
+        speed = speed_of(options, scene)
+    if options.acceleration is not None:
+        where = "--acceleration"
+        if not options.forces and options.speed is None:
+            raise bad(where, "no --speed beside it", "both", "give --speed '500 rpm' too")
+        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
+    return speed, acceleration
+
+
+def _width(pair: str) -> tuple[str, float]:
+    """Return name and width of a tolerance in SI units.
+
+    Raises
+    ------
+    BadInput
+        If it has no equals sign, or the width is no such quantity.
+    """
+    name, sign, width = pair.partition("=")
+    if not sign or not name.strip():
+        raise bad("--tolerance", repr(pair), "NAME=WIDTH", "write --tolerance crank='0.05 mm'")
+    dimension = _DIMENSIONS.get(name.strip().rpartition(".")[2], "length")
+    return name.strip(), opt.quantity(width.strip(), dimension, f"--tolerance {name.strip()}")
+
+
+def _table(found: Tolerances) -> list[str]:
+    """Return the worst case and the root of squares of every output, and the shares there."""
+    import numpy as np
+
+    shown = [place for place, width in enumerate(found.tolerance) if width > 0.0]
+    worst, spread, share = found.worst_case, found.root_sum_square, found.contribution
+    rows = []
+    for row, name in enumerate(found.outputs):
+        top = int(np.argmax(worst[row]))
+        peak = int(np.argmax(spread[row]))
+        angles = (f"{np.degrees(found.theta2[at]):.2f}" for at in (top, peak))
+        at_worst, at_peak = angles
+        shares = (f"{100.0 * share[row, place, peak]:.1f}" for place in shown)
+        figures = f"{worst[row, top]:.5g}", at_worst, f"{spread[row, peak]:.5g}", at_peak
+        rows.append((f"{name} [{found.unit(name)}]", *figures, *shares))
+    header = ("output", "worst case", "at [deg]", "root sum square", "at [deg]")
+    names = tuple(f"{found.parameters[place]} [%]" for place in shown)
+    return opt.table((*header, *names), rows)
+
+
+def _trial(trial: ToleranceTrial) -> list[str]:
+    """Return what the random linkages say."""
+    kept = trial.samples - trial.lost
+    lines = [f"{kept} random linkages of {trial.samples} reach every angle ({trial.method})"]
+    for name, check in sorted(trial.checks.items()):
+        verdict = "agrees" if check.passed else "DISAGREES"
+        lines.append(f"{verdict}: {name}: {check.value:.2g} (limit {check.limit:.2g})")
+    return lines

@@ -1,0 +1,44 @@
+"""A field of a result that is worked out when it is first looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Deferred:
+    """A value to be: ``make()`` returns it.
+
+    Parameters
+    ----------
+    make : callable
+        Takes nothing; must bear pickling where the result should.
+    """
+
+    make: Callable[[], Any]
+
+
+class DeferredField:
+    """Descriptor of a dataclass field that takes a value, or a :class:`Deferred` one.
+
+    For error figures that would take longer than the work whose error they measure.
+    """
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        """Take the field's name."""
+        self._name = name
+
+    def __set__(self, instance: object, value: object) -> None:
+        """Keep what is given; called once, when the dataclass is made."""
+        instance.__dict__[self._name] = value
+
+    def __get__(self, instance: object | None, owner: type | None = None) -> Any:
+        """Return the value, having worked it out on the first look."""
+        if instance is None:  # the dataclass asks for a default: there is none
+            raise AttributeError(self._name)
+        value = instance.__dict__[self._name]
+        if isinstance(value, Deferred):
+            value = instance.__dict__[self._name] = value.make()
+        return value

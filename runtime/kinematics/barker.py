@@ -1,0 +1,213 @@
+"""Barker's fourteen classes of four-bar linkages, and the exact signs that decide between them.
+
+A four-bar linkage can lie flat, and so change its assembly, where one of three sums is zero::
+
+    S_2 = (frame + crank)    - (coupler + follower)
+    S_3 = (frame + coupler)  - (crank + follower)
+    S_4 = (frame + follower) - (crank + coupler)
+
+named after the link that stands beside the frame.  ``s + l - p - q`` of Grashof's theorem is, up to
+its sign, the least of the three in magnitude.  The signs of the three decide everything: the class,
+and which links turn fully against which.  They are taken exactly, of the lengths as doubles.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Category = Literal["Grashof", "non-Grashof", "change point"]
+
+LINKS = ("frame", "crank", "coupler", "follower")
+_ROLES = ("frame", "input", "coupler", "output")
+
+
+@dataclass(frozen=True)
+class BarkerClass:
+    """One of the fourteen rows of Barker's table (Aannaque Table 3.1, corrected).
+
+    Attributes
+    ----------
+    number : int
+        The row, 1 to 14.
+    category : {"Grashof", "non-Grashof", "change point"}
+        s + l below, above or equal to p + q.
+    characteristic : str
+        The link that marks the class, or what does.
+    class_number : int
+        Barker's class within the category.
+    name, symbol : str
+        Barker's; input, coupler and output link in this order.
+    also : str
+        What else such a linkage is called.
+    """
+
+    number: int
+    category: Category
+    characteristic: str
+    class_number: int
+    name: str
+    symbol: str
+    also: str
+
+
+def _table() -> tuple[BarkerClass, ...]:
+    """Return the fourteen rows."""
+    kinds = (
+        "crank-crank-crank",
+        "crank-rocker-rocker",
+        "rocker-crank-rocker",
+        "rocker-rocker-crank",
+    )
+    called = (
+        "double crank (drag link)",
+        "crank rocker",
+        "double rocker with turning coupler",
+        "rocker crank",
+    )
+    letters = ("CCC", "CRR", "RCR", "RRC")
+    rows: list[tuple[Category, str, int, str, str, str]] = []
+    for i in range(4):
+        least = f"{_ROLES[i]} shortest"
+        rows.append(("Grashof", least, i + 1, f"Grashof {kinds[i]}", "G" + letters[i], called[i]))
+    for i in range(4):
+        name = f"Class {i + 1} rocker-rocker-rocker"
+        most = f"{_ROLES[i]} longest"
+        rows.append(("non-Grashof", most, i + 1, name, f"RRR{i + 1}", "triple rocker"))
+    for i in range(4):
+        name, symbol = f"Change point {kinds[i]}", "CP" + letters[i]
+        also = f"{called[i]} at a change point"
+        rows.append(("change point", f"{_ROLES[i]} shortest", i + 1, name, symbol, also))
+    pairs, equal = "two pairs of equal links", "four equal links"
+    rows.append(
+        ("change point", pairs, 5, "Double change point", "CP2X", "parallelogram linkage or kite")
+    )
+    rows.append(("change point", equal, 6, "Triple change point", "CP3X", "rhombus linkage"))
+    return tuple(BarkerClass(number, *row) for number, row in enumerate(rows, start=1))
+
+
+CLASSES = _table()
+
+
+def number_of_signs(signs: Sequence[int]) -> int:
+    """Return the row of Barker's table for the signs of S_2, S_3, S_4.
+
+    Without zeros, three equal signs mark the frame, otherwise the odd one out marks its link: as
+    the shortest of a Grashof linkage where the product of the signs is negative, and otherwise as
+    the longest of a non-Grashof one.  Every zero lies on the surface between two such cells; a
+    single one belongs to the same shortest link as the Grashof cell that it bounds.
+    """
+    zeros = list(signs).count(0)
+    if zeros >= 2:
+        return 11 + zeros
+    product = int(np.prod([sign or 1 for sign in signs]))
+    cell = [sign or -product for sign in signs]
+    if len(set(cell)) == 1:
+        link = 0
+    else:
+        odd = 1 if cell.count(1) == 1 else -1
+        link = cell.index(odd) + 1
+    grashof = int(np.prod(cell)) < 0
+    return link + (9 if zeros else 1 if grashof else 5)
+
+
+def turning(signs: Sequence[int]) -> dict[tuple[str, str], bool]:
+    """Return for each pair of links whether one turns fully against the other.
+
+    Two links turn fully against each other where the vector sum of the two stays, in any direction
+    of theirs, within the reach of the sum of the other two.  (The order of the vectors in a loop
+    does not matter, so this holds for opposite links as for adjacent ones.)  With the frame and
+    link i that is ``S_i <= 0`` and ``S_j S_k >= 0``; with the other two of the links the signs of
+    S_i and of the product are reversed.  Equality: the links turn through a change point.
+    """
+    found = {}
+    for i in range(3):
+        beside = LINKS[i + 1]
+        others = tuple(link for link in LINKS[1:] if link != beside)
+        product = int(np.prod([sign for j, sign in enumerate(signs) if j != i]))
+        found["frame", beside] = signs[i] <= 0 <= product
+        found[others[0], others[1]] = signs[i] >= 0 >= product
+    return found
+
+
+def exact_sums(lengths: Sequence[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
+    """Return S_2, S_3, S_4 exactly."""
+    frame, crank, coupler, follower = lengths
+    return (
+        frame + crank - coupler - follower,
+        frame + coupler - crank - follower,
+        frame + follower - crank - coupler,
+    )
+
+
+# Row of the table for each pattern of signs, at 9 (S_2 + 1) + 3 (S_3 + 1) + (S_4 + 1).
+_ROWS = np.array(
+    [number_of_signs(signs) for signs in itertools.product((-1, 0, 1), repeat=3)], dtype=np.int64
+)
+# Above this the sum of four doubles may overflow.
+_SAFE = 2.0**1020
+
+
+def class_numbers(lengths: Array) -> NDArray[np.int64]:
+    """Return the rows of Barker's table, 0 where the four cannot close: exactly, for any doubles.
+
+    Parameters
+    ----------
+    lengths : ndarray, shape (..., 4)
+        Positive finite lengths of frame, crank, coupler, follower.
+    """
+    frame, crank, coupler, follower = np.moveaxis(lengths, -1, 0)
+    sums = (
+        _sign_of_sum(frame, crank, -coupler, -follower),
+        _sign_of_sum(frame, coupler, -crank, -follower),
+        _sign_of_sum(frame, follower, -crank, -coupler),
+    )
+    rows = _ROWS[9 * (sums[0] + 1) + 3 * (sums[1] + 1) + sums[2] + 1]
+    ordered = np.sort(lengths, axis=-1)
+    one, two, three, longest = np.moveaxis(ordered, -1, 0)
+    rows = np.where(_sign_of_sum(one, two, three, -longest) > 0, rows, 0)
+    huge = ordered[..., 3] > _SAFE
+    for place in np.argwhere(huge):
+        rows[tuple(place)] = _class_number([*map(Fraction, lengths[tuple(place)].tolist())])
+    return np.asarray(rows, dtype=np.int64)
+
+
+def _class_number(lengths: Sequence[Fraction]) -> int:
+    """Return the row for one linkage, in exact fractions, 0 where it cannot close."""
+    if 2 * max(lengths) >= sum(lengths):
+        return 0
+    return number_of_signs([(value > 0) - (value < 0) for value in exact_sums(lengths)])
+
+
+def _sign_of_sum(*values: Array) -> NDArray[np.int64]:
+    """Return the exact sign of a sum of doubles that does not overflow.
+
+    The terms are gathered in a nonoverlapping expansion, whose last component that is not zero
+    has the sign of the whole (J. R. Shewchuk, Discrete & Computational Geometry 18, 1997).
+    """
+    expansion = [values[0]]
+    with np.errstate(over="ignore", invalid="ignore"):
+        for value in values[1:]:
+            grown, total = [], value
+            for part in expansion:
+                total, lost = _two_sum(total, part)
+                grown.append(lost)
+            expansion = [*grown, total]
+    sign = np.zeros(np.shape(values[0]))
+    for part in expansion:
+        sign = np.where(part != 0.0, np.sign(part), sign)
+    return np.nan_to_num(sign).astype(np.int64)
+
+
+def _two_sum(a: Array, b: Array) -> tuple[Array, Array]:
+    """Return the rounded sum and what the rounding lost, exactly (Knuth)."""
+    total = a + b
+    of_b = total - a
+    return total, (a - (total - of_b)) + (b - of_b)

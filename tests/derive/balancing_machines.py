@@ -1,0 +1,55 @@
+"""Machines that the balancing tests share: Smith's of Figs. 12-16 and random ones."""
+
+from __future__ import annotations
+
+import balancing_truth as truth
+import numpy as np
+from elastolink.runtime.dynamics import MassDistribution
+from elastolink.runtime.dynamics.machine import Machine
+from elastolink.runtime.errors import BadInput
+from elastolink.runtime.mechanisms import FourBar
+
+
+def smith():
+    """Return the machine of Smith Figs. 12-16 and 20-23."""
+    lengths, bars = truth.smith_bars()
+    links = FourBar.links
+    masses = {name: MassDistribution(*bar) for name, bar in zip(links, bars, strict=True)}
+    return Machine(FourBar(*lengths), masses)
+
+
+def random_machine(rng):
+    """Return a crank-rocker or double crank with links of any shape."""
+    while True:
+        lengths = rng.uniform(0.2, 1.0, 4)
+        lengths[1] = 0.1
+        try:
+            linkage = FourBar(*lengths, assembly=str(rng.choice(["open", "crossed"])))
+        except BadInput:
+            continue
+        if linkage.crank_turns:
+            break
+    bodies = {}
+    for link in linkage.links:
+        mass, along, across = rng.uniform([0.1, -0.5, -0.5], [2.0, 0.5, 0.5])
+        bodies[link] = MassDistribution.about_centre(mass, along, across, rng.uniform(0.0, 0.2))
+    return Machine(linkage, bodies)
+
+
+def nine_equations(machine, theta, speed, acceleration=0.0):
+    """Return the forces of a machine by name from the 9 x 9 system."""
+    linkage = machine.linkage
+    masses = [
+        (own.mass, own.along, own.across, own.inertia)
+        for own in (machine.mass(link) for link in linkage.links)
+    ]
+    lengths = tuple(linkage.lengths.values())
+    return truth.forces(lengths, masses, theta, speed, acceleration, linkage.branch)
+
+
+def sampled_peaks(machine, theta, speed, acceleration=0.0):
+    """Return the greatest magnitude of each force over the samples."""
+    return {
+        name: float(np.max(np.linalg.norm(v, axis=1) if v.ndim == 2 else np.abs(v)))
+        for name, v in nine_equations(machine, theta, speed, acceleration).items()
+    }

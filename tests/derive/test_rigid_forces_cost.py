@@ -1,0 +1,109 @@
+"""What the emitted forces cost, and that specialised modules return the same."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from elastolink.derive.catalogue import find
+from elastolink.derive.spec import ModelSpec
+from force_machines import call, emitted, random_machine
+from forces_truth import MECHANISMS, MOMENTS, VARIANTS
+
+
+class _Counted:
+    """An array that counts the operations on it."""
+
+    count = 0
+
+    def __array_namespace__(self):
+        return SimpleNamespace(sin=self._made, cos=self._made, sqrt=self._made)
+
+    def _made(self, *_):
+        _Counted.count += 1
+        return _Counted()
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = _made
+    __truediv__ = __rtruediv__ = __pow__ = __neg__ = _made
+
+
+def array_operations(module, function):
+    """Return the operations on arrays of an emitted function whose crank angle alone is one."""
+    kernel = getattr(module, function)
+    wanted = kernel.__code__.co_varnames[1 : kernel.__code__.co_argcount]
+    _Counted.count = 0
+    kernel(_Counted(), *(1.0 + 0.1 * i for i, _ in enumerate(wanted)))
+    return _Counted.count
+
+
+def test_operations_on_arrays_of_the_straight_four_bar_at_constant_speed():
+    """What decides the run time at many angles, signs counted too: 127 when this was written."""
+    module = emitted(f"four_bar_forces{VARIANTS[2]}")
+    counts = {name: array_operations(module, name) for name in module.RETURNS}
+    assert counts["forces"] <= 127
+    assert max(counts["driving_torque"], counts["shaking_moment"]) <= 80
+    assert max(counts["shaking_force"], counts["load_forces"]) <= 95
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS)
+def test_asking_for_less_costs_less(mechanism):
+    every, steady, straight = (emitted(f"{mechanism}_forces{v}") for v in VARIANTS)
+    for module in (every, steady, straight):
+        counts = {name: array_operations(module, name) for name in module.RETURNS}
+        parts = ("driving_torque", "shaking_force", "shaking_moment")
+        assert all(counts[name] < counts["pin_forces"] < counts["forces"] for name in parts)
+        assert counts["load_forces"] < counts["pin_forces"]
+    for name in every.RETURNS:
+        costs = [array_operations(module, name) for module in (every, steady, straight)]
+        if name == "load_forces":
+            assert len(set(costs)) == 1
+        else:
+            assert costs[0] > costs[1] > costs[2] or name == "shaking_force"
+            assert costs[0] > costs[2]
+    signature = straight.forces.__code__.co_varnames
+    assert "acceleration" not in signature and "across3" not in signature
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS)
+def test_specialised_modules_return_the_same(mechanism):
+    random = np.random.default_rng(11)
+    every, steady, straight = (emitted(f"{mechanism}_forces{v}") for v in VARIANTS)
+    for _ in range(20):
+        numbers = random_machine(mechanism, random) | {"acceleration": 0.0}
+        general = call(every, "forces", numbers)
+        size = max(abs(value) for value in general.values())
+        for name, value in call(steady, "forces", numbers).items():
+            assert abs(value - general[name]) < 1e-12 * size
+        numbers |= {f"across{n}": 0.0 for n in (2, 3, 4)}
+        general = call(every, "forces", numbers)
+        for name, value in call(straight, "forces", numbers).items():
+            assert abs(value - general[name]) < 1e-12 * size
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS)
+def test_forces_are_linear_in_the_moments(mechanism):
+    """At unit values of one moment the function returns the derivatives by it."""
+    module = emitted(f"{mechanism}_forces")
+    numbers = random_machine(mechanism, np.random.default_rng(13))
+    whole = call(module, "forces", numbers)
+    total = dict.fromkeys(whole, 0.0)
+    for moment in MOMENTS:
+        unit = numbers | dict.fromkeys(MOMENTS, 0.0) | {moment: 1.0}
+        for name, value in call(module, "forces", unit).items():
+            total[name] += numbers[moment] * value
+    size = max(abs(value) for value in whole.values())
+    assert all(abs(total[name] - value) < 1e-11 * size for name, value in whole.items())
+
+
+def test_no_angle_is_taken_back_from_its_sine():
+    for mechanism in MECHANISMS:
+        for variant in VARIANTS:
+            names = emitted(f"{mechanism}_forces{variant}").forces.__code__.co_names
+            assert set(names) <= {"_namespace", "sin", "cos", "sqrt"}
+
+
+def test_the_catalogue_finds_every_formulation():
+    for mechanism in MECHANISMS:
+        for formulation in ("forces", "multibody"):
+            assert find(ModelSpec(mechanism, formulation)).mechanism == mechanism

@@ -17,7 +17,7 @@ from .spec import Entry, ModelSpec
 
 _HERE = Path(__file__).parent
 _NAMED = b'name = "elastolink"'
-# What can change an emitted byte: everything in this folder but the bookkeeping.
+# What can change an emitted byte: all in this folder and in rigid/, but the bookkeeping.
 _BOOKKEEPING = {
     "__init__.py",
     "catalogue.py",
@@ -33,7 +33,8 @@ _BOOKKEEPING = {
 @lru_cache(maxsize=1)
 def _shared_sources() -> str:
     digest = hashlib.sha256(f"ir {IR_VERSION}".encode())
-    own = [path for path in sorted(_HERE.glob("*.py")) if path.name not in _BOOKKEEPING]
+    found = [*_HERE.glob("*.py"), *(_HERE / "rigid").glob("*.py")]
+    own = [path for path in sorted(found) if path.name not in _BOOKKEEPING]
     templates = sorted((_HERE.parent / "templates").glob("*.j2"))
     for path in own + templates:
         digest.update(path.name.encode() + b"\0" + path.read_bytes())

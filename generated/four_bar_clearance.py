@@ -13,7 +13,7 @@ to the other assembly.
 
 Cost per evaluation:
     extremes: 125 operations
-Content hash f6534768610ca33bfc261f0c159b6b1c; derived with SymPy 1.14.0.
+Content hash 3061347da00a1457541938b521ff45e3; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"clearance","mechanism":"four_bar","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "f6534768610ca33bfc261f0c159b6b1c"
+CONTENT = "3061347da00a1457541938b521ff45e3"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 162 operations
     shaking_moment: 148 operations
     load_forces: 98 operations
-Content hash b73da02704a3722cada8b22f726d0cf6; derived with SymPy 1.14.0.
+Content hash ee3bc81b29d3c41bf475532c921f452c; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"four_bar","modes":'
     'null,"outputs":[]}'
 )
-CONTENT = "b73da02704a3722cada8b22f726d0cf6"
+CONTENT = "ee3bc81b29d3c41bf475532c921f452c"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 155 operations
     shaking_moment: 139 operations
     load_forces: 98 operations
-Content hash 5ccab6de043a85fb83085e6c416a12f4; derived with SymPy 1.14.0.
+Content hash d7998e4fc1091551ab3227cca57fcf9c; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"four_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "5ccab6de043a85fb83085e6c416a12f4"
+CONTENT = "d7998e4fc1091551ab3227cca57fcf9c"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash 451e01798c6b619e59c3e10c3f6a7d54; derived with SymPy 1.14.0.
+Content hash 7418159e26b426dd68661d5eb47fa434; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "451e01798c6b619e59c3e10c3f6a7d54"
+CONTENT = "7418159e26b426dd68661d5eb47fa434"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -11,7 +11,7 @@ fifth.
 
 Cost per evaluation:
     sensitivities: 306 operations
-Content hash ceaf56f3efbd990422c6b2911a328040; derived with SymPy 1.14.0.
+Content hash df9cf574a66cd7bd1ca50dcbcc52713a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sensitivities","mechanism":"four_bar","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "ceaf56f3efbd990422c6b2911a328040"
+CONTENT = "df9cf574a66cd7bd1ca50dcbcc52713a"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -7,7 +7,7 @@ Equations: Smith (7.23), (7.25); Smith (7.46), (7.49).
 
 Cost per evaluation:
     first_order: 14 operations
-Content hash df874653dc0d10b1549d8cab4673f9e4; derived with SymPy 1.14.0.
+Content hash ce09b448d6983e10806bef95113007f5; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hi'
     'll","modes":null,"outputs":[]}'
 )
-CONTENT = "df874653dc0d10b1549d8cab4673f9e4"
+CONTENT = "ce09b448d6983e10806bef95113007f5"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 86 operations
     shaking_moment: 88 operations
     load_forces: 59 operations
-Content hash 36a18c35ffccec29f6bbf39bd3f50154; derived with SymPy 1.14.0.
+Content hash 2a67496435ba1a9458217a33dd56e457; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"quick_return","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "36a18c35ffccec29f6bbf39bd3f50154"
+CONTENT = "2a67496435ba1a9458217a33dd56e457"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -20,7 +20,7 @@ Cost per evaluation:
     shaking_force: 91 operations
     shaking_moment: 87 operations
     load_forces: 75 operations
-Content hash 34780c1b27dd745df4d655fa3ad3cb86; derived with SymPy 1.14.0.
+Content hash 0b065f98d244290b857c67af7459e8eb; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ SPEC = (
     '{"balanced":[],"drop":["across","crank_acceleration"],"flexible":[],"formulation":"forces","m'
     'echanism":"slider_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "34780c1b27dd745df4d655fa3ad3cb86"
+CONTENT = "0b065f98d244290b857c67af7459e8eb"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

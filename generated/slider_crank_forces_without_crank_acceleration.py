@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 101 operations
     shaking_moment: 107 operations
     load_forces: 75 operations
-Content hash be93932d7d4a29ed400e8a02937c7bfc; derived with SymPy 1.14.0.
+Content hash 901839d8f15230238413ac0c5318dd0d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"slider_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "be93932d7d4a29ed400e8a02937c7bfc"
+CONTENT = "901839d8f15230238413ac0c5318dd0d"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

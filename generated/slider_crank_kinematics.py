@@ -11,7 +11,7 @@ the guide.
 
 Cost per evaluation:
     motion: 78 operations
-Content hash 0b53f11393790a9d6e7646b446fa2675; derived with SymPy 1.14.0.
+Content hash cf5766fcad33b3d166509ec0c6bca401; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"slider_crank",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "0b53f11393790a9d6e7646b446fa2675"
+CONTENT = "cf5766fcad33b3d166509ec0c6bca401"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

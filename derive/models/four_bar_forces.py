@@ -5,10 +5,10 @@ from __future__ import annotations
 import sympy as sp
 
 from ..describe import Description
-from ..force_words import description
 from ..pipeline import Model
-from ..planar import Body, Pin, PlanarLinkage
-from ..rigid_forces import CHOICES, SolvedMotion, forces, moments_of
+from ..rigid.forces import CHOICES, SolvedMotion, forces, moments_of
+from ..rigid.planar import Body, Pin, PlanarLinkage
+from ..rigid.words import description
 from ..spec import ModelSpec
 from ..staged import KernelForms
 from .four_bar import ARGUMENTS, coupler, crank, follower, frame, theta2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..multibody import multibody_model
+from ..rigid.multibody import multibody_model
 from .four_bar import ARGUMENTS
 from .four_bar_forces import linkage
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 import sympy as sp
 
-from ..planar import Vector, cross
+from ..rigid.planar import Vector, cross
 from ..safe import UnsafeRewriting, bernstein_in_cosine, solve_cosine_sine
 from ..staged import Step, Steps
 from .four_bar import assembly, coupler, crank, follower, frame, theta2

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sympy as sp
 
 from ..describe import Description
-from ..force_words import description
 from ..pipeline import Model
-from ..planar import Body, Pin, PlanarLinkage, Slide
-from ..rigid_forces import CHOICES, SolvedMotion, forces, moments_of
+from ..rigid.forces import CHOICES, SolvedMotion, forces, moments_of
+from ..rigid.planar import Body, Pin, PlanarLinkage, Slide
+from ..rigid.words import description
 from ..spec import ModelSpec
 from ..staged import KernelForms
 from . import quick_return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..multibody import multibody_model
+from ..rigid.multibody import multibody_model
 from .quick_return import ARGUMENTS
 from .quick_return_forces import linkage
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..multibody import multibody_model
+from ..rigid.multibody import multibody_model
 from .slider_crank import ARGUMENTS
 from .slider_crank_forces import linkage
 

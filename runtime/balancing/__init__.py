@@ -13,6 +13,7 @@ from .link_inertia import (
     optimal_offset,
 )
 from .optimum import Balancing, balance, compare_case, peaks_of
+from .peaks import ForcePeak, force_peaks
 from .reciprocating import ReciprocatingBalance, reciprocating_balance
 from .trade_off import TradeOff, trade_off
 
@@ -21,6 +22,7 @@ __all__ = [
     "Balancing",
     "Bounds",
     "Counterweight",
+    "ForcePeak",
     "ReciprocatingBalance",
     "TradeOff",
     "balance",
@@ -29,6 +31,7 @@ __all__ = [
     "case_counterweights",
     "compare_case",
     "density_number",
+    "force_peaks",
     "fully_balanced",
     "offset_function",
     "optimal_offset",

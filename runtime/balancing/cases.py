@@ -9,7 +9,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 from ..errors import bad
-from .counterweights import Counterweight, finite_number, require_link, with_counterweights
+from .counterweights import (
+    Counterweight,
+    finite_number,
+    require_link,
+    require_machine,
+    with_counterweights,
+)
 
 if TYPE_CHECKING:
     from ..dynamics import Machine
@@ -94,6 +100,7 @@ def fully_balanced(
     """
     if counterweights not in (2, 3):
         raise bad("counterweights", repr(counterweights), "2 or 3", "choose one")
+    require_machine(machine)
     sliding = tuple(machine.linkage.links)[-1] == "slider"
     case: Case = "c" if counterweights == 3 or sliding else "d"
     return balance_case(machine, case, offsets, density=density, thickness=thickness)
@@ -116,6 +123,7 @@ def case_counterweights(
     """
     if case not in CASES:
         raise bad("case", repr(case), f"one of {', '.join(CASES)}", "choose one")
+    require_machine(machine)
     links = tuple(machine.linkage.links)
     if isinstance(offsets, Mapping):
         for link in offsets:

@@ -124,6 +124,7 @@ def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight
     BadInput
         If a counterweight sits on a link that the linkage has not.
     """
+    require_machine(machine)
     masses = dict(machine.masses)
     links = tuple(machine.linkage.links)
     for weight in counterweights:
@@ -137,6 +138,14 @@ def require_link(link: object, links: tuple[str, ...], where: str) -> None:
     """Raise BadInput where a linkage has no such moving link."""
     if link not in links:
         raise bad(where, repr(link), f"one of {', '.join(links)}", "correct the name")
+
+
+def require_machine(machine: object) -> None:
+    """Raise BadInput for what is no Machine."""
+    from ..dynamics import Machine
+
+    if not isinstance(machine, Machine):
+        raise bad("machine", type(machine).__name__, "a Machine", "build one of a linkage")
 
 
 def finite_number(value: object, where: str) -> float:

@@ -34,8 +34,8 @@ _LAST_GRID = 8192
 _TAIL = 1e-10
 # Sampled peaks lower than this, over the highest, cannot be the highest one.
 _CANDIDATE = 0.75
-_NODES = np.cos(np.pi * np.arange(13) / 12.0)
-_TO_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, 12))
+NODES = np.cos(np.pi * np.arange(13) / 12.0)
+_TO_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(NODES, 12))
 
 
 @dataclass(frozen=True)
@@ -171,14 +171,14 @@ class ForceBasis:
         self, machine: Machine, starts: Mapping[str, Array], half: float
     ) -> dict[str, Array]:
         joined = np.concatenate([starts[term] for term in self.terms])
-        theta = (joined[:, None] + half * _NODES).ravel()
+        theta = (joined[:, None] + half * NODES).ravel()
         values = _forces(machine, theta, self.speed, self.acceleration, self.terms)
         refined, place = {}, 0
         for term in self.terms:
             count = len(starts[term])
-            squares = np.sum(values[term] ** 2, axis=1).reshape(-1, len(_NODES))
+            squares = np.sum(values[term] ** 2, axis=1).reshape(-1, len(NODES))
             own = squares[place : place + count]
-            refined[term] = starts[term] + half * np.array([_summit(row) for row in own])
+            refined[term] = starts[term] + half * np.array([summit(row) for row in own])
             place += count
         return refined
 
@@ -194,12 +194,12 @@ def _local(theta: Array, size: Array, periodic: bool) -> Array:
     return np.asarray(theta[[int(np.argmax(size))]])
 
 
-def _summit(squares: Array) -> float:
+def summit(squares: Array) -> float:
     """Return where in [-1, 1] the interpolating polynomial is greatest near its highest node."""
     series = _TO_CHEBYSHEV @ squares
     slope = np.polynomial.chebyshev.chebder(series)
     bend = np.polynomial.chebyshev.chebder(slope)
-    x = float(_NODES[int(np.argmax(squares))])
+    x = float(NODES[int(np.argmax(squares))])
     for _ in range(12):
         rise = float(np.polynomial.chebyshev.chebval(x, slope))
         curve = float(np.polynomial.chebyshev.chebval(x, bend))

@@ -15,7 +15,13 @@ from ..results import Check, Result, provenance
 from .barrier import PER_LINK, Array, Room
 from .bounds import Bounds, required_bounds
 from .cases import Case, case_counterweights
-from .counterweights import Counterweight, finite_number, require_link, with_counterweights
+from .counterweights import (
+    Counterweight,
+    finite_number,
+    require_link,
+    require_machine,
+    with_counterweights,
+)
 from .force_basis import TERMS, ForceBasis
 from .search import Found, Measure, Search, best_counterweights, rms
 
@@ -24,7 +30,8 @@ if TYPE_CHECKING:
 
     from ..dynamics import Machine
 
-DEFAULT_WEIGHTS: Mapping[str, float] = {"shaking_force": 1.0, "torque": 1.0, "f23": 1.0}
+# The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
+DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
 
 # A force below this, over the largest of its kind, is no force to compare with.
 _NO_FORCE = 1e-12
@@ -117,8 +124,8 @@ def balance(
     acceleration : float
         Crank acceleration [rad/s^2], the same at every angle.
     weights : mapping of str to float
-        Any of shaking_force, shaking_moment, torque, f12, f23, f34, f41; by default 1 for shaking
-        force, torque and f23.
+        Any of shaking_force, shaking_moment, torque, f12, f23, f34, f41; by default 1 for f23 (the
+        crank pin), torque and shaking_moment (the moment on the frame).
     links : sequence of str
         Links that may carry a counterweight each; by default those that turn about the frame.
     bounds : Bounds or mapping of str to Bounds
@@ -167,6 +174,7 @@ def searched(
     BadInput
         As :func:`balance`.
     """
+    require_machine(machine)
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
     if measure not in ("peak", "rms"):
         raise bad("measure", repr(measure), "'peak' or 'rms'", "choose one")
@@ -270,6 +278,7 @@ def _turn_peaks(
     machine: Machine, speed: float, acceleration: float, angles: ArrayLike | None
 ) -> dict[str, tuple[float, float]]:
     """Return peak and its angle for every force."""
+    require_machine(machine)
     speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
     one = np.ones(1)
     link = tuple(machine.linkage.links[:1])

@@ -11,7 +11,12 @@ from ..errors import bad
 from ..results import Check, Result, provenance
 from .barrier import Array
 from .cases import moment
-from .counterweights import Counterweight, finite_number, with_counterweights
+from .counterweights import (
+    Counterweight,
+    finite_number,
+    require_machine,
+    with_counterweights,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -116,6 +121,7 @@ def reciprocating_balance(
     BadInput
         If the linkage is no slider-crank or its crank cannot turn, or a number is impossible.
     """
+    require_machine(machine)
     linkage = machine.linkage
     if tuple(linkage.links)[-1] != "slider":
         raise bad("machine", type(linkage).__name__, "a SliderCrank", "use balance_case")

@@ -6,13 +6,14 @@ until none is higher than the bound that the problem has for it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
 
-from ..errors import bad
+from ..errors import BadInput, bad
 from .barrier import (
     PER_LINK,
     Array,
@@ -208,10 +209,7 @@ def _inside(search: Search, problem: PeakProblem) -> tuple[Array, Array] | None:
         if least.t[0] < 1.0 or least.bound >= 1.0:
             break
     if least.t[0] >= 1.0:
-        names = ", ".join(f"{term} {top:g}" for term, top in search.limits.items())
-        fix = "raise a limit, or allow more mass or offset"
-        expected = f"limits that bounds allow: at least {least.bound:.4g} times these"
-        raise bad("limits", names, expected, fix)
+        raise _out_of_reach(search.limits, max(least.bound, 1.0))
     # As far towards the middle of the hulls as the limits allow, halfway.
     p, ceiling = least.p, 0.5 * (1.0 + least.t[0])
     for share in np.linspace(0.9, 0.0, 10):
@@ -221,6 +219,22 @@ def _inside(search: Search, problem: PeakProblem) -> tuple[Array, Array] | None:
             break
     t, tops = problem.lifted(p, 0.0), problem.ceilings
     return p, np.where(np.isfinite(tops), 0.5 * (t + np.minimum(tops, 1e300)), 1.5 * t)
+
+
+def _out_of_reach(limits: Mapping[str, float], times: float) -> BadInput:
+    """Return the complaint about limits that can be met only so many times higher."""
+    names = ", ".join(f"{term} {top:g}" for term, top in limits.items())
+    # Rounded up: what is asked for can be given.
+    least = [f"{term} at least {_rounded_up(times * top)}" for term, top in limits.items()]
+    together = "" if len(limits) == 1 else " where all are raised alike"
+    fix = "raise a limit, or allow more mass or offset"
+    return bad("limits", names, ", ".join(least) + together, fix)
+
+
+def _rounded_up(value: float) -> str:
+    """Return a number in four digits, none below it."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 3)
+    return f"{math.ceil(value / unit) * unit:.4g}"
 
 
 def best_counterweights(search: Search) -> Found:

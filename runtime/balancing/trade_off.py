@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -58,6 +58,15 @@ class TradeOff(Result):
         ("first_values", "second_values", "error"), ("point",)
     )
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return the curve, and for each point its counterweights and all relative peaks."""
+        kept = ("counterweights", "relative", "peak_angles")
+        points = [point.to_dict() for point in self.points]
+        return {
+            **super().to_dict(),
+            "points": [{name: point[name] for name in kept} for point in points],
+        }
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve and mark the cases of Smith's Fig. 20."""
         from ..plotting import axes_or_new
@@ -69,7 +78,9 @@ class TradeOff(Result):
             ax.annotate(f"({name})", (x, y), textcoords="offset points", xytext=(6, 5))
         ax.set_xlabel(f"peak {self.first.replace('_', ' ')}, over the unbalanced linkage's")
         ax.set_ylabel(f"peak {self.second.replace('_', ' ')}, over the unbalanced linkage's")
-        ax.set_xlim(left=0.0)
+        # Full force balance lies on an axis: its mark stays whole.
+        ax.margins(0.06)
+        ax.axvline(0.0, color="0.8", lw=0.8, zorder=0)
         ax.legend()
         return ax
 

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import drive_of, drive_options
 
 if TYPE_CHECKING:
     from ..balancing import Balancing, Counterweight
     from ..dynamics import Machine
+
+
+_POINTS = 13
 
 
 def add(commands: Any) -> None:
@@ -32,11 +35,7 @@ def add(commands: Any) -> None:
         ),
     )
     opt.scene_options(parser)
-    parser.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="crank speed, e.g. '500 rpm', rad/s without a unit; default operation.speed",
-    )
+    drive_options(parser, "default operation.speed")
     parser.add_argument(
         "--case",
         choices=("b", "c", "d"),
@@ -60,8 +59,8 @@ def _choices(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--weights",
         metavar="NAME=W,...",
-        help="of shaking_force, shaking_moment, torque, f12, f23, f34, f41;"
-        " default shaking_force=1,torque=1,f23=1",
+        help="of shaking_force, shaking_moment, torque, f12, f23, f34, f41; default"
+        " f23=1,torque=1,shaking_moment=1: pin of the crank, torque, moment on the frame",
     )
     parser.add_argument(
         "--limits", metavar="NAME=R,...", help="relative peaks that must not be passed"
@@ -70,16 +69,14 @@ def _choices(parser: argparse.ArgumentParser) -> None:
         "--links", metavar="LINK,...", help="that may carry one; default those on the frame"
     )
     parser.add_argument(
-        "--measure", choices=("peak", "rms"), default="peak", help="default %(default)s"
+        "--measure", choices=("peak", "rms"), help="of each force, when optimising; default peak"
     )
     parser.add_argument(
         "--trade-off",
         metavar="FIRST,SECOND",
         help="least second peak over the first one, cases (a)-(d) marked",
     )
-    parser.add_argument(
-        "--points", type=int, default=13, metavar="N", help="of that curve; default %(default)s"
-    )
+    parser.add_argument("--points", type=int, metavar="N", help=f"of that curve; default {_POINTS}")
 
 
 def _balance(options: argparse.Namespace) -> int:
@@ -87,45 +84,67 @@ def _balance(options: argparse.Namespace) -> int:
     chosen = [name for name in ("case", "trade_off") if getattr(options, name) is not None]
     if len(chosen) == 2:
         raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
+    _refuse_unused(options)
     scene = opt.load(options)
-    speed, machine = speed_of(options, scene), scene.machine()
+    drive, machine = drive_of(options, scene), scene.machine()
+    if not any(drive):
+        fix = "give --speed or --acceleration"
+        raise bad("--speed", "a crank at rest", "a speed or an acceleration", fix)
     offset = _size(options.offset, "length", "--offset")
     mass = _size(options.mass, "mass", "--mass")
     if options.case is not None:
-        return _case(options, machine, speed, offset)
+        return _case(options, machine, drive, offset)
 
     from ..balancing import Bounds
 
     bounds = Bounds(mass=mass, offset=offset)
     links = None if options.links is None else [name.strip() for name in options.links.split(",")]
     if options.trade_off is not None:
-        return _trade_off(options, machine, speed, {"links": links, "bounds": bounds}, offset)
+        return _trade_off(options, machine, drive, {"links": links, "bounds": bounds}, offset)
 
     from ..balancing import balance
 
     found = balance(
         machine,
-        speed,
+        drive[0],
+        acceleration=drive[1],
         weights=_pairs(options.weights, "--weights"),
         limits=_pairs(options.limits, "--limits"),
         links=links,
         bounds=bounds,
-        measure=options.measure,
+        measure=options.measure or "peak",
     )
     return opt.finish(options, found, _lines(found))
 
 
-def _case(options: argparse.Namespace, machine: Machine, speed: float, offset: float | None) -> int:
+def _refuse_unused(options: argparse.Namespace) -> None:
+    """Raise BadInput for options that the chosen way of balancing does not look at."""
+    optimum = ("weights", "limits", "measure")
+    if options.case is not None:
+        unused = (*optimum, "links", "mass", "points")
+        opt.refuse_unused(options, unused, "the optimum or the trade-off, without --case")
+    elif options.trade_off is not None:
+        opt.refuse_unused(options, optimum, "the optimum, without --trade-off")
+    else:
+        opt.refuse_unused(options, ("points",), "--trade-off beside it")
+
+
+def _case(
+    options: argparse.Namespace,
+    machine: Machine,
+    drive: tuple[float, float],
+    offset: float | None,
+) -> int:
     from ..balancing import compare_case
 
-    found = compare_case(machine, options.case, speed, offset)
+    found = compare_case(machine, options.case, drive[0], offset, acceleration=drive[1])
     return opt.finish(options, found, _lines(found))
 
 
 def _trade_off(
     options: argparse.Namespace,
     machine: Machine,
-    speed: float,
+    drive: tuple[float, float],
     where: dict[str, Any],
     offset: float | None,
 ) -> int:
@@ -136,7 +155,13 @@ def _trade_off(
     from ..balancing import trade_off
 
     first, second = names
-    curve = trade_off(machine, speed, first, second, options.points, offsets=offset, **where)
+    points = _POINTS if options.points is None else options.points
+    curve = trade_off(
+        *(machine, drive[0], first, second, points),
+        acceleration=drive[1],
+        offsets=offset,
+        **where,
+    )
     rows = [
         (f"{x:.6f}", f"{y:.6f}")
         for x, y in zip(curve.first_values, curve.second_values, strict=True)

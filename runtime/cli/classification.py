@@ -29,7 +29,9 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--lengths", metavar="A,B,C,D", help="frame, crank, coupler, follower, instead of a scene"
     )
-    parser.add_argument("--input", choices=("crank", "follower"), default="crank")
+    parser.add_argument(
+        "--input", choices=("crank", "follower"), help="driven link of a four-bar; default crank"
+    )
     parser.add_argument(
         "--tolerance", type=float, default=0.0, help="relative, of every length; default 0"
     )
@@ -43,26 +45,23 @@ def add(commands: Any) -> None:
 def _classify(options: argparse.Namespace) -> int:
     from ..kinematics.classification import Classification, classify
     from ..kinematics.transmission import transmission_angle
+    from ..mechanisms import FourBar
 
     opt.picture(options)
+    if options.plot is None:
+        opt.refuse_unused(options, ("base_plane",), "--plot FILE beside it")
     linkage: Any = _linkage(options)
-    found: Any = classify(linkage, input=options.input, tolerance=options.tolerance)
+    if not isinstance(linkage, FourBar):
+        opt.refuse_unused(options, ("input",), "a four-bar linkage")
+    driven: Any = options.input or "crank"
+    found: Any = classify(linkage, input=driven, tolerance=options.tolerance)
     passed_on = transmission_angle(linkage)
     if options.base_plane and not isinstance(found, Classification):
         raise bad("--base-plane", found.mechanism, "a four-bar linkage", "leave it out")
     draw = found.plot if options.base_plane else passed_on.plot
-    if options.json:
-        path = opt.picture(options)
-        if path is not None:
-            from ..plotting import new_figure
-
-            figure = new_figure()
-            draw(figure.add_subplot())
-            opt.save(figure, path)
-        opt.print_json({**found.to_dict(), "transmission": passed_on.to_dict()})
-        return 0 if found.passed and passed_on.passed else 1
     lines = [*_class_lines(found), "", *_transmission_lines(passed_on)]
-    return opt.finish(options, found, lines, draw)
+    more = {"transmission": passed_on.to_dict()}
+    return opt.finish(options, found, lines, draw, more=more, beside=(passed_on,))
 
 
 def _linkage(options: argparse.Namespace) -> Any:

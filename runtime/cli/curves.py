@@ -85,8 +85,7 @@ def _add_harmonics(commands: Any) -> None:
     harmonics.add_argument(
         "--stop",
         choices=("printed", "every"),
-        default="printed",
-        help="Smith's procedure: stop as printed, or when every harmonic has converged",
+        help="simpson: stop as printed (default), or when every harmonic has converged",
     )
     harmonics.add_argument(
         "--accuracy",
@@ -97,7 +96,7 @@ def _add_harmonics(commands: Any) -> None:
     harmonics.add_argument(
         "--speed",
         metavar="SPEED",
-        help="crank speed for forces, e.g. '195 rpm'; default operation.speed",
+        help="constant crank speed for forces, e.g. '195 rpm'; default operation.speed",
     )
 
 
@@ -180,10 +179,14 @@ def _harmonics(options: argparse.Namespace) -> int:
     source = _source(options, scene)
     given = {} if options.accuracy is None else {"accuracy": options.accuracy}
     found: Harmonics
+    if options.method != "simpson":
+        opt.refuse_unused(options, ("stop",), "--method simpson beside it")
     if options.method == "simpson":
         from ..kinematics.simpson import simpson_harmonics
 
-        found = simpson_harmonics(source, order=options.order, stop=options.stop, **given)
+        found = simpson_harmonics(
+            source, order=options.order, stop=options.stop or "printed", **given
+        )
     else:
         from ..kinematics.harmonics import harmonics
 
@@ -215,6 +218,7 @@ def _source(options: argparse.Namespace, scene: Scene) -> Source:
     motion = linkage.motion(np.zeros(1))
     known = [*motion.places, *motion.rates]
     if options.of in known:
+        opt.refuse_unused(options, ("speed",), "a force: places and rates are over the speed")
         return linkage, options.of
     if options.of not in _FORCES:
         expected = f"one of {', '.join(known)}; or a force: {', '.join(_FORCES)}"

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import drive_of, drive_options
 
 if TYPE_CHECKING:
-    from ..dynamics import Machine, RigidForces
+    from matplotlib.axes import Axes
+
+    from ..balancing import ForcePeak
+    from ..dynamics import Machine
+    from ..results import Result
 
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
 _WHOLE_TURN = "0:360:721deg"
@@ -29,16 +36,7 @@ def add(commands: Any) -> None:
         ),
     )
     opt.scene_options(forces)
-    forces.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="crank speed, e.g. '195 rpm', rad/s without a unit; default operation.speed",
-    )
-    forces.add_argument(
-        "--acceleration",
-        metavar="ALPHA",
-        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default 0",
-    )
+    drive_options(forces, "default operation.speed")
     forces.add_argument(
         "--angles",
         metavar="START:STOP:COUNT[UNIT]",
@@ -63,16 +61,24 @@ def _forces(options: argparse.Namespace) -> int:
     from ..dynamics import rigid_forces
 
     opt.picture(options)
+    if options.plot is None:
+        opt.refuse_unused(options, ("joint",), "--plot FILE beside it")
     scene = opt.load(options)
     machine = scene.machine()
-    speed, acceleration = speed_of(options, scene), 0.0
-    if options.acceleration is not None:
-        where = "--acceleration"
-        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
+    speed, acceleration = drive_of(options, scene)
     theta = np.array(_angles(options, machine))
     found = rigid_forces(machine, theta, speed, acceleration)
-    lines = [*_peaks(found), "", *_evenness(machine, speed, options.fluctuation)]
-    return opt.finish(options, found, lines, lambda ax: found.plot(ax, joint=options.joint))
+    even = _evenness(machine, speed, options.fluctuation)
+    from ..balancing import force_peaks
+
+    peaks = force_peaks(machine, (float(theta[0]), float(theta[-1])), speed, acceleration)
+    lines = [*_table(peaks), "", *even.lines]
+    more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **even.numbers}
+
+    def draw(ax: Axes) -> Axes:
+        return found.plot(ax, joint=options.joint)
+
+    return opt.finish(options, found, lines, draw, more=more, beside=even.results)
 
 
 def _angles(options: argparse.Namespace, machine: Machine) -> list[float]:
@@ -87,37 +93,51 @@ def _angles(options: argparse.Namespace, machine: Machine) -> list[float]:
     return opt.spaced(low + margin, high - margin, 721)
 
 
-def _peaks(found: RigidForces) -> list[str]:
-    """Return the greatest size of each force, and where."""
-    import numpy as np
+_LABELS = {
+    **{f"f{joint}": f"pin force {joint} [N]" for joint in ("12", "23", "34", "41")},
+    "torque": "driving torque [N m]",
+    "shaking_force": "force on the frame [N]",
+    "shaking_moment": "moment on the frame [N m]",
+    **{f"couple{joint}": f"couple of the slide {joint} [N m]" for joint in ("34", "41")},
+}
 
-    sizes = {}
-    for joint in ("12", "23", "34", "41"):
-        pair = found["x" + joint], found["y" + joint]
-        sizes[f"pin force {joint} [N]"] = np.hypot(*pair)
-    sizes["driving torque [N m]"] = found.torque
-    sizes["force on the frame [N]"] = np.hypot(found["shaking_x"], found["shaking_y"])
-    sizes["moment on the frame [N m]"] = found.shaking_moment
-    couples = [name for name in found.values if name.startswith("couple")]
-    for name in couples:
-        sizes[f"couple of the slide {name[-2:]} [N m]"] = found[name]
+
+def _table(peaks: Mapping[str, ForcePeak]) -> list[str]:
+    """Return the greatest size of each force, and where."""
     rows = []
-    for label, values in sizes.items():
-        top = int(np.argmax(np.abs(values)))
-        angle = f"{np.degrees(found.theta2[top]):.2f}"
-        rows.append((label, f"{values[top]:.6g}", angle))
+    for name, peak in peaks.items():
+        # No minus before a zero.
+        angle = f"{math.degrees(peak.crank_angle):z.2f}"
+        rows.append((_LABELS[name], f"{peak.value:z.6g}", angle))
     return opt.table(("quantity", "peak", "crank angle [deg]"), rows)
 
 
-def _evenness(machine: Machine, speed: float, wanted: float | None) -> list[str]:
-    """Return lines on mean torque, energy fluctuation and flywheel."""
+@dataclass(frozen=True)
+class _Evenness:
+    """What is told of the torque over a revolution: in words, in numbers, and what was checked."""
+
+    lines: Sequence[str]
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    results: Sequence[Result] = ()
+
+
+def _evenness(machine: Machine, speed: float, wanted: float | None) -> _Evenness:
+    """Return mean torque, energy fluctuation and flywheel."""
     from ..dynamics import flywheel_inertia, torque_fluctuation
 
-    if not machine.linkage.crank_turns:
-        if wanted is not None:
-            found = "a crank that does not turn fully"
-            raise bad("--fluctuation", found, "one that does", "change a length")
-        return ["the crank does not turn fully: no mean torque over a revolution"]
+    for lacking, words, expected, fix in (
+        (
+            not machine.linkage.crank_turns,
+            "a crank that does not turn fully",
+            "one that does",
+            "change a length",
+        ),
+        (speed == 0.0, "a crank without speed", "one that runs", "give --speed"),
+    ):
+        if lacking and wanted is not None:
+            raise bad("--fluctuation", words, expected, fix)
+        if lacking:
+            return _Evenness([f"{words}: no mean torque over a revolution"])
     steady = torque_fluctuation(machine, speed)
     size = float(abs(steady.torque).max())
     # Round-off of a mean that is zero reads as zero.
@@ -126,10 +146,18 @@ def _evenness(machine: Machine, speed: float, wanted: float | None) -> list[str]
         f"mean torque {mean:.6g} N m; energy fluctuation"
         f" {steady.energy_fluctuation:.6g} J at constant speed"
     ]
-    if wanted is not None:
-        wheel = flywheel_inertia(machine, speed, wanted)
-        lines.append(
-            f"flywheel {wheel.inertia:.6g} kg m^2 for a coefficient of {wheel.fluctuation:.4g}"
-            f" (first order {wheel.first_order:.6g})"
-        )
-    return lines
+    numbers: dict[str, Any] = {
+        "mean_torque": mean,
+        "energy_fluctuation": steady.energy_fluctuation,
+        "energy_fluctuation_error": steady.error,
+    }
+    if wanted is None:
+        return _Evenness(lines, numbers, (steady,))
+    wheel = flywheel_inertia(machine, speed, wanted)
+    lines.append(
+        f"flywheel {wheel.inertia:.6g} kg m^2 for a coefficient of {wheel.fluctuation:.4g}"
+        f" (first order {wheel.first_order:.6g})"
+    )
+    names = ("inertia", "first_order", "fluctuation", "motor_torque", "error")
+    numbers["flywheel"] = {name: getattr(wheel, name) for name in names}
+    return _Evenness(lines, numbers, (steady, wheel))

@@ -38,16 +38,7 @@ def add(commands: Any) -> None:
         metavar="START:STOP:COUNT[UNIT]",
         help="crank angles; default %(default)s",
     )
-    kinematics.add_argument(
-        "--speed",
-        metavar="SPEED",
-        help="crank speed, e.g. '195 rpm', rad/s without a unit; by default rates are over it",
-    )
-    kinematics.add_argument(
-        "--acceleration",
-        metavar="ALPHA",
-        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default 0",
-    )
+    drive_options(kinematics, "without a drive in option or scene, rates are over it")
     kinematics.add_argument(
         "--animate", metavar="FILE", help="draw the moving linkage: a .gif file"
     )
@@ -106,14 +97,13 @@ def _kinematics(options: argparse.Namespace) -> int:
 
         check_animation_path(options.animate)
     theta = np.array(opt.values(options.angles, "angle", "--angles"))
-    drive = {}
-    if options.speed is not None:
-        drive["speed"] = opt.quantity(options.speed, "frequency", "--speed")
-    if options.acceleration is not None:
-        where = "--acceleration"
-        drive["acceleration"] = opt.quantity(options.acceleration, "angular_acceleration", where)
-    linkage = opt.load(options).mechanism()
-    motion = linkage.motion(theta, **drive)
+    scene = opt.load(options)
+    linkage = scene.mechanism()
+    given = options.speed is not None or options.acceleration is not None
+    if given or scene.get("operation.acceleration", 0.0):
+        motion = linkage.motion(theta, *drive_of(options, scene))
+    else:
+        motion = linkage.motion(theta)
     if options.animate is not None:
         animate(linkage, options.animate)
     return opt.finish(options, motion, _table(motion))
@@ -145,6 +135,39 @@ def _table(motion: Motion) -> list[str]:
     return lines
 
 
+def drive_options(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add crank speed and acceleration; ``default`` says what holds without a speed."""
+    parser.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help=f"crank speed, e.g. '195 rpm', rad/s without a unit; {default}",
+    )
+    parser.add_argument(
+        "--acceleration",
+        metavar="ALPHA",
+        help="crank acceleration, e.g. '25 rad/s**2', the unit of a plain number; default"
+        " operation.acceleration",
+    )
+
+
+def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
+    """Return crank speed and acceleration [rad/s, rad/s^2], from the options or the scene.
+
+    Both may have either sign, or be zero.
+
+    Raises
+    ------
+    BadInput
+        If no speed is given, or one of them is no such quantity.
+    """
+    if options.acceleration is None:
+        acceleration = float(scene.get("operation.acceleration", 0.0))
+    else:
+        where = "--acceleration"
+        acceleration = opt.quantity(options.acceleration, "angular_acceleration", where)
+    return _speed(options, scene), acceleration
+
+
 def speed_of(options: argparse.Namespace, scene: Scene) -> float:
     """Return the crank speed [rad/s]: the option, or ``operation.speed`` of the scene.
 
@@ -153,14 +176,18 @@ def speed_of(options: argparse.Namespace, scene: Scene) -> float:
     BadInput
         If neither is given, or the speed is not positive.
     """
-    given = options.speed
-    speed = scene.get("operation.speed", None) if given is None else None
-    if given is not None:
-        speed = opt.quantity(given, "frequency", "--speed")
+    speed = _speed(options, scene)
+    if not speed > 0:
+        raise bad("--speed", repr(options.speed), "a positive crank speed", "correct the sign")
+    return speed
+
+
+def _speed(options: argparse.Namespace, scene: Scene) -> float:
+    if options.speed is not None:
+        return opt.quantity(options.speed, "frequency", "--speed")
+    speed = scene.get("operation.speed", None)
     if speed is None:
         raise bad("--speed", "nothing", "a crank speed", "give --speed '500 rpm'")
-    if not speed > 0:
-        raise bad("--speed", repr(given), "a positive crank speed", "correct the sign")
     return float(speed)
 
 

@@ -8,7 +8,7 @@ import math
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..results import Result
+    from ..results import Check, Result
     from ..scenes import Scene
 
 _SELF_CHECK_FAILED = 1
@@ -168,11 +168,33 @@ def picture(options: argparse.Namespace) -> Path | None:
     return check_picture_path(options.plot)
 
 
+def refuse_unused(options: argparse.Namespace, names: Sequence[str], without: str) -> None:
+    """Raise BadInput for an option that was given and would do nothing.
+
+    Parameters
+    ----------
+    options : Namespace
+        An option that was not given is None or False there.
+    names : sequence of str
+        The options, as attributes.
+    without : str
+        What they go with, such as ``"--plot FILE"``.
+    """
+    for name in names:
+        given = getattr(options, name)
+        if given is not None and given is not False:
+            where = "--" + name.replace("_", "-")
+            raise bad(where, "an option that does nothing here", without, "leave it out")
+
+
 def finish(
     options: argparse.Namespace,
     result: Result,
     lines: Sequence[str],
     draw: Callable[[Axes], Any] | None = None,
+    *,
+    more: Mapping[str, Any] | None = None,
+    beside: Sequence[Result] = (),
 ) -> int:
     """Write what was asked for and return the exit status: 1 where a self-check failed.
 
@@ -186,6 +208,10 @@ def finish(
         The same for people; the error figure and the checks are added.
     draw : callable, optional
         Draws into axes; ``result.plot`` by default.
+    more : mapping of str, optional
+        What the JSON holds beside the result.
+    beside : sequence of Result
+        Other results whose self-checks count too.
     """
     path = picture(options)
     if path is not None:
@@ -194,13 +220,15 @@ def finish(
         figure = new_figure()
         (draw or result.plot)(figure.add_subplot())
         save(figure, path)
+    checks = dict(result.checks)
+    for other in beside:
+        checks.update(other.checks)
+    failed = {name: check for name, check in checks.items() if not check.passed}
     if options.json:
-        print_json(result.to_dict())
+        print_json({**result.to_dict(), **(more or {}), "passed": not failed})
     else:
-        print("\n".join([*lines, *_verdict(result)]))
-    failed = [name for name, check in result.checks.items() if not check.passed]
-    for name in failed:
-        check = result.checks[name]
+        print("\n".join([*lines, *_verdict(result, checks)]))
+    for name, check in failed.items():
         text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
         print(f"elastolink {options.command}: {text}", file=sys.stderr)
     return _SELF_CHECK_FAILED if failed else 0
@@ -244,7 +272,7 @@ def ranges(result: Result) -> list[str]:
     return table(("quantity", "shape", "least", "greatest"), rows) if rows else []
 
 
-def _verdict(result: Result) -> list[str]:
+def _verdict(result: Result, checks: Mapping[str, Check]) -> list[str]:
     import numpy as np
 
     error = np.asarray(result.error, dtype=float)
@@ -256,7 +284,7 @@ def _verdict(result: Result) -> list[str]:
     ]
     lines += [
         f"check:  {name}: {check.value:.2g} (limit {check.limit:.2g})"
-        for name, check in sorted(result.checks.items())
+        for name, check in sorted(checks.items())
     ]
     return lines
 
@@ -289,6 +317,7 @@ __all__ = [
     "print_json",
     "quantity",
     "ranges",
+    "refuse_unused",
     "save",
     "scene_options",
     "settings",

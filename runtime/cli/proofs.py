@@ -46,7 +46,7 @@ def add(commands: Any) -> None:
     benchmark.add_argument(
         "subject",
         choices=_BENCHMARKS,
-        help="chart: a million half traces; slices: exact boundaries; forces: a million crank angles",
+        help="chart: a million half traces; slices: boundaries; forces: a million crank angles",
     )
 
 

@@ -6,16 +6,21 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..results import Check
 from .blocks import Array
-from .force_errors import figure
+from .force_errors import MEANINGFUL, figure_and_size, share_of
+from .force_multipliers import multipliers
 from .loads import Wrench
 from .machine import Machine
 
 _PLACES = 24
-# A residual adds up numbers that each may be off by the figure, from positions that may be, too.
-_LIMIT = 2.0
+# Places at which Lagrange's equations are solved as well.
+_SOLVED = 6
+# The figure covers what is left in the balances, too: the joint forces and their arms are worked
+# out from the same angle and lengths.
+_LIMIT = 1.0
 
 
 def checks(
@@ -39,23 +44,68 @@ def checks(
     Returns
     -------
     dict of str to Check
-        Residuals over the error figure.
+        Residuals over the error figure, at places all over and where a force is largest; the
+        figure itself over the forces that the parts of the machine bring about, which fails at a
+        fold; and how far the multipliers of Lagrange's equations are off, solved as a whole at a
+        few of the places.
     """
     batch = np.broadcast_shapes(theta.shape, speed.shape, acceleration.shape)
-    size = int(np.prod(batch, dtype=int))
-    if size == 0:
+    if int(np.prod(batch, dtype=int)) == 0:
         return {}
-    chosen = np.unravel_index(np.unique(np.linspace(0, size - 1, _PLACES).astype(int)), batch)
-    given = tuple(np.broadcast_to(item, batch)[chosen] for item in (theta, speed, acceleration))
-    found = {name: value[chosen] for name, value in values.items()}
-    balance = _Balance(machine, *given)
-    allowed = np.maximum(figure(machine, *given), np.finfo(float).tiny)
+    flat = {name: np.ravel(value) for name, value in values.items()}
+    chosen = _places(flat)
+    given = [
+        np.ravel(np.broadcast_to(item, batch))[chosen] for item in (theta, speed, acceleration)
+    ]
+    found = {name: value[chosen] for name, value in flat.items()}
+    error, size = figure_and_size(machine, *given)
+    allowed = np.maximum(error, np.finfo(float).tiny)
     broken = sum(int(np.count_nonzero(~np.isfinite(value))) for value in values.values())
-    finite = {"values that are not finite": Check(float(broken), 0.0)}
-    return finite | {
-        f"{name} over the figure": Check(float(np.max(np.abs(gap) / allowed)), _LIMIT)
-        for name, gap in balance.residuals(found).items()
+    share = float(np.max(share_of(error, size)))
+    made = {
+        "values that are not finite": Check(float(broken), 0.0),
+        "error over what is added up": Check(share, MEANINGFUL),
     }
+    with np.errstate(over="ignore", invalid="ignore"):
+        gaps = _Balance(machine, *given).residuals(found)
+        few = np.unique(np.linspace(0, chosen.size - 1, _SOLVED).astype(int))
+        other = _against_multipliers(machine, given, found, allowed, few)
+        made |= {
+            f"{name} over the figure": Check(float(np.max(np.abs(gap) / allowed)), _LIMIT)
+            for name, gap in gaps.items()
+        }
+        if other is not None:
+            name = "multipliers of Lagrange's equations over the figures"
+            made[name] = Check(float(np.max(other)), _LIMIT)
+    return made
+
+
+def _places(values: Mapping[str, Array]) -> NDArray[np.intp]:
+    """Return places all over, and those at which each of the values is largest."""
+    size = next(iter(values.values())).size
+    spread = np.linspace(0, size - 1, _PLACES).astype(int)
+    peaks = [int(np.argmax(np.abs(value))) for value in values.values()]
+    return np.unique(np.concatenate([spread, np.array(peaks, dtype=int)]))
+
+
+def _against_multipliers(
+    machine: Machine,
+    given: list[Array],
+    found: Mapping[str, Array],
+    allowed: Array,
+    few: NDArray[np.intp],
+) -> Array | None:
+    """Return how far the values leave the multipliers, over both figures; None without any."""
+    names = [name for name in found if not name.startswith("shaking")]
+    if not names:
+        return None
+    there, off = multipliers(machine, *(item[few] for item in given))
+    longest = max(abs(length) for length in machine.linkage.lengths.values())
+    gaps = [
+        np.abs(found[name][few] - there[name]) / (1.0 if name[0] in "xy" else longest)
+        for name in names
+    ]
+    return np.asarray(np.max(gaps, axis=0) / (allowed[few] + off))
 
 
 class _Balance:

@@ -61,7 +61,7 @@ def force_module(machine: Machine, steady: bool) -> ForceModule:
     drops: tuple[str, ...] = ()
     if steady:
         drops = ("across", "crank_acceleration") if straight else ("crank_acceleration",)
-    return _module(_MECHANISMS[type(machine.linkage).__name__], drops)
+    return _module(MECHANISMS[type(machine.linkage).__name__], drops)
 
 
 @lru_cache(maxsize=16)
@@ -83,7 +83,7 @@ def _module(mechanism: str, drop: tuple[str, ...]) -> ForceModule:
 
 
 _DRIVE = ("speed", "acceleration")
-_MECHANISMS = {
+MECHANISMS = {
     "FourBar": "four_bar",
     "SliderCrank": "slider_crank",
     "QuickReturn": "quick_return",

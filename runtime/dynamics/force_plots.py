@@ -46,14 +46,22 @@ def draw(forces: RigidForces, ax: Axes | None, joint: str | None) -> Axes:
         raise bad("plot", "one crank angle", "an array of them", "ask for more angles")
     ax = axes_or_new(ax)
     if joint in _CURVES:
-        theta = np.degrees(np.broadcast_to(forces.theta2, columns[0].shape))
-        for row, value in _rows(theta, columns[0]):
-            ax.plot(row, value)
-        ax.axhline(0.0, color="0.7", linewidth=0.8)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel(label)
-        return ax
+        return _over_the_turn(ax, forces.theta2, columns[0], label)
+    for still, other, axis in ((0, 1, "Y"), (1, 0, "X")):
+        # A force that keeps its line, such as that of a guide, has no polar diagram.
+        if not np.any(columns[still]):
+            return _over_the_turn(ax, forces.theta2, columns[other], f"{label}, {axis} [N]")
     return _hodograph(ax, forces.theta2, columns[0], columns[1], label)
+
+
+def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
+    degrees = np.degrees(np.broadcast_to(theta, values.shape))
+    for row, value in _rows(degrees, values):
+        ax.plot(row, value)
+    ax.axhline(0.0, color="0.7", linewidth=0.8)
+    ax.set_xlabel("crank angle [deg]")
+    ax.set_ylabel(label)
+    return ax
 
 
 def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:

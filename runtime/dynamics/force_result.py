@@ -125,7 +125,8 @@ class RigidForces(Result):
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON."""
         found = super().to_dict()
-        return {**found, **found.pop("values")}
+        values = found.pop("values")
+        return {**found, **values}
 
     def plot(self, ax: Axes | None = None, joint: str | None = None) -> Axes:
         """Draw a polar diagram (Smith Figs. 12-16), or the torque against the crank angle.

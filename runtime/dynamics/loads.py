@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from numbers import Real
 from typing import Any, Literal, TypeAlias
 
@@ -58,8 +58,9 @@ class Load:
     link : str
         The loaded link, for example ``"follower"``.
     force : pair of float, or callable
-        Force components [N].  A callable is given the crank angles and returns the pair, an array
-        of shape (2,) or one of shape (..., 2).
+        Force components [N].  A callable is given the crank angles and returns the pair ``fx, fy``
+        as a tuple, an array of shape (2,), or one of shape (..., 2): the components last.  For as
+        many angles as components it is called once more, at one angle more.
     couple : float or callable
         Couple [N m], anticlockwise, in the same way.
     along, across : float
@@ -377,22 +378,68 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     BadInput
         If the callable returns something else than finite numbers of that shape.
     """
-    found = law(given) if callable(law) else law
+    expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
+    found = _called(law, given, where, expected) if callable(law) else law
+    if callable(law) and size and _may_be_turned(found, shape):
+        # As many angles as components: at one angle more, the array shows its order.
+        longer = (int(np.prod(shape)) + 1,)
+        evaluated(law, _one_more(given, shape), size, where, longer)
     try:
         if size and isinstance(found, Sequence) and len(found) == size:
             found = np.stack(np.broadcast_arrays(*found), axis=-1)
         values = np.asarray(found, dtype=float)
         fits = not size or (values.ndim > 0 and values.shape[-1] == size)
         own = values.shape[:-1] if size else values.shape
-        np.broadcast_shapes(own, shape)
+        fits = fits and np.broadcast_shapes(own, shape) == shape
     except (TypeError, ValueError):
         fits = False
-    expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
     if not fits:
         raise bad(where, f"{found!r}"[:60], expected, "correct what the callable returns")
     if not np.all(np.isfinite(values)):
         raise bad(where, "a value that is not finite", expected, "correct the callable")
     return values
+
+
+def _called(law: Callable[[Any], Any], given: Any, where: str, expected: str) -> Any:
+    """Return what a callable returns; name the load where it mistakes shapes or types.
+
+    Raises
+    ------
+    BadInput
+        From a TypeError, ValueError or IndexError of the callable; other exceptions pass.
+    """
+    try:
+        return law(given)
+    except BadInput:
+        raise
+    except (TypeError, ValueError, IndexError) as refusal:
+        found = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
+        raise bad(where, found, expected, "correct the callable") from refusal
+
+
+def _may_be_turned(found: Any, shape: tuple[int, ...]) -> bool:
+    """Tell whether the components of an array may be along its first axis, or its last one."""
+    return isinstance(found, np.ndarray) and found.shape == (2,) * (len(shape) + 1) and bool(shape)
+
+
+def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
+    """Return what a callable is given, with the first of its places once more at the end."""
+    if isinstance(given, LoadState):
+        pairs = ("position", "velocity")
+        return LoadState(
+            **{
+                item.name: _with_first(
+                    getattr(given, item.name), shape, (2,) if item.name in pairs else ()
+                )
+                for item in fields(given)
+            }
+        )
+    return _with_first(given, shape, ())
+
+
+def _with_first(values: Array, shape: tuple[int, ...], inner: tuple[int, ...]) -> Array:
+    flat = np.broadcast_to(values, (*shape, *inner)).reshape(-1, *inner)
+    return np.concatenate([flat, flat[:1]])
 
 
 def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:

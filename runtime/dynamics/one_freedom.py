@@ -20,7 +20,7 @@ _LEAST_SHARE = 1e-12
 # A series is good to 1e-12 of the largest inertia: below this share it is not used.
 _TABLE_SHARE = 1e-5
 _TURN = 2.0 * np.pi
-_SCANNED, _ZOOM = 720, 14
+_SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
 
 
 class OneFreedom:
@@ -140,11 +140,14 @@ class OneFreedom:
         angles = self._scan(low, high)
         inertia = self.coefficients(angles)[0]
         spacing = angles[1] - angles[0]
+        middle = float(np.median(inertia))
         dips = (inertia <= np.roll(inertia, 1)) & (inertia <= np.roll(inertia, -1))
+        # Within half a degree of a zero nearly nothing is left.
+        dips &= inertia + self.flywheel <= _DIP_SHARE * middle
         for dip in angles[dips]:
             ends = max(dip - spacing, low), min(dip + spacing, high)
             least, at = self._least_inertia(*ends)
-            if not least > _LEAST_SHARE * float(np.median(inertia)):
+            if not least > _LEAST_SHARE * middle:
                 found = f"none at {at:.6g} rad, where the links that have mass stand still"
                 fix = "give the crank an inertia, or add a flywheel"
                 raise bad("Machine.masses", found, "inertia at every crank angle", fix)

@@ -28,17 +28,19 @@ _TURN = 2.0 * np.pi
 _LOOSER = 100.0
 # No step is longer than this share of a revolution; the second where torques are callables, which
 # may act over a few degrees only.
-_LONGEST, _LONGEST_CALLED = 1.0 / 8.0, 1.0 / 24.0
+_LONGEST, _LONGEST_CALLED = 1.0 / 12.0, 1.0 / 24.0
 # Share of the largest energy that may be lost, whatever the tolerance.
 _ENERGY_LIMIT = 1e-6
+# Times at which the speeds of the last revolution are taken.
+_LAST = 2001
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunUp(Result):
     """A run of a machine under a motor torque; arrays over the times.
 
-    ``error`` is that of the crank angle [rad]: how far a run of twice as long steps and a hundredfold
-    tolerance departs, and the angle that the energy gone astray accounts for.
+    ``error`` is that of the crank angle [rad]: how far a run of twice as long steps and a
+    hundredfold tolerance departs, and the angle that the energy gone astray accounts for.
 
     Attributes
     ----------
@@ -78,10 +80,30 @@ class RunUp(Result):
         ("time", "angle", "speed", "acceleration", "torque", "energy"), ("time",)
     )
 
+    exported: ClassVar[tuple[str, ...]] = ("revolutions", "fluctuation")
+
     @property
     def revolutions(self) -> float:
         """Revolutions made, negative backwards."""
         return float((self.angle[-1] - self.angle[0]) / (2.0 * np.pi))
+
+    @property
+    def fluctuation(self) -> float | None:
+        """Speed fluctuation in the last revolution, (greatest - least) / mean of the two.
+
+        None where the run made less than a revolution.
+        """
+        last = float(self.angle[-1])
+        nodes = self.run.at(self.run.times)[0]
+        before = np.nonzero(np.abs(nodes - last) >= _TURN * (1.0 - 1e-12))[0]
+        if before.size == 0:
+            return None
+        begin = int(before[-1])
+        time = np.linspace(self.run.times[begin], self.run.end, _LAST)
+        angle, speed, _ = self.run.at(time)
+        speeds = np.abs(speed[np.abs(angle - last) <= _TURN * (1.0 + 1e-12)])
+        high, low = float(np.max(speeds)), float(np.min(speeds))
+        return 2.0 * (high - low) / (high + low)
 
     def at(self, time: Any) -> tuple[Array, Array]:
         """Return crank angle [rad] and speed [rad/s] at times [s] within the run.
@@ -147,7 +169,7 @@ def run_up(
         Inertia [kg m^2] added to the crank.
     tolerance : float
         Of a step: in the crank angle [rad], and in the energy relative to its largest value so
-        far, 1e-12 to 1e-3.  No step exceeds an eighth of a revolution, whatever the tolerance.
+        far, 1e-12 to 1e-3.  No step exceeds a twelfth of a revolution, whatever the tolerance.
     samples : int
         Number of times in the result, evenly spaced; the run itself takes its own steps.
     reversals : bool
@@ -294,6 +316,7 @@ def _positive(value: Any, most: float = np.inf) -> bool:
 def _require_whole(samples: object, max_steps: object) -> None:
     for name, value, least in (("samples", samples, 2), ("max_steps", max_steps, 1)):
         whole = isinstance(value, Integral) and not isinstance(value, bool)
-        if not (whole and isinstance(value, Integral) and value >= least):
+        number: Any = value
+        if not (whole and number >= least):
             found = repr(value)[:60]
             raise bad(name, found, f"a whole number, {least} or more", "correct it")

@@ -39,18 +39,21 @@ class Run:
     system : OneFreedom
         The machine.
     solution : callable
-        Times, shape (n,), to angle, ``sqrt(J + flywheel) omega`` and work, shape (3, n).
-    times : ndarray, shape (steps + 1,)
-        Ends of the steps [s].
+        Times, shape (n,), to angle, ``sqrt(J + flywheel) omega`` and work, shape (3, n); ``ts``
+        are the ends of its steps.
     status, message : str
         How it ended.
     """
 
     system: OneFreedom
     solution: Any
-    times: Array
     status: Status
     message: str
+
+    @property
+    def times(self) -> Array:
+        """Ends of the steps [s], shape (steps + 1,)."""
+        return np.asarray(self.solution.ts)
 
     @property
     def end(self) -> float:
@@ -72,10 +75,13 @@ class Run:
     def drift(self) -> tuple[float, float]:
         """Return the energy defect over the largest energy, and the angle [rad] it accounts for.
 
-        At the ends of the steps.  An energy off by d puts the speed off by ``d / (J omega)``; near
-        rest, a tenth of the greatest ``u`` stands for the present one.
+        At the ends of the steps and halfway, where interpolation adds its own.  An energy off by d
+        puts the speed off by ``d / (J omega)``; near rest, a tenth of the greatest ``u`` stands
+        for the present one.
         """
-        angle, momentum, work = self.solution(self.times)
+        middles = (self.times[1:] + self.times[:-1]) / 2.0
+        times = np.sort(np.concatenate([self.times, middles]))
+        angle, momentum, work = self.solution(times)
         potential = self.system.machine.potential_energy(angle)
         kinetic = momentum**2 / 2.0
         defect = np.abs((kinetic - kinetic[0]) + (potential - potential[0]) - work)
@@ -83,7 +89,7 @@ class Run:
         least = 0.1 * float(np.max(np.abs(momentum))) or 1.0
         root = np.sqrt(self.system.coefficients(angle)[0] + self.system.flywheel)
         rate = defect / (np.maximum(np.abs(momentum), least) * root)
-        gone = float(np.sum((rate[1:] + rate[:-1]) / 2.0 * np.diff(self.times)))
+        gone = float(np.sum((rate[1:] + rate[:-1]) / 2.0 * np.diff(times)))
         return float(np.max(defect)) / size, gone
 
 
@@ -139,10 +145,12 @@ def integrate(
         range of numbers.
     """
     theta0, speed0 = start
+    if not abs(speed0) < _FASTEST:
+        raise _too_fast(speed0, 0.0)
     motion = _Motion(system, law)
     state = np.array([theta0, motion.root(theta0) * speed0, 0.0])
     if stuck := _cannot_start(system, law, theta0, speed0, goals.reversals):
-        return Run(system, _Standing(state), np.zeros(1), "stalled", stuck)
+        return Run(system, _Standing(state), "stalled", stuck)
     # What is too large overflows quietly here, and is refused by its speed.
     with np.errstate(over="ignore", invalid="ignore"):
         return _stepped(motion, state, tolerance, longest, goals)
@@ -152,7 +160,7 @@ def _stepped(motion: _Motion, state: Array, tolerance: float, longest: float, go
     from scipy.integrate import DOP853, OdeSolution
 
     bound = np.inf if goals.duration is None else goals.duration
-    scale = motion.scale(state)
+    scale = motion.scale(0.0, state)
     first = motion.longest_step(state, motion(0.0, state), longest)
     small: Any = tolerance * scale
     # The relative tolerance is left to the sizes: an angle of many turns is not allowed more.
@@ -178,12 +186,12 @@ def _stepped(motion: _Motion, state: Array, tolerance: float, longest: float, go
             times.append(end)
             break
         times.append(solver.t)
-        scale = np.maximum(scale, motion.scale(solver.y))
+        scale = np.maximum(scale, motion.scale(solver.t, solver.y))
         solver.atol = tolerance * scale
         solver.max_step = motion.longest_step(solver.y, solver.f, longest)
     if not pieces:
-        return Run(motion.system, _Standing(state), np.zeros(1), status, message)
-    return Run(motion.system, OdeSolution(times, pieces), np.array(times), status, message)
+        return Run(motion.system, _Standing(state), status, message)
+    return Run(motion.system, OdeSolution(times, pieces), status, message)
 
 
 @dataclass(frozen=True)
@@ -191,6 +199,7 @@ class _Standing:
     """A machine that does not move."""
 
     state: Array
+    ts: tuple[float, ...] = (0.0,)
 
     def __call__(self, time: Array) -> Array:
         return np.repeat(self.state[:, np.newaxis], np.size(time), axis=1)
@@ -242,13 +251,14 @@ class _Motion:
             power = float(self.system.machine.power(theta, speed))
         return np.array([speed, (torque - load) / root, torque * speed + power])
 
-    def scale(self, state: Array) -> Array:
-        """Return what angle, speed and work are small against."""
+    def scale(self, time: float, state: Array) -> Array:
+        """Return what angle, ``u`` and work are small against."""
         theta, momentum = float(state[0]), float(state[1])
-        inertia = self._inertia(theta)[0]
+        inertia, load = self._inertia(theta)
         speed = momentum / float(np.sqrt(inertia))
-        torque = abs(float(self.law(speed, theta, 0.0)))
-        torque += abs(float(self.system.load(theta, speed)))
+        if load is None:
+            load = float(self.system.load(theta, speed))
+        torque = abs(float(self.law(speed, theta, time))) + abs(load)
         size = max(abs(momentum), float(np.sqrt(torque))) or 1.0
         return np.array([1.0, size, size**2])
 

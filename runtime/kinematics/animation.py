@@ -17,7 +17,7 @@ from ..results import write_whole
 from ._circuits import Circuit
 from ._drawing import COLOURS, bars, draw_frame, draw_linkage, pins, point_bar
 from ._taylor import Complex
-from .coupler_curve import CouplerCurve
+from .coupler_curve import CouplerCurve, require_linkage
 
 _MOST_FRAMES, _FASTEST = 2000, 50
 _TRACE_POINTS = 721
@@ -59,9 +59,11 @@ def animate(
     Raises
     ------
     BadInput
-        If the ending, the folder, a number, a curve or the circuit is impossible.
+        If this is no linkage, or the ending, the folder, a number, a curve or the circuit is
+        impossible.
     """
     target = check_animation_path(path)
+    require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     motion.check()
     if not (isinstance(frames, (int, np.integer)) and 2 <= frames <= _MOST_FRAMES):

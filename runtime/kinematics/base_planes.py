@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 _NAMES = ("coupler/input", "output/input", "frame/input")
 # Of the plane: to the right more output, upwards more frame.
 _AXES = np.array([[-1.0, 1.0, 0.0], [-1.0, -1.0, 2.0]]) / np.sqrt([[2.0], [6.0]])
+# A mark so near the middle of a symbol, over the size of the plane, would cover it; the symbol
+# then moves so many points.
+_WIDE, _HIGH, _STEP = 0.08, 0.05, 16.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,22 +73,34 @@ class BasePlane(Result):
             flat = corners @ _AXES.T
             colour = "#cfe0ee" if symbol.startswith("G") else "#f2c6a8"
             ax.fill(flat[:, 0], flat[:, 1], facecolor=colour, edgecolor="#444444", lw=0.8)
-            ax.text(*_centroid(flat), symbol, ha="center", va="center", fontsize=9)
-        if mark is not None:
-            ax.plot(
-                *(_AXES @ np.asarray(mark)),
-                "o",
-                color="#8c2d04",
-                mfc="none",
-                ms=9,
-                label="this linkage",
+            place = _centroid(flat)
+            ax.annotate(
+                symbol,
+                place,
+                xytext=(0.0, self._aside(place, mark)),
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize=9,
             )
+        if mark is not None:
+            at = _AXES @ np.asarray(mark)
+            ax.plot(*at, "o", color="#8c2d04", mfc="none", ms=9, label="this linkage")
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), fontsize=8, frameon=False)
         ax.set_aspect("equal")
         ax.set_xlabel(r"$(\lambda_3-\lambda_2)/\sqrt{2}$")
         ax.set_ylabel(r"$(2\lambda_4-\lambda_2-\lambda_3)/\sqrt{6}$")
         ax.set_title(rf"base plane $\lambda$ = {self.lam:.4g}")
         return ax
+
+    def _aside(self, place: tuple[float, float], mark: Sequence[float] | None) -> float:
+        """Return how far a symbol moves up or down [points] to leave the mark free."""
+        if mark is None:
+            return 0.0
+        off = (_AXES @ np.asarray(mark) - place) / np.ptp(self.outline @ _AXES.T, axis=0)
+        if abs(off[0]) > _WIDE or abs(off[1]) > _HIGH:
+            return 0.0
+        return -_STEP if off[1] >= 0.0 else _STEP
 
 
 def base_plane(lam: float, points: int = 201) -> BasePlane:

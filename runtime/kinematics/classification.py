@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from numbers import Real
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import BadInput, Problem, bad
-from ..mechanisms import FourBar
+from ..mechanisms import FourBar, QuickReturn, SliderCrank
 from ..results import Result, provenance
 from .barker import (
     CLASSES,
@@ -26,8 +26,6 @@ from .barker import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..mechanisms import QuickReturn, SliderCrank
 
 Input = Literal["crank", "follower"]
 SYMBOLS = ("", *(row.symbol for row in CLASSES))
@@ -196,7 +194,7 @@ def classify(
     linkage : FourBar, SliderCrank, QuickReturn or sequence of 4 floats
         The linkage, or lengths of frame, crank, coupler and follower in one unit.
     input : {"crank", "follower"}
-        The driven link of a four-bar linkage.  It decides between crank rocker and rocker crank.
+        The driven link; of a four-bar linkage it decides between crank rocker and rocker crank.
     tolerance : float
         Relative tolerance of every length, at least 0 and below 1.  The linkage counts as a change
         point where some lengths within the tolerance make it one; of several such classes the
@@ -213,13 +211,14 @@ def classify(
         raise bad("tolerance", repr(tolerance), expected, "0 asks for exact change points")
     if input not in ("crank", "follower"):
         raise bad("input", repr(input), "'crank' or 'follower'", "choose one")
-    given: Any = linkage
-    sizes = getattr(given, "lengths", {})
-    if "offset" in sizes:
-        return _slider_crank(sizes, Fraction(tolerance))
-    if "rod" in sizes:
-        return _quick_return(sizes, Fraction(tolerance))
-    return _four_bar(_checked(tuple(sizes.values()) or given), input, Fraction(tolerance))
+    if isinstance(linkage, (SliderCrank, QuickReturn)):
+        if input != "crank":
+            found, expected = f"the follower of a {type(linkage).__name__}", "'crank'"
+            raise bad("input", found, expected, "leave it out")
+        kind = _slider_crank if isinstance(linkage, SliderCrank) else _quick_return
+        return kind(linkage.lengths, Fraction(tolerance))
+    lengths = linkage.lengths.values() if isinstance(linkage, FourBar) else linkage
+    return _four_bar(_checked(lengths), input, Fraction(tolerance))
 
 
 def classify_many(lengths: ArrayLike) -> NDArray[np.int64]:
@@ -251,7 +250,7 @@ def classify_many(lengths: ArrayLike) -> NDArray[np.int64]:
     return class_numbers(array)
 
 
-def _checked(lengths: Sequence[float]) -> tuple[float, float, float, float]:
+def _checked(lengths: Iterable[float]) -> tuple[float, float, float, float]:
     """Return four positive doubles that close, or raise BadInput."""
     try:
         found = [*lengths]

@@ -180,14 +180,15 @@ def coupler_curve(
     Raises
     ------
     BadInput
-        If the link, the circuit or a number is impossible, the linkage is at a change point (its
-        circuits meet there), or the point stands still.
+        If this is no linkage, the link, the circuit or a number is impossible, the linkage is at a
+        change point (its circuits meet there), or the point stands still.
 
     Notes
     -----
     Aannaque 3.6.  A path run out and back (a point of the slider, or of a link that swings about a
     pivot) has its ends among the cusps, and no double points are listed: it consists of them.
     """
+    require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     place = _place(linkage, link, along, across)
     if not (isinstance(points, (int, np.integer)) and 16 <= points <= _MOST_POINTS):
@@ -219,6 +220,13 @@ def coupler_curve(
         checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
         provenance=provenance(linkage._told()),
     )
+
+
+def require_linkage(linkage: object) -> None:
+    """Raise BadInput for what is no linkage."""
+    if not isinstance(linkage, Linkage):
+        found = type(linkage).__name__
+        raise bad("linkage", found, "FourBar, SliderCrank or QuickReturn", "give one")
 
 
 def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:

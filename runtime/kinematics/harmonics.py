@@ -56,6 +56,13 @@ class Harmonics(Result):
         Estimate of the largest deviation of the harmonics up to the order from the function.
     evaluations : int
         Angles at which the function was asked for.
+
+    Notes
+    -----
+    No set of samples shows a feature that is narrower than their spacing.  A function that seems
+    constant is therefore asked for at 131072 angles and more, and ``error`` then admits a pulse
+    between two of them, as high as the constant or as 1, whichever is more.  Of other functions
+    it is assumed that nothing hides in less than 1/64 of a turn.
     """
 
     name: str
@@ -192,9 +199,15 @@ def _doubled(
     before: np.ndarray[Any, Any] | None = None
     changes: list[float] = []
     while True:
-        values, full = _coefficients(f, count, name)
+        settled = False
+        theta, values, full = _coefficients(f, count, name)
         asked += count
         largest = max(largest, float(np.max(np.abs(values))))
+        # A pulse that one set has met and the next ones miss must not be forgotten.
+        ends = [int(np.argmin(values)), int(np.argmax(values))]
+        probes = np.concatenate([probes, theta[ends]])
+        at_probes = np.concatenate([at_probes, values[ends]])
+        constant = bool(np.ptp(at_probes) <= 4.0 * _EPS * largest)
         low = full[: order + 1]
         if before is not None:
             changes.append(float(np.max(np.abs(low - before))))
@@ -203,14 +216,19 @@ def _doubled(
         if len(changes) > 1 and max(changes[-2:]) <= goal:
             gap = float(np.max(np.abs(at_probes - _evaluate(full, probes))))
             # What the samples do not show may be folded into a coefficient whole.
-            if gap <= max(1e3 * goal, 1e-11 * largest) or 2 * count > _MOST:
+            settled = gap <= max(1e3 * goal, 1e-11 * largest)
+            # Nothing but a constant: a pulse may lie between the samples.
+            if settled and not constant:
                 break
         if 2 * count > _MOST:
             break
         count *= 2
     rest = float(np.max(np.abs(at_probes - _evaluate(low, probes))))
     dropped = float(np.sum(np.abs(full[order + 1 :])))
-    error = 2.0 * _last_change(changes) + 2.0 * _EPS * largest
+    error = 2.0 * _last_change(changes, settled) + 2.0 * _EPS * largest
+    if constant:
+        # A pulse between two samples, of this height or of 1: 2/turn times its area.
+        error += 2.0 * max(largest, 1.0) / count
     a, b = low.real.copy(), -low.imag
     b[0] = 0.0
     remainder = max(2.0 * rest, min(dropped, 4.0 * rest)) + error
@@ -218,13 +236,16 @@ def _doubled(
     return a, b, found
 
 
-def _last_change(changes: list[float]) -> float:
+def _last_change(changes: list[float], settled: bool) -> float:
     """Return the last change of a coefficient, or what slow convergence leads one to expect.
 
-    Where the changes fall by less than a thousand a time - a function that jumps, or noise - the
-    last one may be small by chance.
+    Where the changes fall by less than a thousand a time, or have not settled in the end - a
+    function that jumps, or noise - the last one may be small by chance.
     """
     worst = changes[-1]
+    if not settled:
+        # A pulse that few samples meet: the changes it makes halve with the spacing.
+        return float(max(change / 2**back for back, change in enumerate(changes[:-6:-1])))
     for back, (before, after) in enumerate(zip(changes[-2::-1], changes[:0:-1], strict=True), 1):
         if after <= 1e-3 * before or back > 2:
             break
@@ -234,8 +255,8 @@ def _last_change(changes: list[float]) -> float:
 
 def _coefficients(
     f: Callable[[Array], Array], count: int, name: str
-) -> tuple[Array, np.ndarray[Any, Any]]:
-    """Return samples and the coefficients a - i b; the angles start at an irrational place."""
+) -> tuple[Array, Array, np.ndarray[Any, Any]]:
+    """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
     start = (_GOLDEN * np.log2(count)) % 1.0
     theta = np.asarray(_TURN * (np.arange(count) + start) / count, dtype=np.float64)
     values = checked(f, theta, name)
@@ -243,7 +264,7 @@ def _coefficients(
     spectrum *= np.exp(-1j * _TURN * start / count * np.arange(len(spectrum)))
     spectrum[1:] *= 2.0
     # The highest one is known in part alone.
-    return values, spectrum[:-1]
+    return theta, values, spectrum[:-1]
 
 
 def _evaluate(coefficients: np.ndarray[Any, Any], theta: Array) -> Array:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..duals.subject import Subject
 from ..errors import bad
 from ..results import Result
-from ._subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

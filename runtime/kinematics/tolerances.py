@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..duals.subject import ANGLE, Subject
 from ..errors import BadInput, Problem, bad
 from ..mechanisms import FourBar, Linkage
 from ..mechanisms.inputs import drive_of
 from ..results import Check, DeferredChecks, provenance
 from ._box import box_of, margin, turns
-from ._subject import ANGLE, Subject
 from .tolerance_result import Tolerances
 
 if TYPE_CHECKING:

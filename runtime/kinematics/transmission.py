@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
+from ..mechanisms import FourBar, QuickReturn, SliderCrank
 from ..results import Check, Result, provenance
 from . import dead_centres
 from .dead_centres import Positions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..mechanisms import FourBar, QuickReturn, SliderCrank
 
 Array = NDArray[np.float64]
 _EPS = float(np.finfo(float).eps)
@@ -227,18 +226,19 @@ def positions(linkage: FourBar | SliderCrank | QuickReturn) -> Positions:
     BadInput
         If this is no linkage.
     """
-    sizes: Mapping[str, float] = getattr(linkage, "lengths", {})
-    exponent = -math.frexp(max(map(abs, sizes.values()), default=1.0))[1]
+    if not isinstance(linkage, (FourBar, SliderCrank, QuickReturn)):
+        found_text = repr(linkage)[:60]
+        raise bad("linkage", found_text, "FourBar, SliderCrank or QuickReturn", "give one")
+    sizes = linkage.lengths
+    exponent = -math.frexp(max(map(abs, sizes.values())))[1]
     # Lengths below 1 by a power of two: their digits stay, their products are safe.
     unit = {name: math.ldexp(float(size), exponent) for name, size in sizes.items()}
-    if "offset" in sizes:
+    if isinstance(linkage, SliderCrank):
         found = dead_centres.slider_crank(**unit, branch=linkage.branch)
         return _lengthened(found, -exponent)
-    if "rod" in sizes:
+    if isinstance(linkage, QuickReturn):
         return dead_centres.quick_return(unit["frame"], unit["crank"])
-    if "follower" in sizes:
-        return dead_centres.four_bar(**unit, branch=linkage.branch)
-    raise bad("linkage", repr(linkage)[:60], "FourBar, SliderCrank or QuickReturn", "give one")
+    return dead_centres.four_bar(**unit, branch=linkage.branch)
 
 
 def mechanical_advantage(
@@ -259,10 +259,11 @@ def mechanical_advantage(
     Raises
     ------
     BadInput
-        If an angle is not a finite number, or the linkage cannot reach it or folds there.
+        If this is no linkage, an angle is not a finite number, or the linkage cannot reach it or
+        folds there.
     """
-    motion: Any = linkage.motion(theta)
     found = positions(linkage)
+    motion: Any = linkage.motion(theta)
     ratio, error = _SPEEDS[found.mechanism](linkage, motion)
     with np.errstate(divide="ignore"):
         advantage = 1.0 / ratio

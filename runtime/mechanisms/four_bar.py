@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -25,6 +26,9 @@ from .linkage import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+# Round-offs of the square of BD and of the area of the triangle BCD, thrice a unit each.
+_SQUARE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,7 +178,9 @@ class FourBar(Linkage):
         if not problems:
             longest = max(self.lengths, key=lambda name: self.lengths[name])
             rest = sum(self.lengths.values()) - self.lengths[longest]
-            if self.lengths[longest] >= rest:
+            others = [-size for name, size in self._unit_lengths.items() if name != longest]
+            # Correctly rounded, as the class is: a sum in floats may close what cannot close.
+            if math.fsum([self._unit_lengths[longest], *others]) >= 0.0:
                 problems.append(
                     Problem(
                         f"FourBar.{longest}",
@@ -199,8 +205,8 @@ class FourBar(Linkage):
     @property
     def crank_turns(self) -> bool:
         """True where the crank can turn fully without passing a change point."""
-        shortest, longest = self.reach
-        return bool(abs(self.frame - self.crank) > shortest and self.frame + self.crank < longest)
+        (inner, _), (_, outer) = self._fold_sides
+        return inner < 0.0 and outer < 0.0
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
@@ -223,7 +229,7 @@ class FourBar(Linkage):
             turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
             folds.
         """
-        inner, outer = (self._fold(reach) for reach in self._unit_reach)
+        inner, outer = (self._fold(*sides) for sides in self._fold_sides)
         if inner is None:
             high = np.pi if outer is None else outer
             return ((-high, high),)
@@ -232,17 +238,27 @@ class FourBar(Linkage):
         return ((-outer, -inner), (inner, outer))
 
     @property
-    def _unit_reach(self) -> tuple[float, float]:
-        _, _, coupler, follower = self._unit_lengths.values()
-        return abs(coupler - follower), coupler + follower
+    def _fold_sides(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """How far the shortest and the longest BD are above its least and below its greatest.
 
-    def _fold(self, reach: float) -> float | None:
-        """Return the crank angle between 0 and pi at which BD has that length, if there is one."""
+        Those of coupler and follower, those of frame and crank; each sum is correctly rounded, so
+        that no round-off can change its sign.
+        """
+        frame, crank, coupler, follower = self._unit_lengths.values()
+        thick, thin = max(coupler, follower), min(coupler, follower)
+        far, near = max(frame, crank), min(frame, crank)
+        return (
+            (math.fsum((thick, -thin, near, -far)), math.fsum((far, near, thin, -thick))),
+            (math.fsum((thick, thin, near, -far)), math.fsum((far, near, -thin, -thick))),
+        )
+
+    def _fold(self, above: float, below: float) -> float | None:
+        """Return the crank angle between 0 and pi at which BD is so far within its limits."""
+        if above < 0.0 or below < 0.0:
+            return None
         frame, crank, *_ = self._unit_lengths.values()
         near, far = abs(frame - crank), frame + crank
-        if not near <= reach <= far:
-            return None
-        sine2, cosine2 = (reach - near) * (reach + near), (far - reach) * (far + reach)
+        sine2, cosine2 = above * (above + 2.0 * near), below * (2.0 * far - below)
         return float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
 
     def motion(
@@ -304,12 +320,16 @@ class FourBar(Linkage):
         """Return what a unit round-off of the angle and of each length does, three times.
 
         A change of a length moves the closure along that link; seen along coupler or follower it
-        turns the other one, the more the closer the two are to one line.
+        turns the other one, the more the closer the two are to one line.  The triangle BCD comes
+        from the square of BD: its round-off moves C, seen from a short link most.
         """
         frame, crank, coupler, follower = self._unit_lengths.values()
         theta2 = m["theta2"]
         aligned = np.abs(np.cos(m["theta4"] - m["theta3"]))
         sine = np.abs(np.sin(m["transmission_angle"]))
+        square = (frame - crank) ** 2 + 4.0 * frame * crank * np.sin(theta2 / 2.0) ** 2
+        leaning = np.sqrt(square) * aligned
+        lying = (1.0 + abs(coupler - follower) * (coupler + follower) / square) * sine**2 / 2.0
         figures = []
         for link, other, own, opposite in (
             ("3", "4", coupler, follower),
@@ -317,7 +337,7 @@ class FourBar(Linkage):
         ):
             beside = m["theta" + other]
             moved = crank * np.abs(np.cos(theta2 - beside)) + frame * np.abs(np.cos(beside))
-            moved += own * aligned + opposite
+            moved += own * aligned + opposite + _SQUARE * (leaning + opposite * lying)
             turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
             figures.append(turned + moved / (own * sine))
         return np.asarray(1.5 * np.finfo(float).eps * np.maximum(*figures))

@@ -195,11 +195,14 @@ class Motion(Result):
         return bool(np.all(self.omega2 == 1.0) and np.all(self.alpha2 == 0.0))
 
     def unit(self, name: str) -> str:
-        """Return the unit of a place or rate; that of the defaults is per crank speed."""
+        """Return the unit of a place or rate; that of the defaults is per radian of the crank.
+
+        Of an angle it is 1 then.
+        """
         unit = {**self.places, **self.rates}[name]
         if name in self.places or not self.relative:
             return unit
-        return unit.partition("/")[0].replace("rad", "1")
+        return "1" if unit.startswith("rad") else unit.replace("/s", "/rad")
 
     def _other_link(self, name: str) -> LinkMotion:
         raise NotImplementedError
@@ -415,14 +418,17 @@ def plot_against_crank(motion: Motion, curves: Sequence[tuple[str, str]], ax: An
 
     ax = axes_or_new(ax)
     degrees = np.degrees(motion.theta2)
+    units: dict[str, None] = {}
     for name, words in curves:
         values, unit = getattr(motion, name), motion.unit(name)
         peak = float(np.max(np.abs(values), initial=0.0))
         scaled = peak > 0.0 and not motion.relative
         power = int(np.floor(np.log10(peak))) if scaled else 0
         size = f"$10^{{{power}}}$ " if power else ""
+        units[size + unit] = None
         label = words if unit == "1" else f"{words} [{size}{unit}]"
         ax.plot(degrees, values / 10.0**power, label=label)
     ax.set_xlabel("crank angle [deg]")
+    ax.set_ylabel(", ".join(units))
     ax.legend()
     return ax

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -124,7 +125,7 @@ class QuickReturn(Linkage):
     def __post_init__(self) -> None:
         """Check the lengths."""
         problems = length_problems("QuickReturn", self.lengths)
-        if not problems and self.rod <= abs(self.frame - self.crank):
+        if not problems and self._ends[0] <= 0.0:
             problems.append(
                 Problem(
                     "QuickReturn.rod",
@@ -153,7 +154,19 @@ class QuickReturn(Linkage):
 
     @property
     def _long_enough(self) -> bool:
-        return bool(self.rod >= (self.frame + self.crank) * (1.0 - _ROUND))
+        frame, crank, _ = self._unit_lengths.values()
+        # A rod given as the sum of the two, rounded, is long enough.
+        return self._ends[1] <= _ROUND * (frame + crank)
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        """By how much the rod is longer than the least, and shorter than the greatest DB.
+
+        Correctly rounded, so that no round-off can change their signs.
+        """
+        frame, crank, rod = self._unit_lengths.values()
+        far, near = max(frame, crank), min(frame, crank)
+        return math.fsum((rod, near, -far)), math.fsum((far, near, -rod))
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
@@ -185,8 +198,9 @@ class QuickReturn(Linkage):
         frame, crank, rod = self._unit_lengths.values()
         if self._long_enough:
             return ((-np.pi, np.pi),)
-        near, far = abs(frame - crank), frame + crank
-        cosine2, sine2 = (rod - near) * (rod + near), (far - rod) * (far + rod)
+        longer, shorter = self._ends
+        cosine2 = longer * (rod + abs(frame - crank))
+        sine2 = shorter * (frame + crank + rod)
         least = float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
         if frame == crank:
             return ((least, np.pi), (np.pi, 2.0 * np.pi - least))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from numbers import Real
@@ -178,7 +179,7 @@ class SliderCrank(Linkage):
                 Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
             )
         problems += assembly_problems("SliderCrank", self.assembly)
-        if not problems and abs(self.offset) >= self.crank + self.coupler:
+        if not problems and self._spare(1.0) <= 0.0:
             problems.append(
                 Problem(
                     "SliderCrank.offset",
@@ -198,7 +199,15 @@ class SliderCrank(Linkage):
     @property
     def crank_turns(self) -> bool:
         """True where the crank can turn fully without passing a change point."""
-        return bool(self.coupler - self.crank > abs(self.offset))
+        return self._spare(-1.0) > 0.0
+
+    def _spare(self, side: float) -> float:
+        """Return by how much coupler plus (+1) or minus (-1) crank exceeds the offset.
+
+        Correctly rounded, so that no round-off can change its sign.
+        """
+        crank, coupler, offset = self._unit_lengths.values()
+        return math.fsum((coupler, side * crank, -abs(offset)))
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
@@ -240,10 +249,20 @@ class SliderCrank(Linkage):
         There ``crank cos(beyond) = coupler + offset``.
         """
         crank, coupler, _ = self._unit_lengths.values()
-        least, most = crank - coupler - offset, crank + coupler + offset
+        least, most = math.fsum((crank, -coupler, -offset)), math.fsum((crank, coupler, offset))
         if least < 0.0 or most < 0.0:
             return None
         return float(2.0 * np.arctan2(np.sqrt(least), np.sqrt(most)))
+
+    @property
+    def _ways(self) -> tuple[float, float]:
+        """Distances of the slider from A along the guide, at the outer and the inner dead centre.
+
+        For a crank that turns fully.
+        """
+        crank, coupler, offset = self._unit_lengths.values()
+        outer = math.sqrt(self._spare(1.0) * (coupler + crank + abs(offset)))
+        return outer, math.sqrt(self._spare(-1.0) * (coupler - crank + abs(offset)))
 
     @property
     def dead_centres(self) -> tuple[float, float]:
@@ -257,9 +276,8 @@ class SliderCrank(Linkage):
             If the crank cannot turn fully.
         """
         self.require_full_turn()
-        crank, coupler, offset = self._unit_lengths.values()
-        stretched = float(np.arcsin(offset / (coupler + crank)))
-        folded = float(np.arcsin(offset / (coupler - crank)))
+        offset = self._unit_lengths["offset"]
+        stretched, folded = (float(np.arctan2(offset, way)) for way in self._ways)
         if self.assembly == "open":
             return stretched, np.pi + folded
         return np.pi - stretched, 2.0 * np.pi - folded
@@ -274,11 +292,8 @@ class SliderCrank(Linkage):
             If the crank cannot turn fully.
         """
         self.require_full_turn()
-        crank, coupler, offset = self._unit_lengths.values()
-        outer, inner = (
-            np.sqrt((length - offset) * (length + offset))
-            for length in (coupler + crank, coupler - crank)
-        )
+        crank, coupler, _ = self._unit_lengths.values()
+        outer, inner = self._ways
         return float(np.ldexp(4.0 * crank * coupler / (outer + inner), -self._scale))
 
     @property

@@ -61,6 +61,11 @@ def motor(scene: Scene) -> TorqueLine | None:
     return TorqueLine(table["stall_torque"], table["no_load_speed"])
 
 
+def flywheel(scene: Scene) -> float:
+    """Return the inertia [kg m^2] of the scene's flywheel on the crank shaft, zero without one."""
+    return float(scene.get("motor", {}).get("flywheel", 0.0))
+
+
 def _known(scene: Scene, link: str) -> bool:
     return link in scene and any(key in scene[link] for key in _MASS)
 

@@ -13,8 +13,8 @@ from elastolink.derive.checks import reference_of
 from elastolink.derive.lagrange import euler_lagrange
 from elastolink.derive.models import four_bar, four_bar_forces
 from elastolink.derive.models.four_bar_vectors import link_vectors
-from elastolink.derive.multibody import lagrangian
-from elastolink.derive.newton_euler import (
+from elastolink.derive.rigid.multibody import lagrangian
+from elastolink.derive.rigid.newton_euler import (
     TORQUE,
     balances,
     frame_load,
@@ -23,7 +23,7 @@ from elastolink.derive.newton_euler import (
     unknowns_of,
     wrench_symbols,
 )
-from elastolink.derive.planar import ETA, XI, MassMoments, Pin, inertia_wrench, momenta
+from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin, inertia_wrench, momenta
 from elastolink.derive.spec import ModelSpec
 from force_machines import call, cartesian, emitted, random_machine, state_of
 from forces_truth import LOADS, MECHANISMS, forces, links, loads

@@ -1,7 +1,9 @@
 import json
 
 import pytest
+from elastolink.runtime.balancing import trade_off
 from elastolink.runtime.cli import main
+from elastolink.runtime.scenes import load_scene
 
 SMITH = ["balance", "smith_1972_12_6_12_12", "--speed", "10"]
 
@@ -62,3 +64,11 @@ def test_bad_input_is_one_line_with_status_2(capsys, more):
     assert status == 2
     assert text.out == ""
     assert len(text.err.strip().splitlines()) == 1
+
+
+def test_marks_of_full_balance_stand_off_the_border():
+    machine = load_scene(SMITH[1]).machine()
+    ax = trade_off(machine, 10.0, points=2).plot()
+    left, right = ax.get_xlim()
+    # Cases (c) and (d) lie at zero.
+    assert left < -0.02 * (right - left)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.kinematics.base_planes import base_plane
-from elastolink.runtime.kinematics.classification import SYMBOLS, classify_many
+from elastolink.runtime.kinematics.classification import SYMBOLS, classify, classify_many
 
 
 @pytest.mark.parametrize("lam", [0.7, 1.2, 3.0**0.5, 2.5, 20.0])
@@ -40,3 +40,12 @@ def test_picture_marks_the_linkage():
 def test_planes_without_linkages_are_refused(bad):
     with pytest.raises(BadInput):
         base_plane(*bad)
+
+
+def test_the_mark_leaves_its_symbol_free():
+    # Coupler, follower and frame of one length: the middle of the region, where its symbol stood.
+    ax = classify((12.0, 6.0, 12.0, 12.0)).plot()
+    symbol = next(text for text in ax.texts if text.get_text() == "GCRR")
+    ax.figure.canvas.draw()
+    mark = ax.transData.transform(ax.lines[-1].get_xydata()[0])
+    assert not symbol.get_window_extent().padded(4.0).contains(*mark)

@@ -23,6 +23,7 @@ COMMANDS = (
     "clearance",
     "tolerances",
     "forces",
+    "run-up",
     "balance",
     "simulate",
     "stability",

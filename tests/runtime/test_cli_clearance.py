@@ -34,6 +34,16 @@ def test_text_names_extremes(capsys):
     assert "method:" in text and "error:" in text
 
 
+@pytest.mark.parametrize(
+    ("scene", "unit"),
+    [(SCENE, "deg"), ("slider_crank_example", "m"), ("quick_return_example", "deg")],
+)
+def test_every_linkage(capsys, scene, unit):
+    assert run(scene, "--at", "23=0.05 mm", "--at", "41=0.1 mm") == 0
+    out = capsys.readouterr().out
+    assert f"width [{unit}]" in out and "23: 5e-05 m, 41: 0.0001 m" in out
+
+
 def test_json_is_the_result(capsys):
     assert (
         run(SCENE, "--clearance", "0.1 in", "--joint", "23", "--angles", "0:90:4deg", "--json") == 0

@@ -10,8 +10,8 @@ from elastolink.runtime.cli import main
 
 SCENES = {
     "smith_1972_2122": ("theta3 [deg]", "omega4", "transmission angle from"),
-    "slider_crank_example": ("position [m]", "slider_velocity [m]", "transmission angle from"),
-    "quick_return_example": ("slide [m]", "slide_acceleration [m]", "speeds over omega2"),
+    "slider_crank_example": ("position [m]", "slider_velocity [m/rad]", "transmission angle from"),
+    "quick_return_example": ("slide [m]", "slide_acceleration [m/rad^2]", "speeds over omega2"),
 }
 
 

@@ -1,11 +1,13 @@
-"""``elastolink classify, curve, harmonics, balance``: numbers, JSON, pictures, one-line refusals."""
+"""``elastolink classify, curve, harmonics, balance``: numbers, JSON, pictures, refusals."""
 
 import json
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-from elastolink.runtime.balancing import balance, optimal_offset
+from elastolink.runtime.balancing import balance, compare_case, optimal_offset
 from elastolink.runtime.cli import main
 from elastolink.runtime.kinematics import classify, coupler_curve, harmonics
 from elastolink.runtime.scenes import load_scene
@@ -54,7 +56,7 @@ def test_text_json_and_picture_of_each(capsys, tmp_path, arguments):
     assert status == 0 and err == ""
     assert "method:" in text and "nan" not in text.lower()
     assert picture.stat().st_size > 5000
-    status, out, _ = run(capsys, *arguments, "--json")
+    status, out, _ = run(capsys, *arguments, "--plot", picture, "--json")
     told = json.loads(out)
     assert status == 0 and told["passed"] is True
 
@@ -116,8 +118,62 @@ def test_optimal_offset_solves_its_cubic():
         (("balance", SMITH, "--weights", "torq=1"), "torq"),
         (("balance", SMITH, "--links", "rod"), "rod"),
         (("balance", "smith_1972_10_8_10_10", "--speed", "10"), "no mass"),
-        (("balance", SMITH, "--speed", "-10"), "speed"),
+        (("balance", SMITH, "--speed", "0"), "--speed"),
+        (("balance", SMITH, "--case", "b", "--weights", "torque=1"), "--weights"),
+        (("balance", SMITH, "--case", "b", "--mass", "1 kg"), "--mass"),
+        (("balance", SMITH, "--trade-off", "torque,f23", "--measure", "rms"), "--measure"),
+        (("balance", SMITH, "--points", "5"), "--points"),
+        (("balance", SMITH, "--limits", "torque=0.01"), "torque at least 0.9994;"),
+        (("harmonics", SMITH, "--of", "theta4", "--stop", "every"), "--stop"),
+        (("harmonics", SMITH, "--of", "theta4", "--speed", "10"), "--speed"),
+        (("forces", SMITH, "--joint", "34"), "--joint"),
+        (("classify", SMITH, "--base-plane"), "--base-plane"),
+        (("classify", ENGINE, "--input", "follower"), "--input"),
     ],
 )
 def test_refusals_take_one_line(capsys, arguments, said):
     assert said in refused(capsys, *arguments)
+
+
+def test_balance_takes_the_acceleration_of_scene_and_option(capsys):
+    machine = load_scene(SMITH).machine()
+    wanted = compare_case(machine, "b", -10.0, acceleration=50.0).unbalanced
+    assert wanted["torque"] != compare_case(machine, "b", 10.0).unbalanced["torque"]
+    drive = ("balance", SMITH, "--case", "b", "--speed=-10", "--json")
+    for more in (("--set", "operation.acceleration=50"), ("--acceleration", "50")):
+        _, out, _ = run(capsys, *drive, *more)
+        assert json.loads(out)["unbalanced"] == pytest.approx(wanted, rel=1e-12)
+    # The option comes before the scene.
+    both = ("--set", "operation.acceleration=7", "--acceleration", "50")
+    _, out, _ = run(capsys, *drive, *both)
+    assert json.loads(out)["unbalanced"] == pytest.approx(wanted, rel=1e-12)
+
+
+def test_kinematics_takes_the_drive_of_the_scene(capsys):
+    linkage = load_scene(SMITH).mechanism()
+    angles = ("--angles", "30:90:3deg", "--json")
+    for arguments, speed in (
+        (("--set", "operation.acceleration=5"), 10.0),
+        (("--speed", "0", "--acceleration", "5"), 0.0),
+        (("--speed=-3", "--acceleration", "5"), -3.0),
+    ):
+        _, out, _ = run(capsys, "kinematics", SMITH, *angles, *arguments)
+        wanted = linkage.motion(np.radians([30.0, 60.0, 90.0]), speed, 5.0)
+        np.testing.assert_allclose(json.loads(out)["alpha4"], wanted.alpha4, rtol=1e-12)
+
+
+def test_json_of_a_trade_off_holds_the_counterweights(capsys):
+    arguments = ("--trade-off", "shaking_force,torque", "--points", "3", "--json")
+    _, out, _ = run(capsys, "balance", SMITH, *arguments)
+    told = json.loads(out)
+    assert len(told["points"]) == 3
+    for point, first in zip(told["points"], told["first_values"], strict=True):
+        assert point["relative"]["shaking_force"] == pytest.approx(first, rel=1e-12)
+        assert all(body["mass"] > 0.0 for body in point["counterweights"].values())
+    assert told["points"][0]["counterweights"]
+
+
+def test_the_command_without_its_script():
+    called = [sys.executable, "-m", "elastolink", "--version"]
+    done = subprocess.run(called, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and done.stdout.startswith("elastolink ")

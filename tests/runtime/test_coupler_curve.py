@@ -339,3 +339,20 @@ def test_picture_marks_what_was_found():
     ax = coupler_curve(INWARD_ROCKER, 0.7, 0.6).plot()
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
     assert labels == ["point of the coupler", "double point"]
+
+
+@pytest.mark.parametrize(("detuned", "pairs"), [(-1e-6, ((0, 1),)), (1e-6, ())])
+def test_tacnode_of_a_symmetric_curve(detuned, pairs):
+    """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
+
+    It is 2 l sin((g - mu)/2) from D, g the angle from CB to CP, mu the transmission angle: the same
+    on the axis of symmetry at theta = 0 and pi where 2 g = 2 pi + mu(0) + mu(pi).  Both branches
+    are at right angles to the axis there, and touch.
+    """
+    frame, crank, arm = 2.0, 0.8, 1.7
+    least, greatest = (2.0 * np.arcsin((frame + s * crank) / (2.0 * arm)) for s in (-1, 1))
+    angle = np.pi + 0.5 * (least + greatest) + detuned
+    place = arm + arm * np.exp(1j * (np.pi + angle))
+    curve = coupler_curve(FourBar(frame, crank, arm, arm), place.real, place.imag)
+    assert np.linalg.norm(curve.position[0] - curve.position[360]) < 2e-6
+    assert curve.tacnodes == pairs

@@ -167,3 +167,20 @@ def test_refusals(source, options, word):
     with pytest.raises(BadInput, match=word) as refusal:
         harmonics(source, **options)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("half", [5e-3, 2e-4, 5e-5, 1e-6])
+@pytest.mark.parametrize("place", [1.0, 2.0, 2.1275, 3.3])
+def test_a_pulse_between_samples_stays_within_the_figure(half, place):
+    found = harmonics(lambda t: (np.abs(np.mod(t, 2 * np.pi) - place) < half) * 1.0)
+    m = np.arange(1, 9)
+    size = np.append(half / np.pi, 2 * np.sin(m * half) / (m * np.pi))
+    m = np.arange(9)
+    gaps = np.abs([found.a - size * np.cos(m * place), found.b - size * np.sin(m * place)])
+    assert np.max(gaps) <= float(found.error) < 1e-3
+
+
+def test_a_constant_admits_what_its_samples_could_miss():
+    # 131072 angles: a pulse as high as the function, between two of them.
+    assert float(harmonics(lambda t: 3.0).error) >= 2 * 3.0 / 131072
+    assert 0.0 < float(harmonics(np.zeros_like).error) < 1e-4

@@ -166,6 +166,47 @@ def test_callables_that_return_nonsense_are_named() -> None:
             machine.power(THETA, 1.0)
 
 
+@pytest.mark.parametrize("count", [1, 2, 3, 7])
+@pytest.mark.parametrize("given", ["angle", "motion"])
+def test_components_along_the_first_axis_are_refused_for_any_number_of_angles(count, given) -> None:
+    def turned(at):
+        theta = at if given == "angle" else at.theta
+        return np.array([np.cos(theta), 2.0 + theta])
+
+    machine = Machine(LINKAGE, loads=(Load("coupler", turned, given=given),))
+    with pytest.raises(BadInput, match=r"Load\.force on coupler"):
+        machine.power(THETA[:count], 1.0)
+
+
+@pytest.mark.parametrize("given", ["angle", "motion"])
+def test_two_angles_may_have_two_components(given) -> None:
+    def law(at):
+        theta = at if given == "angle" else at.theta
+        return np.stack([np.cos(theta), 2.0 + theta], axis=-1)
+
+    pair = Load("coupler", lambda theta: (np.cos(theta), 2.0 + theta))
+    expected = Machine(LINKAGE, loads=(pair,)).power(THETA[3:5], 1.0)
+    found = Machine(LINKAGE, loads=(Load("coupler", law, given=given),)).power(THETA[3:5], 1.0)
+    np.testing.assert_array_equal(found, expected)
+    square = Machine(LINKAGE, loads=(Load("coupler", law, given=given),))
+    both = square.power(THETA[3:7].reshape(2, 2), np.array([[1.0], [2.0]]))
+    assert both.shape == (2, 2)
+    # A force that depends on no angle, for two angles.
+    constant = Load("coupler", lambda theta: np.array([3.0, -1.0]))
+    assert Machine(LINKAGE, loads=(constant,)).power(THETA[3:5], 1.0).shape == (2,)
+
+
+def test_a_callable_that_raises_is_named() -> None:
+    laws = [lambda t: t[:, 1], lambda t: t @ np.ones(3), lambda t: t.x + "1"]
+    for law, kind in zip(laws[:2], ("IndexError", "ValueError"), strict=True):
+        machine = Machine(LINKAGE, loads=(Load("follower", couple=law),))
+        with pytest.raises(BadInput, match=rf"Load\.couple on follower.*{kind}"):
+            machine.power(THETA, 1.0)
+    # What is no mistake of shape or type is the callable's own affair.
+    with pytest.raises(AttributeError):
+        Machine(LINKAGE, loads=(Load("follower", couple=laws[2]),)).power(THETA, 1.0)
+
+
 def test_a_spring_whose_points_meet_has_no_direction() -> None:
     met = Spring(("frame", 0.1, 0.0), ("crank", 0.1, 0.0), 100.0, free_length=0.05)
     with pytest.raises(BadInput, match="meet"):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.kinematics import classify
+from elastolink.runtime.mechanisms import FourBar, QuickReturn, SliderCrank
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from linkage_truth import OUTPUTS
@@ -233,6 +235,61 @@ def test_a_crank_that_turns_reaches_every_angle(frame, crank, coupler, follower)
 def test_lengths_that_make_no_linkage_are_refused(lengths, word):
     with pytest.raises(BadInput, match=word):
         FourBar(*lengths)
+
+
+def test_round_off_of_sums_decides_nothing():
+    """As :func:`classify` has it, the lengths are what their doubles are."""
+    # 0.3... + 0.1 + 0.3... exceeds 0.7... by less than the sum of the three is rounded.
+    barely = FourBar(0.30000000000000004, 0.7000000000000001, 0.1, 0.30000000000000004)
+    ((low, high),) = barely.crank_ranges()
+    assert 0.0 < high < 1e-7
+    assert low == -high
+    turning = FourBar(1.0, 0.1, 0.30000000000000004, 0.8)
+    assert turning.crank_turns
+    assert turning.crank_ranges() == ((-np.pi, np.pi),)
+    assert all(classify(bar).turns["crank"] == bar.crank_turns for bar in (barely, turning))
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(st.lists(st.integers(1, 12), min_size=4, max_size=4))
+def test_tenths_are_as_their_class_says(tenths):
+    """Lengths of tenths lie on change points, or a round-off beside them."""
+    lengths = [0.1 * n for n in tenths]
+    excess = 2 * max(map(Fraction, lengths)) - sum(map(Fraction, lengths))
+    if excess >= 0:
+        with pytest.raises(BadInput, match="cannot close"):
+            FourBar(*lengths)
+        return
+    bar = FourBar(*lengths)
+    frame, crank, coupler, follower = map(Fraction, lengths)
+    turns = abs(frame - crank) > abs(coupler - follower) and frame + crank < coupler + follower
+    assert bar.crank_turns == turns
+    if turns:
+        assert bar.crank_ranges() == ((-np.pi, np.pi),)
+    else:  # at a change point with frame and crank in line the end is at pi, a fold
+        assert bar._folds(np.array([-0.1, 6.0])) > 0
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(st.integers(1, 12), st.integers(1, 12), st.integers(-12, 12))
+def test_slider_cranks_and_quick_returns_of_tenths(one, two, three):
+    first, second, third = 0.1 * one, 0.1 * two, 0.1 * three
+    exact = Fraction(first), Fraction(second), abs(Fraction(third))
+    if exact[2] >= exact[0] + exact[1]:
+        with pytest.raises(BadInput, match="guide"):
+            SliderCrank(first, second, third)
+    else:
+        slider = SliderCrank(first, second, third)
+        assert slider.crank_turns == (exact[1] - exact[0] > exact[2])
+        if slider.crank_turns:
+            assert slider.crank_ranges() == ((-np.pi, np.pi),)
+            assert np.all(np.isfinite([*slider.dead_centres, slider.stroke]))
+    if three > 0:
+        if exact[2] <= abs(exact[0] - exact[1]):
+            with pytest.raises(BadInput, match="rod"):
+                QuickReturn(first, second, third)
+        else:
+            assert QuickReturn(first, second, third).crank_ranges()
 
 
 def test_all_problems_are_told_at_once():

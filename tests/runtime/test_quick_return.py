@@ -252,7 +252,8 @@ def test_result_carries_figure_checks_and_picture(tmp_path):
     motion = QuickReturn(2.0, 1.0, 4.0).motion(np.linspace(0.0, TURN, 91))
     assert motion.passed and motion.relative
     assert motion.error.shape == motion.theta4.shape
-    assert [motion.unit(name) for name in ("slide", "omega4", "slide_velocity")] == ["m", "1", "m"]
+    units = {"slide": "m", "omega4": "1", "slide_velocity": "m/rad"}
+    assert {name: motion.unit(name) for name in units} == units
     assert len(motion.plot().lines) == 3
     saved = json.loads(motion.save(tmp_path / "motion.json").read_text())
     assert set(ROD) < set(saved) and saved["passed"] is True

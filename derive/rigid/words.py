@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .describe import Description
-from .ir import Argument, Result
-from .spec import ModelSpec
+from ..describe import Description
+from ..ir import Argument, Result
+from ..spec import ModelSpec
 
 _DRIVE = (
     Argument("speed", "float or ndarray, shape (...)", "rad/s", "Crank speed"),

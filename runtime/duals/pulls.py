@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ._dual import _Functions
+from .dual import _Functions
 
 if TYPE_CHECKING:
     from ..dynamics import Machine, Spring, TorsionSpring

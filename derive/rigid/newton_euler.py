@@ -14,8 +14,8 @@ from itertools import combinations
 
 import sympy as sp
 
+from ..staged import Step
 from .planar import FRAME, Joint, PlanarLinkage, Slide, Vector, Wrench, cross
-from .staged import Step
 
 TORQUE = sp.Symbol("torque", real=True)
 Named = Callable[[sp.Expr], sp.Expr]

@@ -13,7 +13,9 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from .ir import Argument
+from ..ir import Argument
+from ..spec import Choices, ModelSpec
+from ..staged import ClosedForm, KernelForm, KernelForms, Step, Steps
 from .newton_euler import (
     TORQUE,
     balances,
@@ -25,8 +27,6 @@ from .newton_euler import (
     wrench_symbols,
 )
 from .planar import Body, MassMoments, PlanarLinkage, Slide, inertia_wrench
-from .spec import Choices, ModelSpec
-from .staged import ClosedForm, KernelForm, KernelForms, Step, Steps
 
 STEADY, STRAIGHT = "crank_acceleration", "across"
 CHOICES = Choices(drop=(STRAIGHT, STEADY))

@@ -13,15 +13,15 @@ from dataclasses import replace
 
 import sympy as sp
 
-from .describe import Description
-from .entries import ConstrainedSystem
-from .force_words import LOAD_WORDS, MOMENT_WORDS
-from .ir import Argument
+from ..describe import Description
+from ..entries import ConstrainedSystem
+from ..ir import Argument
+from ..pipeline import Model
+from ..records import EquationsOfMotion, Lagrangian
+from ..spec import Choices, ModelSpec
 from .newton_euler import TORQUE
-from .pipeline import Model
 from .planar import FRAME, Body, Pin, PlanarLinkage, Slide, kinetic_energy
-from .records import EquationsOfMotion, Lagrangian
-from .spec import Choices, ModelSpec
+from .words import LOAD_WORDS, MOMENT_WORDS
 
 DRIVE = "drive"
 CHOICES = Choices(drop=("across", DRIVE))

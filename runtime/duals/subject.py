@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from ...generated import four_bar_kinematics, quick_return_kinematics, slider_crank_kinematics
 from ..errors import bad
 from ..mechanisms import FourBar, Linkage, QuickReturn, SliderCrank
-from ._dual import Dual, seeded, split
-from ._pulls import Pose, outside, springs
+from .dual import Dual, seeded, split
+from .pulls import Pose, outside, springs
 
 if TYPE_CHECKING:
     from ..dynamics import Machine

@@ -1,0 +1,1 @@
+"""Planar linkages of rigid bodies: description, Newton and Euler, virtual power, multipliers."""

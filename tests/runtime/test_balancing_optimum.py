@@ -306,8 +306,10 @@ def test_trade_off_falls_and_lies_below_the_cases(links, cases, points):
     assert np.all(np.diff(slopes) > 0)
     for case in cases:
         x, y = curve.cases[case]
-        # The chords lie above the curve itself.
-        assert np.interp(x, curve.first_values, curve.second_values) < y + 1e-6
+        # The chords lie above the curve itself; its ends may be 1e-6 worse than the least possible,
+        # and every point by its error.
+        allowed = 1e-6 + np.max(curve.error)
+        assert np.interp(x, curve.first_values, curve.second_values) < y + allowed
     ax = curve.plot()
     assert {text.get_text() for text in ax.texts} == {"(a)", "(b)", "(c)", "(d)"}
 

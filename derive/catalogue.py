@@ -147,6 +147,20 @@ CATALOGUE = (
         sources=("hill_boundaries.py",),
         specs=(ModelSpec("hill", "boundaries_first_order"),),
     ),
+    CatalogueEntry(
+        mechanism="hill",
+        formulations=("recursion",),
+        module=".models.hill_recursion",
+        sources=("hill_recursion.py",),
+        specs=(ModelSpec("hill", "recursion"),),
+    ),
+    CatalogueEntry(
+        mechanism="hill",
+        formulations=("meissner",),
+        module=".models.hill_meissner",
+        sources=("hill_meissner.py",),
+        specs=(ModelSpec("hill", "meissner"),),
+    ),
 )
 
 

@@ -12,7 +12,7 @@ import jinja2
 import jinja2.meta
 import sympy
 
-from .ir import Kernel, ModuleSpec
+from .ir import UNBROKEN, Kernel, ModuleSpec
 
 _TEMPLATES = Path(__file__).parent.parent / "templates"
 _WIDTH = 99
@@ -98,6 +98,8 @@ def _keys(module: ModuleSpec, content: str) -> Mapping[str, Any]:
             _row(_literal(t.array), str(t.power), *map(_literal, (t.scale, t.angle, t.modal)))
             for t in module.terms
         ]
+    if module.family == "recursion":
+        keys["words"] = module.words
     return keys
 
 
@@ -195,9 +197,9 @@ def _item(value: str, indent: str) -> str:
 def _wrapped(target: str, expression: str, indent: str, joint: str = " = ") -> str:
     line = f"{indent}{target}{joint}{expression}"
     if len(line) <= _WIDTH:
-        return line
+        return line.replace(UNBROKEN, " ")
     parts = textwrap.wrap(
         expression, _WIDTH - len(indent) - 4, break_long_words=False, break_on_hyphens=False
     )
-    body = "".join(f"{indent}    {part}\n" for part in parts)
+    body = "".join(f"{indent}    {part}\n" for part in parts).replace(UNBROKEN, " ")
     return f"{indent}{target}{joint}(\n{body}{indent})"

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from .spec import Family, ModelSpec
 
 IR_VERSION = 1
+UNBROKEN = "\u00a0"  # a space of an expression at which its line is not to be broken
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,8 @@ class ModuleSpec:
         Separated terms; linear-periodic family only.
     parameters : tuple of Argument
         Inertial and elastic parameters, with units.
+    words : tuple of (int, tuple of (int, str))
+        Words of the effective operator and their coefficients by order; recursion family only.
     """
 
     spec: ModelSpec
@@ -135,6 +138,7 @@ class ModuleSpec:
     terms: tuple[TermRow, ...] = ()
     parameters: tuple[Argument, ...] = ()
     tables: tuple[tuple[str, str], ...] = field(default=())
+    words: tuple[tuple[int, tuple[tuple[int, str], ...]], ...] = ()
 
     @property
     def operations(self) -> int:

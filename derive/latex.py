@@ -12,6 +12,8 @@ from sympy.printing.latex import LatexPrinter, greek_letters_set
 
 from .arrays import DiscreteSystem, IndexedEntry, IndexedVector
 from .entries import ConstrainedSystem, MatrixForm, TranscendentalSystem
+from .perturbation.bloch import Recursion
+from .perturbation.printing import recursion_lines, word_lines
 from .pipeline import Model, equations_of_motion, only_wanted
 from .projection import tidy
 from .records import ActionDensity, EquationsOfMotion, FieldEquations, Lagrangian
@@ -218,6 +220,13 @@ def _system(system: object) -> Iterator[str]:
         yield from _steps(system.steps)
     elif isinstance(system, ConstrainedSystem):
         yield from _steps(system.steps)
+    elif isinstance(system, Recursion):
+        yield from _heading("Recursion")
+        for left, terms in recursion_lines(system):
+            yield _sum(left, terms)
+        yield from _heading("Effective operator")
+        for left, terms in word_lines(system):
+            yield _sum(left, terms)
 
 
 def _arrays(system: DiscreteSystem) -> Iterator[str]:
@@ -263,6 +272,11 @@ def _equation(left: str, right: Any, factor: str = "") -> str:
         terms = _terms(sp.expand(right))
     if factor:
         terms = [rf"\left({' '.join(terms)}\right) \delta {factor}"]
+    return _sum(left, terms)
+
+
+def _sum(left: str, terms: Sequence[str]) -> str:
+    """Return ``left`` = the sum of signed terms, broken between them where it is long."""
     lines, length = [""], _width(left)
     for term in terms:
         if lines[-1] and length + _width(term) > _WIDTH:

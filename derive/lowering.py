@@ -150,6 +150,9 @@ class _Printer:
         text = (
             " * ".join(self._wrap(f, _POWER if i else _PRODUCT) for i, f in enumerate(upper)) or "1"
         )
+        if len(lower) > 1 and not upper and _power_of_two(lower[0]):
+            # Exact, and one operation less where the rest is an array.
+            text, lower = repr(1.0 / int(lower[0])), lower[1:]
         if lower:
             divisor = " * ".join(self._wrap(f, _POWER) for f in lower)
             text = f"{text} / ({divisor})" if len(lower) > 1 else f"{text} / {divisor}"
@@ -198,6 +201,10 @@ def _negative(e: sp.Expr) -> bool:
 
 def _all_negative(e: sp.Expr) -> bool:
     return isinstance(e, sp.Add) and all(term.could_extract_minus_sign() for term in e.args)
+
+
+def _power_of_two(e: sp.Basic) -> bool:
+    return isinstance(e, sp.Integer) and 0 < e < 2**30 and int(e).bit_count() == 1
 
 
 def _one_number(e: sp.Expr) -> sp.Expr:

@@ -17,7 +17,7 @@ from .spec import Entry, ModelSpec
 
 _HERE = Path(__file__).parent
 _NAMED = b'name = "elastolink"'
-# What can change an emitted byte: all in this folder and in rigid/, but the bookkeeping.
+# What can change an emitted byte: all here, in perturbation/ and in rigid/, but the bookkeeping.
 _BOOKKEEPING = {
     "__init__.py",
     "catalogue.py",
@@ -26,6 +26,7 @@ _BOOKKEEPING = {
     "jobs.py",
     "latex.py",
     "manifest.py",
+    "printing.py",
     "regenerate.py",
 }
 
@@ -33,7 +34,8 @@ _BOOKKEEPING = {
 @lru_cache(maxsize=1)
 def _shared_sources() -> str:
     digest = hashlib.sha256(f"ir {IR_VERSION}".encode())
-    found = [*_HERE.glob("*.py"), *(_HERE / "rigid").glob("*.py")]
+    folders = (_HERE, _HERE / "perturbation", _HERE / "rigid")
+    found = [path for folder in folders for path in folder.glob("*.py")]
     own = [path for path in sorted(found) if path.name not in _BOOKKEEPING]
     templates = sorted((_HERE.parent / "templates").glob("*.j2"))
     for path in own + templates:

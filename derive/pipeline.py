@@ -25,16 +25,24 @@ from .entries import (
 from .ir import ModuleSpec
 from .lagrange import euler_lagrange
 from .lowering import lower_closed_form, lower_kernel_forms
+from .perturbation.bloch import Recursion
+from .perturbation.unrolling import lower_recursion
 from .records import ActionDensity, EquationsOfMotion, FieldEquations, Lagrangian
 from .separation import StagedSystem, lower_linear_periodic
 from .spec import Choices, ModelSpec
 from .staged import ClosedForm, KernelForms
 from .variational import hamilton
 
-Energies = ActionDensity | Lagrangian | MatrixForm | ClosedForm | KernelForms
-Equations = FieldEquations | EquationsOfMotion | MatrixForm | ClosedForm | KernelForms
+Energies = ActionDensity | Lagrangian | MatrixForm | ClosedForm | KernelForms | Recursion
+Equations = FieldEquations | EquationsOfMotion | MatrixForm | ClosedForm | KernelForms | Recursion
 System = (
-    StagedSystem | ConstrainedSystem | TranscendentalSystem | MatrixForm | ClosedForm | KernelForms
+    StagedSystem
+    | ConstrainedSystem
+    | TranscendentalSystem
+    | MatrixForm
+    | ClosedForm
+    | KernelForms
+    | Recursion
 )
 
 _WANTED: dict[type, tuple[str, ...]] = {
@@ -123,7 +131,7 @@ def only_wanted(spec: ModelSpec, system: System) -> System:
     """
     if not spec.outputs:
         return system
-    if isinstance(system, ClosedForm | MatrixForm | KernelForms):
+    if isinstance(system, ClosedForm | MatrixForm | KernelForms | Recursion):
         return system.only(spec.outputs)
     known = _WANTED.get(type(system), ())
     unknown = sorted(set(spec.outputs) - set(known))
@@ -149,4 +157,6 @@ def lower(spec: ModelSpec, system: System, description: Description) -> ModuleSp
         return lower_matrices(spec, system, description)
     if isinstance(system, KernelForms):
         return lower_kernel_forms(spec, system, description)
+    if isinstance(system, Recursion):
+        return lower_recursion(spec, system, description)
     return lower_closed_form(spec, system, description)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 MANIFEST = "manifest.json"
-Family = Literal["closed_form", "linear_periodic", "constrained", "transcendental"]
+Family = Literal["closed_form", "linear_periodic", "constrained", "transcendental", "recursion"]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 

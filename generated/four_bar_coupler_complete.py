@@ -16,7 +16,7 @@ Cost per evaluation:
     acceleration_forcing_functions: 93 operations
     modal_matrices: 32 operations
     modal_vectors: 6 operations
-Content hash 03eeef901a0f9afe9cf7deb9359b9157; derived with SymPy 1.14.0.
+Content hash 237e4267b807bda27baca8d7193e87e8; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"complete","mechanism":"four_ba'
     'r","modes":null,"outputs":[]}'
 )
-CONTENT = "03eeef901a0f9afe9cf7deb9359b9157"
+CONTENT = "237e4267b807bda27baca8d7193e87e8"
 EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
@@ -267,7 +267,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
-    x8 = 1 / (2 * diagonal2)
+    x8 = 0.5 / diagonal2
     x9 = x7 * x8
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
@@ -386,7 +386,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
-    x7 = 1 / (2 * diagonal2)
+    x7 = 0.5 / diagonal2
     x8 = x6 * x7
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x
@@ -488,7 +488,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
-    x8 = 1 / (2 * diagonal2)
+    x8 = 0.5 / diagonal2
     x9 = x7 * x8
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
@@ -587,7 +587,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
-    x7 = 1 / (2 * diagonal2)
+    x7 = 0.5 / diagonal2
     x8 = x6 * x7
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x

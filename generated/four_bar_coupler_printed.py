@@ -18,7 +18,7 @@ Cost per evaluation:
     acceleration_forcing_functions: 93 operations
     modal_matrices: 8 operations
     modal_vectors: 6 operations
-Content hash 235e2c12f3ce0b528a583c5bc32740b3; derived with SymPy 1.14.0.
+Content hash e49b1ba2451b23c1409a10284fd64cf7; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"printed","mechanism":"four_bar'
     '","modes":null,"outputs":[]}'
 )
-CONTENT = "235e2c12f3ce0b528a583c5bc32740b3"
+CONTENT = "e49b1ba2451b23c1409a10284fd64cf7"
 EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
@@ -261,7 +261,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
-    x8 = 1 / (2 * diagonal2)
+    x8 = 0.5 / diagonal2
     x9 = x7 * x8
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
@@ -377,7 +377,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
-    x7 = 1 / (2 * diagonal2)
+    x7 = 0.5 / diagonal2
     x8 = x6 * x7
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x
@@ -478,7 +478,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
-    x8 = 1 / (2 * diagonal2)
+    x8 = 0.5 / diagonal2
     x9 = x7 * x8
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
@@ -577,7 +577,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
-    x7 = 1 / (2 * diagonal2)
+    x7 = 0.5 / diagonal2
     x8 = x6 * x7
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x

@@ -18,7 +18,7 @@ Cost per evaluation:
     acceleration_forcing_functions: 93 operations
     modal_matrices: 8 operations
     modal_vectors: 6 operations
-Content hash b8593c8e5d2ae906641f2bca343e0967; derived with SymPy 1.14.0.
+Content hash 94c185395b50cb99aea2391d42700c2d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"reduced","mechanism":"four_bar'
     '","modes":null,"outputs":[]}'
 )
-CONTENT = "b8593c8e5d2ae906641f2bca343e0967"
+CONTENT = "94c185395b50cb99aea2391d42700c2d"
 EXTERNAL = ()
 
 # Parameters: name, unit, meaning.
@@ -213,7 +213,7 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
-    x8 = 1 / (2 * diagonal2)
+    x8 = 0.5 / diagonal2
     x9 = x7 * x8
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
@@ -305,7 +305,7 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     sine_transmission = 2 * assembly * root / (fold + stretch)
     del x1, x2, fold, root, stretch
     area = 2 * coupler * follower * sine_transmission
-    x4 = 1 / (2 * diagonal2 * coupler)
+    x4 = 0.5 / (diagonal2 * coupler)
     cos3 = x4 * (diagonal_x * p - area * diagonal_y)
     sin3 = x4 * (area * diagonal_x + diagonal_y * p)
     del diagonal2, area, diagonal_x, diagonal_y, p, x4
@@ -381,7 +381,7 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x6 = area * diagonal_y
     x7 = 1 / coupler
-    x8 = 1 / (2 * diagonal2)
+    x8 = 0.5 / diagonal2
     x9 = x7 * x8
     cos3 = x9 * (diagonal_x * p - x6)
     x10 = area * diagonal_x
@@ -480,7 +480,7 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     area = 2 * coupler * follower * sine_transmission
     x5 = area * diagonal_y
     x6 = 1 / coupler
-    x7 = 1 / (2 * diagonal2)
+    x7 = 0.5 / diagonal2
     x8 = x6 * x7
     cos3 = x8 * (diagonal_x * p - x5)
     x9 = area * diagonal_x

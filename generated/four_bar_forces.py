@@ -10,13 +10,13 @@ the link.  The forces are linear in masses, moments and inertias: at unit values
 they are the derivatives by it.
 
 Cost per evaluation:
-    forces: 232 operations
-    pin_forces: 186 operations
-    driving_torque: 133 operations
-    shaking_force: 162 operations
-    shaking_moment: 148 operations
-    load_forces: 98 operations
-Content hash ee3bc81b29d3c41bf475532c921f452c; derived with SymPy 1.14.0.
+    forces: 233 operations
+    pin_forces: 187 operations
+    driving_torque: 134 operations
+    shaking_force: 166 operations
+    shaking_moment: 149 operations
+    load_forces: 99 operations
+Content hash 038304a7a574ec8f0e00cc3f06ca229b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"four_bar","modes":'
     'null,"outputs":[]}'
 )
-CONTENT = "ee3bc81b29d3c41bf475532c921f452c"
+CONTENT = "038304a7a574ec8f0e00cc3f06ca229b"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -186,98 +186,97 @@ def forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
     del travel, dot, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del lean, pace, slip4
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = -facing * inverse * slip3 - pace * w4
     square = speed**2
     spin_th3 = square * w3**2
-    x9 = acceleration * w3
-    turn_th3 = square * a3 + x9
+    x7 = acceleration * w3
+    turn_th3 = square * a3 + x7
+    del lean, pace, a3
     spin_th4 = square * w4**2
-    x10 = acceleration * w4
-    turn_th4 = square * a4 + x10
-    x11 = 1 / crank
-    c8 = x11 * across2
-    c9 = x11 * along2
-    x13 = acceleration * crank_x - square * crank_y
-    x14 = acceleration * crank_y + square * crank_x
-    push2_x = -c8 * x13 - c9 * x14
-    push2_y = c9 * x13 - c8 * x14
+    x8 = acceleration * w4
+    turn_th4 = square * a4 + x8
+    x9 = 1 / crank
+    c8 = x9 * across2
+    c9 = x9 * along2
+    x10 = acceleration * crank_x - square * crank_y
+    x11 = acceleration * crank_y + square * crank_x
+    push2_x = -c8 * x10 - c9 * x11
+    push2_y = c9 * x10 - c8 * x11
     push2_moment = acceleration * inertia2
-    x15 = 1 / coupler
-    c10 = x15 * across3
-    c11 = x15 * along3
-    x16 = coupler_x * spin_th3 + coupler_y * turn_th3
-    x17 = coupler_x * turn_th3 - coupler_y * spin_th3
-    del a3, a4, spin_th3
-    push3_x = -c10 * x17 - c11 * x16 - mass3 * x14
-    push3_y = c11 * x17 - c10 * x16 + mass3 * x13
-    del x14, x13, x16, x17
-    x18 = inertia3 * turn_th3
-    x19 = square * facing
-    x20 = area * w4
-    x21 = square * x20
-    push3_moment = c10 * (x10 * area + x19) + c11 * (acceleration * facing - x21) + x18
-    x22 = 1 / follower
-    c12 = x22 * across4
-    c13 = x22 * along4
-    x24 = follower_x * turn_th4 - follower_y * spin_th4
-    x25 = follower_x * spin_th4 + follower_y * turn_th4
-    del area, x10, spin_th4
-    push4_x = -c12 * x24 - c13 * x25
-    push4_y = c13 * x24 - c12 * x25
+    x13 = 1 / coupler
+    c10 = x13 * across3
+    c11 = x13 * along3
+    x14 = coupler_x * spin_th3 + coupler_y * turn_th3
+    x15 = coupler_x * turn_th3 - coupler_y * spin_th3
+    push3_x = -c10 * x15 - c11 * x14 - mass3 * x11
+    del a4, spin_th3, x11
+    push3_y = c11 * x15 - c10 * x14 + mass3 * x10
+    del x10, x14, x15
+    x16 = inertia3 * turn_th3
+    x17 = square * facing
+    x18 = area * w4
+    x19 = square * x18
+    push3_moment = c10 * (x8 * area + x17) + c11 * (acceleration * facing - x19) + x16
+    x20 = 1 / follower
+    c12 = x20 * across4
+    c13 = x20 * along4
+    x21 = follower_x * turn_th4 - follower_y * spin_th4
+    x22 = follower_x * spin_th4 + follower_y * turn_th4
+    del area, x8, spin_th4
+    push4_x = -c12 * x21 - c13 * x22
+    push4_y = c13 * x21 - c12 * x22
     push4_moment = inertia4 * turn_th4
-    del x24, x25, turn_th4
+    del x21, x22, turn_th4
     x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
     y34 = inverse * (coupler_y * push4_moment + follower_y * push3_moment)
     del coupler_x, follower_x, coupler_y, follower_y, inverse, push3_moment
@@ -288,14 +287,14 @@ def forces(
     x41 = x34 - push4_x
     y41 = y34 - push4_y
     c14 = acceleration * mass3
+    x24 = x17 * slip3
+    x25 = turn_th3 + x7
     x26 = x19 * slip3
-    x27 = turn_th3 + x9
-    x28 = x21 * slip3
-    del x19, x9, x21
-    x29 = c14 * (crank_x**2 + crank_y**2) + push2_moment
-    x30 = acceleration + turn_th3
+    del x17, x7, x19
+    x27 = c14 * (crank_x**2 + crank_y**2) + push2_moment
+    x28 = acceleration + turn_th3
     del crank_x, crank_y, turn_th3
-    x31 = 2 - slip3
+    x29 = 2 - slip3
     return (
         x12,
         y12,
@@ -306,14 +305,14 @@ def forces(
         x41,
         y41,
         (
-            c10 * (x26 * w3 + x20 * x27) + c11 * (x27 * facing - x28 * w3) + push4_moment * w4 +
-            x18 * w3 + x29
+            c10 * (x24 * w3 + x18 * x25) + c11 * (x25 * facing - x26 * w3) + push4_moment * w4 +
+            x16 * w3 + x27
         ),
         -push2_x - push3_x - push4_x,
         -push2_y - push3_y - push4_y,
         (
-            -c10 * (x20 * x30 + x26 * x31) + c11 * (x28 * x31 - x30 * facing) - frame * push4_y -
-            push4_moment - x18 - x29
+            -c10 * (x18 * x28 + x24 * x29) + c11 * (x26 * x29 - x28 * facing) - frame * push4_y -
+            push4_moment - x16 - x27
         ),
     )
 
@@ -395,95 +394,94 @@ def pin_forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
     del travel, dot, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del slip3, lean, pace, slip4
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, pace, slip3
     square = speed**2
     spin_th3 = square * w3**2
     turn_th3 = square * a3 + acceleration * w3
     spin_th4 = square * w4**2
-    x9 = acceleration * w4
-    turn_th4 = square * a4 + x9
+    x7 = acceleration * w4
+    turn_th4 = square * a4 + x7
     del a3, w3, a4
-    x10 = 1 / crank
-    c8 = x10 * across2
-    c9 = x10 * along2
-    x11 = acceleration * crank_x - square * crank_y
-    x13 = acceleration * crank_y + square * crank_x
-    push2_x = -c8 * x11 - c9 * x13
-    push2_y = c9 * x11 - c8 * x13
-    x14 = 1 / coupler
-    c10 = x14 * across3
-    c11 = x14 * along3
-    x15 = coupler_x * spin_th3 + coupler_y * turn_th3
-    x16 = coupler_x * turn_th3 - coupler_y * spin_th3
+    x8 = 1 / crank
+    c8 = x8 * across2
+    c9 = x8 * along2
+    x9 = acceleration * crank_x - square * crank_y
+    x10 = acceleration * crank_y + square * crank_x
+    push2_x = -c8 * x9 - c9 * x10
+    push2_y = c9 * x9 - c8 * x10
+    x11 = 1 / coupler
+    c10 = x11 * across3
+    c11 = x11 * along3
+    x13 = coupler_x * spin_th3 + coupler_y * turn_th3
+    x14 = coupler_x * turn_th3 - coupler_y * spin_th3
     del crank_x, crank_y, spin_th3
-    push3_x = -c10 * x16 - c11 * x15 - mass3 * x13
-    push3_y = c11 * x16 - c10 * x15 + mass3 * x11
-    del x13, x11, x15, x16
+    push3_x = -c10 * x14 - c11 * x13 - mass3 * x10
+    push3_y = c11 * x14 - c10 * x13 + mass3 * x9
+    del x10, x13, x14, x9
     push3_moment = (
-        c10 * (x9 * area + square * facing) + c11 * (acceleration * facing - square * area * w4) +
+        c10 * (x7 * area + square * facing) + c11 * (acceleration * facing - square * area * w4) +
         inertia3 * turn_th3
     )
-    del area, facing, turn_th3, w4, x9
-    x17 = 1 / follower
-    c12 = x17 * across4
-    c13 = x17 * along4
-    x18 = follower_x * turn_th4 - follower_y * spin_th4
-    x19 = follower_x * spin_th4 + follower_y * turn_th4
-    push4_x = -c12 * x18 - c13 * x19
-    push4_y = c13 * x18 - c12 * x19
-    del spin_th4, x18, x19
+    del area, facing, turn_th3, w4, x7
+    x15 = 1 / follower
+    c12 = x15 * across4
+    c13 = x15 * along4
+    x16 = follower_x * turn_th4 - follower_y * spin_th4
+    x17 = follower_x * spin_th4 + follower_y * turn_th4
+    push4_x = -c12 * x16 - c13 * x17
+    push4_y = c13 * x16 - c12 * x17
+    del spin_th4, x16, x17
     push4_moment = inertia4 * turn_th4
     x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
     del turn_th4, coupler_x, follower_x
@@ -572,77 +570,77 @@ def driving_torque(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, follower_y, dot, inverse, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del follower_x, lean, pace, slip4
+    del travel, follower_y, dot, spread
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    del coupler_x, coupler_y, follower_x, lean
+    x7 = facing * slip3
+    a4 = -x7 * inverse - pace * w4
     square = speed**2
-    x9 = acceleration * w3
-    turn_th3 = square * a3 + x9
-    del coupler_x, coupler_y, a3
+    x8 = acceleration * w3
+    turn_th3 = square * a3 + x8
+    del inverse, pace, a3
     turn_th4 = square * a4 + acceleration * w4
     push2_moment = acceleration * inertia2
     push4_moment = inertia4 * turn_th4
     c8 = acceleration * mass3
-    x10 = 1 / coupler
-    c9 = x10 * across3
-    c10 = x10 * along3
-    x11 = square * slip3 * w3
-    del a4, turn_th4, slip3
-    x12 = turn_th3 + x9
-    x13 = area * w4
+    x9 = 1 / coupler
+    c9 = x9 * across3
+    c10 = x9 * along3
+    x10 = square * w3
+    x11 = turn_th3 + x8
+    del a4, turn_th4, x8
+    x12 = area * w4
     return (
-        c10 * (x12 * facing - x11 * x13) + c8 * (crank_x**2 + crank_y**2) + c9 * (x11 * facing +
-        x12 * x13) + inertia3 * turn_th3 * w3 + push2_moment + push4_moment * w4
+        c10 * (x11 * facing - x10 * x12 * slip3) + c8 * (crank_x**2 + crank_y**2) + c9 * (x10 * x7
+        + x11 * x12) + inertia3 * turn_th3 * w3 + push2_moment + push4_moment * w4
     )
 
 
@@ -711,88 +709,88 @@ def shaking_force(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del area, p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del area, p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, dot, inverse, spread
+    del travel, dot, spread
+    facing = coupler_x * crank_x + coupler_y * crank_y
     a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del slip3, lean, pace, slip4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, facing, inverse, pace, slip3
     square = speed**2
     spin_th3 = square * w3**2
     turn_th3 = square * a3 + acceleration * w3
     spin_th4 = square * w4**2
     turn_th4 = square * a4 + acceleration * w4
     del a3, w3, a4, w4
-    x9 = 1 / crank
-    c8 = x9 * across2
-    c9 = x9 * along2
-    x10 = acceleration * crank_x - square * crank_y
-    x11 = acceleration * crank_y + square * crank_x
-    push2_x = -c8 * x10 - c9 * x11
-    push2_y = c9 * x10 - c8 * x11
-    x12 = 1 / coupler
-    c10 = x12 * across3
-    c11 = x12 * along3
-    x13 = coupler_x * spin_th3 + coupler_y * turn_th3
-    x14 = coupler_x * turn_th3 - coupler_y * spin_th3
+    x7 = 1 / crank
+    c8 = x7 * across2
+    c9 = x7 * along2
+    x8 = acceleration * crank_x - square * crank_y
+    x9 = acceleration * crank_y + square * crank_x
+    push2_x = -c8 * x8 - c9 * x9
+    push2_y = c9 * x8 - c8 * x9
+    x10 = 1 / coupler
+    c10 = x10 * across3
+    c11 = x10 * along3
+    x11 = coupler_x * spin_th3 + coupler_y * turn_th3
+    x12 = coupler_x * turn_th3 - coupler_y * spin_th3
     del crank_x, crank_y, coupler_x, coupler_y, spin_th3, turn_th3
-    push3_x = -c10 * x14 - c11 * x13 - mass3 * x11
-    push3_y = c11 * x14 - c10 * x13 + mass3 * x10
-    del x11, x10, x13, x14
-    x15 = 1 / follower
-    c12 = x15 * across4
-    c13 = x15 * along4
-    x16 = follower_x * turn_th4 - follower_y * spin_th4
-    x17 = follower_x * spin_th4 + follower_y * turn_th4
+    push3_x = -c10 * x12 - c11 * x11 - mass3 * x9
+    push3_y = c11 * x12 - c10 * x11 + mass3 * x8
+    del x9, x11, x12, x8
+    x13 = 1 / follower
+    c12 = x13 * across4
+    c13 = x13 * along4
+    x14 = follower_x * turn_th4 - follower_y * spin_th4
+    x15 = follower_x * spin_th4 + follower_y * turn_th4
     del follower_x, follower_y, spin_th4, turn_th4
-    push4_x = -c12 * x16 - c13 * x17
-    push4_y = c13 * x16 - c12 * x17
+    push4_x = -c12 * x14 - c13 * x15
+    push4_y = c13 * x14 - c12 * x15
     return (
         -push2_x - push3_x - push4_x,
         -push2_y - push3_y - push4_y,
@@ -862,85 +860,85 @@ def shaking_moment(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, dot, inverse, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del lean, pace, slip4
+    del travel, dot, spread
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    del coupler_x, coupler_y, lean
+    x7 = facing * slip3
+    a4 = -x7 * inverse - pace * w4
     square = speed**2
     turn_th3 = square * a3 + acceleration * w3
-    del coupler_x, coupler_y, a3, w3
+    del inverse, pace, a3, w3
     spin_th4 = square * w4**2
     turn_th4 = square * a4 + acceleration * w4
     push2_moment = acceleration * inertia2
-    x9 = 1 / follower
-    c8 = x9 * along4
-    c9 = x9 * across4
+    x8 = 1 / follower
+    c8 = x8 * along4
+    c9 = x8 * across4
     push4_y = (
         c8 * (follower_x * turn_th4 - follower_y * spin_th4) - c9 * (follower_x * spin_th4 +
         follower_y * turn_th4)
     )
     del a4, follower_x, follower_y, spin_th4
     push4_moment = inertia4 * turn_th4
-    x10 = 1 / coupler
-    c10 = x10 * along3
+    x9 = 1 / coupler
+    c10 = x9 * along3
     c11 = acceleration * mass3
-    c12 = x10 * across3
-    x11 = acceleration + turn_th3
-    x12 = area * w4
+    c12 = x9 * across3
+    x10 = acceleration + turn_th3
+    x11 = area * w4
     del turn_th4, area, w4
-    x13 = square * slip3 * (2 - slip3)
+    x12 = square * (2 - slip3)
     return (
-        c10 * (x12 * x13 - x11 * facing) - c11 * (crank_x**2 + crank_y**2) - c12 * (x13 * facing +
-        x11 * x12) - frame * push4_y - inertia3 * turn_th3 - push2_moment - push4_moment
+        c10 * (x11 * x12 * slip3 - x10 * facing) - c11 * (crank_x**2 + crank_y**2) - c12 * (x10 *
+        x11 + x12 * x7) - frame * push4_y - inertia3 * turn_th3 - push2_moment - push4_moment
     )
 
 
@@ -1019,46 +1017,46 @@ def load_forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
-    del half_cosine, x1, travel
+    del cosine_squared, sine_squared, travel
     area = assembly * xp.sqrt(fold * stretch)
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
+    x4 = 0.5 / diagonal
     del fold, stretch, diagonal
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    del base_x, x6, area
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    del base_x, x4, area
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
     x34 = inverse * (-couple3 * follower_x - couple4 * coupler_x)
     y34 = inverse * (-couple3 * follower_y - couple4 * coupler_y)
     del coupler_x, follower_x, coupler_y, follower_y, inverse

@@ -14,13 +14,13 @@ For a crank of constant speed.
 For links whose masses lie along their lines.
 
 Cost per evaluation:
-    forces: 178 operations
-    pin_forces: 150 operations
-    driving_torque: 113 operations
-    shaking_force: 135 operations
-    shaking_moment: 121 operations
-    load_forces: 98 operations
-Content hash 83a106df70907a3abeb1ec3c4a52179a; derived with SymPy 1.14.0.
+    forces: 179 operations
+    pin_forces: 154 operations
+    driving_torque: 114 operations
+    shaking_force: 139 operations
+    shaking_moment: 122 operations
+    load_forces: 99 operations
+Content hash 209b3ee95c268e5a5816258ea0aaa692; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ SPEC = (
     '{"balanced":[],"drop":["across","crank_acceleration"],"flexible":[],"formulation":"forces","m'
     'echanism":"four_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "83a106df70907a3abeb1ec3c4a52179a"
+CONTENT = "209b3ee95c268e5a5816258ea0aaa692"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -182,59 +182,57 @@ def forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
     del travel, dot, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del lean, pace, slip4
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = -facing * inverse * slip3 - pace * w4
     square = speed**2
     along2_s = along2 * square
     mass3_s = mass3 * square
@@ -249,17 +247,18 @@ def forces(
     push2_y = -c8 * crank_y
     c9 = along3_s / coupler
     push3_x = -c9 * (a3 * coupler_y + coupler_x * spin_th3) - mass3_s * crank_x
+    del lean, pace, crank_x
     push3_y = c9 * (a3 * coupler_x - coupler_y * spin_th3) - mass3_s * crank_y
-    del crank_x, crank_y, spin_th3
-    x9 = inertia3_s * a3
-    x10 = area * w4
-    push3_moment = x9 - c9 * x10
+    x7 = inertia3_s * a3
+    x8 = area * w4
+    push3_moment = x7 - c9 * x8
     c10 = along4_s / follower
     push4_x = -c10 * (a4 * follower_y + follower_x * spin_th4)
     push4_y = c10 * (a4 * follower_x - follower_y * spin_th4)
+    del crank_y, spin_th3, spin_th4
     push4_moment = inertia4_s * a4
     x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
-    del spin_th4, a4, coupler_x, follower_x
+    del a4, coupler_x, follower_x
     y34 = inverse * (coupler_y * push4_moment + follower_y * push3_moment)
     del coupler_y, follower_y, inverse, push3_moment
     x23 = push3_x + x34
@@ -268,7 +267,7 @@ def forces(
     y12 = push2_y + y23
     x41 = x34 - push4_x
     y41 = y34 - push4_y
-    x11 = a3 * facing
+    x9 = a3 * facing
     return (
         x12,
         y12,
@@ -278,10 +277,10 @@ def forces(
         y34,
         x41,
         y41,
-        c9 * (x11 - x10 * slip3 * w3) + push4_moment * w4 + x9 * w3,
+        c9 * (x9 - x8 * slip3 * w3) + push4_moment * w4 + x7 * w3,
         -push2_x - push3_x - push4_x,
         -push2_y - push3_y - push4_y,
-        c9 * (area * slip3 * w4 * (2 - slip3) - x11) - frame * push4_y - push4_moment - x9,
+        c9 * (area * slip3 * w4 * (2 - slip3) - x9) - frame * push4_y - push4_moment - x7,
     )
 
 
@@ -354,58 +353,58 @@ def pin_forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
     del travel, dot, spread
+    facing = coupler_x * crank_x + coupler_y * crank_y
     a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del slip3, lean, pace, slip4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, facing, pace, slip3
     square = speed**2
     along2_s = along2 * square
     mass3_s = mass3 * square
@@ -507,60 +506,59 @@ def driving_torque(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, follower_y, dot, inverse, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del follower_x, lean, pace, slip4
+    del travel, follower_y, dot, spread
     facing = coupler_x * crank_x + coupler_y * crank_y
     del coupler_x, coupler_y, crank_x, crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del follower_x, lean, inverse, pace
     square = speed**2
     along3_s = along3 * square
     inertia3_s = inertia3 * square
@@ -627,58 +625,58 @@ def shaking_force(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del area, p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del area, p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, dot, inverse, spread
+    del travel, dot, spread
+    facing = coupler_x * crank_x + coupler_y * crank_y
     a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del slip3, lean, pace, slip4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, facing, inverse, pace, slip3
     square = speed**2
     along2_s = along2 * square
     mass3_s = mass3 * square
@@ -759,60 +757,59 @@ def shaking_moment(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, dot, inverse, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del lean, pace, slip4, w3
+    del travel, w3, dot, spread
     facing = coupler_x * crank_x + coupler_y * crank_y
     del coupler_x, coupler_y, crank_x, crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, inverse, pace
     square = speed**2
     along3_s = along3 * square
     inertia3_s = inertia3 * square
@@ -905,46 +902,46 @@ def load_forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
-    del half_cosine, x1, travel
+    del cosine_squared, sine_squared, travel
     area = assembly * xp.sqrt(fold * stretch)
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
+    x4 = 0.5 / diagonal
     del fold, stretch, diagonal
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    del base_x, x6, area
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    del base_x, x4, area
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
     x34 = inverse * (-couple3 * follower_x - couple4 * coupler_x)
     y34 = inverse * (-couple3 * follower_y - couple4 * coupler_y)
     del coupler_x, follower_x, coupler_y, follower_y, inverse

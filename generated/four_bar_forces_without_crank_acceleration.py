@@ -13,12 +13,12 @@ For a crank of constant speed.
 
 Cost per evaluation:
     forces: 210 operations
-    pin_forces: 175 operations
-    driving_torque: 121 operations
-    shaking_force: 155 operations
+    pin_forces: 176 operations
+    driving_torque: 122 operations
+    shaking_force: 159 operations
     shaking_moment: 139 operations
-    load_forces: 98 operations
-Content hash d7998e4fc1091551ab3227cca57fcf9c; derived with SymPy 1.14.0.
+    load_forces: 99 operations
+Content hash 3cf8fcc8a3b1dbc40194d2f716654a91; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"four_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "d7998e4fc1091551ab3227cca57fcf9c"
+CONTENT = "3cf8fcc8a3b1dbc40194d2f716654a91"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -186,59 +186,58 @@ def forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
     del travel, dot, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del lean, pace, slip4
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    x7 = facing * slip3
+    a4 = -x7 * inverse - pace * w4
     square = speed**2
     along2_s = along2 * square
     across2_s = across2 * square
@@ -251,30 +250,31 @@ def forces(
     inertia4_s = inertia4 * square
     spin_th3 = w3**2
     spin_th4 = w4**2
-    x9 = 1 / crank
-    c8 = x9 * across2_s
-    c9 = x9 * along2_s
+    x8 = 1 / crank
+    c8 = x8 * across2_s
+    c9 = x8 * along2_s
     push2_x = c8 * crank_y - c9 * crank_x
     push2_y = -c8 * crank_x - c9 * crank_y
-    x10 = 1 / coupler
-    c10 = x10 * across3_s
-    c11 = x10 * along3_s
-    x11 = a3 * coupler_y + coupler_x * spin_th3
-    x13 = a3 * coupler_x - coupler_y * spin_th3
-    push3_x = -c10 * x13 - c11 * x11 - mass3_s * crank_x
-    push3_y = c11 * x13 - c10 * x11 - mass3_s * crank_y
-    del spin_th3, crank_x, crank_y, x11, x13
-    x14 = inertia3_s * a3
-    x15 = area * w4
-    push3_moment = c10 * facing - c11 * x15 + x14
-    x16 = 1 / follower
-    c12 = x16 * across4_s
-    c13 = x16 * along4_s
-    x17 = a4 * follower_x - follower_y * spin_th4
-    x18 = a4 * follower_y + follower_x * spin_th4
-    push4_x = -c12 * x17 - c13 * x18
-    push4_y = c13 * x17 - c12 * x18
-    del spin_th4, x17, x18
+    x9 = 1 / coupler
+    c10 = x9 * across3_s
+    c11 = x9 * along3_s
+    x10 = a3 * coupler_y + coupler_x * spin_th3
+    x11 = a3 * coupler_x - coupler_y * spin_th3
+    del lean, pace, spin_th3
+    push3_x = -c10 * x11 - c11 * x10 - mass3_s * crank_x
+    push3_y = c11 * x11 - c10 * x10 - mass3_s * crank_y
+    del crank_x, crank_y, x10, x11
+    x13 = inertia3_s * a3
+    x14 = area * w4
+    push3_moment = c10 * facing - c11 * x14 + x13
+    x15 = 1 / follower
+    c12 = x15 * across4_s
+    c13 = x15 * along4_s
+    x16 = a4 * follower_x - follower_y * spin_th4
+    x17 = a4 * follower_y + follower_x * spin_th4
+    push4_x = -c12 * x16 - c13 * x17
+    push4_y = c13 * x16 - c12 * x17
+    del spin_th4, x16, x17
     push4_moment = inertia4_s * a4
     x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
     del a4, coupler_x, follower_x
@@ -286,10 +286,9 @@ def forces(
     y12 = push2_y + y23
     x41 = x34 - push4_x
     y41 = y34 - push4_y
-    x19 = x15 * a3
-    x20 = facing * slip3
-    x21 = a3 * facing
-    x22 = 2 - slip3
+    x18 = x14 * a3
+    x19 = a3 * facing
+    x20 = 2 - slip3
     return (
         x12,
         y12,
@@ -299,12 +298,12 @@ def forces(
         y34,
         x41,
         y41,
-        c10 * (x20 * w3 + x19) + c11 * (x21 - x15 * slip3 * w3) + push4_moment * w4 + x14 * w3,
+        c10 * (x7 * w3 + x18) + c11 * (x19 - x14 * slip3 * w3) + push4_moment * w4 + x13 * w3,
         -push2_x - push3_x - push4_x,
         -push2_y - push3_y - push4_y,
         (
-            -c10 * (x19 + x20 * x22) + c11 * (x22 * area * slip3 * w4 - x21) - frame * push4_y -
-            push4_moment - x14
+            -c10 * (x18 + x20 * x7) + c11 * (x20 * area * slip3 * w4 - x19) - frame * push4_y -
+            push4_moment - x13
         ),
     )
 
@@ -384,59 +383,58 @@ def pin_forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
     del travel, dot, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del slip3, lean, pace, slip4
     facing = coupler_x * crank_x + coupler_y * crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, pace, slip3
     square = speed**2
     along2_s = along2 * square
     across2_s = across2 * square
@@ -449,30 +447,30 @@ def pin_forces(
     inertia4_s = inertia4 * square
     spin_th3 = w3**2
     spin_th4 = w4**2
-    x9 = 1 / crank
-    c8 = x9 * across2_s
-    c9 = x9 * along2_s
+    x7 = 1 / crank
+    c8 = x7 * across2_s
+    c9 = x7 * along2_s
     push2_x = c8 * crank_y - c9 * crank_x
     push2_y = -c8 * crank_x - c9 * crank_y
-    x10 = 1 / coupler
-    c10 = x10 * across3_s
-    c11 = x10 * along3_s
-    x11 = a3 * coupler_y + coupler_x * spin_th3
-    x13 = a3 * coupler_x - coupler_y * spin_th3
-    push3_x = -c10 * x13 - c11 * x11 - mass3_s * crank_x
+    x8 = 1 / coupler
+    c10 = x8 * across3_s
+    c11 = x8 * along3_s
+    x9 = a3 * coupler_y + coupler_x * spin_th3
+    x10 = a3 * coupler_x - coupler_y * spin_th3
+    push3_x = -c10 * x10 - c11 * x9 - mass3_s * crank_x
     del w3, spin_th3, crank_x
-    push3_y = c11 * x13 - c10 * x11 - mass3_s * crank_y
-    del crank_y, x11, x13
+    push3_y = c11 * x10 - c10 * x9 - mass3_s * crank_y
+    del crank_y, x10, x9
     push3_moment = inertia3_s * a3 - c11 * area * w4 + c10 * facing
     del a3, area, facing, w4
-    x14 = 1 / follower
-    c12 = x14 * across4_s
-    c13 = x14 * along4_s
-    x15 = a4 * follower_x - follower_y * spin_th4
-    x16 = a4 * follower_y + follower_x * spin_th4
-    push4_x = -c12 * x15 - c13 * x16
-    push4_y = c13 * x15 - c12 * x16
-    del spin_th4, x15, x16
+    x11 = 1 / follower
+    c12 = x11 * across4_s
+    c13 = x11 * along4_s
+    x13 = a4 * follower_x - follower_y * spin_th4
+    x14 = a4 * follower_y + follower_x * spin_th4
+    push4_x = -c12 * x13 - c13 * x14
+    push4_y = c13 * x13 - c12 * x14
+    del spin_th4, x13, x14
     push4_moment = inertia4_s * a4
     x34 = inverse * (coupler_x * push4_moment + follower_x * push3_moment)
     del a4, coupler_x, follower_x
@@ -559,74 +557,72 @@ def driving_torque(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, follower_y, dot, inverse, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del follower_x, lean, pace, slip4
+    del travel, follower_y, dot, spread
     facing = coupler_x * crank_x + coupler_y * crank_y
     del coupler_x, coupler_y, crank_x, crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    x7 = facing * slip3
+    a4 = -x7 * inverse - pace * w4
+    del follower_x, lean, inverse, pace
     square = speed**2
     along3_s = along3 * square
     across3_s = across3 * square
     inertia3_s = inertia3 * square
     inertia4_s = inertia4 * square
     push4_moment = inertia4_s * a4
-    x9 = 1 / coupler
-    c8 = x9 * across3_s
-    c9 = x9 * along3_s
-    x10 = area * w4
-    x11 = slip3 * w3
-    del a4, area, slip3
+    x8 = 1 / coupler
+    c8 = x8 * across3_s
+    c9 = x8 * along3_s
+    x9 = area * w4
     return (
-        inertia3_s * a3 * w3 + c8 * (x10 * a3 + x11 * facing) + c9 * (a3 * facing - x10 * x11) +
+        inertia3_s * a3 * w3 + c8 * (x9 * a3 + x7 * w3) + c9 * (a3 * facing - x9 * slip3 * w3) +
         push4_moment * w4
     )
 
@@ -694,58 +690,58 @@ def shaking_force(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del area, p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del area, p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, dot, inverse, spread
+    del travel, dot, spread
+    facing = coupler_x * crank_x + coupler_y * crank_y
     a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del slip3, lean, pace, slip4
+    a4 = -facing * inverse * slip3 - pace * w4
+    del lean, facing, inverse, pace, slip3
     square = speed**2
     along2_s = along2 * square
     across2_s = across2 * square
@@ -756,28 +752,28 @@ def shaking_force(
     across4_s = across4 * square
     spin_th3 = w3**2
     spin_th4 = w4**2
-    x9 = 1 / crank
-    c8 = x9 * across2_s
-    c9 = x9 * along2_s
+    x7 = 1 / crank
+    c8 = x7 * across2_s
+    c9 = x7 * along2_s
     push2_x = c8 * crank_y - c9 * crank_x
     push2_y = -c8 * crank_x - c9 * crank_y
-    x10 = 1 / coupler
-    c10 = x10 * across3_s
-    c11 = x10 * along3_s
-    x11 = a3 * coupler_y + coupler_x * spin_th3
-    x12 = a3 * coupler_x - coupler_y * spin_th3
+    x8 = 1 / coupler
+    c10 = x8 * across3_s
+    c11 = x8 * along3_s
+    x9 = a3 * coupler_y + coupler_x * spin_th3
+    x10 = a3 * coupler_x - coupler_y * spin_th3
     del w3, w4, a3, coupler_x, coupler_y, spin_th3
-    push3_x = -c10 * x12 - c11 * x11 - mass3_s * crank_x
-    push3_y = c11 * x12 - c10 * x11 - mass3_s * crank_y
-    del crank_x, crank_y, x11, x12
-    x13 = 1 / follower
-    c12 = x13 * across4_s
-    c13 = x13 * along4_s
-    x14 = a4 * follower_x - follower_y * spin_th4
-    x15 = a4 * follower_y + follower_x * spin_th4
+    push3_x = -c10 * x10 - c11 * x9 - mass3_s * crank_x
+    push3_y = c11 * x10 - c10 * x9 - mass3_s * crank_y
+    del crank_x, crank_y, x10, x9
+    x11 = 1 / follower
+    c12 = x11 * across4_s
+    c13 = x11 * along4_s
+    x12 = a4 * follower_x - follower_y * spin_th4
+    x13 = a4 * follower_y + follower_x * spin_th4
     del a4, follower_x, follower_y, spin_th4
-    push4_x = -c12 * x14 - c13 * x15
-    push4_y = c13 * x14 - c12 * x15
+    push4_x = -c12 * x12 - c13 * x13
+    push4_y = c13 * x12 - c12 * x13
     return (
         -push2_x - push3_x - push4_x,
         -push2_y - push3_y - push4_y,
@@ -845,60 +841,60 @@ def shaking_moment(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
     area = assembly * xp.sqrt(fold * stretch)
-    del half_cosine, x1, fold, stretch
+    del cosine_squared, sine_squared, fold, stretch
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    del diagonal, base_x, x6
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
-    c7 = folded**2 / 4 + straight**2 / 4 - x2 / 2
+    x4 = 0.5 / diagonal
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    del diagonal, base_x, x4
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
+    c7 = folded**2 / 4 + straight**2 / 4 - x0 / 2
     dot = travel - c7
     lean = -frame * inverse
     slip3 = follower_y * lean
-    slip4 = coupler_y * lean
     spread = crank_y * lean
     w3 = inverse * (crank_x * follower_y - crank_y * follower_x)
     w4 = spread + w3
     pace = dot * inverse * spread
-    del travel, dot, inverse, spread
-    a3 = pace * slip3 - follower_x * lean * w4
-    a4 = pace * slip4 - coupler_x * lean * w3
-    del lean, pace, slip4, w3
+    del travel, w3, dot, spread
     facing = coupler_x * crank_x + coupler_y * crank_y
     del coupler_x, coupler_y, crank_x, crank_y
+    a3 = pace * slip3 - follower_x * lean * w4
+    x7 = facing * slip3
+    a4 = -x7 * inverse - pace * w4
+    del lean, inverse, pace
     square = speed**2
     along3_s = along3 * square
     across3_s = across3 * square
@@ -907,22 +903,22 @@ def shaking_moment(
     across4_s = across4 * square
     inertia4_s = inertia4 * square
     spin_th4 = w4**2
-    x9 = 1 / follower
-    c8 = x9 * along4_s
-    c9 = x9 * across4_s
+    x8 = 1 / follower
+    c8 = x8 * along4_s
+    c9 = x8 * across4_s
     push4_y = (
         c8 * (a4 * follower_x - follower_y * spin_th4) - c9 * (a4 * follower_y + follower_x *
         spin_th4)
     )
     del follower_x, follower_y, spin_th4
     push4_moment = inertia4_s * a4
-    x10 = 1 / coupler
-    c10 = x10 * along3_s
-    c11 = x10 * across3_s
-    x11 = 2 - slip3
+    x9 = 1 / coupler
+    c10 = x9 * along3_s
+    c11 = x9 * across3_s
+    x10 = 2 - slip3
     return (
-        c10 * (x11 * area * slip3 * w4 - a3 * facing) - inertia3_s * a3 - c11 * (a3 * area * w4 +
-        x11 * facing * slip3) - frame * push4_y - push4_moment
+        c10 * (x10 * area * slip3 * w4 - a3 * facing) - inertia3_s * a3 - c11 * (a3 * area * w4 +
+        x10 * x7) - frame * push4_y - push4_moment
     )
 
 
@@ -1001,46 +997,46 @@ def load_forces(
     far = crank + frame
     straight = coupler + follower
     folded = coupler - follower
-    x0 = theta2 / 2
-    half_sine = xp.sin(x0)
-    half_cosine = xp.cos(x0)
+    half_tangent = xp.tan(theta2 / 2)
+    cosine_squared = 1 / (half_tangent**2 + 1)
+    half_sine2 = cosine_squared * half_tangent
+    sine_squared = half_sine2 * half_tangent
     c0 = 2 * crank
-    x1 = half_sine**2
-    rise = c0 * x1
+    rise = c0 * sine_squared
     travel = frame * rise
     crank_x = crank - rise
-    crank_y = c0 * half_cosine * half_sine
+    crank_y = c0 * half_sine2
     base_x = near + rise
-    del x0, half_sine, rise
-    x2 = near**2
-    c1 = x2 / 2
+    del half_tangent, half_sine2, rise
+    x0 = near**2
+    c1 = x0 / 2
     diagonal = c1 + travel
-    x3 = folded * straight
-    c2 = x2 / 2 + x3 / 2
+    x1 = folded * straight
+    c2 = x0 / 2 + x1 / 2
     p = c2 + travel
-    c3 = x3 / 2 - x2 / 2
+    c3 = x1 / 2 - x0 / 2
     q = travel - c3
     c4 = (near + straight) * (near - straight) / 2
     c5 = (far + straight) * (far - straight) / 2
-    stretch = -c4 * half_cosine**2 - c5 * x1
+    stretch = -c4 * cosine_squared - c5 * sine_squared
     c6 = (folded + near) * (folded - near) / 2
     fold = travel - c6
-    del half_cosine, x1, travel
+    del cosine_squared, sine_squared, travel
     area = assembly * xp.sqrt(fold * stretch)
     inverse = -1 / area
-    x6 = 1 / (2 * diagonal)
+    x4 = 0.5 / diagonal
     del fold, stretch, diagonal
-    per_x = x6 * base_x
-    per_y = x6 * crank_y
-    x7 = area * per_y
-    coupler_x = p * per_x + x7
-    x8 = area * per_x
-    del base_x, x6, area
-    coupler_y = x8 - p * per_y
-    follower_x = x7 - per_x * q
-    del p, per_x, x7
-    follower_y = per_y * q + x8
-    del per_y, q, x8
+    per_x = x4 * base_x
+    per_y = x4 * crank_y
+    x5 = area * per_y
+    coupler_x = p * per_x + x5
+    x6 = area * per_x
+    del base_x, x4, area
+    coupler_y = x6 - p * per_y
+    follower_x = x5 - per_x * q
+    del p, per_x, x5
+    follower_y = per_y * q + x6
+    del per_y, q, x6
     x34 = inverse * (-couple3 * follower_x - couple4 * coupler_x)
     y34 = inverse * (-couple3 * follower_y - couple4 * coupler_y)
     del coupler_x, follower_x, coupler_y, follower_y, inverse

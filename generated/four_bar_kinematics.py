@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash 7418159e26b426dd68661d5eb47fa434; derived with SymPy 1.14.0.
+Content hash c998dd8a274b6b9d15bdb3be7bedaba4; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "7418159e26b426dd68661d5eb47fa434"
+CONTENT = "c998dd8a274b6b9d15bdb3be7bedaba4"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -128,7 +128,7 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     area = 2 * coupler * follower * sine_transmission
     x9 = area * diagonal_y
     x10 = 1 / coupler
-    x11 = 1 / (2 * diagonal2)
+    x11 = 0.5 / diagonal2
     x12 = x10 * x11
     cos3 = x12 * (diagonal_x * p - x9)
     x13 = area * diagonal_x

@@ -11,7 +11,7 @@ fifth.
 
 Cost per evaluation:
     sensitivities: 306 operations
-Content hash df9cf574a66cd7bd1ca50dcbcc52713a; derived with SymPy 1.14.0.
+Content hash 3b2d883e57021fb2a9414714d2a842c8; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sensitivities","mechanism":"four_bar","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "df9cf574a66cd7bd1ca50dcbcc52713a"
+CONTENT = "3b2d883e57021fb2a9414714d2a842c8"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (
@@ -200,7 +200,7 @@ def sensitivities(theta2, frame, crank, coupler, follower, assembly):
     area = 2 * coupler * follower * sine_transmission
     x8 = area * diagonal_y
     x9 = 1 / coupler
-    x10 = 1 / (2 * diagonal2)
+    x10 = 0.5 / diagonal2
     x11 = x9 * x10
     cos3 = x11 * (diagonal_x * p - x8)
     x12 = area * diagonal_x

@@ -7,7 +7,7 @@ Equations: Smith (7.23), (7.25); Smith (7.46), (7.49).
 
 Cost per evaluation:
     first_order: 14 operations
-Content hash ce09b448d6983e10806bef95113007f5; derived with SymPy 1.14.0.
+Content hash 2e1e9faed3b23831cb5891eac1018a1d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hi'
     'll","modes":null,"outputs":[]}'
 )
-CONTENT = "ce09b448d6983e10806bef95113007f5"
+CONTENT = "2e1e9faed3b23831cb5891eac1018a1d"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

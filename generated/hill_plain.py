@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 8b293419e1bf99d8b2aa2728e3aec487; derived with SymPy 1.14.0.
+Content hash d401e9b74c4097094e466966f86fcbfd; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "8b293419e1bf99d8b2aa2728e3aec487"
+CONTENT = "d401e9b74c4097094e466966f86fcbfd"
 EXTERNAL = ('f',)
 MODAL_1 = ((1.0,),)
 MODAL_2 = ((2.0,),)

@@ -13,7 +13,7 @@ At theta2 = 0 the rod's angle is 0.
 
 Cost per evaluation:
     motion: 48 operations
-Content hash 01743df9ad37e9ada5d85b6b3282c817; derived with SymPy 1.14.0.
+Content hash 37403a1f8b0175564323d8104fa26d29; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"quick_return",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "01743df9ad37e9ada5d85b6b3282c817"
+CONTENT = "37403a1f8b0175564323d8104fa26d29"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

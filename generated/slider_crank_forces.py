@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 115 operations
     shaking_moment: 137 operations
     load_forces: 75 operations
-Content hash b7c6996ae8fc03b1ced5ef2b42e79243; derived with SymPy 1.14.0.
+Content hash d08577dd1fd06bec0fc72aea7168a9e4; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"slider_crank","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "b7c6996ae8fc03b1ced5ef2b42e79243"
+CONTENT = "d08577dd1fd06bec0fc72aea7168a9e4"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

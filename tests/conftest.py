@@ -1,8 +1,9 @@
-"""Let every test import the exact four-bar linkage and the accuracy table of ``tests/derive``."""
+"""Let every test import the exact references of ``tests/derive`` and ``tests/convergence``."""
 
 import sys
 from pathlib import Path
 
-_HELPERS = str(Path(__file__).resolve().parent / "derive")
-if _HELPERS not in sys.path:
-    sys.path.insert(0, _HELPERS)
+for _folder in ("derive", "convergence"):
+    _helpers = str(Path(__file__).resolve().parent / _folder)
+    if _helpers not in sys.path:
+        sys.path.insert(0, _helpers)

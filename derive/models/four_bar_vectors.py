@@ -27,8 +27,8 @@ class LinkVectors:
         Definitions, in order.
     near, far, straight, folded : Symbol
         ``l1 - l2``, ``l1 + l2``, ``l3 + l4`` and ``l3 - l4``.
-    half_sine, half_cosine : Symbol
-        Of half the crank angle.
+    half_tangent, cosine_squared, sine_squared, half_sine2 : Symbol
+        Tangent, squared cosine and squared sine of half the crank angle; half the sine of all.
     rise, travel : Symbol
         ``l2 (1 - cos theta2)`` and ``l1`` times that.
     crank_x, crank_y, coupler_x, coupler_y, follower_x, follower_y : Symbol
@@ -63,8 +63,10 @@ class LinkVectors:
     far: sp.Symbol
     straight: sp.Symbol
     folded: sp.Symbol
-    half_sine: sp.Symbol
-    half_cosine: sp.Symbol
+    half_tangent: sp.Symbol
+    cosine_squared: sp.Symbol
+    sine_squared: sp.Symbol
+    half_sine2: sp.Symbol
     rise: sp.Symbol
     travel: sp.Symbol
     crank_x: sp.Symbol
@@ -138,12 +140,15 @@ def link_vectors() -> LinkVectors:
         (v.far, frame + crank),
         (v.straight, coupler + follower),
         (v.folded, coupler - follower),
-        (v.half_sine, sp.sin(theta2 / 2)),
-        (v.half_cosine, sp.cos(theta2 / 2)),
-        (v.rise, 2 * crank * v.half_sine**2),
+        # One tangent takes less time than a sine and a cosine, and loses no digit of either.
+        (v.half_tangent, sp.tan(theta2 / 2)),
+        (v.cosine_squared, 1 / (1 + v.half_tangent**2)),
+        (v.half_sine2, v.half_tangent * v.cosine_squared),
+        (v.sine_squared, v.half_tangent * v.half_sine2),
+        (v.rise, 2 * crank * v.sine_squared),
         (v.travel, frame * v.rise),
         (v.crank_x, crank - v.rise),
-        (v.crank_y, 2 * crank * v.half_sine * v.half_cosine),
+        (v.crank_y, 2 * crank * v.half_sine2),
     )
     steps = Steps((*start, *_positions(v), *_rates(v)))
     return LinkVectors(steps, **made)
@@ -178,7 +183,7 @@ def _positions(v: LinkVectors) -> tuple[Step, ...]:
         for part in solved[:2]:
             above = sp.expand(sp.cancel(part * length * (base[0] ** 2 + base[1] ** 2)))
             vectors.append(above.subs(dict(zip(base, (v.per_x, -v.per_y), strict=True))))
-    squares = v.half_cosine**2, v.half_sine**2
+    squares = v.cosine_squared, v.sine_squared
     return (
         (v.base_x, v.near + v.rise),
         (v.diagonal, by_travel(diagonal)),
@@ -227,27 +232,6 @@ def _rates(v: LinkVectors) -> tuple[Step, ...]:
     slips = {name: found[name].subs(v.inverse, -v.lean / frame) for name in (v.slip3, v.slip4)}
     gap = sp.expand(slips[v.slip3] - slips[v.slip4])
     spread = sp.factor(gap.subs(v.follower_y, v.crank_y + v.coupler_y))
-    changes = {
-        v.coupler_x: -v.w3 * v.coupler_y,
-        v.coupler_y: v.w3 * v.coupler_x,
-        v.follower_x: -v.w4 * v.follower_y,
-        v.follower_y: v.w4 * v.follower_x,
-        v.lean: -v.lean * v.pace,
-    }
-    accelerations = []
-    for name, slip, a in ((v.slip3, slips[v.slip3], v.a3), (v.slip4, slips[v.slip4], v.a4)):
-        slope = sum(sp.diff(slip, symbol) * change for symbol, change in changes.items())
-        accelerations.append((a, sp.expand(-slope).subs(slip, name)))
-    # The area BC x DC grows with the angle between the two.
-    area = cross(v.coupler, v.follower)
-    growth = sp.expand(sum(sp.diff(area, symbol) * change for symbol, change in changes.items()))
-    if (
-        sp.expand(
-            growth - (v.w4 - v.w3) * sum(a * b for a, b in zip(v.coupler, v.follower, strict=True))
-        )
-        != 0
-    ):
-        raise UnsafeRewriting("the area does not grow with the angle at C")
     return (
         (v.lean, -frame * v.inverse),
         (v.slip3, slips[v.slip3]),
@@ -256,6 +240,39 @@ def _rates(v: LinkVectors) -> tuple[Step, ...]:
         (v.w3, found[v.w3]),
         (v.w4, v.w3 + v.spread),
         (v.pace, v.inverse * v.spread * v.dot),
-        *accelerations,
         (v.facing, v.coupler_x * v.crank_x + v.coupler_y * v.crank_y),
+        *_accelerations(v, slips[v.slip3]),
+    )
+
+
+def _accelerations(v: LinkVectors, slip3: sp.Expr) -> tuple[Step, ...]:
+    """Differentiate the slip of the coupler, and the follower's speed times the area.
+
+    Where C comes near A, ``1 - w3`` and ``w4`` are small, and so are both terms of either
+    derivative; that of ``1 - w4`` would be the difference of two large ones.
+    """
+    changes = {
+        v.crank_x: -v.crank_y,
+        v.crank_y: v.crank_x,
+        v.coupler_x: -v.w3 * v.coupler_y,
+        v.coupler_y: v.w3 * v.coupler_x,
+        v.follower_x: -v.w4 * v.follower_y,
+        v.follower_y: v.w4 * v.follower_x,
+        v.lean: -v.lean * v.pace,
+    }
+
+    def slope(value: sp.Expr) -> sp.Expr:
+        return sp.expand(sum(sp.diff(value, name) * change for name, change in changes.items()))
+
+    # The area BC x DC grows with the angle between the two.
+    dot = sum(a * b for a, b in zip(v.coupler, v.follower, strict=True))
+    if sp.expand(slope(cross(v.coupler, v.follower)) - (v.w4 - v.w3) * dot) != 0:
+        raise UnsafeRewriting("the area does not grow with the angle at C")
+    # The area times w4 is BC x AB, which grows with the angle at B.
+    facing = sum(a * b for a, b in zip(v.coupler, v.crank, strict=True))
+    if sp.expand(slope(cross(v.coupler, v.crank)) - (1 - v.w3) * facing) != 0:
+        raise UnsafeRewriting("the area ABC does not grow with the angle at B")
+    return (
+        (v.a3, (-slope(slip3)).subs(slip3, v.slip3)),
+        (v.a4, -v.inverse * v.slip3 * v.facing - v.pace * v.w4),
     )

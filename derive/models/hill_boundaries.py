@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..describe import Description
 from ..ir import Argument, Result
-from ..perturbation import a0, an, bn, damping, first_order, mu, n
+from ..perturbation.first_order import a0, an, bn, damping, first_order, mu, n
 from ..pipeline import Model
 from ..spec import ModelSpec
 from ..staged import ClosedForm, Steps

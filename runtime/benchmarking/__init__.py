@@ -2,7 +2,17 @@
 
 from .chart import benchmark_chart
 from .forces import benchmark_forces
+from .mathieu import benchmark_mathieu
+from .perturbation import benchmark_perturbation
 from .records import Benchmark, Row
 from .slices import benchmark_slices
 
-__all__ = ["Benchmark", "Row", "benchmark_chart", "benchmark_forces", "benchmark_slices"]
+__all__ = [
+    "Benchmark",
+    "Row",
+    "benchmark_chart",
+    "benchmark_forces",
+    "benchmark_mathieu",
+    "benchmark_perturbation",
+    "benchmark_slices",
+]

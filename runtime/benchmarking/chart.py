@@ -93,7 +93,7 @@ def _measure(points: int, rounds: int, sample: int, problems: tuple[str, ...]) -
             )
         ]
         left_out = []
-        peer = _heyoka(known[name])
+        peer = batched_heyoka(known[name])
         if peer is None:
             left_out = [missing(name, n, "not installed") for n in (_HEYOKA, _HEYOKA_NODES)]
         else:
@@ -166,7 +166,7 @@ class _Chart:
         short = f.truncated(_TOLERANCE)
 
         def run() -> Array:
-            return np.array([_solve_ivp(short, p, q) for p, q in zip(x, y, strict=True)])
+            return np.array([one_half_trace(short, p, q) for p, q in zip(x, y, strict=True)])
 
         share = count / (self.lam2.size * self.mu.size)
         return Contender(_SCIPY, run, self.point_error, share)
@@ -188,7 +188,8 @@ def _node_counts(f: PeriodicFunction) -> tuple[int, int]:
     )
 
 
-def _solve_ivp(f: PeriodicFunction, lam2: float, mu: float) -> float:
+def one_half_trace(f: PeriodicFunction, lam2: float, mu: float) -> float:
+    """Return one half trace by SciPy's solve_ivp."""
     from scipy.integrate import solve_ivp
 
     c, m = f.a - 1j * f.b, 1j * np.arange(len(f.a))
@@ -203,8 +204,11 @@ def _solve_ivp(f: PeriodicFunction, lam2: float, mu: float) -> float:
     return float(0.5 * (end.y[0, -1] + end.y[3, -1]))
 
 
-def _heyoka(f: PeriodicFunction) -> Callable[[Array, Array], Array] | None:
-    """Return heyoka's batch loop over points, compiled, or None where it is not installed."""
+def batched_heyoka(f: PeriodicFunction, size: int = 0) -> Callable[[Array, Array], Array] | None:
+    """Return heyoka's batch loop over points, compiled, or None where it is not installed.
+
+    ``size`` is that of a batch, by default the one heyoka recommends.
+    """
     try:
         import heyoka as hy
     except ImportError:
@@ -217,7 +221,7 @@ def _heyoka(f: PeriodicFunction) -> Callable[[Array, Array], Array] | None:
         u1, u2 = 2.0 * cos * u1 - u2 + am, u1
         w1, w2 = 2.0 * cos * w1 - w2 + bm, w1
     q = -(hy.par[0] + hy.par[1] * (float(short.a[0]) + cos * u1 - u2 + sin * w1))
-    batch = int(hy.recommended_simd_size())
+    batch = size or int(hy.recommended_simd_size())
     start = np.repeat(np.array([[1.0], [0.0], [0.0], [1.0]]), batch, axis=1)
     stepper = hy.taylor_adaptive_batch(
         [(y1, v1), (v1, q * y1), (y2, v2), (v2, q * y2)],

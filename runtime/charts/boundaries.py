@@ -1,18 +1,17 @@
-"""Boundary curves of a chart with one mode: exact from the Hill matrix, and first order."""
+"""Boundary curves of a chart with one mode: from the Hill matrix, and by perturbation."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..families import Array, LinearPeriodic
+from ..hill.exact.matrix import hill_boundaries
 from ..hill.form import HillForm, hill_form, is_stiffness, leaves_function_alone
-from ..hill.matrix import Boundaries, hill_boundaries
-from ..hill.perturbation import perturbation_boundaries
 from ..series.periodic import PeriodicFunction
-from .damped_speeds import exact_speeds, first_order_speeds
+from .damped_speeds import exact_speeds
+from .overlay import overlay_ends
 from .structure import is_damped
 
 _MOST_ROWS = 121
@@ -29,7 +28,7 @@ class BoundaryCurves:
     along : str
         The axis that the ends lie on: ``"speed"`` or the parameter that is the constant stiffness.
     regions : tuple of int
-        Number of each region.
+        Number of each region; 0 has an upper end alone, and is there where the axis is lam2's.
     at : ndarray, shape (n,)
         Values of the other axis.
     lower, upper : ndarray, shape (len(regions), n)
@@ -50,9 +49,9 @@ class BoundaryCurves:
 
 
 def boundary_curves(
-    system: LinearPeriodic, names: tuple[str, str], axes: tuple[Array, Array]
+    system: LinearPeriodic, names: tuple[str, str], axes: tuple[Array, Array], order: int
 ) -> tuple[BoundaryCurves | None, BoundaryCurves | None]:
-    """Return exact and first-order boundaries within a chart, or None where no axis suits.
+    """Return exact and perturbation boundaries within a chart, or None where no axis suits.
 
     An axis suits where it is the speed, or a parameter that is the constant stiffness itself.
 
@@ -64,6 +63,8 @@ def boundary_curves(
         Names of the axes x and y.
     axes : tuple of ndarray
         Their values.
+    order : int
+        Of the perturbation.
     """
     form = hill_form(system)
     which = next((i for i in (0, 1) if _suits(form, names[i])), None)
@@ -77,13 +78,15 @@ def boundary_curves(
         rows = np.linspace(rows[0], rows[-1], most)
     points = [_Point.of(form, along, other, float(value)) for value in rows]
     regions, left_out = _regions(axes[which], along, points)
-    tables: list[BoundaryCurves] = []
-    for exact in (True, False):
-        ends = np.full((3, len(regions), len(rows)), np.nan)
-        for j, point in enumerate(points):
-            ends[:, :, j] = point.ends(exact, regions)
-        tables.append(BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out))
-    return tables[0], tables[1]
+    exact = np.full((3, len(regions), len(rows)), np.nan)
+    for j, point in enumerate(points):
+        exact[:, :, j] = point.ends(regions)
+    near = overlay_ends(form, along, other, rows, regions, order)
+    tables = (
+        BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out)
+        for ends in (exact, near)
+    )
+    return next(tables), next(tables)
 
 
 @dataclass(frozen=True)
@@ -103,18 +106,19 @@ class _Point:
         f = form.function(speed, **changes)
         return cls(along, speed, f, form.stiffness(**changes), form.damping(**changes))
 
-    def ends(self, exact: bool, regions: tuple[int, ...]) -> Array:
+    def ends(self, regions: tuple[int, ...]) -> Array:
         """Return lower ends, upper ends and errors in the units of the axis, shape (3, regions)."""
-        solve: Callable[..., Boundaries] = hill_boundaries if exact else perturbation_boundaries
         if self.along != "speed":
-            found = solve(self.function, 1.0, regions, damping=self.damping / (2 * self.speed))
-            return np.stack([found.lower, found.upper, found.error]) * self.speed**2
+            damping = self.damping / (2 * self.speed)
+            found = hill_boundaries(self.function, 1.0, regions, damping=damping)
+            # Region 0 begins at minus infinity, which is no end.
+            lower = np.where(np.isfinite(found.lower), found.lower, np.nan)
+            return np.stack([lower, found.upper, found.error]) * self.speed**2
         if self.stiffness <= 0.0:
             return np.full((3, len(regions)), np.nan)
         if self.damping != 0.0:
-            damped = exact_speeds if exact else first_order_speeds
-            return damped(self.function, self.stiffness, self.damping, regions)
-        found = solve(self.function, 1.0, regions)
+            return exact_speeds(self.function, self.stiffness, self.damping, regions)
+        found = hill_boundaries(self.function, 1.0, regions)
         lam2 = np.stack([found.lower, found.upper])
         with np.errstate(invalid="ignore", divide="ignore"):
             speeds = np.sqrt(np.where(lam2 > 0, self.stiffness / lam2, np.nan))
@@ -134,7 +138,9 @@ def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, 
         lows.append(float(lam2.min()))
         highs.append(float(lam2.max()))
         reach = max(reach, point.function.bound())
-    first = max(1, int(np.floor(2 * np.sqrt(max(min(lows) - reach, 0.0)))))
+    first = int(np.floor(2 * np.sqrt(max(min(lows) - reach, 0.0))))
+    # At positive stiffness region 0, of divergence, has no speed of its own.
+    first = max(first, 1 if along == "speed" else 0)
     last = max(first, int(np.ceil(2 * np.sqrt(max(max(highs) + reach, 0.25)))))
-    most = min(last, first + _MOST_REGIONS - 1)
+    most = min(last, max(first, 1) + _MOST_REGIONS - 1)
     return tuple(range(first, most + 1)), last - most

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -12,8 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import bad
 from ..families import Array, LinearPeriodic
 from ..hill.form import is_hill
+from ..hill.perturbation.boundaries import check_order
 from ..results import Check, Result
 from .boundaries import BoundaryCurves, boundary_curves
+from .edge_rows import EdgeCurves, edge_curves
+from .invariants import instability_kind
 from .sampling import Sampler, invariants, relative_error
 from .structure import natural_frequency
 from .verdict import spot_check, verdict
@@ -45,8 +48,17 @@ class StabilityChart(Result):
     slack : ndarray, shape (ny, nx)
         How far a modulus may lie above 1 and still count as stable: what the error of the
         invariants explains.  A resonance that grows less than this in a turn is not seen.
-    exact, first_order : BoundaryCurves or None
-        Boundaries from the Hill matrix, and of first order in the periodic part; one mode only.
+    kind : ndarray of int8, shape (ny, nx)
+        How a point is unstable, by its largest multiplier: 1 or -1 where that is real, positive
+        or negative (principal regions of even and of odd number, or divergence); 2 where it is
+        complex (combination); 0 where stable.
+    exact, perturbation : BoundaryCurves or None
+        Boundaries from the Hill matrix, and by perturbation to ``order``, NaN where that does not
+        converge; one mode only.
+    order : int
+        Order of ``perturbation`` in the periodic part and the damping.
+    edges : EdgeCurves or None
+        Regions along the speed, at some rows; several modes, where asked for.
     natural_frequency : float
         Lowest natural frequency [rad/s] of the system at rest; NaN where speed is not an axis or
         the other axis changes the frequency.
@@ -67,8 +79,11 @@ class StabilityChart(Result):
     stable: NDArray[np.bool_]
     largest: Array
     slack: Array
+    kind: NDArray[np.int8]
     exact: BoundaryCurves | None = None
-    first_order: BoundaryCurves | None = None
+    perturbation: BoundaryCurves | None = None
+    order: int = 1
+    edges: EdgeCurves | None = None
     natural_frequency: float = float("nan")
     frequency_name: str = "natural frequency"
     marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
@@ -80,11 +95,17 @@ class StabilityChart(Result):
         "stable": ("y", "x"),
         "largest": ("y", "x"),
         "slack": ("y", "x"),
+        "kind": ("y", "x"),
         "invariants": ("y", "x", "invariant"),
     }
 
+    @property
+    def first_order(self) -> BoundaryCurves | None:
+        """The boundaries by perturbation where they are of first order."""
+        return self.perturbation if self.order == 1 else None
+
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Shade the unstable regions and draw the boundaries; speeds in rpm."""
+        """Shade the unstable regions by kind and draw the boundaries; speeds in rpm."""
         from .picture import draw_chart
 
         return draw_chart(self, ax)
@@ -96,6 +117,8 @@ def stability_chart(
     y: Axis,
     *,
     boundaries: bool = True,
+    order: int = 1,
+    edges: bool = False,
     marks: Mapping[str, Sequence[float]] | None = None,
     rtol: float | None = None,
     progress: bool = False,
@@ -114,8 +137,13 @@ def stability_chart(
     x, y : tuple of (str, array_like)
         ``("speed", values)`` in rad/s or ``(parameter, values)`` in SI units; values rise.
     boundaries : bool
-        Whether exact and first-order boundaries are computed too; for one mode, where one of the
+        Whether exact and perturbation boundaries are computed too; for one mode, where one of the
         axes is the speed or the constant stiffness.
+    order : int
+        Order of the perturbation, 1 to 8; of several modes there is none in a chart, so that only 1
+        is taken.
+    edges : bool
+        Whether regions along the speed, combinations among them, are traced at some rows too.
     marks : mapping, optional
         Label to values along y that the plot marks.
     rtol : float
@@ -129,37 +157,74 @@ def stability_chart(
     Returns
     -------
     StabilityChart
-        ``error`` is the largest error of an invariant, over the larger of 1 and its size,
-        estimated from the tail of the series and the error of the samples.  Among the checks,
-        ``spot check`` compares five points with :func:`~.monodromy_matrix.floquet_multipliers`.
+        ``error``: largest error of an invariant, over the larger of 1 and its size, estimated
+        from the tail of the series and the samples.  Check ``spot check``: five points beside
+        :func:`~.monodromy_matrix.floquet_multipliers`.
 
     Raises
     ------
     BadInput
-        If an axis is unknown, empty, not rising, or the speed not positive; if modes and axes
-        would take an hour or so.
+        If an axis or option is unusable; if modes and axes would take an hour or so.
     """
     names, axes = _axes(system, x, y)
+    options = _options(system, rtol, order, edges, names)
+    named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
+    sampler = Sampler(system, names, axes, options.rtol)
+    found = _chart(sampler, options, boundaries=boundaries, progress=progress)
+    return replace(found, marks=named, frequency_name=frequency_name)
+
+
+@dataclass(frozen=True)
+class _Options:
+    rtol: float
+    order: int
+    edges: bool
+
+
+def _options(
+    system: LinearPeriodic, rtol: float | None, order: int, edges: bool, names: tuple[str, str]
+) -> _Options:
     if rtol is None:
         rtol = _ONE_MODE if system.size == 1 else _SEVERAL
     if not 1e-13 <= rtol <= 1e-2:
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
-    sampler = Sampler(system, names, axes, rtol)
+    check_order(order)
+    if order != 1 and not is_hill(system):
+        raise bad(
+            "order",
+            order,
+            "one mode, which alone has boundaries by perturbation in a chart",
+            "leave it out; tongue has the series of several modes",
+        )
+    if edges and "speed" not in names:
+        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
+    return _Options(rtol, int(order), bool(edges))
+
+
+def _chart(
+    sampler: Sampler, options: _Options, *, boundaries: bool, progress: bool
+) -> StabilityChart:
+    """Return the chart, less what only concerns its picture."""
+    system, names, axes = sampler.system, sampler.names, sampler.axes
     series = invariants(sampler, progress=progress)
     found = verdict(sampler, series)
     largest, stable, slack = found
-    exact, first = None, None
+    exact, near, rows = None, None, None
     if boundaries and is_hill(system):
-        exact, first = boundary_curves(system, names, axes)
+        exact, near = boundary_curves(system, names, axes, options.order)
+    checks = {
+        "error of samples": Check(series.sample_error, max(1e-8, 1e3 * options.rtol)),
+        "spot check": spot_check(sampler, series, found),
+    }
+    if options.edges:
+        rows = edge_curves(system, names, axes)
+        checks["edges"] = rows.check
     return StabilityChart(
         method=series.method,
         error=relative_error(series.error, series.values),
         error_norm=("half trace" if sampler.hill else "invariants")
         + " of the monodromy matrix, largest, relative where beyond 1",
-        checks={
-            "error of samples": Check(series.sample_error, max(1e-8, 1e3 * rtol)),
-            "spot check": spot_check(sampler, series, found),
-        },
+        checks=checks,
         provenance=system.provenance,
         x_name=names[0],
         y_name=names[1],
@@ -169,11 +234,12 @@ def stability_chart(
         stable=stable,
         largest=largest,
         slack=slack,
+        kind=instability_kind(series.values, stable, hill=sampler.hill, reduced=sampler.reduced),
         exact=exact,
-        first_order=first,
+        perturbation=near,
+        order=options.order,
+        edges=rows,
         natural_frequency=natural_frequency(system, names, axes),
-        frequency_name=frequency_name,
-        marks={k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()},
         nodes=series.nodes,
     )
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..families import Array
-from ..hill.layout import layout, stacked, truncation
-from ..hill.matrix import hill_boundaries
-from ..hill.perturbation import perturbation_boundaries
+from ..hill.exact.layout import layout, stacked, truncation
+from ..hill.exact.matrix import hill_boundaries
 from ..series.periodic import PeriodicFunction
 
 _EPS = float(np.finfo(float).eps)
@@ -98,37 +97,3 @@ def _drawn_in(local: float, half: float, sharp_half: float) -> float:
     inner = half * half - square
     moved = half - np.sqrt(inner) if inner > 0.0 else np.sqrt(half * half + square)
     return float(moved) + local
-
-
-def first_order_speeds(
-    f: PeriodicFunction, stiffness: float, damping: float, regions: tuple[int, ...]
-) -> Array:
-    """Return the ends of first order in the periodic part; as :func:`exact_speeds`.
-
-    Notes
-    -----
-    Smith (7.49): ``(lam2 - n^2/4 + a0)^2 = (an^2 + bn^2)/4 - n^2 K^2``; with K^2 = r^2 lam2 it is
-    a quadratic equation for lam2.
-    """
-    square_ratio = damping**2 / (4.0 * stiffness)
-    sharp = perturbation_boundaries(f, 1.0, regions)
-    middle, half = 0.5 * (sharp.lower + sharp.upper), 0.5 * (sharp.upper - sharp.lower)
-    drag = np.square(np.asarray(regions, dtype=float)) * square_ratio
-    centre = middle - 0.5 * drag
-    square = half**2 - drag * middle + 0.25 * drag**2
-    with np.errstate(invalid="ignore"):
-        lam2 = np.stack([centre - np.sqrt(square), centre + np.sqrt(square)])
-        lam2 = np.where((lam2 > 0.0) & np.isfinite(lam2[0] + lam2[1]), lam2, np.nan)
-        speeds = np.sqrt(stiffness / lam2)
-    out = np.full((3, len(regions)), np.nan)
-    known = np.isfinite(speeds[1])
-    out[:2, known] = speeds[:, known]
-    for i in np.flatnonzero(known):
-        ends = lam2[np.isfinite(lam2[:, i]), i]
-        there = perturbation_boundaries(
-            f, np.ones(len(ends)), (regions[i],), damping=np.sqrt(square_ratio * ends)
-        )
-        # At the very tip the figure for a fixed damping may not exist: then nothing is known.
-        error = np.where(np.isnan(there.error[0]), np.inf, there.error[0])
-        out[2, i] = float(np.max(error * np.sqrt(stiffness / ends) / (2.0 * ends)))
-    return out

@@ -13,6 +13,8 @@ from ..hill.half_trace import discriminant
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)
+# Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
+_REAL = 1e-6
 
 
 def characteristic(matrices: Array, *, reduced: bool) -> Array:
@@ -80,6 +82,44 @@ def largest_modulus(
             allowance = modulus * np.minimum(off / (2 * np.abs(root)), np.sqrt(off))
     stable = np.all(modulus <= 1.0 + allowance, axis=-1)
     return np.max(modulus, axis=-1), stable, np.max(allowance, axis=-1)
+
+
+def instability_kind(
+    coefficients: Array, stable: NDArray[np.bool_], *, hill: bool, reduced: bool
+) -> NDArray[np.int8]:
+    """Return how unstable points are so, by the largest multiplier.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (..., k)
+        As :func:`characteristic` returns them, or the half trace.
+    stable : ndarray of bool, shape (...)
+        Where not to look.
+    hill : bool
+        Whether they are half traces.
+    reduced : bool
+        Whether they are the first half of a palindromic polynomial.
+
+    Returns
+    -------
+    ndarray of int8, shape (...)
+        1 or -1 where the largest multiplier is real, 2 where it is complex, 0 where stable.
+    """
+    out = np.zeros(stable.shape, dtype=np.int8)
+    chosen = coefficients[~stable]
+    if hill or not len(chosen):
+        out[~stable] = np.sign(chosen[..., 0]) if hill else 0
+        return out
+    if reduced:
+        z = _roots(_in_sum(chosen))
+        half = np.sqrt(z**2 / 4 - 1 + 0j)
+        rho = np.where(np.abs(z / 2 + half) >= np.abs(z / 2 - half), z / 2 + half, z / 2 - half)
+    else:
+        rho = _roots(chosen)
+    top = np.take_along_axis(rho, np.argmax(np.abs(rho), axis=-1)[..., None], axis=-1)[..., 0]
+    real = np.abs(top.imag) <= _REAL * np.abs(top)
+    out[~stable] = np.where(real, np.where(top.real > 0, 1, -1), 2)
+    return out
 
 
 def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:

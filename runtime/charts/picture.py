@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from .boundaries import BoundaryCurves
     from .chart import StabilityChart
+    from .edge_rows import EdgeCurves
 
 _RPM = 60.0 / (2.0 * np.pi)
 _LABELS = {
@@ -22,33 +23,34 @@ _LABELS = {
     "lam2": r"$\lambda^2$",
     "mu": r"$\mu$",
 }
-_UNSTABLE, _EXACT, _FIRST, _MARK = "#f2c6a8", "#8c2d04", "#2b5c8a", "#3a7d44"
+_EXACT, _NEAR, _MARK = "#8c2d04", "#2b5c8a", "#3a7d44"
+# By kind of instability; the shades differ in lightness too.
+_SHADES = {-1: "#f2c6a8", 1: "#e0a070", 2: "#b9a3d6"}
+_WORDS = {
+    -1: "odd regions (multiplier below -1)",
+    1: "even regions (multiplier above 1)",
+    2: "combination (complex multipliers)",
+}
+# Relative width up to which a region is drawn as a hair.
+_NARROW = 1e-4
+_EDGES = {"principal": "#8c2d04", "sum": "#5b2d8c", "difference": "#1f6f6b"}
 
 
 def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
     """Shade unstable regions, draw boundaries, mark values, print the error figure."""
-    from matplotlib.colors import ListedColormap
-
     ax = axes_or_new(ax)
     x, y = (_shown(n, v) for n, v in ((chart.x_name, chart.x), (chart.y_name, chart.y)))
-    colours = ListedColormap(["#ffffff", _UNSTABLE])
-    ax.pcolormesh(
-        x,
-        y,
-        (~chart.stable).astype(float),
-        cmap=colours,
-        vmin=0,
-        vmax=1,
-        shading="nearest",
-        rasterized=True,
-    )
-    ax.fill([], [], color=_UNSTABLE, label=f"unstable, from the {_what(chart)}")
+    _shade(ax, chart, x, y)
+    order = "first-order boundary" if chart.order == 1 else f"boundary of order {chart.order}"
     for curves, style, colour, label in (
         (chart.exact, "-", _EXACT, "exact boundary (Hill matrix)"),
-        (chart.first_order, "--", _FIRST, "first-order boundary"),
+        (chart.perturbation, "--", _NEAR, order),
     ):
         if curves is not None:
-            _draw_curves(ax, chart, curves, style, colour, label)
+            text = label if _reach_in(chart, curves) else f"{label}: none here"
+            _draw_curves(ax, chart, curves, style, colour, text)
+    if chart.edges is not None:
+        _draw_edges(ax, chart, chart.edges)
     ax.set_xlim(x[0], x[-1])
     ax.set_ylim(y[0], y[-1])
     for label, values in chart.marks.items():
@@ -72,12 +74,82 @@ def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
     return ax
 
 
+def _shade(ax: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
+    """Shade each kind of instability that occurs."""
+    from matplotlib.colors import ListedColormap
+
+    codes = np.zeros(chart.kind.shape)
+    colours = ["#ffffff"]
+    for kind, colour in _SHADES.items():
+        here = chart.kind == kind
+        if np.any(here):
+            colours.append(colour)
+            codes[here] = len(colours) - 1
+    ax.pcolormesh(
+        x,
+        y,
+        codes,
+        cmap=ListedColormap(colours),
+        vmin=0,
+        vmax=max(len(colours) - 1, 1),
+        shading="nearest",
+        rasterized=True,
+    )
+    for kind, colour in _SHADES.items():
+        if colour in colours:
+            ax.fill([], [], color=colour, label=f"unstable: {_WORDS[kind]}")
+
+
+def _draw_edges(ax: Axes, chart: StabilityChart, edges: EdgeCurves) -> None:
+    """Draw the ends of traced regions between the rows at which they are known, with labels."""
+    horizontal = chart.x_name == "speed"
+    at = _shown(chart.y_name if horizontal else chart.x_name, edges.at)
+    seen: set[str] = set()
+    low, high = (_RPM * v for v in ((chart.x if horizontal else chart.y)[[0, -1]]))
+    for i, kind in enumerate(edges.kind):
+        with np.errstate(invalid="ignore"):
+            narrow = not np.any(edges.upper[i] - edges.lower[i] > _NARROW * edges.lower[i])
+        for ends in (edges.lower[i], edges.upper[i]):
+            pair = (ends * _RPM, at) if horizontal else (at, ends * _RPM)
+            label = None if kind in seen else f"{kind} regions, traced"
+            ax.plot(*pair, color=_EDGES[kind], lw=0.35 if narrow else 0.8, label=label)
+            seen.add(kind)
+        if kind == "principal":
+            continue
+        # Labels stand at the row nearest to the end of the axis where the region is in the chart.
+        known = np.flatnonzero((edges.lower[i] * _RPM > low) & (edges.lower[i] * _RPM < high))
+        if len(known):
+            text = (
+                "+".join(map(str, edges.modes[i]))
+                if kind == "sum"
+                else "-".join(map(str, edges.modes[i][::-1]))
+            )
+            place = (edges.lower[i, known[-1]] * _RPM, at[known[-1]])
+            ax.annotate(
+                f"{text}, {edges.harmonic[i]}",
+                place if horizontal else place[::-1],
+                fontsize=6,
+                color=_EDGES[kind],
+                rotation=90 if horizontal else 0,
+                va="top" if horizontal else "center",
+                ha="right",
+            )
+
+
 def _what(chart: StabilityChart) -> str:
     return "discriminant" if chart.error_norm.startswith("half trace") else "invariants"
 
 
 def _shown(name: str, values: Array) -> Array:
     return values * _RPM if name == "speed" else values
+
+
+def _reach_in(chart: StabilityChart, curves: BoundaryCurves) -> bool:
+    """Return whether some end lies within the chart."""
+    values = chart.x if curves.along == chart.x_name else chart.y
+    ends = np.concatenate([curves.lower, curves.upper])
+    with np.errstate(invalid="ignore"):
+        return bool(np.any((ends >= values[0]) & (ends <= values[-1])))
 
 
 def _draw_curves(

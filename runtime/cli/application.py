@@ -19,6 +19,7 @@ from typing import NoReturn
 from ..errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from . import (
     balancing,
+    boundaries,
     classification,
     clearance,
     curves,
@@ -44,6 +45,7 @@ _GROUPS = (
     driving,
     balancing,
     stability,
+    boundaries,
     proofs,
 )
 _BAD_INPUT = 2

@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import bad
 from . import options as opt
 
-_BENCHMARKS = ("chart", "slices", "forces")
+_BENCHMARKS = ("chart", "slices", "forces", "mathieu", "perturbation")
 
 
 def add(commands: Any) -> None:
@@ -46,7 +46,10 @@ def add(commands: Any) -> None:
     benchmark.add_argument(
         "subject",
         choices=_BENCHMARKS,
-        help="chart: a million half traces; slices: boundaries; forces: a million crank angles",
+        help=(
+            "chart: a million half traces; slices: boundaries; forces: a million crank angles; "
+            "mathieu: characteristic values"
+        ),
     )
 
 

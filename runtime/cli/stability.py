@@ -41,13 +41,25 @@ def add(commands: Any) -> None:
         commands,
         "chart",
         _chart,
-        summary="Stability chart over two parameters, with exact and first-order boundaries.",
+        summary="Stability chart over two parameters, with exact and perturbation boundaries.",
         example=(
             "elastolink chart smith_1972_5152_sixteenth_inch --plot chart.png\n"
             "  elastolink chart mathieu --x lam2=-0.5:10:400 --y mu=0:4:300 --plot mathieu.svg"
         ),
     )
     opt.scene_options(chart)
+    chart.add_argument(
+        "--order",
+        metavar="N",
+        type=int,
+        default=1,
+        help="order of the perturbation boundaries of one mode, 1 to 8; default 1",
+    )
+    chart.add_argument(
+        "--edges",
+        action="store_true",
+        help="trace regions of several modes, combinations among them, at nine rows; takes longer",
+    )
     for axis in ("x", "y"):
         chart.add_argument(
             f"--{axis}",
@@ -123,6 +135,8 @@ def _chart(options: argparse.Namespace) -> int:
         system,
         x=x,
         y=y,
+        order=options.order,
+        edges=options.edges,
         marks=_marks(scene, y),
         frequency_name=name or "natural frequency",
     )
@@ -142,15 +156,18 @@ def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
 
     nx, ny = len(chart.x), len(chart.y)
     share = 100.0 * float(np.mean(~chart.stable))
+    complex_share = 100.0 * float(np.mean(chart.kind == 2))
     lines = [
         f"{chart.x_name} x {chart.y_name}: {nx} x {ny} points, {share:.3g} % unstable",
         chart.method,
     ]
+    if complex_share > 0:
+        lines.append(f"{complex_share:.3g} % by combination (complex multipliers)")
     if min(chart.nodes) > 0:
         lines.append(f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes")
     curves = chart.exact
     if curves is None:
-        return lines
+        return [*lines, *_edge_lines(chart)]
     other = chart.y_name if curves.along == chart.x_name else chart.x_name
     dimensions = scene.layout.parameters
     values = chart.x if curves.along == chart.x_name else chart.y
@@ -167,6 +184,28 @@ def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
     if curves.left_out:
         table.append(f"{curves.left_out} higher regions reach into the chart but are left out")
     return [*table, ""]
+
+
+def _edge_lines(chart: StabilityChart) -> list[str]:
+    """Return the widest extent of each traced combination region that can be told from none."""
+    edges = chart.edges
+    if edges is None:
+        return []
+    rows = []
+    for i, kind in enumerate(edges.kind):
+        width = edges.upper[i] - edges.lower[i]
+        known = [j for j, w in enumerate(width) if w > 2 * edges.error[i, j]]
+        if kind == "principal" or not known:
+            continue
+        widest = max(known, key=lambda j: float(width[j]))
+        pair = " and ".join(map(str, edges.modes[i]))
+        ends = (_brief(float(e[i, widest]), "frequency") for e in (edges.lower, edges.upper))
+        rows.append((f"{kind} of {pair}", str(edges.harmonic[i]), *ends, f"{edges.at[widest]:.4g}"))
+    if not rows:
+        return ["no combination region wide enough to be told from none"]
+    other = chart.y_name if chart.x_name == "speed" else chart.x_name
+    header = ("combination region, where widest", "harmonic", "from", "to", f"at {other}")
+    return ["", *opt.table(header, rows), ""]
 
 
 def _end(value: float, dimension: str) -> str:

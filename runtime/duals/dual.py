@@ -106,6 +106,13 @@ class _Functions:
         return angle._times(np.cos(angle.value), -np.sin(angle.value))
 
     @staticmethod
+    def tan(angle: Any) -> Any:
+        if not isinstance(angle, Dual):
+            return np.tan(angle)
+        tangent = np.tan(angle.value)
+        return angle._times(tangent, 1.0 + tangent * tangent)
+
+    @staticmethod
     def sqrt(square: Any) -> Any:
         if not isinstance(square, Dual):
             return np.sqrt(square)

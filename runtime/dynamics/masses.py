@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from numbers import Real
 
@@ -49,6 +50,10 @@ class MassDistribution:
     across: float = 0.0
     inertia: float = 0.0
 
+    def _underflows(self, moment: float) -> bool:
+        """Return True where the least inertia of a first moment is below the normal numbers."""
+        return self.mass > 0.0 and (moment / math.sqrt(self.mass)) ** 2 < sys.float_info.min
+
     def __post_init__(self) -> None:
         """Refuse what no body can have."""
         _require_numbers(mass=self.mass, along=self.along, across=self.across, inertia=self.inertia)
@@ -60,7 +65,7 @@ class MassDistribution:
         if not problems:
             moment = math.hypot(self.along, self.across)
             most = math.sqrt(self.mass) * math.sqrt(self.inertia)
-            if moment > most * (1.0 + _ROUNDING):
+            if moment > most * (1.0 + _ROUNDING) and not self._underflows(moment):
                 problems = [
                     Problem(
                         "MassDistribution",

@@ -28,6 +28,8 @@ _EPS = float(np.finfo(float).eps)
 _MOST_ROWS = 4000
 # Relative change of a speed by a larger truncation that a fixed one may leave.
 _FAIR = 0.01
+# Relative distance up to which roots are told apart within their own span.
+_NEARLY_DOUBLE = 1e-6
 # Relative imaginary part up to which a root of the truncated problem counts as a double real one.
 _NEARLY_REAL = 1e-6
 
@@ -144,7 +146,7 @@ def speed_boundaries(
         If an argument is unusable, or the lowest speed needs a larger matrix than 4000 rows.
     """
     wanted = _wanted(multiplier)
-    low, high = _range(speed_range)
+    low, high = speed_span(speed_range)
     if harmonics is not None and (harmonics != int(harmonics) or harmonics < 1):
         raise bad("harmonics", harmonics, "a whole number of at least 1", "leave it out")
     if not 1e-14 <= rtol < 1:
@@ -320,7 +322,7 @@ def _refined(
         pairs = [_null_vectors(_polynomial(matrices, root), symmetric) for root in speed]
         right, left = (np.array(vectors) for vectors in zip(*pairs, strict=True))
     else:
-        right = left = start
+        right = left = _apart(matrices, speed, start)
     value, slope, size = np.zeros((3, len(speed)))
     for power, matrix in matrices.items():
         form = np.einsum("ki,ki->k", left @ matrix, right)
@@ -335,6 +337,31 @@ def _refined(
         error = left_over + 4 * _EPS * size / np.abs(slope) + 4 * _EPS * speed
     refined = np.where(small, speed + step, speed)
     return refined, error, right / np.linalg.norm(right, axis=1, keepdims=True)
+
+
+def _apart(matrices: Matrices, speed: Array, vectors: Array) -> Array:
+    """Turn the vectors of roots that nearly coincide so that each belongs to a root of its own.
+
+    The decomposition of the whole problem mixes them; within their span it is a small one.
+    """
+    turned = np.array(vectors)
+    cuts = np.flatnonzero(np.diff(speed) > _NEARLY_DOUBLE * speed[1:]) + 1
+    for group in np.split(np.arange(len(speed)), cuts):
+        if len(group) < 2:
+            continue
+        own, at = vectors[group], float(np.mean(speed[group]))
+        level, slope = np.zeros((2, len(group), len(group)))
+        for power, matrix in matrices.items():
+            form = own @ matrix @ own.T
+            level += at**power * form
+            slope += power * at ** (power - 1.0) * form
+        sign = np.sign(np.trace(slope))
+        if not _definite(sign * slope):
+            continue
+        shifts, mix = scipy.linalg.eigh(-sign * level, sign * slope)
+        if np.max(np.abs(shifts)) <= _NEARLY_DOUBLE * at:
+            turned[group] = mix.T @ own
+    return turned
 
 
 def _null_vectors(matrix: Array, symmetric: bool) -> tuple[Array, Array]:
@@ -413,7 +440,14 @@ def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
     return tuple(sorted({int(value) for value in values}, reverse=True))
 
 
-def _range(speed_range: tuple[float, float]) -> tuple[float, float]:
+def speed_span(speed_range: tuple[float, float]) -> tuple[float, float]:
+    """Return a range of speeds as floats.
+
+    Raises
+    ------
+    BadInput
+        If it is not a rising pair of positive numbers.
+    """
     values = numbers("speed_range", speed_range)
     if values.shape != (2,) or not np.all(np.isfinite(values)) or not 0 < values[0] < values[1]:
         raise bad(

@@ -62,7 +62,7 @@ def eigenvalues(
             logarithm[index], angle[index], uncertain[index] = _graded(
                 form.take(index), int(number)
             )
-    order = _order(logarithm, angle)
+    order = multiplier_order(logarithm, angle)
     ordered = [np.take_along_axis(value, order, axis=-1) for value in (logarithm, angle, uncertain)]
     return ordered[0], ordered[1], ordered[2]
 
@@ -95,7 +95,7 @@ def _eigenvalues(
     m = scaled.shape[-1]
     values, vectors = np.linalg.eig(scaled)
     values = values.astype(complex)
-    condition = _conditions(vectors)
+    condition = conditions(vectors)
     norm = np.linalg.norm(scaled, axis=(-2, -1))[:, None]
     top = np.max(np.abs(scaled), axis=(-2, -1))[:, None]
     shift = m * error[:, None] * top + 4 * m * _EPS * norm
@@ -112,7 +112,7 @@ def _eigenvalues(
     return logarithm, np.angle(values), np.log(uncertain) + shift_of_log
 
 
-def _conditions(vectors: ComplexArray) -> Array:
+def conditions(vectors: ComplexArray) -> Array:
     """Return the condition number of each eigenvalue; inf where eigenvectors coincide."""
     out = np.full(vectors.shape[:2], np.inf)
     usable = np.linalg.cond(vectors) < 1e300
@@ -127,7 +127,7 @@ def _graded(form: CanonicalForm, segments: int) -> tuple[Array, Array, Array]:
     found = []
     for number in (segments, 2 * segments):
         logarithm, angle = graded_multipliers(form, number)
-        order = _order(logarithm, angle)
+        order = multiplier_order(logarithm, angle)
         found.append([np.take_along_axis(value, order, axis=-1) for value in (logarithm, angle)])
     (coarse, coarse_angle), (fine, angle) = found
     turn = np.abs(np.exp(1j * coarse_angle) - np.exp(1j * angle))
@@ -137,7 +137,7 @@ def _graded(form: CanonicalForm, segments: int) -> tuple[Array, Array, Array]:
     return fine, angle, np.where(gone, -745.0, fine) + np.log(relative + rounding)
 
 
-def _order(logarithm: Array, angle: Array) -> NDArray[np.intp]:
+def multiplier_order(logarithm: Array, angle: Array) -> NDArray[np.intp]:
     """Order by falling modulus, rounding aside, then by the argument's size, upper half first."""
     modulus = np.round(np.maximum(logarithm, -1e4), 6)
     return np.lexsort((-np.sign(angle), np.round(np.abs(angle), 9), -modulus), axis=-1)

@@ -14,6 +14,7 @@ from ..families import LinearPeriodic
 from ..results import Check, Result, provenance
 from .eigenvalues import eigenvalues
 from .first_order import CanonicalForm, canonical_form, even_angles
+from .krein import SignatureSource
 from .period_products import STAGES, period_product
 
 if TYPE_CHECKING:
@@ -284,12 +285,15 @@ class FloquetMultipliers(Result):
         matrix, or the square root that holds near a double multiplier.
     period : float
         Period of the coefficients [rad].
+    source : SignatureSource or None
+        What :attr:`signatures` is made of.
     """
 
     speed: Array
     multipliers: ComplexArray
     exponents: ComplexArray
     period: float
+    source: SignatureSource | None = None
 
     exported: ClassVar[tuple[str, ...]] = ("stable", "growth")
 
@@ -304,6 +308,18 @@ class FloquetMultipliers(Result):
         inside = np.isfinite(modulus) & (modulus <= 1.0 + slack)
         value: NDArray[np.bool_] = np.all(inside, axis=-1)
         return value
+
+    @property
+    def signatures(self) -> NDArray[np.int8]:
+        """Krein signatures, shape ``(*batch, 2n)``, worked out when first asked for.
+
+        +1 or -1 on the unit circle of a conservative system, by the convention of
+        :mod:`~.krein`; 0 off the circle, where multiple and indefinite, where errors leave the
+        sign open, and wherever there is damping.
+        """
+        if self.source is None:
+            return np.zeros(self.multipliers.shape, dtype=np.int8)
+        return self.source.signs(self.multipliers)
 
     @property
     def growth(self) -> Array:
@@ -388,7 +404,16 @@ def floquet_multipliers(
         multipliers=values.reshape(shape),
         exponents=(logarithm + 1j * angle).reshape(shape),
         period=system.period,
+        source=_signature_source(form, matrices),
     )
+
+
+def _signature_source(form: CanonicalForm, matrices: Monodromy) -> SignatureSource | None:
+    if not form.conservative:
+        return None
+    with np.errstate(over="ignore"):
+        scaled = np.ldexp(matrices.scaled, matrices.exponent[..., None, None])
+    return SignatureSource(scaled, matrices.error)
 
 
 def _product(logarithm: Array, error: Array, volume: Array) -> Check:

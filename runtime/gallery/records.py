@@ -162,6 +162,8 @@ class FigureEntry:
         Rows and columns of axes.
     size : tuple of float
         Width and height of the picture [in].
+    projection : str or None
+        Of the axes: ``"3d"`` for a picture in space.
     """
 
     document: str
@@ -170,6 +172,7 @@ class FigureEntry:
     draw: Callable[[Sequence[Axes]], Drawn]
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
+    projection: str | None = None
 
     @property
     def stem(self) -> str:

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..hill.cases.strutt import Which
 from . import (
     aannaque_forces,
     aannaque_kinematics,
     aannaque_pulses,
     aannaque_space,
+    aannaque_stability,
     smith_balanced_link,
     smith_balancing,
     smith_charts,
     smith_clearance,
     smith_coupler_equation,
+    smith_damping,
     smith_forces,
     smith_kinematics,
+    smith_second_mode,
     smith_solutions,
+    smith_space,
     smith_speeds,
     smith_waves,
 )
@@ -235,6 +240,14 @@ _SMITH = (
         "smith", "37", "Stability chart: effect of damping on four regions", smith_charts.figure_37
     ),
     FigureEntry(
+        "smith",
+        "38",
+        "Stability space of Hill's equation with two periodic functions",
+        smith_space.figure_38,
+        size=(7.2, 5.4),
+        projection="3d",
+    ),
+    FigureEntry(
         "smith", "45", "Calibration: sinusoidal and point-load shapes", smith_waves.figure_45
     ),
     *_WAVES,
@@ -246,7 +259,25 @@ _SMITH = (
         smith_coupler_equation.figure_table,
         size=(7.8, 4.8),
     ),
+    FigureEntry(
+        "smith",
+        "table_damping",
+        "Damping read from unstable regions: first order, higher orders, exact",
+        smith_damping.figure_table,
+        panels=(2, 2),
+        size=(8.4, 6.4),
+    ),
+    FigureEntry(
+        "smith",
+        "table_second_mode",
+        "Unstable regions of two modes, principal and combination",
+        smith_second_mode.figure_table,
+        panels=(2, 2),
+        size=(8.4, 6.4),
+    ),
 )
+
+_SURFACES: tuple[tuple[str, Which], ...] = (("E.1", "first"), ("E.2", "second"))
 
 _AANNAQUE = (
     FigureEntry(
@@ -312,9 +343,41 @@ _AANNAQUE = (
     ),
     FigureEntry(
         "aannaque",
+        "7.2",
+        "Instability regions corresponding to J_2 = 1 and J_2 = -1",
+        aannaque_stability.figure_7_2,
+        size=(6.2, 6.4),
+    ),
+    FigureEntry(
+        "aannaque",
+        "7.3",
+        "Functions J and the real part of a multiplier",
+        aannaque_stability.figure_7_3,
+    ),
+    FigureEntry(
+        "aannaque",
         "7.12",
         "Acceleration of the follower for various transmission angles",
         aannaque_pulses.figure_7_12,
+    ),
+    *(
+        FigureEntry(
+            "aannaque",
+            label,
+            f"The {which} multiplier of Mathieu's equation over d and epsilon",
+            aannaque_stability.surface_figure(which),
+            size=(7.4, 5.4),
+            projection="3d",
+        )
+        for label, which in _SURFACES
+    ),
+    FigureEntry(
+        "aannaque",
+        "E.3",
+        "Stability chart of Mathieu's equation",
+        aannaque_stability.figure_e_3,
+        panels=(1, 2),
+        size=(9.0, 4.4),
     ),
 )
 

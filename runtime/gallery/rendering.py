@@ -131,7 +131,8 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Drawn, bytes | 
         mpl.rcdefaults()
         mpl.rcParams.update(SETTINGS)
         canvas = new_figure(*entry.size)
-        axes = canvas.subplots(*entry.panels, squeeze=False)
+        options = {"projection": entry.projection}
+        axes = canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)
         drawn = entry.draw(list(np.ravel(axes)))
         return drawn, _png(canvas) if picture else None
 

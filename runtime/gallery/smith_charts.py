@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..hill.exact.matrix import Boundaries, hill_boundaries
 from ..hill.half_trace import discriminant
-from ..hill.matrix import hill_boundaries
-from ..hill.perturbation import perturbation_boundaries
+from ..hill.perturbation.boundaries import perturbation_boundaries
+from ..hill.perturbation.thresholds import least_parameter
 from ..mechanisms import FourBar
 from ..series.periodic import PeriodicFunction
 from .records import Drawn, Quoted
@@ -28,38 +28,9 @@ _CRANKS = (0.5, 1.5, 3.0, 4.0)
 _DAMPINGS = (0.0, 0.02, 0.05, 0.1)
 
 
-def second_order(f: PeriodicFunction, mu: Array, n: int) -> tuple[Array, Array]:
-    """Return lower and upper boundary of region n to second order in mu, Smith (7.35), (7.37).
-
-    With ``c_m = (a_m - i b_m)/2`` the coefficients that (7.35) leads to are
-    ``alpha_2 = w -+ Re(W conj(c_n)) / |c_n|``, w and W sums over the other harmonics.
-
-    Parameters
-    ----------
-    f : PeriodicFunction
-        With a harmonic n that does not vanish.
-    mu : ndarray
-        Any shape.
-    n : int
-        Number of the region, from 1.
-    """
-    size = f.harmonics + 1
-    half = 0.5 * (f.a - 1j * f.b)
-    m = np.arange(-size + 1, size)
-    c = np.where(m < 0, half[np.abs(m)].conj(), half[np.abs(m)])
-    c[m == 0] = 0.0
-    known = dict(zip(m.tolist(), c.tolist(), strict=True))
-    shift, coupling = 0.0, 0.0j
-    for j in known:
-        if j not in (0, -n):
-            shift -= abs(known[j]) ** 2 / (j * (j + n))
-        if j not in (0, n):
-            coupling += known[j] * known.get(n - j, 0.0) / (j * (n - j))
-    gap = abs(known.get(n, 0.0))
-    bend = (coupling * np.conj(known.get(n, 0.0))).real / gap
-    middle = 0.25 * n * n - f.mean * mu + shift * mu**2
-    width = gap * mu - bend * mu**2
-    return np.asarray(middle - width), np.asarray(middle + width)
+def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Boundaries:
+    """Return Smith's series to an order, (7.25) and (7.37), drawn beyond where it is good."""
+    return perturbation_boundaries(f, mu, regions, order=order, form="series", outside="value")
 
 
 def figure_34(axes: Sequence[Axes]) -> Drawn:
@@ -70,15 +41,14 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
     lam2 = np.linspace(-1.5, 7.5, 401)
     _shade(ax, f, lam2, mu)
     exact = hill_boundaries(f, mu, regions)
-    first = perturbation_boundaries(f, mu, regions)
-    second = [second_order(f, mu, n) for n in regions]
+    first, second = (_to_order(f, mu, regions, order) for order in (1, 2))
     for i in range(len(regions)):
-        for ends, style, colour, label in (
-            ((exact.lower[i], exact.upper[i]), "-", _EXACT, "exact"),
-            ((first.lower[i], first.upper[i]), "--", _FIRST, "first order"),
-            (second[i], ":", _SECOND, "second order"),
+        for found, style, colour, label in (
+            (exact, "-", _EXACT, "exact"),
+            (first, "--", _FIRST, "first order"),
+            (second, ":", _SECOND, "second order"),
         ):
-            for k, end in enumerate(ends):
+            for k, end in enumerate((found.lower[i], found.upper[i])):
                 named = label if i == 0 and k == 0 else None
                 ax.plot(end, mu, style, color=colour, lw=1.3, label=named)
     ax.set_xlim(lam2[0], lam2[-1])
@@ -88,9 +58,11 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
     ax.grid(visible=False)
     legend_below([ax])
     errors = [
-        max(float(np.max(np.abs(ends[k] - true[0]))) for k, true in enumerate(truth))
-        for truth in [(exact.lower, exact.upper)]
-        for ends in ((first.lower[0], first.upper[0]), second[0])
+        max(
+            float(np.max(np.abs(found.lower[0] - exact.lower[0]))),
+            float(np.max(np.abs(found.upper[0] - exact.upper[0]))),
+        )
+        for found in (first, second)
     ]
     note = (
         "The mechanism is not stated; taken is (2,1,2,2), as for Fig. 36, with f = f3. Shaded: "
@@ -141,13 +113,13 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     widths = []
     for ax, crank in zip(axes, _CRANKS, strict=True):
         f = _f3(crank)
-        exact = hill_boundaries(f, mu, regions)
+        exact, second = hill_boundaries(f, mu, regions), _to_order(f, mu, regions, 2)
         for i in range(len(regions)):
             ax.fill_betweenx(mu, exact.lower[i], exact.upper[i], color=_UNSTABLE, lw=0)
             for k, end in enumerate((exact.lower[i], exact.upper[i])):
                 named = "exact" if i == 0 and k == 0 else None
                 ax.plot(end, mu, color=_EXACT, lw=1.0, label=named)
-            for k, end in enumerate(second_order(f, mu, regions[i])):
+            for k, end in enumerate((second.lower[i], second.upper[i])):
                 named = "second order" if i == 0 and k == 0 else None
                 ax.plot(end, mu, ":", color=_SECOND, lw=1.3, label=named)
         widths.append(exact.upper[:, -1] - exact.lower[:, -1])
@@ -210,7 +182,7 @@ def figure_36(axes: Sequence[Axes]) -> Drawn:
         near = tip * (1.0 + 1e-9 + np.linspace(0.0, 0.3, 31) ** 2)
         mu = np.unique(np.concatenate([np.linspace(0.0, 0.6, 241), near]))
         exact = hill_boundaries(f, mu, (1,), damping=damping)
-        first = perturbation_boundaries(f, mu, (1,), damping=damping)
+        first = perturbation_boundaries(f, mu, (1,), damping=damping, outside="value")
         for ends, style, label in (
             ((exact.lower, exact.upper), "-", f"K = {damping:g}, exact"),
             ((first.lower, first.upper), "--", f"K = {damping:g}, first order"),
@@ -245,14 +217,14 @@ def figure_37(axes: Sequence[Axes]) -> Drawn:
 
 def _least_mu_rows(f: PeriodicFunction, regions: Sequence[int], damping: float) -> list[Quoted]:
     rows = []
-    for n in regions:
+    exact = least_parameter(f, damping, regions).least
+    for n, least in zip(regions, exact, strict=True):
         printed = 2.0 * damping * n / float(f.amplitudes[n])
-        exact = _least_mu(f, n, damping, printed)
         rows.append(
             Quoted(
                 f"(7.51): least mu of region {n} with K = {damping:g}",
                 printed,
-                exact,
+                float(least),
                 0.05 * printed,
                 "first order: 5 %",
                 "7.1.4.2",
@@ -260,22 +232,3 @@ def _least_mu_rows(f: PeriodicFunction, regions: Sequence[int], damping: float) 
             )
         )
     return rows
-
-
-def _least_mu(f: PeriodicFunction, n: int, damping: float, guess: float) -> float:
-    """Return the least mu at which damping leaves region n open, by bisection."""
-    level = np.cosh(2.0 * pi * damping)
-    sign = (-1.0) ** n
-
-    def opened(mu: float) -> bool:
-        bare = hill_boundaries(f, mu, (n,))
-        inside = np.linspace(bare.lower[0], bare.upper[0], 65)
-        return bool(np.max(sign * discriminant(f, inside, mu).value) > level)
-
-    low, high = 0.0, guess
-    while not opened(high):
-        low, high = high, 1.5 * high
-    for _ in range(24):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if opened(middle) else (middle, high)
-    return 0.5 * (low + high)

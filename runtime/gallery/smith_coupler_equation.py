@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..floquet.boundary_speeds import speed_boundaries
-from ..hill.perturbation import perturbation_boundaries
+from ..hill.perturbation.boundaries import perturbation_boundaries
 from .records import Drawn, Quoted, Table
 from .smith_linkages import (
     EQUATIONS,
@@ -284,7 +284,9 @@ def _trend(equation: str) -> tuple[float, float]:
 
 def _first_order_trend() -> tuple[float, float]:
     rig = RIG["82"]
-    found = perturbation_boundaries(rig.function("reduced", 1.0), rig.inertias[[0, -1]], (6,))
+    f, ends = rig.function("reduced", 1.0), rig.inertias[[0, -1]]
+    # The larger inertia is beyond what first order may be trusted with: as Smith did all the same.
+    found = perturbation_boundaries(f, ends, (6,), outside="value")
     speeds = rig.frequency / np.sqrt(np.stack([found.lower[0], found.upper[0]])) / RPM
     least, greatest = (float(v) for v in np.mean(speeds, axis=0))
     return least, greatest

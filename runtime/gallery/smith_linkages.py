@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..families import LinearPeriodic
+from ..hill.exact.matrix import hill_boundaries
 from ..hill.form import HillForm, hill_form
-from ..hill.matrix import hill_boundaries
 from ..mechanisms import FourBar
 from ..scenes import load_scene
 from ..series.periodic import PeriodicFunction

@@ -262,7 +262,8 @@ class _Work:
         value, error, exponent, defect = polynomials.half_trace_with_error(x, y)
         self.defect = max(self.defect, float(defect.max()))
         whole = np.rint(scale)
-        power = exponent + whole.astype(np.int64)
+        # Beyond this there is nothing but 0 and infinity.
+        power = exponent + np.maximum(whole, -(2.0**40)).astype(np.int64)
         with np.errstate(over="ignore", under="ignore"):
             value = np.ldexp(value * np.exp2(scale - whole), power)
             error = np.ldexp(error * np.exp2(scale - whole), power)

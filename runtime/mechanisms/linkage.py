@@ -112,7 +112,7 @@ def planar(value: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion(Result):
+class Motion(Result, ABC):
     """Motion of a linkage at given crank angles.
 
     Every array has the shape to which crank angle, speed and acceleration broadcast.
@@ -185,9 +185,9 @@ class Motion(Result):
         return self.link(link).point(*place)
 
     @property
+    @abstractmethod
     def joints(self) -> Mapping[str, Array]:
         """Places of the joints by letter, each of shape (..., 2)."""
-        raise NotImplementedError
 
     @property
     def relative(self) -> bool:
@@ -204,8 +204,9 @@ class Motion(Result):
             return unit
         return "1" if unit.startswith("rad") else unit.replace("/s", "/rad")
 
+    @abstractmethod
     def _other_link(self, name: str) -> LinkMotion:
-        raise NotImplementedError
+        """Return the motion of a moving link that is not the crank."""
 
     def _at_crank_pin(self, angle: Array, speed: Array, acceleration: Array) -> LinkMotion:
         """Return the motion of a link that begins at B."""

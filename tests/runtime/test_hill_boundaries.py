@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.errors import BadInput
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill.exact.verification import boundary_checks
 from elastolink.runtime.hill.half_trace import discriminant
-from elastolink.runtime.hill.matrix import hill_boundaries
-from elastolink.runtime.hill.verification import boundary_checks
 from elastolink.runtime.series.periodic import PeriodicFunction
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -92,7 +92,7 @@ def test_boundaries_against_mpmath_eigenvalues(mu):
 @pytest.mark.parametrize("name", FUNCTIONS)
 @pytest.mark.parametrize("mu", [1.0, -1.6, 0.01])
 def test_boundaries_against_roots_of_heyokas_half_trace(name, mu):
-    from elastolink.runtime.benchmarking.chart import _heyoka
+    from elastolink.runtime.benchmarking.chart import batched_heyoka
 
     pytest.importorskip("heyoka")
     f = FUNCTIONS[name]
@@ -103,7 +103,7 @@ def test_boundaries_against_roots_of_heyokas_half_trace(name, mu):
     h = 1e-5
     ends = np.where(np.isinf(ends), found.upper[0], ends)
     points = (ends + np.array([-h, 0.0, h])[:, None, None]).ravel()
-    left, middle, right = _heyoka(f)(points, np.full(points.size, mu)).reshape(3, 2, -1)
+    left, middle, right = batched_heyoka(f)(points, np.full(points.size, mu)).reshape(3, 2, -1)
     slope = (right - left) / (2 * h)
     simple = np.abs(slope) > 0.2
     assert simple.sum() >= 2
@@ -276,8 +276,9 @@ def test_a_wrong_end_fails_the_check(damping):
     f, mu, k = PeriodicFunction([0.0, 1.0, 0.5]), np.array([0.7]), np.array([damping])
     right = hill_boundaries(f, mu, (1, 2), damping=damping)
     arguments = (f, mu, k, right.regions)
-    good = boundary_checks(*arguments, right.lower, right.upper, right.error)
-    wrong = boundary_checks(*arguments, right.lower, right.upper + 1e-9, right.error)
+    shut = np.zeros(right.lower.shape, dtype=bool)
+    good = boundary_checks(*arguments, right.lower, right.upper, right.error, shut)
+    wrong = boundary_checks(*arguments, right.lower, right.upper + 1e-9, right.error, shut)
     assert good[CHECK].passed and not wrong[CHECK].passed
 
 
@@ -299,3 +300,9 @@ def test_csv_has_long_form(tmp_path):
     assert [row["regions"] for row in rows] == [1, 1, 1, 4, 4, 4]
     assert [row["mu"] for row in rows] == [0.1, 0.2, 0.3] * 2
     assert [row["lower"] for row in rows] == found.lower.ravel().tolist()
+
+
+@pytest.mark.parametrize("word", ["no", 1, None])
+def test_certified_is_true_or_false(word):
+    with pytest.raises(BadInput, match="certified"):
+        hill_boundaries(PeriodicFunction([0.0, 1.0]), 0.1, (1,), certified=word)

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.records import functions
+from elastolink.runtime.errors import BadInput
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant
-from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.hill.perturbation.thresholds import critical_damping
 from elastolink.runtime.series.periodic import PeriodicFunction
 
 FUNCTIONS = functions()
@@ -131,3 +133,55 @@ def test_a_rough_function_keeps_its_damped_tongues():
         for off, allowed in level_off(f, found, i, n, 0.02):
             assert np.all(off <= allowed)
     assert not np.isnan(found.lower[0]).any()
+
+
+@pytest.mark.parametrize(
+    ("mu", "n", "k"), [(150.0, 1, 5.137), (100.0, 3, 6.0), (30.0, 0, 2.0), (-2000.0, 2, 10.9)]
+)
+def test_strong_damping_in_deep_wells(mu, n, k):
+    """The eigenvalues of the matrix are off by many times its round-off, or beyond their slack."""
+    found, proved = (hill_boundaries(COSINE, mu, (n,), k, certified=c) for c in (False, True))
+    assert not np.isnan(found.upper[0])
+    gaps = [found.upper - proved.upper, (found.lower - proved.lower) if n else np.zeros(1)]
+    assert np.all(np.abs(gaps) <= found.error)
+    assert found.error[0] < 1e-13 * abs(mu) * 4
+    assert found.passed
+
+
+def test_a_region_proved_open_is_found_open():
+    f, mu, k = PeriodicFunction([0.0, -0.36, 1.28], [0.0, 0.74, -0.41]), 300.0, 6.0
+    found, proved = (hill_boundaries(f, mu, (1, 2, 3), k, certified=c) for c in (False, True))
+    known = ~np.isnan(proved.upper)
+    assert known.any()
+    assert np.all(np.abs(found.upper - proved.upper)[known] <= found.error[known])
+    assert np.all(np.abs(found.lower - proved.lower)[known] <= found.error[known])
+
+
+@pytest.mark.parametrize("mu", [1.0, 40.0])
+def test_what_doubles_cannot_decide_fails_a_check(mu):
+    closing = float(critical_damping(COSINE, mu, (1,)).critical[0])
+    for away, open_ in ((-1e-9, True), (1e-9, False)):
+        found = hill_boundaries(COSINE, mu, (1,), closing * (1.0 + away))
+        assert np.isfinite(found.upper[0]) == open_ and found.passed
+    # At the tip itself: either ends whose figure covers their distance, or a failing check.
+    for steps in range(-8, 9):
+        k = closing * (1.0 + steps * 1e-15)
+        found = hill_boundaries(COSINE, mu, (1,), k)
+        if np.isnan(found.upper[0]):
+            assert not found.passed
+        else:
+            assert found.error[0] >= 0.5 * found.width[0]
+
+
+@pytest.mark.parametrize("k", [300.0, 1e4])
+def test_region_zero_under_huge_damping(k):
+    """``-mu^2 / (8 K^2)`` to leading order: z = y'/y is -mu cos / (2 K), and lam2 = -mean z^2."""
+    found = hill_boundaries(COSINE, 0.1, (0, 1), k)
+    assert np.isnan(found.upper[1])
+    gap = abs(found.upper[0] + 0.01 / (8.0 * k * k))
+    assert gap <= found.error[0] + 1e-3 * 0.01 / (8.0 * k * k)
+
+
+def test_damping_beyond_all_bounds_is_refused():
+    with pytest.raises(BadInput, match="damping"):
+        hill_boundaries(COSINE, 0.1, damping=1e308)

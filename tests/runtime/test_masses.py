@@ -85,3 +85,11 @@ def test_constructors_refuse_before_they_compute() -> None:
 def test_only_distributions_add() -> None:
     with pytest.raises(TypeError):
         MassDistribution() + 1.0  # type: ignore[operator]
+
+
+def test_a_first_moment_whose_inertia_underflows_is_no_mistake():
+    # An optimiser may pass by: the least inertia, moment^2 / mass = 2e-512, is zero in doubles.
+    tiny = MassDistribution(mass=0.684, across=1.1e-256)
+    assert (tiny.inertia, tiny.across) == (0.0, 1.1e-256)
+    with pytest.raises(BadInput, match="first moment"):
+        MassDistribution(mass=0.684, across=1.1e-100)

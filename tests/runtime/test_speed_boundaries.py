@@ -9,7 +9,7 @@ from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.boundary_checks import parity
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
-from elastolink.runtime.hill.matrix import hill_boundaries
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b

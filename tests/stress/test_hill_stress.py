@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.errors import BadInput
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
-from elastolink.runtime.hill.matrix import hill_boundaries
-from elastolink.runtime.hill.perturbation import perturbation_boundaries
+from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput
-from ..results import Check
-from ..series.periodic import PeriodicFunction
-from .half_trace import discriminant
+from ...errors import BadInput
+from ...results import Check
+from ...series.periodic import PeriodicFunction
+from ..half_trace import discriminant
 
 Array = NDArray[np.float64]
 
@@ -28,6 +28,7 @@ def boundary_checks(
     lower: Array,
     upper: Array,
     error: Array,
+    undecided: NDArray[np.bool_],
 ) -> Mapping[str, Check]:
     """Compare the half trace at a sample of ends with the level that it has on a boundary.
 
@@ -41,6 +42,8 @@ def boundary_checks(
         Numbers of the regions.
     lower, upper, error : ndarray, shape (len(regions), n)
         Ends in lam2 and their error figure.
+    undecided : ndarray of bool, same shape
+        Where neither open nor closed could be told.
 
     Returns
     -------
@@ -48,12 +51,16 @@ def boundary_checks(
         The largest deviation from the level over what the error figures explain: slope times the
         figure of the end, half the curvature times its square (the slope vanishes where a region
         is closed), and the figure of the half trace.  NaN, which fails, where the half trace
-        cannot be computed; empty where there is no finite end.
+        cannot be computed; left out where there is no finite end.  Also how many regions are
+        undecided, if any are.
     """
+    told: dict[str, Check] = {}
+    if np.any(undecided):
+        told["regions neither open nor closed"] = Check(float(np.count_nonzero(undecided)), 0.0)
     ends = np.stack([lower, upper])
     places = np.argwhere(np.isfinite(ends))
     if not len(places):
-        return {}
+        return told
     chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
     side, row, column = places[chosen.astype(int)].T
     lam2, size = ends[side, row, column], error[row, column]
@@ -65,7 +72,7 @@ def boundary_checks(
             f, lam2 + step * np.array([[-1.0], [0.0], [1.0]]), mu[column], damping[column]
         )
     except BadInput:
-        return {name: Check(np.nan, _LIMIT)}
+        return {**told, name: Check(np.nan, _LIMIT)}
     level = np.where(numbers % 2 == 0, 1.0, -1.0) * found.level
     with np.errstate(invalid="ignore", over="ignore"):
         before, at, after = found.value
@@ -73,4 +80,4 @@ def boundary_checks(
         bend = np.abs(after - 2.0 * at + before) / step**2
         explained = slope * size + 0.5 * bend * size**2 + found.error[1]
         share = np.abs(at - level) / explained
-    return {name: Check(float(share.max()), _LIMIT)}
+    return {**told, name: Check(float(share.max()), _LIMIT)}

@@ -1,0 +1,416 @@
+"""``elastolink boundaries`` and ``elastolink perturb``: edges of unstable regions, two ways."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from math import pi, sqrt
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+from .linkages import speed_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..hill.exact.matrix import Boundaries
+    from ..hill.form import HillForm
+    from ..hill.perturbation.boundaries import Form, PerturbationBoundaries
+    from ..hill.perturbation.coefficients import BoundarySeries
+    from ..scenes import Scene
+    from ..series.periodic import PeriodicFunction
+
+    Array = NDArray[np.float64]
+
+_REGIONS = "1:4"
+_HIGHEST = 8
+_SPAN = re.compile(r"(\d{1,4}):(\d{1,4})")
+
+
+def add(commands: Any) -> None:
+    """Add the two subcommands."""
+    _add_boundaries(commands)
+    _add_perturb(commands)
+
+
+def _add_boundaries(commands: Any) -> None:
+    edges = opt.command(
+        commands,
+        "boundaries",
+        _boundaries,
+        summary="Boundaries of unstable regions: exact, certified, and by perturbation.",
+        example=(
+            "elastolink boundaries mathieu --mu 0:2:41 --order 4 --plot mathieu.png\n"
+            "  elastolink boundaries smith_1972_101104_sixteenth_inch --regions 2:6\n"
+            "  elastolink boundaries smith_1972_5152_sixteenth_inch --set model.modes=2"
+        ),
+    )
+    opt.scene_options(edges)
+    _region_option(edges)
+    edges.add_argument(
+        "--mu",
+        metavar="VALUES",
+        help="of a Hill equation: a number or START:STOP:COUNT (--mu=-1:1:5 where it begins with a "
+        "minus); default parameters.mu",
+    )
+    edges.add_argument(
+        "--speed",
+        metavar="LOW:HIGH",
+        help="crank speeds of a linkage whose modes are several or damped, such as 300rpm:900rpm; "
+        "default operation.speed_range",
+    )
+    edges.add_argument(
+        "--order",
+        type=_order,
+        metavar="N",
+        help=f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}",
+    )
+    edges.add_argument(
+        "--form",
+        choices=("uniform", "series"),
+        help="of the perturbation: uniform through the tip of a region (default), or the series",
+    )
+    edges.add_argument(
+        "--certified",
+        action="store_true",
+        help="proved enclosures by exact arithmetic",
+    )
+
+
+def _add_perturb(commands: Any) -> None:
+    series = opt.command(
+        commands,
+        "perturb",
+        _perturb,
+        summary="Coefficients of the boundaries as power series, and their formulas.",
+        example=(
+            "elastolink perturb mathieu --order 8\n"
+            "  elastolink perturb hill_example --order 3 --latex"
+        ),
+    )
+    opt.scene_options(series)
+    _region_option(series)
+    series.add_argument(
+        "--order", type=_order, default=2, metavar="N", help=f"1 to {_HIGHEST}; default %(default)s"
+    )
+    series.add_argument(
+        "--latex",
+        action="store_true",
+        help="print the formulas instead, as sums, to order 6 at most: for any n, or for the "
+        "--regions given",
+    )
+
+
+def _region_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--regions",
+        metavar="N,...",
+        help=f"numbers of the regions, 1,3,5 or 1:6; default {_REGIONS}",
+    )
+
+
+def _order(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= _HIGHEST:
+        raise argparse.ArgumentTypeError(f"found {text!r}; expected 1 to {_HIGHEST}")
+    return int(text)
+
+
+def _regions(given: str | None) -> tuple[int, ...]:
+    """Return the numbers of ``1,3,5`` or ``1:6``, each once."""
+    text = _REGIONS if given is None else given
+    span = _SPAN.fullmatch(text.strip())
+    if span:
+        first, last = int(span.group(1)), int(span.group(2))
+        numbers = tuple(range(first, last + 1))
+    else:
+        parts = [part.strip() for part in text.split(",")]
+        known = all(map(str.isdecimal, parts))
+        numbers = tuple(dict.fromkeys(int(part) for part in parts)) if known else ()
+    if not numbers:
+        raise bad("--regions", repr(text), "whole numbers such as 1,3,5 or 1:6", "correct it")
+    return numbers
+
+
+def _boundaries(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    if options.form and options.order is None:
+        opt.refuse_unused(options, ("form",), "--order N")
+    regions = _regions(options.regions)
+    scene = opt.load(options)
+    if scene.model["mechanism"] == "hill":
+        opt.refuse_unused(options, ("speed",), "a scene of a linkage")
+        return _of_hill(options, scene, regions)
+    return _of_linkage(options, scene, regions)
+
+
+def _of_hill(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
+    import numpy as np
+
+    from ..hill.form import hill_form
+
+    form = hill_form(scene.system())
+    f = form.function(1.0, mu=1.0)
+    mu = _values(options.mu) if options.mu is not None else [float(scene["parameters"]["mu"])]
+    damping = 0.5 * form.damping()
+    exact, others = _solved(options, f, np.array(mu), regions, damping)
+    rows = []
+    for i, n in enumerate(regions):
+        for j in _shown(len(mu)):
+            cells = [_number(item) for one in (exact, *others) for item in _ends(one, i, j)]
+            rows.append((str(n), f"{mu[j]:g}", *cells))
+    header = ["region", "mu", "lam2 from", "to"]
+    if others:
+        header += [f"order {options.order} from", "to"]
+    lines = opt.table(header, rows)
+    lines += _remarks(others)
+    if len(mu) > len(_shown(len(mu))):
+        lines.append(f"(the ends of {len(mu)} values of mu; --json gives all)")
+
+    def draw(ax: Any) -> None:
+        exact.plot(ax)
+        for one in others:
+            for low, high in zip(one.lower, one.upper, strict=True):
+                ax.plot(low, one.mu, "k--", lw=0.9)
+                ax.plot(high, one.mu, "k--", lw=0.9)
+
+    return opt.finish(
+        options, exact, lines, draw, more={"perturbation": [one.to_dict() for one in others]}
+    )
+
+
+def _solved(
+    options: argparse.Namespace,
+    f: PeriodicFunction,
+    mu: Array,
+    regions: tuple[int, ...],
+    damping: float,
+) -> tuple[Boundaries, list[PerturbationBoundaries]]:
+    """Return the exact boundaries, and those by perturbation where they are wanted."""
+    from ..hill import hill_boundaries, perturbation_boundaries
+
+    more: dict[str, Any] = {"certified": True} if options.certified else {}
+    exact = hill_boundaries(f, mu, regions, damping=damping, **more)
+    if options.order is None:
+        return exact, []
+    form: Form = options.form or "uniform"
+    return exact, [
+        perturbation_boundaries(f, mu, regions, order=options.order, damping=damping, form=form)
+    ]
+
+
+def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
+    """Boundaries in crank speed: of the regions of one mode, or of all modes in a range."""
+    opt.refuse_unused(options, ("mu",), "a scene of Hill's equation")
+    from ..hill.form import hill_form, is_hill
+
+    system = scene.system()
+    if is_hill(system):
+        form = hill_form(system)
+        if not form.elastic and form.damping() == 0.0 and options.speed is None:
+            return _of_mode(options, form, regions)
+    opt.refuse_unused(
+        options,
+        ("regions", "order", "form", "certified"),
+        "one undamped mode, and no range of speeds",
+    )
+    from ..floquet.edges.tracing import stability_edges
+
+    low, high = _speeds(options, scene)
+    edges = stability_edges(system, (low, high))
+    rows = [
+        (f"{label} ?" if doubtful else label, _rpm(first), _rpm(last), _rpm(last - first, 3))
+        for label, doubtful, first, last, error in zip(
+            edges.labels, edges.doubtful, edges.lower, edges.upper, edges.error, strict=True
+        )
+        if not last - first <= 2.0 * error
+    ]
+    closed = len(edges.labels) - len(rows)
+    lines = opt.table(("region", "from", "to", "width"), rows)
+    if any(row[0].endswith("?") for row in rows):
+        lines.append("?: so far from the resonances of the mean motion that the name is a guess")
+    if closed:
+        lines.append(f"and {closed} regions that are closed, or narrower than their error")
+    return opt.finish(options, edges, lines)
+
+
+def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
+    """Return the range of crank speeds, of the option or of the scene."""
+    if options.speed is None:
+        span = scene.get("operation.speed_range", None)
+        if span is None:
+            raise bad("--speed", "nothing", "a range of speeds", "give --speed LOW:HIGH")
+        return float(span[0]), float(span[1])
+    ends = [opt.quantity(part, "frequency", "--speed") for part in options.speed.split(":")]
+    if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
+        raise bad(
+            "--speed", repr(options.speed), "two rising speeds", "write it like 300rpm:900rpm"
+        )
+    return ends[0], ends[1]
+
+
+def _of_mode(options: argparse.Namespace, form: HillForm, regions: tuple[int, ...]) -> int:
+    """Boundaries in crank speed of the only mode, without damping."""
+    import numpy as np
+
+    frequency = float(np.sqrt(form.stiffness()))
+    exact, others = _solved(options, form.function(1.0), np.array([1.0]), regions, 0.0)
+    rows = []
+    for i, n in enumerate(regions):
+        cells = []
+        for one in (exact, *others):
+            low, high = _ends(one, i, 0)
+            # A region without a lower end in lam2 has no upper end in speed.
+            cells += [_speed(frequency, high), _speed(frequency, low)]
+        rows.append((str(n), *cells))
+    header = ["region", "from", "to"]
+    if others:
+        header += [f"order {options.order} from", "to"]
+    lines = [f"natural frequency {_speed(frequency, 1.0)}; crank speeds:", ""]
+    lines += [*opt.table(header, rows), *_remarks(others)]
+    return opt.finish(
+        options,
+        exact,
+        lines,
+        lambda ax: _bars(ax, exact, frequency),
+        more={"natural_frequency": frequency, "perturbation": [one.to_dict() for one in others]},
+    )
+
+
+def _remarks(others: Sequence[PerturbationBoundaries]) -> list[str]:
+    """Say why there is no number where the perturbation gives none."""
+    if not any(one.outside.any() for one in others):
+        return []
+    return ["no number of the perturbation: outside the range in which its orders converge"]
+
+
+def _bars(ax: Any, exact: Boundaries, frequency: float) -> None:
+    """Draw the unstable bands of crank speed, a row per region."""
+    import numpy as np
+
+    rpm = 30.0 / np.pi
+    for i, n in enumerate(exact.regions):
+        low, high = (float(end[i, 0]) for end in (exact.lower, exact.upper))
+        if high > 0.0:
+            right = frequency / np.sqrt(low) if low > 0.0 else 2.0 * frequency / np.sqrt(high)
+            left = frequency / np.sqrt(high)
+            ax.barh(str(n), (right - left) * rpm, left=left * rpm, height=0.6)
+    ax.set_xlabel("crank speed [rpm]")
+    ax.set_ylabel("region")
+
+
+def _perturb(options: argparse.Namespace) -> int:
+    opt.picture(options)
+    regions = _regions(options.regions)
+    if options.latex:
+        return _formulas(options)
+    from ..errors import BadInput
+    from ..hill.perturbation.coefficients import boundary_series
+
+    f, ratio, remarks = _function(options, opt.load(options))
+    found, rows = [], []
+    for n in regions:
+        try:
+            one = boundary_series(f, n, options.order, ratio)
+        except BadInput as error:
+            # Damping closes this region, and perhaps no other.
+            remarks.append(str(error))
+            continue
+        found.append(one)
+        rows += _series_rows(one)
+    if not found:
+        raise bad("--regions", options.regions or _REGIONS, "a region that is open", remarks[-1])
+    powers = [f"mu^{k}" if k > 1 else "mu" for k in range(1, options.order + 1)]
+    lines = [*opt.table(("region", "boundary", "1", *powers), rows), *remarks]
+    worst = max(found, key=lambda one: float(one.error.max()))
+
+    def draw(ax: Any) -> None:
+        found[0].plot(ax)
+        ax.set_title(f"region {found[0].region}")
+
+    if options.plot and len(found) > 1:
+        lines.append(f"the picture shows region {found[0].region}; choose one by --regions")
+    return opt.finish(
+        options, worst, lines, draw, more={"series": [one.to_dict() for one in found]}
+    )
+
+
+def _function(
+    options: argparse.Namespace, scene: Scene
+) -> tuple[PeriodicFunction, float, list[str]]:
+    """Return what mu multiplies in a scene, beta of K = beta mu, and what is to be said of them."""
+    from ..hill.form import hill_form
+
+    form = hill_form(scene.system())
+    if scene.model["mechanism"] == "hill":
+        damping, mu = 0.5 * form.damping(), abs(float(scene["parameters"]["mu"]))
+        if damping and not mu:
+            raise bad("parameters.mu", "0, with damping", "another mu, for K = beta mu", "set it")
+        ratio = damping / mu if damping else 0.0
+        said = [f"with damping K = {ratio:g} mu"] if ratio else []
+        return form.function(1.0, mu=1.0), ratio, said
+    said = ["mu multiplies all that changes with the crank angle; it is 1 in this scene"]
+    ratio = 0.0
+    if form.damping():
+        ratio = 0.5 * form.damping() / speed_of(options, scene)
+        said.insert(0, f"with damping K = {ratio:g} mu at the scene's speed")
+    return form.function(1.0), ratio, said
+
+
+def _series_rows(one: BoundarySeries) -> list[tuple[str, ...]]:
+    import numpy as np
+
+    rows = []
+    ends = (("lower", one.lower, one.error[0]), ("upper", one.upper, one.error[1]))
+    for name, alpha, error in ends if one.region else ends[1:]:
+        known = np.where(np.abs(alpha) > error + one.function.error, alpha, 0.0)
+        start = f"{0.25 * one.region**2:g}"
+        rows.append((str(one.region), name, start, *(f"{item:+.9g}" for item in known)))
+    return rows
+
+
+def _formulas(options: argparse.Namespace) -> int:
+    """Print the formulas of the boundaries, of any region or of those that are given."""
+    opt.refuse_unused(options, ("plot",), "without --latex")
+    from ..hill.form import hill_form
+    from ..hill.perturbation.formulas import boundary_latex
+
+    damped = hill_form(opt.load(options).system()).damping() > 0.0
+    regions = (None,) if options.regions is None else _regions(options.regions)
+    texts = [boundary_latex(options.order, n, damped) for n in regions]
+    if options.json:
+        opt.print_json({"order": options.order, "regions": regions, "latex": texts})
+    else:
+        print("\n\n".join(texts))
+    return 0
+
+
+def _values(text: str) -> list[float]:
+    """Return one value or evenly spaced ones."""
+    if ":" in text:
+        return opt.values(text, "dimensionless", "--mu")
+    return [opt.quantity(text, "dimensionless", "--mu")]
+
+
+def _shown(count: int) -> Sequence[int]:
+    return (0,) if count == 1 else (0, count - 1)
+
+
+def _ends(one: Boundaries, i: int, j: int) -> tuple[float, float]:
+    return float(one.lower[i, j]), float(one.upper[i, j])
+
+
+def _number(value: float) -> str:
+    return f"{value:.12g}" if value == value else "-"
+
+
+def _speed(frequency: float, lam2: float) -> str:
+    """Return the crank speed at which lam2 = (Omega/speed)^2, in rpm."""
+    return _rpm(frequency / sqrt(lam2)) if lam2 > 0.0 else "-"
+
+
+def _rpm(speed: float, digits: int = 8) -> str:
+    return f"{speed * 30.0 / pi:.{digits}g} rpm" if speed == speed else "-"

@@ -1,0 +1,1 @@
+"""Edges of unstable regions along the speed, found from the multipliers and refined."""

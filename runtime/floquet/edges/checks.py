@@ -1,0 +1,154 @@
+"""Checks of unstable regions against Floquet multipliers inside, between and beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...families import LinearPeriodic
+from ...results import Check
+from ..monodromy_matrix import FloquetMultipliers, floquet_multipliers
+from .regions import Regions
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 64
+# Growth, over its error, from which a verdict tells, and the part of it that must be found.
+_TELLING, _PART = 20.0, 0.1
+# Share of the way to the next end at which an end is looked at.
+_BESIDE = 0.01
+
+
+def edge_checks(
+    system: LinearPeriodic,
+    regions: Regions,
+    span: tuple[float, float],
+    parameters: Mapping[str, float],
+) -> dict[str, Check]:
+    """Return ``verdicts`` and ``samples``, each a number of contradictions.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system, damped or not.
+    regions : Regions
+        By rising speed.
+    span : pair of float
+        The range [rad/s].
+    parameters : mapping
+        Parameter values that replace the system's own.
+    """
+    begin, end = np.maximum(regions.begin, span[0]), np.minimum(regions.end, span[1])
+    regions = replace(regions, begin=begin, end=end)
+    speeds = np.linspace(*span, _SAMPLES)
+    found = floquet_multipliers(system, speeds, **parameters)
+    missed = int(np.sum(~_covered(regions, speeds) & _grows(found)))
+    # Deep inside a region something grows.
+    missed += int(np.sum(_within(regions, speeds) & found.stable))
+    wrong = _narrow(system, regions, parameters) + _counts(system, regions, span, parameters)
+    return {"samples": Check(float(missed), 0.0), "verdicts": Check(float(wrong), 0.0)}
+
+
+def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, float]) -> int:
+    """Return how many regions do not grow in their middle as much as their width promises."""
+    with np.errstate(invalid="ignore"):
+        whole = np.flatnonzero(regions.upper - regions.lower > 4 * regions.error)
+    if not len(whole):
+        return 0
+    low, high = regions.lower[whole], regions.upper[whole]
+    inside = floquet_multipliers(system, 0.5 * (low + high), **parameters)
+    expected = _growth(regions, whole)
+    told = expected > _TELLING * np.max(inside.error, axis=-1)
+    grown = np.max(inside.exponents.real, axis=-1)
+    if _damped(inside):
+        expected = np.zeros_like(expected)
+    return int(np.sum(told & (grown <= _PART * expected)))
+
+
+def _growth(regions: Regions, index: NDArray[np.intp]) -> Array:
+    """Return the growth in a period at the middle of regions, n pi b / (2 w) at a width b."""
+    width = (regions.end - regions.begin)[index]
+    value: Array = 0.5 * np.pi * np.maximum(regions.harmonic[index], 1) * width
+    return value / regions.end[index]
+
+
+def _counts(
+    system: LinearPeriodic,
+    regions: Regions,
+    span: tuple[float, float],
+    parameters: Mapping[str, float],
+) -> int:
+    """Return at how many places between ends not as many multipliers grow as regions cover.
+
+    The places are beside each end and in the middle between each two.  A principal region stands
+    for one multiplier, any other for two, which holds too where four meet off the circle.
+    """
+    wide = np.flatnonzero(regions.end - regions.begin > 4 * regions.error)
+    begin, end, error = regions.begin[wide], regions.end[wide], regions.error[wide]
+    ends = np.concatenate([span, begin, end])
+    slack = np.concatenate([np.zeros(2), error, error])
+    order = np.argsort(ends, kind="stable")
+    ends, slack = ends[order], slack[order]
+    gap = np.diff(ends)
+    spread = 4 * (slack[1:] + slack[:-1] + 16 * np.finfo(float).eps * ends[1:])
+    speeds = np.concatenate([(ends[:-1] + p * gap)[p * gap > spread] for p in (_BESIDE, 0.5)])
+    near = ends[1:] - _BESIDE * gap
+    speeds = np.unique(np.concatenate([speeds, near[_BESIDE * gap > spread]]))
+    if not len(speeds):
+        return 0
+    found = floquet_multipliers(system, speeds, **parameters)
+    modulus, blur = np.abs(found.multipliers), np.max(found.error, axis=-1)
+    covers = (speeds[:, None] > begin) & (speeds[:, None] < end)
+    weight = np.array([1 if regions.kind[i] == "principal" else 2 for i in wide], dtype=int)
+    expected = covers.astype(int) @ weight
+    fewest = np.sum(modulus > 1.0 + 4 * found.error, axis=-1)
+    most = np.sum(modulus > 1.0 - 4 * found.error, axis=-1)
+    if not _damped(found):
+        # All that is not off the circle lies on it: only what should grow by more is missed.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = (speeds[:, None] - begin) / (end - begin)
+            rate = _growth(regions, wide) * 2 * np.sqrt(np.maximum(part * (1 - part), 0.0))
+        least = np.min(np.where(covers, rate, np.inf), axis=1, initial=np.inf)
+        most = np.where(least > _TELLING * blur, fewest, np.maximum(fewest, expected))
+    if np.any(_ragged(regions, span)):
+        # Kinds that go over into each other are seen from sample to sample only.
+        fewest, most, expected = (np.minimum(n, 1) for n in (fewest, most, expected))
+    return int(np.sum((fewest > expected) | (most < expected)))
+
+
+def _ragged(regions: Regions, span: tuple[float, float]) -> NDArray[np.bool_]:
+    """Return which regions lack an end within the range."""
+    value: NDArray[np.bool_] = np.isnan(regions.lower) & (regions.begin > span[0])
+    return value | (np.isnan(regions.upper) & (regions.end < span[1]))
+
+
+def _within(regions: Regions, speed: Array) -> NDArray[np.bool_]:
+    """Return which speeds lie in a region, and not beside an end of it."""
+    width = regions.end - regions.begin
+    low = regions.begin + np.where(np.isnan(regions.lower), 0.0, 0.25 * width)
+    high = regions.end - np.where(np.isnan(regions.upper), 0.0, 0.25 * width)
+    inside = (speed[:, None] > low) & (speed[:, None] < high) & (width > 4 * regions.error)
+    value: NDArray[np.bool_] = np.any(inside, axis=1)
+    return value
+
+
+def _damped(found: FloquetMultipliers) -> bool:
+    """Return True where the multipliers do not multiply to 1."""
+    total = np.sum(found.exponents.real, axis=-1)
+    return bool(np.any(np.abs(total) > 1e-6))
+
+
+def _grows(found: FloquetMultipliers) -> NDArray[np.bool_]:
+    """Return where a multiplier is outside the circle by more than its error explains."""
+    value: NDArray[np.bool_] = np.any(np.abs(found.multipliers) > 1.0 + 4 * found.error, axis=-1)
+    return value
+
+
+def _covered(regions: Regions, speed: Array) -> NDArray[np.bool_]:
+    """Return which speeds lie in some region, or within the error of its ends."""
+    low, high = regions.begin - 2 * regions.error, regions.end + 2 * regions.error
+    value: NDArray[np.bool_] = np.any((speed[:, None] >= low) & (speed[:, None] <= high), axis=1)
+    return value

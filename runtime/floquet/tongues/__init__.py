@@ -1,0 +1,1 @@
+"""Tongues of coupled systems as series in a parameter and the detuning."""

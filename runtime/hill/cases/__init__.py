@@ -1,0 +1,1 @@
+"""Named cases: Mathieu, Whittaker and Hill, Meissner; piecewise constant coefficients."""

@@ -1,0 +1,1 @@
+"""Exact boundaries: eigenvalues of Hill's matrix, certified enclosures, exponents, derivatives."""

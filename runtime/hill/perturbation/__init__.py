@@ -1,0 +1,1 @@
+"""Boundaries to an order in the parameters, from the emitted recursion."""

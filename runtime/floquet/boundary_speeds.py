@@ -8,7 +8,6 @@ from math import ceil
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
@@ -283,6 +282,8 @@ def _inverse_roots(
     levels: list[Array], symmetric: bool
 ) -> tuple[NDArray[np.complex128], Array | None]:
     """Return all 1/x with ``sum_j levels[j] x^j`` singular, and vectors where symmetric."""
+    import scipy.linalg
+
     if len(levels) < 2:
         return np.zeros(0, dtype=complex), None
     if symmetric and len(levels) == 2 and _definite(levels[0]):
@@ -344,6 +345,8 @@ def _apart(matrices: Matrices, speed: Array, vectors: Array) -> Array:
 
     The decomposition of the whole problem mixes them; within their span it is a small one.
     """
+    import scipy.linalg
+
     turned = np.array(vectors)
     cuts = np.flatnonzero(np.diff(speed) > _NEARLY_DOUBLE * speed[1:]) + 1
     for group in np.split(np.arange(len(speed)), cuts):
@@ -366,6 +369,8 @@ def _apart(matrices: Matrices, speed: Array, vectors: Array) -> Array:
 
 def _null_vectors(matrix: Array, symmetric: bool) -> tuple[Array, Array]:
     """Return right and left null vectors of a nearly singular matrix by inverse iteration."""
+    import scipy.linalg
+
     m = len(matrix)
     norm = np.max(np.abs(matrix))
     # A tiny shift keeps the factors regular where the root is exact.

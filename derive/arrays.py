@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-MATRICES = ("M", "A", "B", "S", "C", "K", "Kg")
+MATRICES = ("M", "A", "B", "S", "C", "D", "K", "Kg")
 VECTORS = ("f", "h", "g", "p")
 
 
@@ -163,7 +163,96 @@ class IndexedVector:
         return bool(self.entry == 0)
 
 
-ArrayEntry: TypeAlias = "IndexedEntry | IndexedVector | sp.ImmutableDenseMatrix"
+@dataclass(frozen=True)
+class BasisIntegral:
+    """An integral from 0 to 1 over shapes ``e_i(eta; xi)`` that are passed in.
+
+    ``int weight d^(k+l) e_i/(d eta^k d xi^l) d^(m+n) e_j/(d eta^m d xi^n) d eta``, eta and xi being
+    fractions of a length; or the integrand at a point; or, without the second factor, a vector.
+
+    Attributes
+    ----------
+    name : str
+        Under which the caller passes it in.
+    weight : Expr
+        Polynomial in ``eta``, the integration variable.
+    eta : Symbol
+        The integration variable.
+    row : tuple of int
+        Derivatives (k, l) of the first factor.
+    column : tuple of int or None
+        Derivatives (m, n) of the second factor; None where there is none.
+    at : Expr or None
+        The value of eta at which the integrand is taken; None for an integral.
+    """
+
+    name: str
+    weight: sp.Expr
+    eta: sp.Symbol
+    row: tuple[int, int]
+    column: tuple[int, int] | None = None
+    at: sp.Expr | None = None
+
+
+@dataclass(frozen=True)
+class BasisProduct:
+    """A matrix made of products of integrals with one factor each.
+
+    Attributes
+    ----------
+    name : str
+        Of the matrix.
+    form : Expr
+        Entry (i, j), bilinear in the symbols of the two factors below.
+    rows, columns : mapping
+        Symbol to the integral whose entry i (or j) it stands for.
+    """
+
+    name: str
+    form: sp.Expr
+    rows: Mapping[sp.Symbol, BasisIntegral]
+    columns: Mapping[sp.Symbol, BasisIntegral]
+
+    def __post_init__(self) -> None:
+        """Freeze the mappings."""
+        object.__setattr__(self, "rows", MappingProxyType(dict(self.rows)))
+        object.__setattr__(self, "columns", MappingProxyType(dict(self.columns)))
+
+    def __hash__(self) -> int:
+        """Return the hash of name and form."""
+        return hash((self.name, self.form))
+
+
+@dataclass(frozen=True)
+class BasisEntry:
+    """An array as a sum of coefficients times integrals over shapes that are passed in.
+
+    Attributes
+    ----------
+    terms : tuple of (Expr, BasisIntegral or BasisProduct)
+        Coefficients, free of the shapes, and what they multiply.
+    """
+
+    terms: tuple[tuple[sp.Expr, BasisIntegral | BasisProduct], ...]
+
+    def map(self, function: Callable[[sp.Expr], sp.Expr]) -> BasisEntry:
+        """Return the entries with a function applied to each coefficient."""
+        return BasisEntry(tuple((function(value), what) for value, what in self.terms))
+
+    def plus(self, other: BasisEntry) -> BasisEntry:
+        """Return the sum; coefficients of the same integral are added up."""
+        total: dict[BasisIntegral | BasisProduct, sp.Expr] = {}
+        for value, what in (*self.terms, *other.terms):
+            total[what] = total.get(what, sp.S.Zero) + value
+        return BasisEntry(tuple((value, what) for what, value in total.items()))
+
+    @property
+    def is_zero(self) -> bool:
+        """True where every coefficient vanishes identically."""
+        return all(value == 0 for value, _ in self.terms)
+
+
+ArrayEntry: TypeAlias = "IndexedEntry | IndexedVector | BasisEntry | sp.ImmutableDenseMatrix"
 
 
 @dataclass(frozen=True)
@@ -173,13 +262,13 @@ class DiscreteSystem:
     ::
 
         L2 = 1/2 qd^T M qd + td qd^T A q + 1/2 td^2 q^T B q + 1/2 tdd q^T S q
-             - 1/2 q^T (K + Kg) q,      forces  -C qd + td^2 f + td h + tdd g + p
+             - 1/2 q^T (K + Kg) q,      forces  -C qd - td D q + td^2 f + td h + tdd g + p
 
     with td, tdd the rate and acceleration of the crank angle; then
 
     ::
 
-        M qdd + (C + td G) qd + (K + Kg + td^2 H + tdd E) q = td^2 f + td h + tdd g + p,
+        M qdd + (C + td G) qd + (K + Kg + td D + td^2 H + tdd E) q = td^2 f + td h + tdd g + p,
         G = M' + A - A^T,   H = A' - B,   E = A - S,   ' = d/d theta.
 
     Attributes
@@ -187,10 +276,11 @@ class DiscreteSystem:
     crank : CrankMotion
         The crank angle, its rates, and the quantities that follow it.
     modes : int or None
-        Number of degrees of freedom; None where the arrays are closed in the mode indices.
+        Number of degrees of freedom; None where the arrays are closed in the mode indices or made
+        of integrals over shapes that are passed in.
     arrays : mapping
-        Name (``M A B S C K Kg f h g p``) to explicit matrix or indexed entries; an array that is
-        not listed is zero.
+        Name (``M A B S C D K Kg f h g p``) to explicit matrix, indexed entries or integrals over
+        shapes; an array that is not listed is zero.
     labels : tuple of str
         One name per degree of freedom, where their number is known.
     """
@@ -206,7 +296,7 @@ class DiscreteSystem:
         for name, entry in self.arrays.items():
             if name not in MATRICES + VECTORS:
                 raise ValueError(f"unknown array {name!r}; expected one of {MATRICES + VECTORS}")
-            if isinstance(entry, IndexedEntry | IndexedVector):
+            if isinstance(entry, IndexedEntry | IndexedVector | BasisEntry):
                 zero = entry.is_zero
             else:
                 width = self.modes if name in MATRICES else 1
@@ -235,7 +325,8 @@ class DiscreteSystem:
         Raises
         ------
         ValueError
-            If the number of modes is needed and not given, or contradicts the system's own.
+            If the number of modes is needed and not given, or contradicts the system's own, or the
+            array consists of integrals over shapes that are passed in.
         """
         size = self.modes if modes is None else modes
         if size is None:
@@ -245,6 +336,8 @@ class DiscreteSystem:
         if name not in self.arrays:
             return sp.ImmutableDenseMatrix.zeros(size, size if name in MATRICES else 1)
         entry = self.arrays[name]
+        if isinstance(entry, BasisEntry):
+            raise ValueError(f"array {name} consists of integrals over shapes that are passed in")
         if isinstance(entry, IndexedEntry | IndexedVector):
             return entry.matrix(size)
         return entry

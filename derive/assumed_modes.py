@@ -58,11 +58,13 @@ def assumed_modes(action: ActionDensity, bases: Mapping[sp.Expr, FiniteBasis]) -
     energy = along(action.density)
     for term in action.point_terms:
         energy += expanded(term.expression).subs(action.x, term.position)
+    lost = along(action.dissipation)
     forces: _Table = {}
     for item, unknowns in coordinates.items():
         for q, shape in zip(unknowns, bases[item].shapes, strict=True):
             weight = bases[item].amplitude * shape
             work = along(action.force_density.get(item, sp.S.Zero) * weight)
+            work -= sp.diff(lost, q.diff(action.t))
             for push in action.end_forces:
                 if push.field == item:
                     moved = expanded(push.force) * sp.diff(weight, action.x, push.order)

@@ -21,6 +21,7 @@ from .integrals import antiderivative, definite
 from .ir import Argument, Result
 from .lagrange import euler_lagrange, quadratic_form, variational_equations
 from .linear import linear_periodic
+from .moving_basis import Moments, MovingShapes, project_moving
 from .pipeline import Model
 from .projection import mass_normalised, project, project_action
 from .records import (
@@ -66,6 +67,8 @@ __all__ = [
     "MatrixForm",
     "Model",
     "ModelSpec",
+    "Moments",
+    "MovingShapes",
     "PointTerm",
     "Result",
     "StagedSystem",
@@ -85,6 +88,7 @@ __all__ = [
     "mass_normalised",
     "project",
     "project_action",
+    "project_moving",
     "quadratic_action",
     "quadratic_form",
     "scalar",

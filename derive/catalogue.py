@@ -76,6 +76,7 @@ def _multibody(mechanism: str, *more: str) -> CatalogueEntry:
     )
 
 
+_ROD_DROPS: tuple[tuple[str, ...], ...] = ((), ("frame",), ("frame", "tension"), ("tension",))
 _COUPLER = ("complete", "printed", "reduced")
 
 CATALOGUE = (
@@ -126,6 +127,57 @@ CATALOGUE = (
         module=".models.quick_return",
         sources=("quick_return.py",),
         specs=(ModelSpec("quick_return", "kinematics"),),
+    ),
+    CatalogueEntry(
+        mechanism="quick_return",
+        formulations=("rod_polynomials",),
+        module=".models.rod_polynomials",
+        sources=("rod_polynomials.py",),
+        specs=(ModelSpec("quick_return", "rod_polynomials"),),
+    ),
+    CatalogueEntry(
+        mechanism="beam",
+        formulations=("free_free_modes",),
+        module=".models.free_free_modes",
+        sources=("free_free_modes.py",),
+        specs=(ModelSpec("beam", "free_free_modes"),),
+    ),
+    CatalogueEntry(
+        mechanism="quick_return",
+        formulations=("free_free",),
+        module=".models.free_free_rod",
+        sources=("block_sums.py", "free_free_modes.py", "free_free_rod.py"),
+        specs=tuple(
+            ModelSpec("quick_return", "free_free", flexible=("rod",), modes=modes, drop=drop)
+            for drop in ((), ("tension",))
+            for modes in range(1, 6)
+        ),
+        choices=Choices(flexible=("rod",), drop=("tension",)),
+    ),
+    CatalogueEntry(
+        mechanism="quick_return",
+        formulations=("moving_basis",),
+        module=".models.flexible_rod",
+        sources=("quick_return.py", "flexible_rod.py"),
+        specs=tuple(
+            ModelSpec("quick_return", "moving_basis", flexible=("rod",), drop=drop)
+            for drop in _ROD_DROPS
+        ),
+        closed_in_modes=True,
+        choices=Choices(flexible=("rod",), drop=("frame", "tension")),
+    ),
+    CatalogueEntry(
+        mechanism="quick_return",
+        formulations=("overhang_modes",),
+        module=".models.overhang_modes",
+        sources=(
+            "overhang_ends.py",
+            "overhang_integrals.py",
+            "overhang_modes.py",
+            "overhang_problem.py",
+            "overhang_waves.py",
+        ),
+        specs=(ModelSpec("quick_return", "overhang_modes"),),
     ),
     _forces("four_bar", "four_bar_vectors.py"),
     _forces("slider_crank"),

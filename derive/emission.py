@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +98,10 @@ def _keys(module: ModuleSpec, content: str) -> Mapping[str, Any]:
             _row(_literal(t.array), str(t.power), *map(_literal, (t.scale, t.angle, t.modal)))
             for t in module.terms
         ]
+        keys["basis"] = [
+            _row(_literal(b.name), *map(repr, (b.weight, b.row, b.column, b.at)))
+            for b in module.basis
+        ]
     if module.family == "recursion":
         keys["words"] = module.words
     return keys
@@ -157,7 +161,7 @@ def _kernel(kernel: Kernel) -> Mapping[str, Any]:
     for s in kernel.statements:
         lines.append(_wrapped(s.target, s.expression, "    "))
         if s.release:
-            lines.append(f"    del {', '.join(s.release)}")
+            lines += _releases(s.release)
     if len(kernel.returns) == 1:
         closing = _wrapped("return", kernel.returns[0], "    ", joint=" ")
     else:
@@ -177,6 +181,12 @@ def _kernel(kernel: Kernel) -> Mapping[str, Any]:
     }
 
 
+def _releases(names: Sequence[str]) -> list[str]:
+    """Return the lines that let go of intermediate arrays."""
+    wrapped = textwrap.wrap(", ".join(names), _WIDTH - len("    del "))
+    return [f"    del {part.rstrip(',')}" for part in wrapped]
+
+
 def _signature(kernel: Kernel) -> str:
     names = [argument.name for argument in kernel.arguments]
     line = f"def {kernel.name}({', '.join(names)}):"
@@ -191,12 +201,13 @@ def _item(value: str, indent: str) -> str:
     line = f"{indent}{value},"
     if len(line) <= _WIDTH:
         return line + "\n"
-    return _wrapped("", value, indent, joint="").rstrip() + ",\n"
+    return _wrapped("", value, indent, joint="", after=1).rstrip() + ",\n"
 
 
-def _wrapped(target: str, expression: str, indent: str, joint: str = " = ") -> str:
+def _wrapped(target: str, expression: str, indent: str, joint: str = " = ", after: int = 0) -> str:
+    """Return a statement on as many lines as it takes; ``after`` characters will follow it."""
     line = f"{indent}{target}{joint}{expression}"
-    if len(line) <= _WIDTH:
+    if len(line) + after <= _WIDTH:
         return line.replace(UNBROKEN, " ")
     parts = textwrap.wrap(
         expression, _WIDTH - len(indent) - 4, break_long_words=False, break_on_hyphens=False

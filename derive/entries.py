@@ -144,7 +144,12 @@ def lower_constrained(
     }
     states = {"constraints": positions, "dynamics": [*positions, *velocities]}
     if v is not None:
-        arrays["variations"] = {"damping": v.damping, "stiffness": v.stiffness}
+        arrays["variations"] = {
+            "damping": v.damping,
+            "stiffness": v.stiffness,
+            "jacobian_rate": v.jacobian_rate,
+            "jacobian_acceleration": v.jacobian_acceleration,
+        }
         more = [_argument(a, "Acceleration", outer) for a in v.accelerations]
         more += [_argument(lam, "Multiplier", outer) for lam in e.multipliers]
         states["variations"] = [*positions, *velocities, *more]
@@ -172,7 +177,7 @@ def lower_constrained(
 _SUMMARIES = {
     "constraints": "Return the constraints and their Jacobian",
     "dynamics": "Return everything in the equations of motion at acceleration level",
-    "variations": "Return damping and stiffness of the motion linearised about a given one",
+    "variations": "Return the arrays of the motion linearised about a given one",
 }
 
 

@@ -88,12 +88,14 @@ class TermRow:
     Attributes
     ----------
     array : str
-        ``M A B S C K Kg`` or ``f h g p`` (design: system forms).
+        ``M A B S C D K Kg`` or ``f h g p`` (design: system forms).
     power : int
         Power of the crank speed that multiplies the term in the equation of motion in time.
     scale, angle, modal : str or None
         Names of the parameter monomial, the function of angle and the modal array; None means 1
-        (for ``modal``: the identity, or a vector of ones).
+        (for ``modal``: the identity, or a vector of ones).  Where ``modal`` is an integral over
+        shapes that the caller passes in, it stands among the module's basis rows, or is returned
+        by its function ``basis_products``.
     """
 
     array: str
@@ -101,6 +103,29 @@ class TermRow:
     scale: str | None
     angle: str | None
     modal: str | None
+
+
+@dataclass(frozen=True)
+class BasisRow:
+    """An integral over shapes that the caller passes in (see :class:`.arrays.BasisIntegral`).
+
+    Attributes
+    ----------
+    name : str
+        Its name in the terms.
+    weight : tuple of float
+        Coefficients of the weight by powers of eta, from the constant one on.
+    row, column : tuple of int
+        Derivatives by eta and xi of the two factors; ``column`` is None for a vector.
+    at : float or None
+        Value of eta where it is no integral.
+    """
+
+    name: str
+    weight: tuple[float, ...]
+    row: tuple[int, int]
+    column: tuple[int, int] | None
+    at: float | None
 
 
 @dataclass(frozen=True)
@@ -125,6 +150,8 @@ class ModuleSpec:
         Separated terms; linear-periodic family only.
     parameters : tuple of Argument
         Inertial and elastic parameters, with units.
+    basis : tuple of BasisRow
+        Integrals over shapes that the caller passes in; linear-periodic family only.
     words : tuple of (int, tuple of (int, str))
         Words of the effective operator and their coefficients by order; recursion family only.
     """
@@ -138,6 +165,7 @@ class ModuleSpec:
     terms: tuple[TermRow, ...] = ()
     parameters: tuple[Argument, ...] = ()
     tables: tuple[tuple[str, str], ...] = field(default=())
+    basis: tuple[BasisRow, ...] = ()
     words: tuple[tuple[int, tuple[tuple[int, str], ...]], ...] = ()
 
     @property

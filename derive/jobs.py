@@ -180,7 +180,7 @@ def _spec_of_scene(file: Path) -> ModelSpec:
     if "model" not in table:
         raise UsageError(f"scene file {file}: has no [model] table")
     try:
-        return ModelSpec.from_mapping(table["model"])
+        return ModelSpec.from_mapping(table["model"]).derived()
     except ValueError as problem:
         raise UsageError(f"scene file {file}: model: {problem}") from None
 

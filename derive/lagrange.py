@@ -131,18 +131,25 @@ def variational_equations(equations: EquationsOfMotion) -> VariationalEquations:
     Returns
     -------
     VariationalEquations
-        Damping and stiffness of the linearised motion; the acceleration of ``s`` is ``s_ddot``.
+        Damping and stiffness of the linearised motion, and the rates of the Jacobian along the
+        motion; the acceleration of ``s`` is ``s_ddot``.
     """
     accelerations = tuple(sp.Symbol(f"{q.name}_ddot") for q in equations.coordinates)
-    residual = equations.mass * _column(accelerations) + equations.rest - equations.forces
+    q, qdd = list(equations.coordinates), _column(accelerations)
+    residual = equations.mass * qdd + equations.rest - equations.forces
     damping = residual.jacobian(list(equations.velocities))
+    rate = acceleration = sp.zeros(0, len(q))
     if equations.multipliers:
         residual -= equations.jacobian.T * _column(equations.multipliers)
-    stiffness = residual.jacobian(list(equations.coordinates))
+        velocity = equations.jacobian * _column(equations.velocities) - equations.velocity_rhs
+        rate = velocity.jacobian(q)
+        acceleration = (equations.jacobian * qdd - equations.gamma).jacobian(q)
     return VariationalEquations(
         accelerations,
         sp.ImmutableDenseMatrix(damping),
-        sp.ImmutableDenseMatrix(stiffness),
+        sp.ImmutableDenseMatrix(residual.jacobian(q)),
+        sp.ImmutableDenseMatrix(rate),
+        sp.ImmutableDenseMatrix(acceleration),
     )
 
 
@@ -216,7 +223,7 @@ def _collect(
 ) -> tuple[dict[str, sp.Matrix], dict[str, sp.Matrix]]:
     """Read second-order and first-order coefficients off the Lagrangian."""
     size, every = len(q), [*q, *qd]
-    arrays = {name: sp.zeros(size, size) for name in ("M", "A", "B", "S", "C", "K", "Kg")}
+    arrays = {name: sp.zeros(size, size) for name in ("M", "A", "B", "S", "C", "D", "K", "Kg")}
     arrays |= {name: sp.zeros(size, 1) for name in _FORCE_POWERS}
     linear = {name: sp.zeros(size, 1) for name in ("td qd", "qd", *_FORCE_POWERS)}
     for i in range(size):
@@ -289,7 +296,7 @@ def _add_force(
     qd: Sequence[sp.Symbol],
     crank: CrankMotion,
 ) -> None:
-    """Add one generalised force: damping to C, displacement terms to K, B, S, the rest to p..g."""
+    """Add a generalised force: damping to C, displacement terms to K, D, B, S, the rest to p..g."""
     every = [*q, *qd]
     accounted = sp.S.Zero
     for j, (position, velocity) in enumerate(zip(q, qd, strict=True)):
@@ -297,9 +304,9 @@ def _add_force(
         arrays["C"][row, j] -= damping
         accounted += damping * velocity
         stiff = _at_zero(sp.diff(force, position), every)
-        for name, powers in _RATE_POWERS.items():
+        for name, powers in {**_RATE_POWERS, "D": (1, 0)}.items():
             part = _rate_coefficient(stiff, crank, powers)
-            arrays[name][row, j] += -part if name == "K" else part
+            arrays[name][row, j] += -part if name in ("K", "D") else part
             accounted += part * crank.rate ** powers[0] * crank.acceleration ** powers[1] * position
     constant = _at_zero(force, every)
     for name, powers in _FORCE_POWERS.items():

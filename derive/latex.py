@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.latex import LatexPrinter, greek_letters_set
 
-from .arrays import DiscreteSystem, IndexedEntry, IndexedVector
+from .arrays import BasisEntry, DiscreteSystem, IndexedEntry, IndexedVector
 from .entries import ConstrainedSystem, MatrixForm, TranscendentalSystem
 from .perturbation.bloch import Recursion
 from .perturbation.printing import recursion_lines, word_lines
@@ -131,6 +131,8 @@ def _action(action: ActionDensity) -> Iterator[str]:
     yield _equation("L", action.density)
     for term in action.point_terms:
         yield _equation(f"L_{{x = {_tex(term.position)}}}", term.expression)
+    if action.dissipation != 0:
+        yield _equation("R", action.dissipation)
     for item, force in action.force_density.items():
         yield _equation(rf"\delta W / \delta {_tex(item)}", force)
     for force in action.end_forces:
@@ -233,8 +235,9 @@ def _arrays(system: DiscreteSystem) -> Iterator[str]:
     yield from _heading("Projected arrays")
     yield (
         "\\begin{gather*}\n"
-        r"M \ddot{q} + (C + \dot{\theta} G) \dot{q} + (K + K_g + \dot{\theta}^2 H + "
-        r"\ddot{\theta} E) q = \dot{\theta}^2 f + \dot{\theta} h + \ddot{\theta} g + p,\\"
+        r"M \ddot{q} + (C + \dot{\theta} G) \dot{q} + (K + K_g + \dot{\theta} D + "
+        r"\dot{\theta}^2 H + \ddot{\theta} E) q = \dot{\theta}^2 f + \dot{\theta} h + "
+        r"\ddot{\theta} g + p,\\"
         "\n"
         r"G = M' + A - A^T,\quad H = A' - B,\quad E = A - S,\quad ' = d/d\theta"
         "\n\\end{gather*}\nArrays that are not listed vanish.\n"
@@ -243,6 +246,9 @@ def _arrays(system: DiscreteSystem) -> Iterator[str]:
         label, entry = "K_g" if name == "Kg" else name, tidy(array)
         if isinstance(entry, IndexedVector):
             yield _equation(f"{label}_{{{entry.m}}}", entry.entry)
+        elif isinstance(entry, BasisEntry):
+            total = sp.Add(*(value * sp.Symbol(what.name) for value, what in entry.terms))
+            yield _equation(label, total)
         elif isinstance(entry, IndexedEntry):
             subscript = label if "_" not in label else f"{{{label}}}"
             yield _equation(f"{subscript}_{{{entry.m}{entry.m}}}", entry.diagonal)

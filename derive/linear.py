@@ -11,7 +11,7 @@ from .lagrange import NotRepresentable
 from .records import EquationsOfMotion
 from .variational import in_crank_angle
 
-_STIFFNESS = {"K": (0, 0), "H": (2, 0), "E": (0, 1)}
+_STIFFNESS = {"K": (0, 0), "D": (1, 0), "H": (2, 0), "E": (0, 1)}
 _FORCING = {"f": (2, 0), "h": (1, 0), "g": (0, 1), "p": (0, 0)}
 
 
@@ -68,6 +68,7 @@ def linear_periodic(
         "B": a.applyfunc(crank.derivative) - found["H"],
         "S": a - found["E"],
         "C": damping + (gyroscopic + gyroscopic.T) * crank.rate / 2,
+        "D": found["D"],
         "K": found["K"] - stressed,
         "Kg": stressed,
         **forcing,

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
+from sympy.codegen.cfunctions import expm1
 from sympy.core.function import AppliedUndef
 
 from .describe import Description
@@ -25,6 +26,7 @@ _FUNCTIONS: dict[type[sp.Function], str] = {
     sp.sinh: "sinh",
     sp.cosh: "cosh",
     sp.floor: "floor",
+    expm1: "expm1",
 }
 
 

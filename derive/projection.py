@@ -8,12 +8,12 @@ conditions as residuals (:func:`project`), and the quadratic action itself
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import TypeAlias
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 import sympy as sp
 
+from .arrays import BasisEntry
 from .bases import Basis, FiniteBasis, IndexedBasis, sine_basis
 from .jets import linear_jets, quadratic_jets
 from .lagrange import NotRepresentable
@@ -26,7 +26,8 @@ from .records import (
     IndexedEntry,
     IndexedVector,
 )
-from .variational import in_crank_angle
+from .sums import ArraySum, Powers, mapped, plus, transposed, vanishes
+from .variational import drag_by_order
 
 __all__ = [
     "Basis",
@@ -41,89 +42,6 @@ __all__ = [
     "sine_basis",
     "tidy",
 ]
-
-_Powers: TypeAlias = tuple[int, int]
-_STIFFNESS: dict[_Powers, str] = {(0, 0): "K", (2, 0): "B", (0, 1): "S"}
-_FORCING: dict[_Powers, str] = {(2, 0): "f", (1, 0): "h", (0, 1): "g", (0, 0): "p"}
-
-
-@dataclass
-class _Arrays:
-    """Arrays being summed up, by name."""
-
-    crank: CrankMotion
-    t: sp.Symbol
-    followers: Mapping[sp.Expr, sp.Expr]
-    geometric: tuple[sp.Symbol, ...]
-    entries: dict[str, ArrayEntry] = field(default_factory=dict)
-
-    def by_powers(self, weight: sp.Expr) -> dict[_Powers, sp.Expr]:
-        """Split a coefficient by powers of the crank's rate and acceleration."""
-        plain = in_crank_angle(weight, self.crank, self.t, self.followers)
-        rates = (self.crank.rate, self.crank.acceleration)
-        split: dict[_Powers, sp.Expr] = {}
-        for term in sp.Add.make_args(sp.expand(plain)):
-            rest, powers = term, [0, 0]
-            for index, rate in enumerate(rates):
-                rest, exponent = rest.as_coeff_exponent(rate)
-                if rest.has(rate) or not (exponent.is_Integer and exponent >= 0):
-                    raise NotRepresentable(f"{term} is no polynomial in {rates}")
-                powers[index] = int(exponent)
-            key = (powers[0], powers[1])
-            split[key] = split.get(key, sp.S.Zero) + rest
-        return {key: value for key, value in split.items() if value != 0}
-
-    def add(self, name: str, entry: ArrayEntry) -> None:
-        known = self.entries.get(name)
-        self.entries[name] = entry if known is None else _plus(known, entry)
-
-    def stiffness(self, weight: sp.Expr, powers: _Powers) -> list[tuple[str, sp.Expr]]:
-        """Return where a displacement term of the force side goes, with its sign."""
-        name = _STIFFNESS.get(powers)
-        if name is None:
-            raise NotRepresentable(f"stiffness {weight} with rate powers {powers} has no array")
-        if name != "K":
-            return [(name, weight)]
-        terms = sp.Add.make_args(sp.expand(weight))
-        moved = sp.Add(*(e for e in terms if self.geometric and e.has(*self.geometric)))
-        parts = [("K", -sp.expand(weight - moved)), ("Kg", -moved)]
-        return [(key, value) for key, value in parts if value != 0]
-
-    def forcing(self, powers: _Powers, what: sp.Expr) -> str:
-        name = _FORCING.get(powers)
-        if name is None:
-            raise NotRepresentable(f"force {what} with rate powers {powers} has no array")
-        return name
-
-
-def _plus(a: ArrayEntry, b: ArrayEntry) -> ArrayEntry:
-    if isinstance(a, IndexedEntry) and isinstance(b, IndexedEntry):
-        return a.plus(b)
-    if isinstance(a, IndexedVector) and isinstance(b, IndexedVector):
-        return a.plus(b)
-    return _explicit(a) + _explicit(b)
-
-
-def _explicit(entry: ArrayEntry) -> sp.ImmutableDenseMatrix:
-    if isinstance(entry, IndexedEntry | IndexedVector):
-        raise TypeError(f"{entry} is not an explicit matrix")
-    return entry
-
-
-def _map(entry: ArrayEntry, function: Callable[[sp.Expr], sp.Expr]) -> ArrayEntry:
-    if isinstance(entry, IndexedEntry | IndexedVector):
-        return entry.map(function)
-    return entry.applyfunc(function)
-
-
-def _transposed(entry: ArrayEntry) -> ArrayEntry:
-    return entry.transposed() if isinstance(entry, IndexedEntry) else _explicit(entry).T
-
-
-def _vanishes(entry: ArrayEntry) -> bool:
-    if isinstance(entry, IndexedEntry | IndexedVector):
-        return entry.is_zero
-    return all(item == 0 for item in entry)
 
 
 def project(
@@ -170,7 +88,7 @@ def project(
     """
     action = equations.action
     _check_essential(action, item, basis)
-    arrays = _Arrays(crank, action.t, followers or {}, tuple(geometric))
+    arrays = ArraySum(crank, action.t, followers or {}, tuple(geometric))
     side = _ForceSide(arrays, basis, item)
     side.add(equations.equations[item], 0, None)
     for condition in equations.natural:
@@ -186,7 +104,7 @@ def project(
 class _ForceSide:
     """Sums up ``-M qdd - (C + td G) qd - ... + forces``, and reads the arrays off the sum."""
 
-    arrays: _Arrays
+    arrays: ArraySum
     basis: Basis
     item: sp.Expr
 
@@ -201,7 +119,9 @@ class _ForceSide:
             name = self.arrays.forcing(powers, weight)
             self.arrays.add(name, self.basis.single(weight, varied, at))
 
-    def _targets(self, weight: sp.Expr, j: int, powers: _Powers) -> list[tuple[str, sp.Expr]]:
+    def _targets(self, weight: sp.Expr, j: int, powers: Powers) -> list[tuple[str, sp.Expr]]:
+        if j == 0 and powers == (1, 0):
+            return [("D", -weight)]
         if j == 0:
             return self.arrays.stiffness(weight, powers)
         if j == 1 and powers == (1, 0):
@@ -218,20 +138,20 @@ class _ForceSide:
         crank = arrays.crank
         gyroscopic = entries.pop("G", None)
         if "M" in entries:
-            slope = _map(entries["M"], lambda e: sp.expand(crank.derivative(e)))
-            if not _vanishes(slope):
-                minus = _map(slope, lambda e: -e)
-                gyroscopic = minus if gyroscopic is None else _plus(gyroscopic, minus)
+            slope = mapped(entries["M"], lambda e: sp.expand(crank.derivative(e)))
+            if not vanishes(slope):
+                minus = mapped(slope, lambda e: -e)
+                gyroscopic = minus if gyroscopic is None else plus(gyroscopic, minus)
         if gyroscopic is not None:
-            flipped = _transposed(gyroscopic)
-            half = _map(_plus(gyroscopic, _map(flipped, lambda e: -e)), _quarter)
-            even = _map(_plus(gyroscopic, flipped), lambda e: sp.expand(e * crank.rate / 2))
-            if not _vanishes(half):
+            flipped = transposed(gyroscopic)
+            half = mapped(plus(gyroscopic, mapped(flipped, lambda e: -e)), _quarter)
+            even = mapped(plus(gyroscopic, flipped), lambda e: sp.expand(e * crank.rate / 2))
+            if not vanishes(half):
                 arrays.add("A", half)
                 arrays.add("S", half)
-                slope = _map(half, lambda e: sp.expand(crank.derivative(e)))
+                slope = mapped(half, lambda e: sp.expand(crank.derivative(e)))
                 arrays.add("B", slope)
-            if not _vanishes(even):
+            if not vanishes(even):
                 arrays.add("C", even)
         return _finished(arrays, self.basis)
 
@@ -267,19 +187,21 @@ def project_action(
         If a term has no place in the family.
     """
     _check_essential(action, item, basis)
-    arrays = _Arrays(crank, action.t, followers or {}, tuple(geometric))
-    momenta = _Arrays(crank, action.t, followers or {}, ())
+    arrays = ArraySum(crank, action.t, followers or {}, tuple(geometric))
+    momenta = ArraySum(crank, action.t, followers or {}, ())
     _add_energy(arrays, momenta, basis, action.density, item, None)
     for term in action.point_terms:
         _add_energy(arrays, momenta, basis, term.expression, item, sp.sympify(term.position))
     for name, entry in momenta.entries.items():
-        slope = _map(entry, lambda e: sp.expand(-crank.derivative(e)))
+        slope = mapped(entry, lambda e: sp.expand(-crank.derivative(e)))
         arrays.add("f" if name == "td qd" else "h", slope)
         if name == "td qd":
-            arrays.add("g", _map(entry, lambda e: -e))
+            arrays.add("g", mapped(entry, lambda e: -e))
     side = _ForceSide(arrays, basis, item)
     if item in action.force_density:
         side.add(action.force_density[item], 0, None)
+    for k, drag in drag_by_order(action, item):
+        side.add(drag, k, None)
     for force in action.end_forces:
         if force.field == item:
             side.add(force.force, force.order, sp.sympify(force.position))
@@ -287,8 +209,8 @@ def project_action(
 
 
 def _add_energy(
-    arrays: _Arrays,
-    momenta: _Arrays,
+    arrays: ArraySum,
+    momenta: ArraySum,
     basis: Basis,
     energy: sp.Expr,
     item: sp.Expr,
@@ -318,7 +240,7 @@ def _add_energy(
 
 
 def _energy_targets(
-    arrays: _Arrays, weight: sp.Expr, rates: tuple[int, int], powers: _Powers
+    arrays: ArraySum, weight: sp.Expr, rates: tuple[int, int], powers: Powers
 ) -> list[tuple[str, sp.Expr]]:
     if rates == (0, 0):
         return arrays.stiffness(weight, powers)
@@ -333,13 +255,13 @@ def _check_essential(action: ActionDensity, item: sp.Expr, basis: Basis) -> None
     held += [(s.position, 0) for s in action.supports if s.field == item]
     for position, order in held:
         values = basis.single(sp.S.One, order, sp.sympify(position))
-        if not _vanishes(_map(values, sp.expand)):
+        if not vanishes(mapped(values, sp.expand)):
             raise ValueError(
                 f"the basis does not vanish at {position} (derivative {order}): {values}"
             )
 
 
-def _finished(arrays: _Arrays, basis: Basis) -> DiscreteSystem:
+def _finished(arrays: ArraySum, basis: Basis) -> DiscreteSystem:
     modes = basis.modes
     entries = {name: tidy(entry) for name, entry in arrays.entries.items()}
     labels = () if modes is None else tuple(f"q{i + 1}" for i in range(modes))
@@ -354,6 +276,8 @@ def tidy(entry: ArrayEntry) -> ArrayEntry:
     if isinstance(entry, IndexedVector):
         index = (entry.m,)
         return entry.map(lambda e: _tidy(e, index))
+    if isinstance(entry, BasisEntry):
+        return entry.map(sp.factor_terms)
     return entry.applyfunc(sp.expand)
 
 
@@ -443,7 +367,7 @@ def divided(system: DiscreteSystem, divisor: sp.Expr) -> DiscreteSystem:
             indices = (entry.m, entry.n)
         elif isinstance(entry, IndexedVector):
             indices = (entry.m,)
-        arrays[name] = _map(entry, functools.partial(divide, indices=indices))
+        arrays[name] = mapped(entry, functools.partial(divide, indices=indices))
     return system.with_(arrays=arrays)
 
 
@@ -477,11 +401,11 @@ def antisymmetric_gauge(system: DiscreteSystem) -> DiscreteSystem:
     if not system.has("A"):
         return system
     crank, entries = system.crank, dict(system.arrays)
-    even = _map(_plus(entries["A"], _transposed(entries["A"])), lambda e: sp.expand(e / 2))
-    if _vanishes(even):
+    even = mapped(plus(entries["A"], transposed(entries["A"])), lambda e: sp.expand(e / 2))
+    if vanishes(even):
         return system
-    slope = _map(even, lambda e: sp.expand(crank.derivative(e)))
+    slope = mapped(even, lambda e: sp.expand(crank.derivative(e)))
     for name, part in (("A", even), ("B", slope), ("S", even)):
-        minus = _map(part, lambda e: -e)
-        entries[name] = tidy(_plus(entries[name], minus) if name in entries else minus)
+        minus = mapped(part, lambda e: -e)
+        entries[name] = tidy(plus(entries[name], minus) if name in entries else minus)
     return system.with_(arrays=entries)

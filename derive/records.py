@@ -139,6 +139,10 @@ class ActionDensity:
         Interior points where a field is held at zero.
     orders : mapping
         Field to its power of the small parameter; 1 where it is not listed.
+    dissipation : Expr
+        Rayleigh's function per length [W/m], half the power lost, quadratic in the rates of the
+        fields and of their derivatives in x: ``c*y_t**2/2 + c_i*y_xxt**2/2``.  Its virtual work is
+        ``-(dR/dy_t) delta y - (dR/dy_xxt) delta y_xx``.
     """
 
     x: sp.Symbol
@@ -152,6 +156,7 @@ class ActionDensity:
     essential: tuple[Essential, ...] = ()
     supports: tuple[Support, ...] = ()
     orders: Mapping[sp.Expr, int] = field(default_factory=dict)
+    dissipation: sp.Expr = sp.S.Zero
 
     def __post_init__(self) -> None:
         """Refuse fields that are not functions of (x, t), and names of fields that do not exist."""
@@ -364,6 +369,10 @@ class VariationalEquations:
 
         M dqdd + D dqd + K dq = Phi_q^T dlam,      Phi_q dq = 0
 
+    whose constraint, differentiated twice along the motion, is with the rates of J = Phi_q
+
+        J dqd + Jd dq = 0,      J dqdd + 2 Jd dqd + Jdd dq = 0
+
     Attributes
     ----------
     accelerations : tuple of Symbol
@@ -372,8 +381,13 @@ class VariationalEquations:
         ``D = d(c - Q)/d qd``.
     stiffness : Matrix, (n, n)
         ``K = d(M qdd + c - Phi_q^T lam - Q)/d q`` at fixed qdd and lam.
+    jacobian_rate, jacobian_acceleration : Matrix, (k, n)
+        ``Jd = d(Phi_q qd + Phi_t)/d q`` and ``Jdd = d(Phi_q qdd - gamma)/d q``, the first and
+        second time derivative of the Jacobian along the motion.
     """
 
     accelerations: tuple[sp.Symbol, ...]
     damping: sp.ImmutableDenseMatrix
     stiffness: sp.ImmutableDenseMatrix
+    jacobian_rate: sp.ImmutableDenseMatrix
+    jacobian_acceleration: sp.ImmutableDenseMatrix

@@ -11,7 +11,8 @@ from typing import Any, Generic, TypeVar
 
 import sympy as sp
 
-from .arrays import MATRICES, DiscreteSystem, IndexedEntry, IndexedVector
+from .arrays import MATRICES, BasisEntry, DiscreteSystem, IndexedEntry, IndexedVector
+from .basis_terms import BasisFactor, basis_kernels, basis_rows
 from .describe import Description
 from .ir import Argument, Kernel, ModuleSpec, Result, TermRow
 from .lowering import lower_kernel
@@ -41,6 +42,8 @@ class StagedSystem:
         Arguments of the functions of angle, the angle first.
     external : tuple of Symbol
         Quantities that the caller evaluates at the angle and passes in.
+    place : Symbol or None
+        The step that is the parameter xi of shapes that the caller passes in.
     """
 
     system: DiscreteSystem
@@ -48,6 +51,7 @@ class StagedSystem:
     parameters: tuple[sp.Symbol, ...]
     geometry: tuple[sp.Symbol, ...]
     external: tuple[sp.Symbol, ...] = ()
+    place: sp.Symbol | None = None
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ class _Group:
     array: str
     scale: sp.Expr
     angle: sp.Expr
-    modal: _Modal
+    modal: _Modal | BasisFactor
 
 
 @dataclass(frozen=True)
@@ -121,6 +125,8 @@ def _groups(staged: StagedSystem) -> list[_Group]:
     for name, entry in staged.system.arrays.items():
         if isinstance(entry, IndexedEntry | IndexedVector):
             groups += _closed_groups(staged, name, entry)
+        elif isinstance(entry, BasisEntry):
+            groups += _basis_groups(staged, name, entry)
         else:
             groups += _explicit_groups(staged, name, entry)
     return groups
@@ -148,6 +154,18 @@ def _closed_groups(
         for (scale, modal, _), angle in found.items()
         if angle != 0
     ]
+
+
+def _basis_groups(staged: StagedSystem, name: str, entry: BasisEntry) -> list[_Group]:
+    stages = _Stages.of(staged, ())
+    groups = []
+    for value, factor in entry.terms:
+        for (scale, angle), number in _collect(stages, value).items():
+            if angle == 1:
+                groups.append(_Group(name, number * scale, angle, factor))
+            else:
+                groups.append(_Group(name, scale, number * angle, factor))
+    return groups
 
 
 def _normalised(diagonal: sp.Expr, off: sp.Expr, *, constant: bool) -> tuple[_Modal, sp.Expr]:
@@ -223,7 +241,7 @@ class _Names(Generic[_Value]):
         upper, lower = sp.fraction(sp.together(value))
         telling = value.free_symbols & self.telling or value.free_symbols
         parts = [_words(side.free_symbols & telling) for side in (upper, lower)]
-        name = self.prefix + "_over_".join(part for part in parts if part)
+        name = self.prefix + ("_over_".join(part for part in parts if part) or "number")
         while name in self.table.values():
             name = f"{name}_{count}"
         return name
@@ -236,7 +254,7 @@ def _words(symbols: Iterable[sp.Symbol]) -> str:
 # Which emitted function gives the functions of angle of an array: what acts only while the crank
 # accelerates, and forcing, stand apart, so that a constant-speed stability chart skips both.
 _KERNELS = {
-    "angle_functions": (("M", "A", "B", "C", "K", "Kg"), "in the matrices"),
+    "angle_functions": (("M", "A", "B", "C", "D", "K", "Kg"), "in the matrices"),
     "acceleration_functions": (("S",), "that act while the crank accelerates"),
     "forcing_functions": (("f", "h", "p"), "in the forcing"),
     "acceleration_forcing_functions": (("g",), "in the forcing while the crank accelerates"),
@@ -271,7 +289,8 @@ def lower_linear_periodic(
         for kernel in _KERNELS
     }
     rows = []
-    for group in _groups(staged):
+    groups = _groups(staged)
+    for group in groups:
         angle_name = angle_names[_KERNEL_OF[group.array]]
         rows.append(
             TermRow(
@@ -279,7 +298,9 @@ def lower_linear_periodic(
                 0,
                 None if group.scale == 1 else scale_name(group.scale),
                 None if group.angle == 1 else angle_name(group.angle),
-                modal_name((group.modal, group.array in MATRICES)),
+                modal_name((group.modal, group.array in MATRICES))
+                if isinstance(group.modal, _Modal)
+                else group.modal.name,
             )
         )
     kernels = [_scales_kernel(scale_name, staged, description)]
@@ -288,6 +309,9 @@ def lower_linear_periodic(
             summary = f"Return the functions of angle {words}"
             kernels.append(_angle_kernel(kernel, summary, angle_names[kernel], staged, description))
     modal_kernels, tables = _modal(modal_name, staged)
+    factors = [group.modal for group in groups if not isinstance(group.modal, _Modal)]
+    if staged.place is not None:
+        modal_kernels += basis_kernels(factors, staged.place, staged.steps, description)
     return ModuleSpec(
         spec=spec,
         family="linear_periodic",
@@ -298,6 +322,7 @@ def lower_linear_periodic(
         terms=tuple(rows),
         parameters=description.parameters,
         tables=(("EXTERNAL", repr(tuple(symbol.name for symbol in staged.external))), *tables),
+        basis=basis_rows(factors),
     )
 
 

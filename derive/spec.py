@@ -17,6 +17,16 @@ from typing import Any, Literal
 
 MANIFEST = "manifest.json"
 Family = Literal["closed_form", "linear_periodic", "constrained", "transcendental", "recursion"]
+# Formulations of scenes whose module is that of another formulation, by mechanism and name.
+DERIVED_AS = {
+    ("quick_return", name): "moving_basis"
+    for name in ("overhang", "polynomial", "two_segment", "free_free_linear")
+}
+# Names for sets of terms left out, by mechanism and formulation of the module.
+NAMED_DROPS: Mapping[tuple[str, str], Mapping[str, tuple[str, ...]]] = {
+    ("quick_return", "moving_basis"): {"as_printed": ("frame", "tension")},
+    ("quick_return", "free_free"): {"as_printed": ("tension",)},
+}
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
@@ -78,6 +88,13 @@ class ModelSpec:
     def with_(self, **changes: Any) -> ModelSpec:
         """Return a copy with some fields changed."""
         return replace(self, **changes)
+
+    def derived(self) -> ModelSpec:
+        """Return the spec of the module that serves this one, names for sets of terms spelt out."""
+        formulation = DERIVED_AS.get((self.mechanism, self.formulation), self.formulation)
+        sets = NAMED_DROPS.get((self.mechanism, formulation), {})
+        drop = tuple(term for name in self.drop for term in sets.get(name, (name,)))
+        return replace(self, formulation=formulation, drop=drop)
 
     @classmethod
     def from_mapping(cls, table: Mapping[str, Any]) -> ModelSpec:

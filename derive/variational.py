@@ -23,6 +23,7 @@ from .records import (
 )
 
 __all__ = [
+    "drag_by_order",
     "hamilton",
     "in_crank_angle",
     "linearise",
@@ -54,6 +55,10 @@ def hamilton(action: ActionDensity) -> FieldEquations:
     """
     space = JetSpace(action.fields)
     variation = space.vary(space.enter(action.density))
+    for item in action.fields:
+        for k, drag in drag_by_order(action, item):
+            known = variation[item].get((k, 0), sp.S.Zero)
+            variation[item][k, 0] = known + space.enter(drag)
     equations: dict[sp.Expr, sp.Expr] = {}
     fluxes: dict[sp.Expr, tuple[Flux, Flux]] = {}
     for item in action.fields:
@@ -75,6 +80,27 @@ def hamilton(action: ActionDensity) -> FieldEquations:
             else:
                 jumps += _jumps(action, space, item, position, flux, applied[item])
     return FieldEquations(action, equations, tuple(natural), tuple(jumps))
+
+
+def drag_by_order(action: ActionDensity, item: sp.Expr) -> list[tuple[int, sp.Expr]]:
+    """Return what dissipation works on each varied x derivative of a field: (order, force).
+
+    Raises
+    ------
+    ValueError
+        If the dissipation is no function of first time derivatives.
+    """
+    if action.dissipation == 0:
+        return []
+    space = JetSpace(action.fields)
+    entered = space.enter(action.dissipation)
+    if any(jet.j != 1 for _, jet in space.present(entered)):
+        raise ValueError(f"dissipation {action.dissipation} is not one of first rates alone")
+    return [
+        (jet.k, space.leave(-sp.diff(entered, symbol)))
+        for symbol, jet in space.present(entered)
+        if jet.field == item
+    ]
 
 
 def _interior_points(action: ActionDensity, ends: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
@@ -280,6 +306,7 @@ def quadratic_action(
             essential=tuple(e for e in action.essential if e.field in gone),
             supports=(),
             orders={},
+            dissipation=sp.S.Zero,
         )
         _require_stationary(hamilton(check))
     return action.with_(

@@ -13,7 +13,7 @@ to the other assembly.
 
 Cost per evaluation:
     extremes: 125 operations
-Content hash f93089e27e49e8341eacb28dcf0a6f63; derived with SymPy 1.14.0.
+Content hash a0954cda53ef94e4e9f96c51a98caa6e; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"clearance","mechanism":"four_bar","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "f93089e27e49e8341eacb28dcf0a6f63"
+CONTENT = "a0954cda53ef94e4e9f96c51a98caa6e"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

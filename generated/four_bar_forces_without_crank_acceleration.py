@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 159 operations
     shaking_moment: 139 operations
     load_forces: 99 operations
-Content hash 3cf8fcc8a3b1dbc40194d2f716654a91; derived with SymPy 1.14.0.
+Content hash bdff01227c0a285552d677b55caf0afa; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"four_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "3cf8fcc8a3b1dbc40194d2f716654a91"
+CONTENT = "bdff01227c0a285552d677b55caf0afa"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

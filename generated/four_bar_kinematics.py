@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash c998dd8a274b6b9d15bdb3be7bedaba4; derived with SymPy 1.14.0.
+Content hash c33814f3caabca57e7a00b14d05525b5; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "c998dd8a274b6b9d15bdb3be7bedaba4"
+CONTENT = "c33814f3caabca57e7a00b14d05525b5"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -11,7 +11,7 @@ fifth.
 
 Cost per evaluation:
     sensitivities: 306 operations
-Content hash 3b2d883e57021fb2a9414714d2a842c8; derived with SymPy 1.14.0.
+Content hash cf33924f4261d0eae3eb9a9ab2805002; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sensitivities","mechanism":"four_bar","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "3b2d883e57021fb2a9414714d2a842c8"
+CONTENT = "cf33924f4261d0eae3eb9a9ab2805002"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

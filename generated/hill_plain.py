@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash d401e9b74c4097094e466966f86fcbfd; derived with SymPy 1.14.0.
+Content hash b20e69ea4005a5e11098176ca94f9e20; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "d401e9b74c4097094e466966f86fcbfd"
+CONTENT = "b20e69ea4005a5e11098176ca94f9e20"
 EXTERNAL = ('f',)
 MODAL_1 = ((1.0,),)
 MODAL_2 = ((2.0,),)

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 86 operations
     shaking_moment: 88 operations
     load_forces: 59 operations
-Content hash 1614b6d0829f74630d242b570b737b34; derived with SymPy 1.14.0.
+Content hash 502f9d3dd1a13f35f2f4e2e687751b45; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"quick_return","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "1614b6d0829f74630d242b570b737b34"
+CONTENT = "502f9d3dd1a13f35f2f4e2e687751b45"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

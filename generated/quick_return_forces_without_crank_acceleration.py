@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 83 operations
     shaking_moment: 74 operations
     load_forces: 59 operations
-Content hash eb082095bbc4acc8e366db8423144d9c; derived with SymPy 1.14.0.
+Content hash 2bffb41878a757ceb8d2b86073a364c4; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"quick_return","modes":null,"outputs":[]}'
 )
-CONTENT = "eb082095bbc4acc8e366db8423144d9c"
+CONTENT = "2bffb41878a757ceb8d2b86073a364c4"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 115 operations
     shaking_moment: 137 operations
     load_forces: 75 operations
-Content hash d08577dd1fd06bec0fc72aea7168a9e4; derived with SymPy 1.14.0.
+Content hash 85caf62281f70c3a84de90f1db72ad57; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"slider_crank","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "d08577dd1fd06bec0fc72aea7168a9e4"
+CONTENT = "85caf62281f70c3a84de90f1db72ad57"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

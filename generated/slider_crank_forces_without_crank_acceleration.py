@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 101 operations
     shaking_moment: 107 operations
     load_forces: 75 operations
-Content hash 4147f4009f1e8e2057dc9605130871a1; derived with SymPy 1.14.0.
+Content hash b8c8452373cad6b1f39189b5c5e35d44; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"slider_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "4147f4009f1e8e2057dc9605130871a1"
+CONTENT = "b8c8452373cad6b1f39189b5c5e35d44"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

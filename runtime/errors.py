@@ -49,6 +49,10 @@ class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is
         super().__init__("\n".join(str(problem) for problem in problems))
 
 
+class RedundantConstraints(BadInput):
+    """Constraints repeat or contradict each other, or leave a motion without inertia free."""
+
+
 class SelfCheckFailed(ElastolinkError):  # noqa: N818
     """A result does not pass its own checks."""
 

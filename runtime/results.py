@@ -176,7 +176,8 @@ class Result:
         The file appears whole or not at all.  A CSV file has long form: one row for each point,
         arrays of fewer dimensions repeated, the columns of an axis that no array gives counted
         from 0.  Arrays that do not fit together stand in blocks, an empty line between them, each
-        with a header of its own.
+        with a header of its own.  In NetCDF a complex array stands as two, ``name_real`` and
+        ``name_imag``.
 
         Raises
         ------
@@ -193,20 +194,7 @@ class Result:
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the numeric fields as an :class:`xarray.Dataset` (extra ``data``)."""
-        try:
-            import xarray as xr
-        except ImportError as missing:
-            raise bad(
-                "to_xarray", "no xarray", "xarray installed", "pip install 'elastolink[data]'"
-            ) from missing
-        data = {}
-        for name, value in self.arrays().items():
-            dims = self.dimensions.get(name)
-            if dims is None or len(dims) != value.ndim or dims == BROADCAST:
-                dims = tuple(f"{name}_{i}" for i in range(value.ndim))
-            data[name] = (dims, value)
-        attributes = {"method": self.method, "error_norm": self.error_norm}
-        return xr.Dataset(data, attrs={**attributes, **self.provenance})
+        return _dataset(self, split=False)
 
 
 def write_whole(path: Path, content: bytes) -> Path:
@@ -320,8 +308,30 @@ def _block(
     return "\n".join(lines) + "\n"
 
 
+def _dataset(result: Result, *, split: bool) -> xarray.Dataset:
+    """Return the arrays with their dimensions; complex ones as two where they are to be split."""
+    try:
+        import xarray as xr
+    except ImportError as missing:
+        raise bad(
+            "to_xarray", "no xarray", "xarray installed", "pip install 'elastolink[data]'"
+        ) from missing
+    data = {}
+    for name, value in result.arrays().items():
+        dims = result.dimensions.get(name)
+        if dims is None or len(dims) != value.ndim or dims == BROADCAST:
+            dims = tuple(f"{name}_{i}" for i in range(value.ndim))
+        if split and np.iscomplexobj(value):
+            data[f"{name}_real"], data[f"{name}_imag"] = (dims, value.real), (dims, value.imag)
+        else:
+            data[name] = (dims, value)
+    attributes = {"method": result.method, "error_norm": result.error_norm}
+    return xr.Dataset(data, attrs={**attributes, **result.provenance})
+
+
 def _netcdf(result: Result) -> bytes:
-    data = result.to_xarray()
+    # The file format knows no complex numbers.
+    data = _dataset(result, split=True)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "result.nc"
         data.to_netcdf(path)

@@ -106,6 +106,7 @@ def test_what_is_required_and_declared():
         "data",
         "benchmark",
         "cluster",
+        "dae",
         "dev",
     }
     for minor in (11, 12, 13):

@@ -26,6 +26,7 @@ LAZY = {
     "heyoka",
     "numba",
     "flint",
+    "sksundae",
 }
 # Proofs of emitted functions at many digits; nothing else of derive/ may import the module.
 CHECKS = "derive/checks.py"

@@ -9,6 +9,7 @@ the crank angle, as in the four-bar linkage.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from functools import cache
 
 import sympy as sp
 
@@ -104,6 +105,7 @@ _LOOP = (
 )
 
 
+@cache
 def kinematics() -> Kinematics:
     """Solve the loop closure DB = DA + AB for the rod and the block.
 
@@ -168,6 +170,7 @@ def _solved(
     }
 
 
+@cache
 def _of_rod(k: Kinematics) -> dict[sp.Symbol, sp.Expr]:
     """Return cosine and sine of the rod's angle by the crank angle and ``slide``."""
     rows = [equation.subs(k.of_angles) for equation in _LOOP]

@@ -5,6 +5,7 @@ from .forces import benchmark_forces
 from .mathieu import benchmark_mathieu
 from .perturbation import benchmark_perturbation
 from .records import Benchmark, Row
+from .rod import benchmark_rod
 from .slices import benchmark_slices
 
 __all__ = [
@@ -14,5 +15,6 @@ __all__ = [
     "benchmark_forces",
     "benchmark_mathieu",
     "benchmark_perturbation",
+    "benchmark_rod",
     "benchmark_slices",
 ]

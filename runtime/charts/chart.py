@@ -17,15 +17,15 @@ from ..results import Check, Result
 from .boundaries import BoundaryCurves, boundary_curves
 from .edge_rows import EdgeCurves, edge_curves
 from .invariants import instability_kind
+from .line_series import series_by_lines
 from .sampling import Sampler, invariants, relative_error
-from .structure import natural_frequency
-from .verdict import spot_check, verdict
+from .structure import at_speed, natural_frequency
+from .verdict import spot_check, undecided, verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Axis = tuple[str, ArrayLike]
-_ONE_MODE, _SEVERAL = 1e-11, 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +35,7 @@ class StabilityChart(Result):
     Attributes
     ----------
     x_name, y_name : str
-        ``"speed"`` [rad/s] or a parameter of the system.
+        ``"speed"`` [rad/s], or a parameter or geometry of the system.
     x, y : ndarray, shapes (nx,), (ny,)
         Values along the axes.
     invariants : ndarray, shape (ny, nx, k)
@@ -44,10 +44,14 @@ class StabilityChart(Result):
     stable : ndarray of bool, shape (ny, nx)
         True where no multiplier leaves the unit circle by more than the slack.
     largest : ndarray, shape (ny, nx)
-        Largest modulus of a multiplier.
+        Largest modulus of a multiplier; infinite where the growth in a turn overflows, such a
+        point being unstable, NaN where the matrix is, such a point being undecided.
     slack : ndarray, shape (ny, nx)
         How far a modulus may lie above 1 and still count as stable: what the error of the
-        invariants explains.  A resonance that grows less than this in a turn is not seen.
+        invariants explains.  A resonance that grows less than this in a turn is not seen.  0 for
+        several undamped modes where signs prove that all multipliers are on the unit circle.
+    undecided : ndarray of bool, shape (ny, nx)
+        True where the errors leave open whether the point is stable.
     kind : ndarray of int8, shape (ny, nx)
         How a point is unstable, by its largest multiplier: 1 or -1 where that is real, positive
         or negative (principal regions of even and of odd number, or divergence); 2 where it is
@@ -67,8 +71,10 @@ class StabilityChart(Result):
     marks : mapping
         Values along y or x to be marked, by label.
     nodes : tuple of int
-        How many Chebyshev nodes were sampled along x and y; (0, 0) where the invariants were
-        evaluated at each point, see ``method``.
+        How many Chebyshev nodes were sampled along x and y; 0 along an axis at each of whose
+        values the invariants were evaluated.
+    speed : float
+        Crank speed [rad/s] of all points; NaN where the speed is an axis.
     """
 
     x_name: str
@@ -79,6 +85,7 @@ class StabilityChart(Result):
     stable: NDArray[np.bool_]
     largest: Array
     slack: Array
+    undecided: NDArray[np.bool_]
     kind: NDArray[np.int8]
     exact: BoundaryCurves | None = None
     perturbation: BoundaryCurves | None = None
@@ -88,6 +95,7 @@ class StabilityChart(Result):
     frequency_name: str = "natural frequency"
     marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     nodes: tuple[int, int] = (0, 0)
+    speed: float = float("nan")
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "x": ("x",),
@@ -95,6 +103,7 @@ class StabilityChart(Result):
         "stable": ("y", "x"),
         "largest": ("y", "x"),
         "slack": ("y", "x"),
+        "undecided": ("y", "x"),
         "kind": ("y", "x"),
         "invariants": ("y", "x", "invariant"),
     }
@@ -120,7 +129,8 @@ def stability_chart(
     order: int = 1,
     edges: bool = False,
     marks: Mapping[str, Sequence[float]] | None = None,
-    rtol: float | None = None,
+    speed: float | None = None,
+    rtol: float = 1e-11,
     progress: bool = False,
     frequency_name: str = "natural frequency",
 ) -> StabilityChart:
@@ -135,7 +145,8 @@ def stability_chart(
     system : LinearPeriodic
         Any number of modes, with or without damping.
     x, y : tuple of (str, array_like)
-        ``("speed", values)`` in rad/s or ``(parameter, values)`` in SI units; values rise.
+        ``("speed", values)`` in rad/s or ``(name, values)`` in SI units, of a parameter or of the
+        geometry; values rise.
     boundaries : bool
         Whether exact and perturbation boundaries are computed too; for one mode, where one of the
         axes is the speed or the constant stiffness.
@@ -146,9 +157,12 @@ def stability_chart(
         Whether regions along the speed, combinations among them, are traced at some rows too.
     marks : mapping, optional
         Label to values along y that the plot marks.
+    speed : float, optional
+        Crank speed [rad/s] of all points, where the speed is no axis.  Left out it is 1, as in
+        Hill's and Mathieu's equations; systems whose geometry is an axis, and those of several
+        modes that a turning crank drives, want it.  No boundaries are traced beside another one.
     rtol : float
-        Wanted error of the invariants, relative to their size where that exceeds 1; by default
-        1e-11 for one mode and 1e-9 for several.
+        Wanted error of the invariants, relative to their size where that exceeds 1.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
     frequency_name : str
@@ -164,14 +178,16 @@ def stability_chart(
     Raises
     ------
     BadInput
-        If an axis or option is unusable; if modes and axes would take an hour or so.
+        If an axis or option is unusable; if a crank speed is wanted and missing; if modes and
+        axes would take an hour or so.
     """
     names, axes = _axes(system, x, y)
     options = _options(system, rtol, order, edges, names)
     named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
-    sampler = Sampler(system, names, axes, options.rtol)
+    sampler = Sampler(at_speed(system, names, speed), names, axes, options.rtol)
     found = _chart(sampler, options, boundaries=boundaries, progress=progress)
-    return replace(found, marks=named, frequency_name=frequency_name)
+    fixed = float("nan") if "speed" in names else float(1.0 if speed is None else speed)
+    return replace(found, marks=named, frequency_name=frequency_name, speed=fixed)
 
 
 @dataclass(frozen=True)
@@ -182,10 +198,8 @@ class _Options:
 
 
 def _options(
-    system: LinearPeriodic, rtol: float | None, order: int, edges: bool, names: tuple[str, str]
+    system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
 ) -> _Options:
-    if rtol is None:
-        rtol = _ONE_MODE if system.size == 1 else _SEVERAL
     if not 1e-13 <= rtol <= 1e-2:
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
     check_order(order)
@@ -206,11 +220,13 @@ def _chart(
 ) -> StabilityChart:
     """Return the chart, less what only concerns its picture."""
     system, names, axes = sampler.system, sampler.names, sampler.axes
-    series = invariants(sampler, progress=progress)
+    sampled = invariants if sampler.hill else series_by_lines
+    series = sampled(sampler, progress=progress)
     found = verdict(sampler, series)
     largest, stable, slack = found
     exact, near, rows = None, None, None
-    if boundaries and is_hill(system):
+    shaped = any(name in system.geometry for name in names)
+    if boundaries and is_hill(system) and not shaped:
         exact, near = boundary_curves(system, names, axes, options.order)
     checks = {
         "error of samples": Check(series.sample_error, max(1e-8, 1e3 * options.rtol)),
@@ -234,6 +250,7 @@ def _chart(
         stable=stable,
         largest=largest,
         slack=slack,
+        undecided=undecided(sampler, series, found),
         kind=instability_kind(series.values, stable, hill=sampler.hill, reduced=sampler.reduced),
         exact=exact,
         perturbation=near,
@@ -245,7 +262,7 @@ def _chart(
 
 
 def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tuple[Array, Array]]:
-    known = ["speed", *sorted(system.parameters)]
+    known = ["speed", *sorted({*system.parameters, *system.geometry})]
     found = []
     for label, (name, given) in (("x", x), ("y", y)):
         if name not in known:

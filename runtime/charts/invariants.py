@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,38 +11,19 @@ from numpy.typing import NDArray
 from ..families import Array
 from ..hill.form import HillForm, leaves_function_alone
 from ..hill.half_trace import discriminant
+from .characteristic import characteristic as characteristic
+from .signs import surely_stable
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)
 # Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
 _REAL = 1e-6
+# Sums rho + 1/rho beyond which they are rho itself to round-off.
+_FAR = 1e8
+# Most modes whose reduced polynomial has a slope with roots in closed form.
+_CLOSED = 4
 
-
-def characteristic(matrices: Array, *, reduced: bool) -> Array:
-    """Return coefficients of the characteristic polynomial of each matrix.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (..., 2n, 2n)
-        Monodromy matrices.
-    reduced : bool
-        For a symplectic matrix the coefficients are palindromic; only the first n are returned.
-
-    Returns
-    -------
-    ndarray, shape (..., n) or (..., 2n)
-        ``c_1, c_2, ...`` of ``rho^2n + c_1 rho^(2n-1) + ...``, by Faddeev and LeVerrier.
-    """
-    size = matrices.shape[-1]
-    wanted = size // 2 if reduced else size
-    found = []
-    power = np.broadcast_to(np.eye(size), matrices.shape)
-    for k in range(1, wanted + 1):
-        product = matrices @ power
-        coefficient = -np.trace(product, axis1=-2, axis2=-1) / k
-        found.append(coefficient)
-        power = product + coefficient[..., None, None] * np.eye(size)
-    return np.stack(found, axis=-1)
+Moduli = tuple[Array, NDArray[np.bool_], Array]
 
 
 def largest_modulus(
@@ -56,30 +38,99 @@ def largest_modulus(
     reduced : bool
         Whether they are the first half of a palindromic polynomial; then the roots are sought in
         ``z = rho + 1/rho``, where stability means z real and ``|z| <= 2``.
-    error : float or ndarray, shape (...)
-        Absolute error of the coefficients; round-off is added.
+    error : float or ndarray, shape (...) or (..., k)
+        Absolute error of the coefficients, or of each of them; round-off is added.
 
     Returns
     -------
     largest, stable, slack : ndarray, shape (...)
         A root counts as stable where its modulus exceeds 1 by no more than what the error of the
-        coefficients explains; ``slack`` is the largest such allowance of a point.
+        coefficients explains; ``slack`` is the largest such allowance of a point.  It is 0 where
+        signs of the reduced polynomial prove that every multiplier is on the unit circle.  Where a
+        coefficient is infinite the growth overflowed: infinite, unstable, slack 0.  Where one is
+        NaN nothing is known: NaN, not stable, infinite slack.
     """
-    known = np.asarray(error) + _ROUNDING * np.max(np.abs(coefficients), axis=-1, initial=1.0)
+    known = known_to(coefficients, np.asarray(error, dtype=float))
+    usable = np.all(np.isfinite(coefficients), axis=-1)
+    if np.all(usable):
+        return _moduli(coefficients, known, reduced)
+    lost = np.any(np.isnan(coefficients), axis=-1)
+    largest = np.where(lost, np.nan, np.inf)
+    slack = np.where(lost, np.inf, 0.0)
+    stable = np.zeros(lost.shape, dtype=bool)
+    if np.any(usable):
+        found = _moduli(coefficients[usable], known[usable], reduced)
+        largest[usable], stable[usable], slack[usable] = found
+    return largest, stable, slack
+
+
+def known_to(coefficients: Array, error: Array) -> Array:
+    """Return the absolute error of each coefficient with round-off, ``(..., k)``.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (..., k)
+        As :func:`characteristic` returns them.
+    error : ndarray, shape (...) or (..., k)
+        Absolute error of all of them, or of each.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = np.abs(coefficients)
+        rough = np.max(size, axis=-1, initial=1.0, keepdims=True)
+        if error.ndim < coefficients.ndim or not error.ndim:
+            known = error[..., None] + _ROUNDING * rough
+        else:
+            # A large root leaves the first coefficients smaller, and their round-off with them.
+            order = np.arange(1, size.shape[-1] + 1)
+            reach = np.max(size ** (1.0 / order), axis=-1, initial=1.0, keepdims=True)
+            known = error + _ROUNDING * np.minimum(rough, reach**order)
+    known = np.where(np.isnan(known), np.inf, known)
+    return np.broadcast_to(known, coefficients.shape)
+
+
+def _moduli(coefficients: Array, known: Array, reduced: bool) -> Moduli:
+    """Judge polynomials all of whose coefficients are finite."""
     if not reduced:
-        rho = _roots(coefficients)
-        allowance = root_uncertainty(rho, known)
-        modulus = np.abs(rho)
+        return _by_roots(_roots(coefficients), known)
+    polynomial = in_sum(coefficients)
+    # On the unit circle a coefficient enters by 2 cos, the middle one by 1.
+    n = known.shape[-1]
+    even = (2.0 * np.sum(known, axis=-1) - known[..., -1]) / (2 * n - 1)
+    if n <= _CLOSED:
+        stable, z = surely_stable(polynomial, even), None
     else:
-        z = _roots(_in_sum(coefficients))
-        off = root_uncertainty(z, known)
-        root = np.sqrt(z**2 / 4 - 1 + 0j)
+        z = _roots(polynomial)
+        real = np.sort(z.real, axis=-1)
+        stable = surely_stable(polynomial, even, 0.5 * (real[..., 1:] + real[..., :-1]))
+    largest, slack = np.ones(stable.shape), np.zeros(stable.shape)
+    rest = ~stable
+    if np.any(rest):
+        moved = known[rest] @ np.abs(_sum_weights(n)[1:])
+        found = _by_sums(_roots(polynomial[rest]) if z is None else z[rest], moved)
+        largest[rest], stable[rest], slack[rest] = found
+    return largest, stable, slack
+
+
+def _by_roots(rho: NDArray[np.complex128], known: Array) -> Moduli:
+    """Judge by all multipliers."""
+    return _judged(np.abs(rho), root_uncertainty(rho, known))
+
+
+def _by_sums(z: NDArray[np.complex128], known: Array) -> Moduli:
+    """Judge by the sums ``z = rho + 1/rho``."""
+    off = root_uncertainty(z, known)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        # Beyond 1e8 the square of z may overflow, and 4 is lost beside it.
+        far = np.abs(z) > _FAR
+        root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
         # Of the pair rho, 1/rho the one without cancellation.
-        near, far = np.abs(z / 2 + root), np.abs(z / 2 - root)
-        modulus = np.maximum(np.maximum(near, far), 1.0)
+        modulus = np.maximum(np.maximum(np.abs(z / 2 + root), np.abs(z / 2 - root)), 1.0)
         # rho moves by rho dz / sqrt(z^2 - 4), and at z = +-2 by the square root.
-        with np.errstate(divide="ignore"):
-            allowance = modulus * np.minimum(off / (2 * np.abs(root)), np.sqrt(off))
+        allowance = modulus * np.minimum(off / (2 * np.abs(root)), np.sqrt(off))
+    return _judged(modulus, np.where(np.isnan(allowance), np.inf, allowance))
+
+
+def _judged(modulus: Array, allowance: Array) -> Moduli:
     stable = np.all(modulus <= 1.0 + allowance, axis=-1)
     return np.max(modulus, axis=-1), stable, np.max(allowance, axis=-1)
 
@@ -103,15 +154,22 @@ def instability_kind(
     Returns
     -------
     ndarray of int8, shape (...)
-        1 or -1 where the largest multiplier is real, 2 where it is complex, 0 where stable.
+        1 or -1 where the largest multiplier is real, 2 where it is complex, 0 where stable; where
+        it overflowed, by the sign of the sum of the multipliers; 0 where nothing is known.
     """
     out = np.zeros(stable.shape, dtype=np.int8)
+    grown = ~np.all(np.isfinite(coefficients), axis=-1)
+    if np.any(grown):
+        # Overflowed: the sum of the multipliers tells the sign of the largest.
+        sign = np.where(np.isinf(coefficients[..., 0]), np.sign(coefficients[..., 0]), 0.0)
+        out[grown] = (sign if hill else -sign)[grown]
+        stable = stable | grown
     chosen = coefficients[~stable]
     if hill or not len(chosen):
         out[~stable] = np.sign(chosen[..., 0]) if hill else 0
         return out
     if reduced:
-        z = _roots(_in_sum(chosen))
+        z = _roots(in_sum(chosen))
         half = np.sqrt(z**2 / 4 - 1 + 0j)
         rho = np.where(np.abs(z / 2 + half) >= np.abs(z / 2 - half), z / 2 + half, z / 2 - half)
     else:
@@ -129,8 +187,8 @@ def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
     ----------
     roots : ndarray, shape (..., k)
         The roots.
-    error : ndarray, shape (...)
-        Absolute error of a coefficient.
+    error : ndarray, shape (..., k)
+        Absolute error of each coefficient, the highest power first.
 
     Returns
     -------
@@ -139,21 +197,54 @@ def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
         the r-th root of the error over the distances to the others; the smallest figure, doubled.
     """
     k = roots.shape[-1]
-    change = np.asarray(error)[..., None] * sum(np.abs(roots) ** j for j in range(k))
+    with np.errstate(over="ignore", invalid="ignore"):
+        change = sum(error[..., k - 1 - j, None] * np.abs(roots) ** j for j in range(k))
     apart = np.sort(np.abs(roots[..., :, None] - roots[..., None, :]), axis=-1)[..., 1:]
     # Distances to the farthest k - r others, r = 1 ... k.
     far = np.cumprod(apart[..., ::-1], axis=-1)[..., ::-1]
     far = np.concatenate([far, np.ones((*far.shape[:-1], 1))], axis=-1)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        moved = (change[..., None] / far) ** (1.0 / np.arange(1, k + 1))
+        moved = (np.asarray(change)[..., None] / far) ** (1.0 / np.arange(1, k + 1))
     moved = np.where(np.isnan(moved), np.inf, moved)
     value: Array = 2.0 * np.min(moved, axis=-1)
     return value
 
 
-def _in_sum(coefficients: Array) -> Array:
-    """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``."""
-    n = coefficients.shape[-1]
+def in_sum(coefficients: Array) -> Array:
+    """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (..., n)
+        ``c_1 ... c_n``, as :func:`characteristic` returns them for symplectic matrices.
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        ``a_1 ... a_n`` of ``z^n + a_1 z^(n-1) + ...``, z = rho + 1/rho.
+    """
+    weights = _sum_weights(coefficients.shape[-1])
+    polynomial: Array = coefficients @ weights[1:] + weights[0]
+    return polynomial
+
+
+def from_sum(polynomial: Array) -> Array:
+    """Undo :func:`in_sum`."""
+    weights = _sum_weights(polynomial.shape[-1])
+    # Triangular with a diagonal of ones and whole entries: so is the inverse.
+    inverse = np.round(np.linalg.inv(weights[1:]))
+    coefficients: Array = (polynomial - weights[0]) @ inverse
+    return coefficients
+
+
+def sum_weights_back(n: int) -> Array:
+    """Return how errors of ``a_1 ... a_n`` add to those of ``c_1 ... c_n``, shape ``(n, n)``."""
+    return np.abs(np.round(np.linalg.inv(_sum_weights(n)[1:])))
+
+
+@lru_cache(maxsize=64)
+def _sum_weights(n: int) -> Array:
+    """Return what 1 and each of ``c_1 ... c_n`` add to ``a_1 ... a_n``, shape ``(n + 1, n)``."""
     table = np.zeros((n + 1, n + 1))  # rho^j + rho^-j as a polynomial in z, lowest power first
     table[0, 0] = 2.0
     if n:
@@ -161,11 +252,11 @@ def _in_sum(coefficients: Array) -> Array:
     for j in range(2, n + 1):
         table[j, 1:] = table[j - 1, :-1]
         table[j] -= table[j - 2]
-    full = np.concatenate([np.ones((*coefficients.shape[:-1], 1)), coefficients], axis=-1)
     weights = table[::-1].copy()
     weights[n] /= 2.0  # the middle coefficient stands once
-    polynomial: Array = full @ weights
-    return polynomial[..., ::-1][..., 1:]
+    found: Array = weights[:, ::-1][:, 1:]
+    found.setflags(write=False)
+    return found
 
 
 def _roots(monic: Array) -> NDArray[np.complex128]:

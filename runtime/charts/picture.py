@@ -22,6 +22,7 @@ _LABELS = {
     "follower_inertia": r"follower inertia $I_4$ [kg m$^2$]",
     "lam2": r"$\lambda^2$",
     "mu": r"$\mu$",
+    "crank_ratio": r"crank ratio $\epsilon$",
 }
 _EXACT, _NEAR, _MARK = "#8c2d04", "#2b5c8a", "#3a7d44"
 # By kind of instability; the shades differ in lightness too.

@@ -1,4 +1,4 @@
-"""Invariants over a chart: at each point where that is cheaper, else at Chebyshev nodes."""
+"""Half traces over a chart: at each point where that is cheaper, else at Chebyshev nodes."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import numpy as np
 from ..errors import bad
 from ..families import Array, LinearPeriodic
 from ..floquet.first_order import canonical_form
-from ..floquet.monodromy_matrix import monodromy
 from ..hill.form import hill_form, is_hill, plain_axes
 from ..hill.half_trace import discriminant_grid
 from ..progress import bar
 from ..series import chebyshev
-from .invariants import characteristic, half_traces
+from .invariants import half_traces
 from .structure import Axes, Names, is_damped, is_symplectic
 
 _FIRST, _MOST = 16, 512
-# Monodromy matrices computed together, which bounds the memory.
-_TOGETHER = 128
 # Flops, roughly, that one chart may cost: an hour or so.
-_MOST_WORK = 1e12
-_STEP = 1.5
+_MOST_WORK = 1e13
+# Phase of a stretch of the turn, and what the series of one cost, in products of matrices.
+_PHASE, _PER_LINE = 4.0, 3000
+# The same of a point alone, and the flops that its system costs where it is made anew.
+_PER_POINT, _MAKING = 300, 1.4e8
 
 Tick = Callable[[int], None] | None
 
@@ -33,7 +33,8 @@ Tick = Callable[[int], None] | None
 class Series:
     """Invariants on the chart ``(ny, nx, k)``, absolute errors ``(ny, nx)``, how they were found.
 
-    ``sample_error`` is that of single samples, relative to the size of the invariants.
+    ``sample_error`` is that of single samples, relative to the size of the invariants; ``errors``
+    are those of each invariant ``(ny, nx, k)`` where they are known one by one.
     """
 
     values: Array
@@ -41,6 +42,7 @@ class Series:
     sample_error: float
     nodes: tuple[int, int]
     method: str
+    errors: Array | None = None
 
 
 class Sampler:
@@ -50,7 +52,8 @@ class Sampler:
         self.system, self.names, self.axes, self.rtol = system, names, axes, rtol
         self.damped = is_damped(system, names, axes)
         self.reduced = is_symplectic(system, self.damped)
-        self.hill = is_hill(system) and not (system.has("Kg") and "speed" in names)
+        shaped = any(name in system.geometry for name in names)
+        self.hill = is_hill(system) and not shaped and not (system.has("Kg") and "speed" in names)
         self.form = hill_form(system) if self.hill else None
         self.plain = None if self.form is None or self.damped else plain_axes(self.form, names)
 
@@ -67,69 +70,47 @@ class Sampler:
         return np.asarray(1.0 / values if self.damped else 1.0 / np.sqrt(values))
 
     def __call__(self, x: Array, y: Array, tick: Tick = None) -> tuple[Array, Array]:
-        """Return invariants ``(k, nx, ny)`` and the error of each sample ``(nx, ny)``."""
+        """Return half traces ``(1, nx, ny)`` of one mode and the error of each ``(nx, ny)``."""
+        if self.form is None:
+            raise ValueError("several modes are solved line by line")
         ax, ay = (self.back(n, v) for n, v in zip(self.names, (x, y), strict=True))
-        if self.form is not None:
-            # One mode: for each y a function f, and all x at once where x leaves f alone.
-            return half_traces(self.form, self.names, ax, ay, tick)
-        grid = (np.repeat(ax, len(ay)), np.tile(ay, len(ax)))
-        found, errors = [], []
-        for start in range(0, len(grid[0]), _TOGETHER):
-            part = slice(start, start + _TOGETHER)
-            values, error = self._matrices(grid[0][part], grid[1][part])
-            found.append(values)
-            errors.append(error)
-            if tick is not None:
-                tick(min(start + _TOGETHER, len(grid[0])))
-        values = np.concatenate(found).T.reshape(-1, len(ax), len(ay))
-        return values, np.concatenate(errors).reshape(len(ax), len(ay))
+        # For each y a function f, and all x at once where x leaves f alone.
+        return half_traces(self.form, self.names, ax, ay, tick)
 
-    def _matrices(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Return invariants ``(points, k)`` and errors from the monodromy matrices of points."""
-        point: dict[str, Any] = {self.names[0]: x, self.names[1]: y}
-        speed = point.pop("speed", np.ones_like(x))
-        result = monodromy(self.system, speed, rtol=min(max(self.rtol, 1e-11), 1e-2), **point)
-        # Similar matrices have the same invariants; the scaled ones have entries of like size.
-        with np.errstate(over="ignore"):
-            scaled = np.ldexp(result.scaled, result.exponent[:, None, None])
-        with np.errstate(over="ignore", invalid="ignore"):
-            values = characteristic(scaled, reduced=self.reduced)
-            top = np.max(np.abs(scaled), axis=(-2, -1))
-            order = min(2, self.system.size)
-            error = 2 * self.system.size * result.error * np.maximum(top, 1.0) ** order
-        return values, error
-
-    def allowed(self, points: int) -> None:
-        """Refuse a chart that so many matrices would make too long.
+    def allowed(self, lines: int, nodes: int) -> None:
+        """Refuse a chart whose lines, and nodes on each, would take too long.
 
         Raises
         ------
         BadInput
-            If modes, points and segments per turn amount to more than an hour or so.
+            If modes, points and stretches of the turn amount to more than an hour or so.
         """
-        if self.form is not None:
-            return
         corner: dict[str, Any] = {
             name: np.asarray([a[i] for i in pick], dtype=float)
             for name, a, pick in zip(
                 self.names, self.axes, ((0, 0, -1, -1), (0, -1) * 2), strict=True
             )
+            if name not in self.system.geometry
         }
         speed = corner.pop("speed", np.ones(4))
         rate = float(np.max(canonical_form(self.system, speed, corner).rate))
-        segments = max(4.0, 2.0 * rate * self.system.period / _STEP)
-        work = points * segments * 8 * (16 * self.system.size) ** 2
+        stretches = max(8.0, rate * self.system.period / _PHASE)
+        product = 2.0 * (2 * self.system.size) ** 3
+        work = lines * (nodes + _PER_LINE) * stretches * product
+        if all(name in self.system.geometry for name in self.names):
+            work = lines * nodes * (_PER_POINT * stretches * product + _MAKING)
         if work > _MOST_WORK:
             raise bad(
                 "stability_chart",
-                f"{self.system.size} modes, {points} matrices, up to {segments:.2g} segments each",
+                f"{self.system.size} modes, {lines} lines of {nodes} points, up to "
+                f"{stretches:.2g} stretches of the turn each",
                 f"at most {_MOST_WORK / work:.2g} of that",
-                "raise the lowest speed, give fewer modes, or narrower axes",
+                "raise the lowest speed, give fewer modes or points, or narrower axes",
             )
 
 
 def invariants(sampler: Sampler, *, progress: bool) -> Series:
-    """Return the invariants of a chart in the way that suits it."""
+    """Return the half traces of a chart in the way that suits it."""
     return _plain_hill(sampler) or _sampled(sampler, progress)
 
 
@@ -150,9 +131,14 @@ def _plain_hill(sampler: Sampler) -> Series | None:
 
 
 def relative_error(error: Array, values: Array) -> float:
-    """Return the largest error over the larger of 1 and the size of the invariants there."""
+    """Return the largest error over the larger of 1 and the size of the invariants there.
+
+    Invariants that overflowed have none; one that is NaN, or an error that is, counts as infinite.
+    """
     size = np.maximum(1.0, np.max(np.abs(values), axis=-1))
-    finite = np.isfinite(size) & np.isfinite(error)
+    if np.any(np.isnan(size) | (np.isnan(error) & np.isfinite(size))):
+        return float("inf")
+    finite = np.isfinite(size)
     return float(np.max(error[finite] / size[finite], initial=0.0))
 
 
@@ -160,14 +146,12 @@ def _sampled(sampler: Sampler, progress: bool) -> Series:
     """Sample at the points of the chart, or at Chebyshev nodes where those are fewer."""
     axes = tuple(sampler.transform(n, a) for n, a in zip(sampler.names, sampler.axes, strict=True))
     points = len(axes[0]) * len(axes[1])
-    sampler.allowed(min(points, 2 * _FIRST))
     count: list[int] = []
     if points > 2 * _FIRST**2:
         count = [_counted(sampler, axes[axis], axis, axes[1 - axis]) for axis in (0, 1)]
     if not count or count[0] * count[1] > 0.8 * points:
         return _direct(sampler, axes, progress)
     while True:
-        sampler.allowed(count[0] * count[1])
         with bar(progress, count[0] * count[1]) as tick:
             coefficients, samples, error = _coefficients(sampler, axes, count, tick)
         size = max(1.0, max(float(np.max(np.abs(c))) for c in coefficients))
@@ -186,22 +170,17 @@ def _sampled(sampler: Sampler, progress: bool) -> Series:
     # Round-off of the series is spread over the chart by its largest values.
     total = sum(tails) + worst + 8 * np.finfo(float).eps * size
     sample = relative_error(error, np.moveaxis(samples, 0, -1))
-    kind = _kind(sampler) + " at Chebyshev nodes, spectral interpolation"
+    kind = "half trace at Chebyshev nodes, spectral interpolation"
     return Series(values, np.full(values.shape[:2], total), sample, (count[0], count[1]), kind)
-
-
-def _kind(sampler: Sampler) -> str:
-    return "half trace" if sampler.hill else "characteristic polynomial"
 
 
 def _direct(sampler: Sampler, axes: Sequence[Array], progress: bool) -> Series:
     """Sample at each point of the chart."""
     points = len(axes[0]) * len(axes[1])
-    sampler.allowed(points)
     with bar(progress, points) as tick:
         values, error = sampler(axes[0], axes[1], tick)
     shown = np.transpose(values, (2, 1, 0))
-    method = _kind(sampler) + " at each point"
+    method = "half trace at each point"
     return Series(shown, error.T, relative_error(error.T, shown), (0, 0), method)
 
 
@@ -214,7 +193,6 @@ def _counted(sampler: Sampler, values: Array, axis: int, across: Array) -> int:
     ends = np.array([across.min(), across.max()])
     while True:
         points = _nodes(values, count)
-        sampler.allowed(2 * count)
         found, _ = sampler(points, ends) if axis == 0 else sampler(ends, points)
         lines = found if axis == 0 else np.swapaxes(found, 1, 2)
         table = np.abs(chebyshev.analysis(count) @ lines)

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..families import Array, LinearPeriodic
+from ..errors import bad
+from ..families import DAMPING, Array, LinearPeriodic, Term
+from ..floquet.first_order import SPEED_POWER
+from ..hill.form import is_hill
 
 Names = tuple[str, str]
 Axes = tuple[Array, Array]
@@ -16,14 +21,84 @@ def on_grid(names: Names, axes: Axes) -> tuple[Array, dict[str, Array]]:
     return grid.pop("speed", np.ones((1, 1))), grid
 
 
+def at_speed(system: LinearPeriodic, names: Names, speed: float | None) -> LinearPeriodic:
+    """Return the system of a chart: as it is, or such that a speed of 1 does what ``speed`` did.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    names : tuple of str
+        The axes.
+    speed : float, optional
+        Crank speed [rad/s], where that is no axis.
+
+    Raises
+    ------
+    BadInput
+        If the speed is given beside an axis of that name, or is no positive number; if none is
+        given and no axis, of a system whose inertia forces come from a turning crank.
+    """
+    if "speed" in names:
+        if speed is not None:
+            raise bad("speed", speed, "none where the speed is an axis", "leave it out")
+        return system
+    if speed is None:
+        if _turned(system, names):
+            raise bad(
+                "stability_chart",
+                f"the axes {names[0]} and {names[1]} and no speed",
+                "a crank speed, which decides between inertia and stiffness here",
+                "give speed=..., in rad/s, or make the speed an axis",
+            )
+        return system
+    try:
+        value = float(speed)
+    except (TypeError, ValueError):
+        value = float("nan")
+    if not (np.isfinite(value) and value > 0.0):
+        raise bad("speed", repr(speed), "a positive number [rad/s]", "correct it")
+    return system if value == 1.0 else _slowed(system, value)
+
+
+def _turned(system: LinearPeriodic, names: Names) -> bool:
+    """Return whether a speed of 1 is more than a way to write a plain Hill equation."""
+    if is_hill(system) and not any(name in system.geometry for name in names):
+        return False
+    resisting = any(SPEED_POWER.get(term.array, 0) + term.power != 0 for term in system.terms)
+    moving = any(system.has(name) for name in ("A", "B", "D")) or not system.is_constant("M")
+    return resisting and moving
+
+
+def _slowed(system: LinearPeriodic, speed: float) -> LinearPeriodic:
+    """Return the system with each term times the power of the speed that it carries."""
+    rebuild = system.rebuild
+    return replace(
+        system,
+        terms=tuple(_times(term, speed) for term in system.terms),
+        rebuild=None if rebuild is None else lambda shape: _slowed(rebuild(shape), speed),
+    )
+
+
+def _times(term: Term, speed: float) -> Term:
+    power = SPEED_POWER.get(term.array, 0) + term.power
+    if not power:
+        return term
+    given, factor = term.function, float(speed**power)
+    if callable(given):
+        return replace(term, function=lambda theta: given(theta) * factor)
+    return replace(term, function=given * factor)
+
+
 def is_damped(system: LinearPeriodic, names: Names, axes: Axes) -> bool:
     """Return True where some damping term acts at some angle, somewhere on the chart."""
-    scales = system.scale_values(**on_grid(names, axes)[1])
+    grid = on_grid(names, axes)[1]
+    scales = system.scale_values(**{k: v for k, v in grid.items() if k not in system.geometry})
     angles = np.linspace(0.0, system.period, 65)[:-1]
     return any(
         (term.scale is None or bool(np.any(scales[term.scale]))) and bool(np.any(term(angles)))
         for term in system.terms
-        if term.array == "C"
+        if term.array in DAMPING
     )
 
 
@@ -57,9 +132,13 @@ def natural_frequency(system: LinearPeriodic, names: Names, axes: Axes) -> float
     if "speed" not in names:
         return float("nan")
     other = 1 - names.index("speed")
+    name = names[other]
+    pair = float(axes[other][0]), float(axes[other][-1])
     ends = [
-        _at_rest(system, {names[other]: float(value)})
-        for value in (axes[other][0], axes[other][-1])
+        _at_rest(system.with_geometry(**{name: value}), {})
+        if name in system.geometry
+        else _at_rest(system, {name: value})
+        for value in pair
     ]
     return ends[0] if abs(ends[1] - ends[0]) <= 1e-12 * abs(ends[0]) else float("nan")
 

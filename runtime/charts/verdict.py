@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Array
+from ..families import Array, LinearPeriodic
 from ..floquet.monodromy_matrix import floquet_multipliers
 from ..results import Check
-from .invariants import largest_modulus, root_uncertainty
+from .invariants import known_to, largest_modulus, root_uncertainty
 from .sampling import Sampler, Series
 from .structure import damping_rate, on_grid
 
@@ -21,18 +21,38 @@ Verdict = tuple[Array, NDArray[np.bool_], Array]
 def verdict(sampler: Sampler, series: Series) -> Verdict:
     """Return the largest modulus, whether stable, and the slack, each ``(ny, nx)``."""
     if not sampler.hill:
-        return largest_modulus(series.values, reduced=sampler.reduced, error=series.error)
+        error = series.error if series.errors is None else series.errors
+        return largest_modulus(series.values, reduced=sampler.reduced, error=error)
     half = np.abs(series.values[..., 0])
-    level = np.ones_like(half)
-    if sampler.damped:
-        speed, _ = on_grid(sampler.names, sampler.axes)
-        rate = damping_rate(sampler.system, sampler.names, sampler.axes)
-        level = np.exp(-2 * np.pi * rate / speed)
+    level = _level(sampler, half)
     largest = _larger_root(half, level)
     # An error of the half trace moves the boundary, where it is (1 + W) / 2.
     edge = 0.5 * (1.0 + level)
     slack = _larger_root(edge + series.error, level) - 1.0
     return largest, half <= edge + series.error, slack
+
+
+def undecided(sampler: Sampler, series: Series, found: Verdict) -> NDArray[np.bool_]:
+    """Return where the errors leave open whether a point is stable, ``(ny, nx)``."""
+    largest, stable, slack = found
+    if sampler.hill:
+        half = np.abs(series.values[..., 0])
+        edge = 0.5 * (1.0 + _level(sampler, half))
+        return np.asarray(np.abs(half - edge) <= series.error)
+    unknown = np.isnan(largest)
+    if sampler.reduced:
+        return unknown | (stable & (slack > 0.0))
+    # Unstable is only what some multiplier proves beyond its own error.
+    return np.asarray(unknown | (stable & (largest + slack >= 1.0)))
+
+
+def _level(sampler: Sampler, half: Array) -> Array:
+    """Return the determinant of the monodromy matrices of one mode."""
+    if not sampler.damped:
+        return np.ones_like(half)
+    speed, _ = on_grid(sampler.names, sampler.axes)
+    rate = damping_rate(sampler.system, sampler.names, sampler.axes)
+    return np.asarray(np.exp(-2 * np.pi * rate / speed) * np.ones_like(half))
 
 
 def _larger_root(half: Array, level: Array) -> Array:
@@ -59,21 +79,55 @@ def spot_check(sampler: Sampler, series: Series, found: Verdict) -> Check:
     j = rng.integers(0, largest.shape[1], _SPOTS)
     point: dict[str, Any] = {sampler.names[0]: sampler.axes[0][j]}
     point[sampler.names[1]] = sampler.axes[1][i]
-    speed = point.pop("speed", np.ones(_SPOTS))
-    direct = floquet_multipliers(sampler.system, speed, **point)
-    modulus = np.abs(direct.multipliers)
+    with np.errstate(over="ignore", invalid="ignore"):
+        multipliers, known = _direct(sampler.system, point)
+    modulus = np.abs(multipliers)
     usable = np.all(np.isfinite(modulus), axis=-1) & np.isfinite(largest[i, j])
     usable &= np.all(np.isfinite(series.values[i, j]), axis=-1)
     if not np.any(usable):
         return Check(0.0, 1.0)
     top = np.argmax(modulus, axis=-1)
     rows = np.arange(_SPOTS)
-    size = np.max(np.abs(series.values[i, j]), axis=-1, initial=1.0)
-    error = 2.0 * series.error[i, j] + 64 * np.finfo(float).eps * size
-    own = root_uncertainty(np.where(usable[:, None], direct.multipliers, 0.0), error)[rows, top]
-    peak = modulus[rows, top]
-    allowed = 4.0 * (own + direct.error[rows, top]) + 1e-12 * peak
-    gap = np.abs(peak - largest[i, j])
+    error = _full_errors(series, i, j, modulus.shape[-1])
+    own = root_uncertainty(np.where(usable[:, None], multipliers, 0.0), error)[rows, top]
+    peak = np.where(usable, modulus[rows, top], 1.0)
+    allowed = 4.0 * (own + known[rows, top]) + 1e-12 * peak
+    gap = np.abs(peak - np.where(usable, largest[i, j], peak))
     # A growth beyond the allowance that is called stable is a gap as well.
     gap = np.where(stable[i, j], np.maximum(gap, peak - 1.0), gap)
     return Check(float(np.max((gap / allowed)[usable])), 1.0)
+
+
+def _full_errors(series: Series, i: NDArray[np.int64], j: NDArray[np.int64], size: int) -> Array:
+    """Return errors of all coefficients of characteristic polynomials at points, doubled."""
+    values = series.values[i, j]
+    if series.errors is None:
+        known = known_to(values, series.error[i, j])[..., :1]
+        return np.broadcast_to(2.0 * known, (len(i), size))
+    known = known_to(values, series.errors[i, j])
+    if known.shape[-1] < size:
+        # Palindromic: the same again backwards, and a last coefficient that is 1.
+        known = np.concatenate([known, known[:, -2::-1], np.zeros((len(i), 1))], axis=1)
+    return 2.0 * known
+
+
+def _direct(
+    system: LinearPeriodic, point: dict[str, Array]
+) -> tuple[NDArray[np.complex128], Array]:
+    """Return multipliers and their errors at points, ``(points, 2n)`` each."""
+    shapes = {k: point[k] for k in point if k in system.geometry}
+    rest = {k: v for k, v in point.items() if k not in shapes}
+    speed = rest.pop("speed", np.ones(_SPOTS))
+    if not shapes:
+        values: dict[str, Any] = {**rest}
+        found = floquet_multipliers(system, speed, **values)
+        return found.multipliers, found.error
+    each = [
+        floquet_multipliers(
+            system.with_geometry(**{k: float(v[i]) for k, v in shapes.items()}),
+            speed[i],
+            **{k: float(v[i]) for k, v in rest.items()},
+        )
+        for i in range(_SPOTS)
+    ]
+    return np.stack([e.multipliers for e in each]), np.stack([e.error for e in each])

@@ -152,7 +152,7 @@ def _of_hill(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]
 
     from ..hill.form import hill_form
 
-    form = hill_form(scene.system())
+    form = hill_form(scene.linear_system())
     f = form.function(1.0, mu=1.0)
     mu = _values(options.mu) if options.mu is not None else [float(scene["parameters"]["mu"])]
     damping = 0.5 * form.damping()
@@ -207,7 +207,7 @@ def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, .
     opt.refuse_unused(options, ("mu",), "a scene of Hill's equation")
     from ..hill.form import hill_form, is_hill
 
-    system = scene.system()
+    system = scene.linear_system()
     if is_hill(system):
         form = hill_form(system)
         if not form.elastic and form.damping() == 0.0 and options.speed is None:
@@ -344,7 +344,7 @@ def _function(
     """Return what mu multiplies in a scene, beta of K = beta mu, and what is to be said of them."""
     from ..hill.form import hill_form
 
-    form = hill_form(scene.system())
+    form = hill_form(scene.linear_system())
     if scene.model["mechanism"] == "hill":
         damping, mu = 0.5 * form.damping(), abs(float(scene["parameters"]["mu"]))
         if damping and not mu:
@@ -378,7 +378,7 @@ def _formulas(options: argparse.Namespace) -> int:
     from ..hill.form import hill_form
     from ..hill.perturbation.formulas import boundary_latex
 
-    damped = hill_form(opt.load(options).system()).damping() > 0.0
+    damped = hill_form(opt.load(options).linear_system()).damping() > 0.0
     regions = (None,) if options.regions is None else _regions(options.regions)
     texts = [boundary_latex(options.order, n, damped) for n in regions]
     if options.json:

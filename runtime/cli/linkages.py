@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import BadInput, bad
+from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
@@ -197,8 +198,10 @@ def _simulate(options: argparse.Namespace) -> int:
         found = f"{options.revolutions:g}"
         raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")
     scene = opt.load(options)
+    if constrained.is_constrained(scene):
+        return constrained.simulate(options, scene)
     speed = 1.0 if _without_crank(scene, options) else speed_of(options, scene)
-    system = scene.system()
+    system = scene.linear_system()
     from ..simulation.trajectory import simulate
 
     chosen = {name: getattr(options, name) for name in ("method", "initial", "steps")}

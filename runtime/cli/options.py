@@ -222,7 +222,10 @@ def finish(
         save(figure, path)
     checks = dict(result.checks)
     for other in beside:
-        checks.update(other.checks)
+        for name, check in other.checks.items():
+            # Where two have a check of one name, the one that failed is told.
+            if name not in checks or (checks[name].passed and not check.passed):
+                checks[name] = check
     failed = {name: check for name, check in checks.items() if not check.passed}
     if options.json:
         print_json({**result.to_dict(), **(more or {}), "passed": not failed})

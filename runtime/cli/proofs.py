@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import bad
 from . import options as opt
 
-_BENCHMARKS = ("chart", "slices", "forces", "mathieu", "perturbation")
+_BENCHMARKS = ("chart", "slices", "forces", "mathieu", "perturbation", "rod")
 
 
 def add(commands: Any) -> None:
@@ -28,7 +28,7 @@ def add(commands: Any) -> None:
         "document",
         nargs="?",
         metavar="DOCUMENT",
-        help="smith or aannaque; all documents by default",
+        help="smith, aannaque or beale; all documents by default",
     )
     reproduce.add_argument(
         "--figure", metavar="N", help="one figure or table, e.g. 23, 23d, 3.8, table_coupler"
@@ -48,7 +48,7 @@ def add(commands: Any) -> None:
         choices=_BENCHMARKS,
         help=(
             "chart: a million half traces; slices: boundaries; forces: a million crank angles; "
-            "mathieu: characteristic values"
+            "mathieu: characteristic values; rod: a chart of the flexible rod in a quick return"
         ),
     )
 

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
+from . import constrained
 from . import options as opt
 from .linkages import speed_of
 
@@ -60,6 +61,12 @@ def add(commands: Any) -> None:
         action="store_true",
         help="trace regions of several modes, combinations among them, at nine rows; takes longer",
     )
+    chart.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="crank speed where that is no axis, e.g. '500 rpm', rad/s without a unit; default "
+        "operation.speed, 1 without crank",
+    )
     for axis in ("x", "y"):
         chart.add_argument(
             f"--{axis}",
@@ -71,8 +78,10 @@ def add(commands: Any) -> None:
 def _stability(options: argparse.Namespace) -> int:
     opt.picture(options)
     scene = opt.load(options)
+    if constrained.is_constrained(scene):
+        return constrained.stability(options, scene)
     speeds = _speeds(options, scene)
-    system = scene.system()
+    system = scene.linear_system()
     from ..floquet.monodromy_matrix import floquet_multipliers
 
     result = floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
@@ -124,7 +133,7 @@ def _crank(speed: float, scene: Scene) -> str:
 def _chart(options: argparse.Namespace) -> int:
     opt.picture(options)
     scene = opt.load(options)
-    system = scene.system()
+    system = scene.linear_system()
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
@@ -137,10 +146,21 @@ def _chart(options: argparse.Namespace) -> int:
         y=y,
         order=options.order,
         edges=options.edges,
+        speed=_fixed_speed(options, scene, (x[0], y[0])),
         marks=_marks(scene, y),
         frequency_name=name or "natural frequency",
     )
     return opt.finish(options, chart, _chart_lines(chart, scene))
+
+
+def _fixed_speed(options: argparse.Namespace, scene: Scene, names: tuple[str, str]) -> float | None:
+    """Return the crank speed [rad/s] of a chart without one among its axes; None for 1."""
+    if "speed" in names and options.speed is None:
+        return None
+    plain = scene.model["mechanism"] == "hill" or scene.get("operation.speed", None) is None
+    if options.speed is None and plain:
+        return None
+    return speed_of(options, scene)
 
 
 def _marks(scene: Scene, y: tuple[str, list[float]]) -> dict[str, tuple[float, ...]]:

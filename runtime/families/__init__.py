@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from .constrained import Constrained
 from .emitted import array_function
-from .linear_periodic import MATRICES, VECTORS, Array, LinearPeriodic, Term
+from .linear_periodic import DAMPING, MATRICES, VECTORS, Array, LinearPeriodic, Term
 from .transcendental import Transcendental
 
 __all__ = [
+    "DAMPING",
     "MATRICES",
     "VECTORS",
     "Array",

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from .emitted import Values, array_function, parameter_values
+from .emitted import Places, Values, array_function, parameter_values
 from .linear_periodic import Array
+from .multipliers import solve_multipliers
 
 External = Callable[[Array, Array], ArrayLike]
 
@@ -32,7 +34,9 @@ class Constrained:
         ``(q, t)`` to a mapping with ``constraints (k, 1)`` and ``jacobian (k, n)``.
     variations : callable or None
         ``(q, qd, qdd, lam, t)`` to a mapping with ``damping (n, n)`` and ``stiffness (n, n)`` of
-        ``M dqdd + damping dqd + stiffness dq = Phi_q^T dlam``.
+        ``M dqdd + damping dqd + stiffness dq = Phi_q^T dlam``, and ``jacobian_rate (k, n)`` and
+        ``jacobian_acceleration (k, n)``, the time derivatives of the Jacobian along the motion:
+        ``J dqdd + 2 Jd dqd + Jdd dq = 0``.
     labels : tuple of str
         Names of the coordinates.
     provenance : mapping
@@ -82,7 +86,7 @@ class Constrained:
             raise bad("external", f"none for {missing}", "a function of q and t each", "pass them")
 
         def at(name: str) -> _AtState:
-            return _AtState(array_function(module, name), module.EXTERNAL, given, values)
+            return _AtState(module, name, given, values)
 
         return cls(
             len(module.COORDINATES),
@@ -110,31 +114,90 @@ class Constrained:
             Accelerations.
         multipliers : ndarray, shape (*batch, k)
             Constraint forces ``lam``, with the sign of ``Phi_q^T lam`` on the right-hand side.
+
+        Raises
+        ------
+        RedundantConstraints
+            If the rows of the Jacobian depend on each other at a state, or the mass matrix leaves
+            a motion that the constraints allow without inertia.
         """
         a = self.dynamics(q, qd, t)
-        n, k = self.size, self.constraints
-        batch = a["mass"].shape[:-2]
-        matrix = np.zeros((*batch, n + k, n + k))
-        matrix[..., :n, :n] = a["mass"]
-        matrix[..., :n, n:] = -np.swapaxes(a["jacobian"], -1, -2)
-        matrix[..., n:, :n] = a["jacobian"]
-        right = np.concatenate([a["forces"] - a["rest"], a["gamma"]], axis=-2)
-        solved = np.linalg.solve(matrix, right)[..., 0]
-        return solved[..., :n], solved[..., n:]
+        return solve_multipliers(
+            a["mass"], a["jacobian"], (a["forces"] - a["rest"])[..., 0], a["gamma"][..., 0]
+        )
 
 
 @dataclass(frozen=True)
 class _AtState:
     """An emitted function of the state's components as one of whole vectors."""
 
-    function: Callable[..., Mapping[str, Array]]
-    external: tuple[str, ...]
+    module: ModuleType
+    name: str
     given: Mapping[str, External]
     values: Mapping[str, ArrayLike]
+
+    @cached_property
+    def _single(self) -> tuple[Callable[..., object], _Places] | None:
+        """The bare function and where its numbers go; None where parameters are arrays."""
+        function = getattr(self.module, self.name, None)
+        if function is None or not all(isinstance(v, float) for v in self.values.values()):
+            return None
+        return function, _places(self.module.ARRAYS[self.name])
+
+    @cached_property
+    def _batched(self) -> Callable[..., Mapping[str, Array]]:
+        return array_function(self.module, self.name)
 
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
+        alone = time.ndim == 0 and all(vector.ndim == 1 for vector in vectors)
+        if alone and self._single is not None:
+            # Plain floats are several times faster than arrays of no dimension.
+            function, places = self._single
+            numbers = [number for vector in vectors for number in vector.tolist()]
+            moment = float(time)
+            given = {
+                name: np.asarray(self.given[name](vectors[0], time))
+                for name in self.module.EXTERNAL
+            }
+            if all(value.ndim == 0 for value in given.values()):
+                passed = {name: float(value) for name, value in given.items()}
+                try:
+                    return places.fill(function(*numbers, moment, **passed, **self.values))
+                except (OverflowError, ZeroDivisionError):
+                    pass  # plain floats refuse what arrays return as infinite
         columns = [vector[..., i] for vector in vectors for i in range(vector.shape[-1])]
-        passed = {name: self.given[name](vectors[0], time) for name in self.external}
-        return self.function(*columns, time, **passed, **self.values)
+        passed_in = {name: self.given[name](vectors[0], time) for name in self.module.EXTERNAL}
+        return self._batched(*columns, time, **passed_in, **self.values)
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Where the numbers of an emitted function go in one long vector, and its parts by name."""
+
+    size: int
+    target: NDArray[np.intp]
+    source: tuple[int, ...]
+    parts: tuple[tuple[str, int, int, tuple[int, int]], ...]
+
+    def fill(self, returned: object) -> dict[str, Array]:
+        """Return the arrays by name."""
+        entries = returned if isinstance(returned, tuple) else (returned,)
+        whole: Array = np.zeros(self.size)
+        whole[self.target] = [entries[i] for i in self.source]
+        return {name: whole[a:b].reshape(shape) for name, a, b, shape in self.parts}
+
+
+def _places(arrays: Places) -> _Places:
+    target: list[int] = []
+    source: list[int] = []
+    parts = []
+    start = 0
+    for name, (shape, filled) in arrays.items():
+        stop = start + shape[0] * shape[1]
+        parts.append((name, start, stop, shape))
+        target += [start + row * shape[1] + column for row, column, _ in filled]
+        source += [position for _, _, position in filled]
+        start = stop
+    return _Places(start, np.array(target, dtype=np.intp), tuple(source), tuple(parts))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,10 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import bad
 
 Array = NDArray[np.float64]
-MATRICES = ("M", "A", "B", "S", "C", "K", "Kg")
+MATRICES = ("M", "A", "B", "S", "C", "D", "K", "Kg")
 VECTORS = ("f", "h", "g", "p")
+# Those through which forces without a potential act: drag on the rates, and on what a moving
+# basis carries along.
+DAMPING = ("C", "D")
 # Even angles at which every term is sampled once, to know how fast it varies.
 _PROBES = 4096
+# What a limit of a parameter's values allows.
+_LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
+    "positive": lambda values: values > 0.0,
+    "non-negative": lambda values: values >= 0.0,
+}
 
 
 @dataclass(frozen=True)
@@ -26,7 +34,7 @@ class Term:
     ----------
     array : str
         Which array of the quadratic Lagrangian or of the forcing it belongs to:
-        ``M A B S C K Kg`` (matrices) or ``f h g p`` (vectors).
+        ``M A B S C D K Kg`` (matrices) or ``f h g p`` (vectors).
     power : int
         Extra power of the crank speed, beyond the one that the array itself carries.
     scale : str or None
@@ -62,15 +70,16 @@ class LinearPeriodic:
         L2 = 1/2 qd^T M qd + td qd^T A q + 1/2 td^2 q^T B q + 1/2 tdd q^T S q
              - 1/2 q^T (K + Kg) q
 
-    and generalised forces ``-C qd + td^2 f + td h + tdd g + p``.  The equation of motion is
+    and generalised forces ``-C qd - td D q + td^2 f + td h + tdd g + p``, D where damping acts on
+    a motion that the coordinates share with their basis.  The equation of motion is
 
-        M qdd + (C + td G) qd + (K + Kg + td^2 H + tdd E) q = td^2 f + td h + tdd g + p,
+        M qdd + (C + td G) qd + (K + Kg + td D + td^2 H + tdd E) q = td^2 f + td h + tdd g + p,
         G = M' + A - A^T,  H = A' - B,  E = A - S,  ' = d/d theta.
 
     At constant speed w, with theta as independent variable and p = M q' + A q,
 
         q' = M^-1 (p - A q)
-        p' = A^T q' + B q - (K + Kg) q / w^2 - C q' / w + f + h / w + p_ext / w^2.
+        p' = A^T q' + B q - (K + Kg) q / w^2 - C q' / w - D q / w + f + h / w + p_ext / w^2.
 
     Attributes
     ----------
@@ -91,8 +100,18 @@ class LinearPeriodic:
         Length [m] that turns the coordinates into deflections; 1 where they are lengths.
     shape : callable or None
         Mode shapes for plotting: x/length ``(nx,)`` to ``(nx, n)``.
+    moving_shape : callable or None
+        Where the shapes depend on the crank angle: x/length ``(nx,)`` and theta ``(nt,)`` [rad] to
+        ``(nt, nx, n)``.
     provenance : mapping
         Scene, module and options that the system was made from.
+    geometry : mapping
+        Values of the named lengths and ratios that its functions of angle are made for, where the
+        system can be made anew for others; else empty.
+    rebuild : callable or None
+        From a full geometry to the system made for it, parameters and further terms aside.
+    limits : mapping
+        Of parameters that must be finite and ``positive`` or ``non-negative``, which of the two.
     """
 
     size: int
@@ -103,7 +122,11 @@ class LinearPeriodic:
     labels: tuple[str, ...] = ()
     reference_length: float = 1.0
     shape: Callable[[Array], Array] | None = None
+    moving_shape: Callable[[Array, Array], Array] | None = None
     provenance: Mapping[str, str] = field(default_factory=dict)
+    geometry: Mapping[str, float] = field(default_factory=dict)
+    rebuild: Callable[[Mapping[str, float]], LinearPeriodic] | None = None
+    limits: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that every term names a known array and has the system's size."""
@@ -121,8 +144,26 @@ class LinearPeriodic:
                     f"{expected}",
                     "make the function return one array per angle",
                 )
+        unknown = sorted(set(self.limits.values()) - set(_LIMITS))
+        if unknown:
+            raise bad("limits", unknown, f"some of {sorted(_LIMITS)}", "correct them")
         if not self.labels:
             object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
+
+    def shapes(self, x: Array, theta: Array) -> Array | None:
+        """Return the mode shapes at places x/length ``(nx,)`` and crank angles ``(nt,)`` [rad].
+
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nt, nx, n)``; None where the system has none.
+        """
+        if self.moving_shape is not None:
+            return np.asarray(self.moving_shape(x, theta), dtype=float)
+        if self.shape is None:
+            return None
+        fixed = np.asarray(self.shape(x), dtype=float)
+        return np.broadcast_to(fixed, (len(theta), *fixed.shape))
 
     def has(self, array: str) -> bool:
         """Return True where some term belongs to ``array``."""
@@ -187,7 +228,7 @@ class LinearPeriodic:
         """
         scales = self.scale_values(**axes)
         return any(
-            term.array == "C"
+            term.array in DAMPING
             and bool(np.any(amplitude))
             and (term.scale is None or bool(np.any(scales[term.scale])))
             for term, amplitude in zip(self.terms, self.spectra, strict=True)
@@ -219,14 +260,30 @@ class LinearPeriodic:
         Raises
         ------
         BadInput
-            If a name is not one of the system's parameters.
+            If a name is not one of the system's parameters, or a value is not a number or not
+            within the parameter's limits.
         """
         unknown = sorted(set(changes) - set(self.parameters))
         if unknown:
             raise bad(
                 "parameters", unknown, f"some of {sorted(self.parameters)}", "correct the name"
             )
+        for name, value in changes.items():
+            self._within_limits(name, value)
         return self.scales({**self.parameters, **changes})
+
+    def _within_limits(self, name: str, value: ArrayLike) -> None:
+        """Refuse values of a parameter that it cannot have."""
+        limit = self.limits.get(name)
+        expected = f"finite numbers, {limit}" if limit else "numbers"
+        try:
+            values = np.asarray(value, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            raise bad(name, repr(value), expected, "correct it") from None
+        if limit:
+            usable = np.isfinite(values) & _LIMITS[limit](values)
+            if not np.all(usable):
+                raise bad(name, values[~usable].flat[0], expected, "correct it")
 
     def array(self, name: str, theta: ArrayLike, speed: float = 1.0, **changes: float) -> Array:
         """Evaluate one array at crank angles.
@@ -234,7 +291,7 @@ class LinearPeriodic:
         Parameters
         ----------
         name : str
-            ``M A B S C K Kg f h g p``.
+            ``M A B S C D K Kg f h g p``.
         theta : array_like
             Crank angles [rad], shape ``(nt,)``.
         speed : float
@@ -276,21 +333,132 @@ class LinearPeriodic:
         scales : mapping, optional
             Values of monomials that the new terms name and the system does not know; they become
             parameters of the new system.
+
+        Notes
+        -----
+        :meth:`with_geometry` takes the new terms along as they are.
         """
         extra = dict(scales or {})
-        old = self.scales
-
-        def merged(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
-            own = {name: values[name] for name in self.parameters}
-            new = {name: np.asarray(values[name], dtype=float) for name in extra}
-            return {**old(own), **new}
-
+        merged = partial(_merged, self.scales, tuple(self.parameters), tuple(extra))
         return replace(
             self,
             terms=self.terms + terms,
             parameters={**self.parameters, **extra},
-            scales=merged if extra else old,
+            scales=merged if extra else self.scales,
+            rebuild=self._rebuild_then(partial(_with_terms, terms, extra)),
         )
+
+    def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
+        """Return the system with each term changed, for example scaled.
+
+        Parameters
+        ----------
+        change : callable
+            From each term to the one in its place.
+
+        Notes
+        -----
+        :meth:`with_geometry` changes the terms of the other geometry alike.
+        """
+        return replace(
+            self,
+            terms=tuple(change(term) for term in self.terms),
+            rebuild=self._rebuild_then(partial(_with_changed_terms, change)),
+        )
+
+    def without(self, *arrays: str) -> LinearPeriodic:
+        """Return the system without the terms of some arrays, for example ``*DAMPING``."""
+        return replace(
+            self,
+            terms=tuple(term for term in self.terms if term.array not in arrays),
+            rebuild=self._rebuild_then(partial(_without, arrays)),
+        )
+
+    def _rebuild_then(
+        self, change: Callable[[LinearPeriodic], LinearPeriodic]
+    ) -> Callable[[Mapping[str, float]], LinearPeriodic] | None:
+        """Return what makes the system anew and changes it as this one is changed."""
+        return None if self.rebuild is None else partial(_rebuilt, self.rebuild, change)
+
+    @cached_property
+    def _rebuilds_itself(self) -> bool:
+        """Whether made anew for its own geometry it has its own terms, and not replaced ones."""
+        made = self.rebuild(self.geometry) if self.rebuild else self
+        theta = self.period * np.array([0.1, 0.45, 0.8])
+        return len(made.terms) == len(self.terms) and all(
+            (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
+            and (new.function is own.function or np.allclose(new(theta), own(theta), rtol=1e-6))
+            for new, own in zip(made.terms, self.terms, strict=True)
+        )
+
+    def with_geometry(self, **changes: float) -> LinearPeriodic:
+        """Return the same system with other lengths or ratios, its functions of angle made anew.
+
+        Parameters
+        ----------
+        **changes : float
+            New values by geometry name.
+
+        Raises
+        ------
+        BadInput
+            If the system has no geometry to change, a name is not one of it, its terms were
+            replaced by other means than its own methods, or the mechanism is impossible.
+        """
+        if self.rebuild is None:
+            raise bad(
+                "with_geometry",
+                "a system that is made for one geometry",
+                "one with named geometry, as rod_system makes",
+                "make it anew from its own numbers",
+            )
+        unknown = sorted(set(changes) - set(self.geometry))
+        if unknown:
+            raise bad("geometry", unknown, f"some of {sorted(self.geometry)}", "correct the name")
+        if not self._rebuilds_itself:
+            raise bad(
+                "with_geometry",
+                "terms that are not those that its geometry gives",
+                "a system whose terms only its own methods changed",
+                "use with_changed_terms, or set rebuild=None too",
+            )
+        made = self.rebuild({**self.geometry, **changes})
+        return replace(
+            made, parameters=dict(self.parameters), provenance=self.changed_provenance(**changes)
+        )
+
+
+def _merged(
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]],
+    own: tuple[str, ...],
+    extra: tuple[str, ...],
+    values: Mapping[str, ArrayLike],
+) -> Mapping[str, Array]:
+    """Return a system's monomials and those that are parameters themselves."""
+    new = {name: np.asarray(values[name], dtype=float) for name in extra}
+    return {**scales({name: values[name] for name in own}), **new}
+
+
+def _rebuilt(
+    rebuild: Callable[[Mapping[str, float]], LinearPeriodic],
+    change: Callable[[LinearPeriodic], LinearPeriodic],
+    geometry: Mapping[str, float],
+) -> LinearPeriodic:
+    return change(rebuild(geometry))
+
+
+def _with_terms(
+    terms: tuple[Term, ...], extra: Mapping[str, float], system: LinearPeriodic
+) -> LinearPeriodic:
+    return system.with_terms(*terms, scales=extra)
+
+
+def _with_changed_terms(change: Callable[[Term], Term], system: LinearPeriodic) -> LinearPeriodic:
+    return system.with_changed_terms(change)
+
+
+def _without(arrays: tuple[str, ...], system: LinearPeriodic) -> LinearPeriodic:
+    return system.without(*arrays)
 
 
 def _told(value: ArrayLike) -> str:

@@ -15,15 +15,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import BadInput, bad
-from ..families import LinearPeriodic, Term
+from ..families import DAMPING, LinearPeriodic, Term
 
 Array = NDArray[np.float64]
 
 # Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
 # divided by speed^2; S and g act only when the crank accelerates.
-SPEED_POWER = {"M": 0, "A": 0, "B": 0, "C": -1, "K": -2, "Kg": -2, "f": 0, "h": -1, "p": -2}
+SPEED_POWER = {
+    **{"M": 0, "A": 0, "B": 0, "C": -1, "D": -1, "K": -2, "Kg": -2},
+    **{"f": 0, "h": -1, "p": -2},
+}
 # Arrays of like kind, whose harmonics are weighed together.
-_KIND = {"M": "M", "A": "A", "B": "K", "C": "C", "K": "K", "Kg": "K", "f": "f", "h": "f", "p": "f"}
+_KIND = {
+    **{"M": "M", "A": "A", "B": "K", "C": "C", "D": "K", "K": "K", "Kg": "K"},
+    **{"f": "f", "h": "f", "p": "f"},
+}
 # Amplitude, over the largest, from which a harmonic has to be resolved.
 _SEEN = 1e-6
 
@@ -63,7 +69,7 @@ class CanonicalForm:
     def damped(self) -> bool:
         """True where some damping term is not zero."""
         return any(
-            term.array == "C" and bool(np.any(factor)) and bool(np.any(amplitude))
+            term.array in DAMPING and bool(np.any(factor)) and bool(np.any(amplitude))
             for term, factor, amplitude in zip(
                 self.system.terms, self.factors, self.system.spectra, strict=True
             )
@@ -106,7 +112,7 @@ class CanonicalForm:
     @property
     def constant(self) -> bool:
         """True where nothing depends on the crank angle."""
-        used = "MABC" + ("fhp" if self.forced else "")
+        used = "MABCD" + ("fhp" if self.forced else "")
         names = (*used, "K", "Kg")
         return all(term.constant for term in self.system.terms if term.array in names)
 
@@ -164,10 +170,20 @@ class CanonicalForm:
         BadInput
             If a mass matrix is not positive definite at one of the angles.
         """
+        out = self.plain_generator(theta)
+        scale = self.scale[:, None, :]
+        out /= scale[..., :, None]
+        out *= scale[..., None, :]
+        return out
+
+    def plain_generator(self, theta: Array) -> Array:
+        """Return L as :meth:`generator` does, in the state (q, p) itself."""
         n = self.system.size
-        flexibility = self._inverse_mass(theta)
-        gyro = self.assemble("A", theta)
+        # What the batch has in common is found once.
+        flexibility = self._first_of_equal("M")._inverse_mass(theta)
+        gyro = self._first_of_equal("A").assemble("A", theta)
         damping = self.assemble("C", theta)
+        carried = self.assemble("D", theta)
         inertia = self.assemble("B", theta)
         stiffness = self.assemble(("K", "Kg"), theta)
         out: Array = np.zeros((len(self.speed), len(theta), self.size, self.size))
@@ -176,6 +192,8 @@ class CanonicalForm:
             out[..., n : 2 * n, :n] += inertia
         if stiffness is not None:
             out[..., n : 2 * n, :n] -= stiffness
+        if carried is not None:
+            out[..., n : 2 * n, :n] -= carried
         # q' = M^-1 (p - A q) enters p' through A^T - C.
         feedback: Array | None = None if damping is None else -damping
         if gyro is not None:
@@ -191,10 +209,17 @@ class CanonicalForm:
             force = self.assemble(("f", "h", "p"), theta)
             if force is not None:
                 out[..., n : 2 * n, -1] = force
-        scale = self.scale[:, None, :]
-        out /= scale[..., :, None]
-        out *= scale[..., None, :]
         return out
+
+    def _first_of_equal(self, array: str) -> CanonicalForm:
+        """Return the form of the first member where all have an array in common, else itself."""
+        rows = [
+            factor
+            for term, factor in zip(self.system.terms, self.factors, strict=True)
+            if term.array == array
+        ]
+        same = len(self.speed) > 0 and all(np.all(row == row[0]) for row in rows)
+        return self.take(slice(0, 1)) if same else self
 
     def trace(self, theta: Array) -> Array:
         """Return the trace of L, ``-trace(M^-1 C)/speed``; shape ``(nb, nt)``."""
@@ -245,11 +270,11 @@ class CanonicalForm:
 
     @cached_property
     def mean(self) -> Mapping[str, Array]:
-        """Mean over the period of M, A, B, C and of the stiffness K + Kg; each ``(nb, n, n)``."""
+        """Mean over the period of M, A, B, C, D and of the stiffness K + Kg; ``(nb, n, n)``."""
         theta = even_angles(self.system.period, 64)
         n = self.system.size
         found = {}
-        for name in ("M", "A", "B", "C", "K"):
+        for name in ("M", "A", "B", "C", "D", "K"):
             value = self.assemble(("K", "Kg") if name == "K" else name, theta)
             found[name] = np.zeros((len(self.speed), n, n)) if value is None else value.mean(axis=1)
         return found
@@ -264,7 +289,7 @@ class CanonicalForm:
     def rate(self) -> Array:
         """Largest rate of change of the state per radian, to choose a step; shape ``(nb,)``."""
         turning = 2 * np.pi / self.system.period
-        own = np.sqrt(self._spectral("K") + self._spectral("B"))
+        own = np.sqrt(self._spectral("K") + self._spectral("B") + self._spectral("D"))
         return np.maximum(turning, own + self._spectral("C") + self._spectral("A"))
 
     @cached_property
@@ -313,6 +338,7 @@ def canonical_form(
     parameters: Mapping[str, ArrayLike] | None = None,
     *,
     forcing: bool = False,
+    probed: bool = True,
 ) -> CanonicalForm:
     """Return the canonical form of a system at speeds and parameter values that broadcast.
 
@@ -326,6 +352,9 @@ def canonical_form(
         Parameter values that replace the system's own.
     forcing : bool
         Whether forcing is carried along; it is left out where the system has none.
+    probed : bool
+        Whether each term is sampled beforehand, to refuse one that is not finite and a mass that
+        is not symmetric; whoever leaves that out looks at what comes of it.
 
     Raises
     ------
@@ -348,7 +377,8 @@ def canonical_form(
             "speed and parameters", shapes, "shapes that broadcast", "add axes of length 1"
         ) from mismatch
     scales = system.scale_values(**changes)
-    _ = system.spectra  # refuses terms that are not finite
+    if probed:
+        _ = system.spectra  # refuses terms that are not finite
     flat_speed = np.broadcast_to(speeds, batch).reshape(-1)
     factors = np.zeros((len(system.terms), len(flat_speed)))
     for row, term in zip(factors, system.terms, strict=True):
@@ -358,8 +388,41 @@ def canonical_form(
             row[:] = np.broadcast_to(scale, batch).reshape(-1) * flat_speed**power
     forced = forcing and any(term.array in ("f", "h", "p") for term in system.terms)
     form = CanonicalForm(system, flat_speed, factors, batch, forced)
-    _check_mass(form)
+    if probed:
+        _check_mass(form)
     return form
+
+
+def at_geometry(
+    system: LinearPeriodic, values: Mapping[str, ArrayLike]
+) -> tuple[LinearPeriodic, dict[str, ArrayLike]]:
+    """Return the system made for the geometry among some values, and the other values.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    values : mapping
+        Parameters, and geometry by name.
+
+    Raises
+    ------
+    BadInput
+        If a geometry value is not one number.
+    """
+    rest = {name: value for name, value in values.items() if name not in system.geometry}
+    changes = {}
+    for name in values.keys() - rest.keys():
+        value = numbers(name, values[name])
+        if value.ndim:
+            raise bad(
+                name,
+                f"shape {value.shape}",
+                "one number: the system is made anew for each geometry",
+                "call once for each value, or take it as an axis of stability_chart",
+            )
+        changes[name] = float(value)
+    return (system.with_geometry(**changes) if changes else system), rest
 
 
 def _check_mass(form: CanonicalForm) -> None:

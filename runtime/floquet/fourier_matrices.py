@@ -3,7 +3,7 @@
 A motion ``q = sum_k q_k exp(i kappa_k 2 pi theta/T)`` with whole kappa is periodic (multiplier +1),
 with half-odd kappa antiperiodic (multiplier -1).  The weak form of the Lagrangian,
 
-    w^2 [D M D + D A - A^T D - B] q + w C D q + (K + Kg) q = 0,   D = d/dtheta,
+    w^2 [d M d + d A - A^T d - B] q + w (C d + D) q + (K + Kg) q = 0,   d = d/dtheta,
 
 needs no derivative of a coefficient, and is symmetric where the system is undamped.
 """
@@ -23,7 +23,7 @@ from .first_order import even_angles
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-SPEED_EXPONENT = {"M": 2, "A": 2, "B": 2, "C": 1, "K": 0, "Kg": 0}
+SPEED_EXPONENT = {"M": 2, "A": 2, "B": 2, "C": 1, "D": 1, "K": 0, "Kg": 0}
 _MOST_SAMPLES = 8192
 
 
@@ -166,7 +166,7 @@ def real_matrices(
 
 
 def _entry(array: str, block: ComplexArray, left: Array, right: Array) -> ComplexArray:
-    """Return the entries that one harmonic of one array adds; left, right are D's -i times."""
+    """Return the entries that one harmonic of one array adds; left, right are -i d/dtheta."""
     if array == "M":
         return -left * right * block
     if array == "A":

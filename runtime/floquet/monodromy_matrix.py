@@ -13,7 +13,7 @@ from ..errors import bad
 from ..families import LinearPeriodic
 from ..results import Check, Result, provenance
 from .eigenvalues import eigenvalues
-from .first_order import CanonicalForm, canonical_form, even_angles
+from .first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from .krein import SignatureSource
 from .period_products import STAGES, period_product
 
@@ -81,9 +81,10 @@ def monodromy(
 ) -> Monodromy:
     """Return the monodromy matrix of the canonical variables over one period.
 
-    The equation is ``q' = M^-1 (p - A q)``, ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w`` with
-    theta as variable.  It is solved by Gauss-Legendre collocation of order 16; the number of
-    segments is doubled until two results agree.
+    The equation is ``q' = M^-1 (p - A q)``,
+    ``p' = A^T q' + B q - (K + Kg) q/w^2 - (C q' + D q)/w`` with theta as variable.  It is solved by
+    Gauss-Legendre collocation of order 16; the number of segments is doubled until two results
+    agree.
 
     Parameters
     ----------
@@ -95,7 +96,8 @@ def monodromy(
         Wanted error, in the norm of ``error_norm``; 1e-13 to 1e-2.  Long periods with many
         oscillations may not reach it, because of round-off: see ``error``.
     **parameters : array_like
-        Parameter values that replace the system's own; they broadcast with ``speed``.
+        Parameter values that replace the system's own; they broadcast with ``speed``.  Geometry
+        too, one number each, where the system can be made anew for it.
 
     Returns
     -------
@@ -112,6 +114,7 @@ def monodromy(
     """
     if not 1e-13 <= rtol <= 1e-2:
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-11")
+    system, parameters = at_geometry(system, parameters)
     form = canonical_form(system, speed, parameters)
     count = len(form.speed)
     m = 2 * system.size
@@ -360,7 +363,8 @@ def floquet_multipliers(
     rtol : float
         Wanted error of the monodromy matrix, see :func:`monodromy`.
     **parameters : array_like
-        Parameter values that replace the system's own; they broadcast with ``speed``.
+        Parameter values that replace the system's own; they broadcast with ``speed``.  Geometry
+        too, one number each, where the system can be made anew for it.
 
     Returns
     -------
@@ -373,6 +377,7 @@ def floquet_multipliers(
     BadInput
         As :func:`monodromy`.
     """
+    system, parameters = at_geometry(system, parameters)
     matrices = monodromy(system, speed, rtol=rtol, **parameters)
     form = canonical_form(system, speed, parameters)
     count, m = len(form.speed), form.size

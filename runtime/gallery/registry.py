@@ -11,6 +11,11 @@ from . import (
     aannaque_pulses,
     aannaque_space,
     aannaque_stability,
+    beale_chart,
+    beale_free_free,
+    beale_response,
+    beale_setting,
+    beale_tip,
     smith_balanced_link,
     smith_balancing,
     smith_charts,
@@ -381,4 +386,96 @@ _AANNAQUE = (
     ),
 )
 
-DOCUMENTS: Mapping[str, tuple[FigureEntry, ...]] = {"smith": _SMITH, "aannaque": _AANNAQUE}
+_WIDE = (9.4, 4.2)
+
+_BEALE = (
+    FigureEntry(
+        "beale",
+        "2",
+        "Large crank: tip deflection by three polynomial modes",
+        beale_tip.polynomial_figure(3),
+        panels=(1, 2),
+        size=_WIDE,
+    ),
+    FigureEntry(
+        "beale",
+        "3",
+        "Large crank: tip deflection by ten polynomial modes",
+        beale_tip.polynomial_figure(10),
+        panels=(1, 2),
+        size=_WIDE,
+    ),
+    FigureEntry(
+        "beale",
+        "4",
+        "Large crank: the setting, and the tip deflection's components",
+        beale_setting.figure_4,
+        panels=(1, 3),
+        size=(12.0, 4.2),
+    ),
+    FigureEntry(
+        "beale",
+        "5",
+        "Large crank: ten polynomial modes with 0.002 damping",
+        beale_tip.figure_5,
+        panels=(1, 2),
+        size=_WIDE,
+    ),
+    FigureEntry(
+        "beale",
+        "7",
+        "Small crank: tip deflection by one, two and three free-free modes",
+        beale_free_free.figure_7,
+        panels=(2, 1),
+        size=(7.2, 6.0),
+    ),
+    *(
+        FigureEntry(
+            "beale",
+            str(figure),
+            f"Large crank: tip deflection by {name}",
+            beale_free_free.large_crank_figure(modes),
+            panels=(1, 2),
+            size=_WIDE,
+        )
+        for figure, modes, name in (
+            (8, 1, "one free-free mode"),
+            (9, 3, "three free-free modes"),
+            (10, 5, "five free-free modes"),
+        )
+    ),
+    FigureEntry(
+        "beale",
+        "11",
+        "First natural frequency against crank angle, crank ratio 0.2",
+        beale_response.figure_11,
+    ),
+    FigureEntry(
+        "beale",
+        "12",
+        "Tip deflection near the mean first natural frequency, crank ratio 0.2",
+        beale_response.figure_12,
+        panels=(2, 1),
+        size=(7.6, 6.0),
+    ),
+    FigureEntry(
+        "beale",
+        "resonances",
+        "Largest steady tip deflection against the crank speed",
+        beale_response.figure_resonances,
+    ),
+    FigureEntry(
+        "beale",
+        "chart",
+        "Stability chart of the flexible rod over crank speed and crank ratio",
+        beale_chart.figure_chart,
+        panels=(2, 2),
+        size=(9.0, 7.2),
+    ),
+)
+
+DOCUMENTS: Mapping[str, tuple[FigureEntry, ...]] = {
+    "smith": _SMITH,
+    "aannaque": _AANNAQUE,
+    "beale": _BEALE,
+}

@@ -195,7 +195,7 @@ RIG: Mapping[str, Rig] = {rig.figure: rig for rig in RIGS}
 def _system(scene: str, equation: str, modes: int) -> LinearPeriodic:
     return load_scene(
         scene, overrides={"model.formulation": equation, "model.modes": modes}
-    ).system()
+    ).linear_system()
 
 
 @lru_cache(maxsize=64)

@@ -62,7 +62,7 @@ def _system(chart: str, damped: bool, modes: int = 2) -> LinearPeriodic:
     changes: dict[str, object] = {"model.modes": modes}
     if damped:
         changes["coupler.damping_ratio"] = _decrement(rig) / (2.0 * pi)
-    return load_scene(rig.scene, overrides=changes).system()
+    return load_scene(rig.scene, overrides=changes).linear_system()
 
 
 @lru_cache(maxsize=16)

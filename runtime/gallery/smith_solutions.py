@@ -53,7 +53,7 @@ def _system() -> LinearPeriodic:
             "links.follower": "15 in",
         },
     )
-    return scene.system()
+    return scene.linear_system()
 
 
 @lru_cache(maxsize=1)
@@ -66,7 +66,7 @@ def _first_mode() -> LinearPeriodic:
             "links.follower": "15 in",
         },
     )
-    return scene.system()
+    return scene.linear_system()
 
 
 def _speed(system: LinearPeriodic) -> float:
@@ -416,7 +416,7 @@ def figure_33(axes: Sequence[Axes]) -> Drawn:
             "parameters.damping": 0.0,
         },
     )
-    system = scene.system()
+    system = scene.linear_system()
     half = discriminant(f, np.array(_UNSTABLE + _STABLE), _MU).value
     rows = []
     for i, lam2 in enumerate(_UNSTABLE + _STABLE):

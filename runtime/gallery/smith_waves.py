@@ -41,7 +41,7 @@ def _system(equation: str, damped: bool) -> LinearPeriodic:
         _RIG.scene,
         overrides={"model.formulation": equation, "coupler.damping_ratio": ratio},
     )
-    return scene.system()
+    return scene.linear_system()
 
 
 def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Array]:

@@ -62,7 +62,7 @@ def is_hill(system: LinearPeriodic) -> bool:
     """Return True where the system is one mode with constant mass, damping and stiffness."""
     return (
         system.size == 1
-        and not system.has("A")
+        and not (system.has("A") or system.has("D"))
         and all(system.is_constant(name) for name in ("M", "C", "K"))
         and all(term.power == 0 for term in system.terms)
         and abs(system.period - 2 * np.pi) < 1e-15

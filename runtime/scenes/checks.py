@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -64,9 +65,12 @@ def _slider_problems(links: Mapping[str, Any]) -> list[Problem]:
 
 def _rod_problems(links: Mapping[str, Any]) -> list[Problem]:
     """Check that the rod reaches the crank pin wherever it is, and never passes its own pivot."""
-    if any(name not in links for name in ("frame", "crank", "rod")):
+    if any(name not in links for name in ("frame", "rod")):
         return []
-    frame, crank, rod = links["frame"], links["crank"], links["rod"]
+    frame, rod = links["frame"], links["rod"]
+    crank = links.get("crank", links.get("crank_ratio", math.nan) * frame)
+    if math.isnan(crank):
+        return []
     if frame == crank:
         fix = "the crank pin would pass the rod's pivot: change one of the two"
         return [Problem("links.crank", describe(crank, "length"), "another length than frame", fix)]

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..errors import BadInput, Problem
 from .checks import body_problems
+from .rod_tables import complete_crank, complete_rod
 from .schema import Layout
 
 Values = dict[str, dict[str, Any]]
@@ -30,6 +31,9 @@ def complete(values: Values, layout: Layout) -> None:
     """
     if layout.mechanism == "hill":
         _pad_series(values["function"])
+    if "rod" in layout.flexible:
+        complete_crank(values["links"])
+        complete_rod(values["rod"])
     if not layout.links:
         return
     balanced = values["model"]["balanced"]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from ...derive.spec import DERIVED_AS, NAMED_DROPS
+from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
 from .schema import Key, Layout, Table
 
 LINKS = ("frame", "crank", "coupler", "follower")
@@ -371,6 +373,27 @@ FLEXIBLE_COUPLER = Layout(
     closed_in_modes=True,
 )
 
+_ROD_TABLES = (ROD_LINKS, ROD, _OPERATION, chart_table(ROD_PARAMETERS))
+FLEXIBLE_ROD = Layout(
+    "quick_return",
+    tuple(name for mechanism, name in DERIVED_AS if mechanism == "quick_return"),
+    _ROD_TABLES,
+    flexible=("rod",),
+    outputs=("stability", "forcing"),
+    parameters=ROD_PARAMETERS,
+    closed_in_modes=True,
+    named_drops=NAMED_DROPS["quick_return", "moving_basis"],
+)
+FREE_FREE_ROD = Layout(
+    "quick_return",
+    ("free_free",),
+    _ROD_TABLES,
+    flexible=("rod",),
+    outputs=("motion", "variations"),
+    parameters=ROD_PARAMETERS,
+    named_drops=NAMED_DROPS["quick_return", "free_free"],
+)
+
 HILL = Layout(
     "hill",
     ("plain",),
@@ -400,4 +423,12 @@ HILL = Layout(
     parameters=_HILL_PARAMETERS,
 )
 
-LAYOUTS = (RIGID_FOUR_BAR, FLEXIBLE_COUPLER, SLIDER_CRANK, QUICK_RETURN, HILL)
+LAYOUTS = (
+    RIGID_FOUR_BAR,
+    FLEXIBLE_COUPLER,
+    SLIDER_CRANK,
+    QUICK_RETURN,
+    FLEXIBLE_ROD,
+    FREE_FREE_ROD,
+    HILL,
+)

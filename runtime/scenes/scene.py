@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import inspect
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,13 +17,14 @@ from .validation import nearest
 
 if TYPE_CHECKING:
     from ..dynamics import Machine
-    from ..families import LinearPeriodic
+    from ..families import Constrained, LinearPeriodic
     from ..mechanisms import Linkage
 
 # Where each mechanism's equations become a family object; imported when one is asked for.
 _BUILDERS = {
     "four_bar": ("..systems.coupler", "coupler_system"),
     "hill": ("..systems.hill", "hill_system"),
+    "quick_return": ("..systems.rod.from_scene", "rod_of_scene"),
 }
 _OWN_BUILDER = (".own", "own_system")
 LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
@@ -214,10 +216,10 @@ class Scene:
         The number of modes is left open where one emitted module serves any number.
         """
         table = {key: list(v) if isinstance(v, tuple) else v for key, v in self.model.items()}
-        spec = ModelSpec.from_mapping(table)
+        spec = ModelSpec.from_mapping(table).derived()
         return spec.with_(modes=None) if self.layout.closed_in_modes else spec
 
-    def system(self) -> LinearPeriodic:
+    def system(self) -> LinearPeriodic | Constrained:
         """Return the family object that the solvers accept.
 
         Raises
@@ -235,8 +237,29 @@ class Scene:
             )
         module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
         builder = getattr(importlib.import_module(module, __package__), function)
-        built: LinearPeriodic = builder(self)
+        built: LinearPeriodic | Constrained = builder(self)
         return built
+
+    def linear_system(self) -> LinearPeriodic:
+        """Return the system of the scene for solvers that take the linear-periodic family alone.
+
+        Raises
+        ------
+        BadInput
+            As :meth:`system`, and if the scene's formulation is constrained.
+        """
+        from ..families import LinearPeriodic
+
+        found = self.system()
+        if not isinstance(found, LinearPeriodic):
+            raise bad(
+                f"scene {self.name}",
+                f"formulation '{self.model['formulation']}', whose equations are constrained",
+                "a linear formulation",
+                f"--set model.formulation='{self.model['formulation']}_linear', or see "
+                "constrained_motion and periodic_orbit",
+            )
+        return found
 
     def mechanism(self) -> Linkage:
         """Return the linkage of the scene: lengths and assembly.
@@ -256,7 +279,9 @@ class Scene:
             )
         from .. import mechanisms
 
-        linkage: Linkage = getattr(mechanisms, kind)(**self["links"])
+        made = getattr(mechanisms, kind)
+        lengths = inspect.signature(made).parameters
+        linkage: Linkage = made(**{k: v for k, v in self["links"].items() if k in lengths})
         return linkage
 
     def machine(self) -> Machine:

@@ -116,6 +116,8 @@ class Layout:
         Names that a chart may vary, with their dimensions.
     closed_in_modes : bool
         True where one emitted module serves any number of modes.
+    named_drops : mapping of str to tuple of str
+        Names for sets of terms left out, for ``model.drop``.
     """
 
     mechanism: str
@@ -126,6 +128,7 @@ class Layout:
     links: tuple[str, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
     closed_in_modes: bool = False
+    named_drops: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def model(self) -> Table:

@@ -105,7 +105,9 @@ def _choose(
     if formulation is not None:
         fix = nearest(str(formulation), names, "choose one")
         problems.append(Problem("model.formulation", show(formulation), f"one of {names}", fix))
-    return next((layout for layout in own if layout.flexible and "coupler" in document), own[0])
+    bent = set(model.get("flexible") or ()) if isinstance(model.get("flexible"), list) else set()
+    bent |= {"coupler"} & set(document)
+    return next((layout for layout in own if bent & set(layout.flexible)), own[0])
 
 
 def _top_level(document: Mapping[str, Any], layout: Layout, problems: list[Problem]) -> None:
@@ -340,6 +342,11 @@ def _model_problems(model: dict[str, Any], layout: Layout, problems: list[Proble
                 f"write flexible = {wanted}",
             )
         )
+    model["drop"] = tuple(
+        dict.fromkeys(
+            term for name in model.get("drop", ()) for term in layout.named_drops.get(name, (name,))
+        )
+    )
     if layout.flexible:
         model.setdefault("modes", 1)
     elif layout.formulations and "modes" in model:

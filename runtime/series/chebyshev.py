@@ -32,6 +32,31 @@ def analysis(count: int) -> Array:
     return matrix
 
 
+@lru_cache(maxsize=64)
+def extrema(count: int) -> Array:
+    """Return the ends and extrema of T_(count-1), shape ``(count,)``, falling; read-only.
+
+    Every second of them are those for half the degree.
+    """
+    k = np.arange(count)
+    x: Array = np.sin((count - 1 - 2 * k) * (np.pi / (2 * (count - 1))))
+    x.setflags(write=False)
+    return x
+
+
+@lru_cache(maxsize=64)
+def extrema_analysis(count: int) -> Array:
+    """Return the matrix from values at :func:`extrema` to coefficients, ``(count, count)``."""
+    j, k = np.arange(count)[:, None], np.arange(count)
+    degree = count - 1
+    steps = (j * k) % (2 * degree)
+    matrix: Array = np.cos(steps * (np.pi / degree)) * (2.0 / degree)
+    matrix[:, [0, -1]] *= 0.5
+    matrix[[0, -1]] *= 0.5
+    matrix.setflags(write=False)
+    return matrix
+
+
 def basis(x: Array, count: int) -> Array:
     """Return ``T_0 ... T_{count-1}`` at ``x`` (shape ``(n,)``, within [-1, 1]): ``(count, n)``."""
     table = np.empty((count, x.size))

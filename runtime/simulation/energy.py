@@ -108,7 +108,7 @@ def _power(form: CanonicalForm, theta: Array, q: Array, slope: Array) -> Array:
             continue
         rate = _derivative(form, names)(theta)[0]
         total += sign * np.einsum("ti,tij,tj->t", left, rate, right)
-    total -= _form(form, "C", theta, slope, slope)
+    total -= _form(form, "C", theta, slope, slope) + _form(form, "D", theta, slope, q)
     # Only the symmetric part of a stiffness has a potential.
     skew = () if form.conservative else ((0.5, ("B",)), (-0.5, ("K", "Kg")))
     for sign, names in skew:

@@ -182,7 +182,7 @@ def simulate(
     Notes
     -----
     With theta as variable, ``q' = M^-1 (p - A q)`` and
-    ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w + f + h/w + p_ext/w^2``.
+    ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w - D q/w + f + h/w + p_ext/w^2``.
     """
     _check_arguments(method, revolutions, steps, rtol, samples, bound, start)
     form = canonical_form(system, _scalar("speed", speed), forcing=forcing)
@@ -344,7 +344,7 @@ def _checks(run: _Request, raw: _Raw, error: float, wanted: float) -> Mapping[st
         checks["liouville"] = Check(drift, _FAIR)
     if raw.symplectic and form.conservative:
         checks["symplectic"] = Check(result.defect, 1e-12)
-    deflection = _deflection(form.system, result.q)
+    deflection = _deflection(form.system, raw.theta, result.q)
     if deflection is not None:
         checks["linear range"] = Check(deflection, LINEAR_RANGE)
         if deflection > LINEAR_RANGE:
@@ -357,8 +357,10 @@ def _checks(run: _Request, raw: _Raw, error: float, wanted: float) -> Mapping[st
     return checks
 
 
-def _deflection(system: LinearPeriodic, q: Array) -> float | None:
+def _deflection(system: LinearPeriodic, theta: Array, q: Array) -> float | None:
     """Return the largest deflection over the reference length; None where it has no meaning."""
+    if system.moving_shape is not None:
+        return _moving_deflection(system, theta, q)
     if system.shape is not None:
         shapes = np.asarray(system.shape(np.linspace(0.0, 1.0, 101)))
         parts = (q[k : k + 4096] @ shapes.T for k in range(0, len(q), 4096))
@@ -366,6 +368,23 @@ def _deflection(system: LinearPeriodic, q: Array) -> float | None:
     if system.reference_length != 1.0:
         return float(np.max(np.abs(q)))
     return None
+
+
+def _moving_deflection(system: LinearPeriodic, theta: Array, q: Array) -> float:
+    """Return the largest deflection of shapes that move with the crank, at 26 places."""
+    # Even angles repeat with every revolution, and so do the shapes.
+    turn = len(q) if len(q) < 2 else max(1, round(2 * np.pi / float(theta[1] - theta[0])))
+    places, largest = np.linspace(0.0, 1.0, 26), 0.0
+    for first in range(0, min(turn, len(q)), 512):
+        part = np.arange(first, min(first + 512, turn, len(q)))
+        shapes = system.shapes(places, theta[part])
+        if shapes is None:  # not with moving shapes; for the type checker
+            return largest
+        for begin in range(0, len(q), turn):
+            rows = q[begin + first : begin + first + len(part)]
+            values = np.einsum("txn,tn->tx", shapes[: len(rows)], rows)
+            largest = max(largest, float(np.max(np.abs(values), initial=0.0)))
+    return largest
 
 
 def _warn_long_step(form: CanonicalForm, method: OneStep, steps: int) -> None:

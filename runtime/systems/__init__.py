@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .assembly import assemble
+from .geometry_series import taylor_in_geometry
 from .modules import EmittedModule, find_module
 
-__all__ = ["EmittedModule", "assemble", "find_module"]
+__all__ = ["EmittedModule", "assemble", "find_module", "taylor_in_geometry"]

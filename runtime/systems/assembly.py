@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import ModuleType
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,19 @@ from ..families.emitted import check_module
 
 Array = NDArray[np.float64]
 
+_ROUND = 8.0 * float(np.finfo(float).eps)
+
+
+class BasisArrays(Protocol):
+    """Shapes that depend on the place of a support, by the integrals that a module asks for."""
+
+    @property
+    def size(self) -> int:
+        """Number of shapes."""
+
+    def array(self, name: str, place: Array) -> Array:
+        """Return integrals at places ``(nt,)`` of the support: ``(nt, n, n)`` or ``(nt, n)``."""
+
 
 def assemble(
     module: ModuleType,
@@ -24,6 +38,7 @@ def assemble(
     parameters: Mapping[str, float],
     modes: int | None = None,
     external: Mapping[str, Callable[[Array], Array]] | None = None,
+    basis: BasisArrays | None = None,
     forcing: bool = True,
     **attributes: Any,
 ) -> LinearPeriodic:
@@ -41,6 +56,9 @@ def assemble(
         Number of modes; needed where the module serves any number.
     external : mapping, optional
         Functions of angle that the module wants passed in, by argument name.
+    basis : object, optional
+        Shapes of a module whose arrays consist of integrals over them: its ``size`` is their
+        number, its ``array(name, place)`` gives the integrals that the module's ``BASIS`` defines.
     forcing : bool
         Whether the forcing terms are taken along.
     **attributes
@@ -49,32 +67,38 @@ def assemble(
     Raises
     ------
     BadInput
-        If the module is of another family, or a parameter, argument or function is missing.
+        If the module is of another family, or a parameter, argument, function or basis is missing.
     """
     check_module(module, "linear_periodic", parameters)
     missing = sorted(set(module.EXTERNAL) - set(external or {}))
     if missing:
         raise bad("external", f"none for {missing}", "a function of angle each", "pass them")
-    modal = _modal_arrays(module, modes)
+    integrals = _integrals(module, geometry, basis)
+    modal = _modal_arrays(module, modes, integrals)
     shared = _angle_kernels(module, geometry, external or {})
     terms = []
     for array, power, scale, angle, mode in module.TERMS:
         if array in MATRICES or forcing:
             function = _function(angle, modal[mode], shared, external or {})
             terms.append(Term(array, scale, function, power))
-    size = next(iter(modal.values())).shape[0]
+    size = (
+        next(v.shape[0] for v in modal.values() if not callable(v)) if basis is None else basis.size
+    )
     if modes is not None and modes != size:
         raise bad("modes", modes, f"{size}, the module's own", "ask for a module of that number")
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]] = _no_scales
     if "scales" in module.RETURNS:
         used = inspect.signature(module.scales).parameters
         fixed = {name: geometry[name] for name in used if name in geometry}
         # Parameters that no term uses (pruned, or forcing left out) stay known to the user.
-        scales = _scales(module, tuple(name for name in used if name not in fixed), fixed)
-    else:
-        scales = _no_scales
+        names = tuple(name for name in used if name not in fixed)
+        scales = partial(_scales, module.scales, module.RETURNS["scales"], names, fixed)
     return LinearPeriodic(
         size=size, terms=tuple(terms), parameters=dict(parameters), scales=scales, **attributes
     )
+
+
+# Functions with some arguments given, and no module among them, so that systems can be pickled.
 
 
 def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
@@ -82,22 +106,25 @@ def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
 
 
 def _scales(
-    module: ModuleType, names: tuple[str, ...], fixed: Mapping[str, float]
-) -> Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]]:
-    returned = module.RETURNS["scales"]
+    function: Callable[..., Any],
+    returned: tuple[str, ...],
+    names: tuple[str, ...],
+    fixed: Mapping[str, float],
+    values: Mapping[str, ArrayLike],
+) -> Mapping[str, Array]:
+    given = {name: np.asarray(values[name], dtype=float) for name in names}
+    result = function(**given, **fixed)
+    if len(returned) == 1:
+        result = (result,)
+    return {name: np.asarray(v) for name, v in zip(returned, result, strict=True)}
 
-    def evaluate(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
-        given = {name: np.asarray(values[name], dtype=float) for name in names}
-        result = module.scales(**given, **fixed)
-        if len(returned) == 1:
-            result = (result,)
-        return {name: np.asarray(v) for name, v in zip(returned, result, strict=True)}
 
-    return evaluate
-
-
-def _modal_arrays(module: ModuleType, modes: int | None) -> dict[str, Array]:
-    found: dict[str, Array] = {}
+def _modal_arrays(
+    module: ModuleType, modes: int | None, integrals: _Integrals | None
+) -> dict[str, Array | Callable[[Array], Array]]:
+    found: dict[str, Array | Callable[[Array], Array]] = {}
+    if integrals is not None:
+        found |= {name: partial(integrals, name) for name in integrals.names}
     for kernel in ("modal_matrices", "modal_vectors"):
         if kernel not in module.RETURNS:
             continue
@@ -122,6 +149,62 @@ def _modal_arrays(module: ModuleType, modes: int | None) -> dict[str, Array]:
     return found
 
 
+def _integrals(
+    module: ModuleType, geometry: Mapping[str, float], basis: BasisArrays | None
+) -> _Integrals | None:
+    if not hasattr(module, "BASIS"):
+        return None
+    if basis is None:
+        raise bad("basis", "none", "shapes for the module's integrals", "pass a basis")
+    wanted = list(inspect.signature(module.place).parameters)[1:]
+    missing = sorted(set(wanted) - set(geometry))
+    if missing:
+        raise bad("geometry", f"none for {missing}", "a value each", "supply them")
+    return _Integrals(module, basis, {name: geometry[name] for name in wanted})
+
+
+class _Integrals:
+    """Integrals over shapes that follow a support, found once for all the terms that ask."""
+
+    def __init__(
+        self, module: ModuleType, basis: BasisArrays, geometry: Mapping[str, float]
+    ) -> None:
+        self._place, self._basis, self._geometry = module.place, basis, geometry
+        self._products: tuple[str, ...] = module.RETURNS.get("basis_products", ())
+        self._multiply: Callable[..., Any] = getattr(module, "basis_products", tuple)
+        self.names = {mode for *_, mode in module.TERMS}
+        self._last: tuple[Array, Array, dict[str, Array]] | None = None
+
+    def __call__(self, name: str, theta: Array) -> Array:
+        last = self._last
+        if last is None or not np.array_equal(last[0], theta):
+            place = np.asarray(self._place(theta, **self._geometry))
+            # A support at the very end, beyond it by rounding.
+            place = np.where(place <= 1.0 + _ROUND, np.minimum(place, 1.0), place)
+            last = self._last = (theta.copy(), place, {})
+        _, place, found = last
+        if name in self._products:
+            return self._product(name, place, found)
+        if name not in found:
+            found[name] = self._basis.array(name, place)
+        return found[name]
+
+    def _product(self, name: str, place: Array, found: dict[str, Array]) -> Array:
+        """Return a matrix that is made of products of vectors."""
+        if name not in found:
+            given = {}
+            for argument in inspect.signature(self._multiply).parameters:
+                vector, _, end = argument.rpartition("_")
+                if vector not in found:
+                    found[vector] = self._basis.array(vector, place)
+                value = found[vector]
+                given[argument] = value[..., None] if end == "row" else value[..., None, :]
+            made = self._multiply(**given)
+            made = (made,) if len(self._products) == 1 else made
+            found |= dict(zip(self._products, made, strict=True))
+        return found[name]
+
+
 class _Shared:
     """An emitted function of angle, evaluated once for all the terms that ask at one array."""
 
@@ -137,13 +220,14 @@ class _Shared:
         self._last: tuple[Array, dict[str, Array]] | None = None
 
     def __call__(self, theta: Array) -> dict[str, Array]:
-        if self._last is None or not np.array_equal(self._last[0], theta):
+        last = self._last
+        if last is None or not np.array_equal(last[0], theta):
             passed = {name: given(theta) for name, given in self._external.items()}
             result = self._function(theta, **self._fixed, **passed)
             values = (result,) if len(self.names) == 1 else result
             table = {n: np.asarray(v) for n, v in zip(self.names, values, strict=True)}
-            self._last = (theta.copy(), table)
-        return self._last[1]
+            last = self._last = (theta.copy(), table)
+        return last[1]
 
 
 def _angle_kernels(
@@ -169,19 +253,28 @@ def _angle_kernels(
 
 def _function(
     angle: str | None,
-    modal: Array,
+    modal: Array | Callable[[Array], Array],
     shared: Mapping[str, _Shared],
     external: Mapping[str, Callable[[Array], Array]],
 ) -> Array | Callable[[Array], Array]:
-    """Return the constant modal array, or the function of angle that multiplies it."""
+    """Return the modal array, or the function of angle that multiplies it."""
     if angle is None:
         return modal
-    if angle in shared:
-        kernel = shared[angle]
-        return lambda theta: _outer(kernel(theta)[angle], modal)
-    given = external[angle]
-    return lambda theta: _outer(given(theta), modal)
+    own = angle in shared
+    factor = partial(_of_kernel, shared[angle], angle) if own else external[angle]
+    return partial(_multiplied, factor, modal)
 
 
-def _outer(values: Array, modal: Array) -> Array:
-    return values.reshape(*values.shape, *(1,) * modal.ndim) * modal
+def _of_kernel(kernel: _Shared, name: str, theta: Array) -> Array:
+    return kernel(theta)[name]
+
+
+def _multiplied(
+    factor: Callable[[Array], Array], modal: Array | Callable[[Array], Array], theta: Array
+) -> Array:
+    return _each(factor(theta), modal(theta) if callable(modal) else modal[None])
+
+
+def _each(values: Array, arrays: Array) -> Array:
+    """Return each array times the value at its angle."""
+    return values.reshape(*values.shape, *(1,) * (arrays.ndim - 1)) * arrays

@@ -27,10 +27,18 @@ class EmittedModule:
     folder: Path
     module: ModuleType
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Make pickled and copied ones load the module, which is no value itself."""
+        return _loaded, (self.entry, self.folder)
+
     @property
     def provenance(self) -> dict[str, str]:
         """Name and content hash, for results."""
         return {"module": self.entry.module, "module_hash": self.entry.content}
+
+
+def _loaded(entry: Entry, folder: Path) -> EmittedModule:
+    return EmittedModule(entry, folder, _load(folder, entry))
 
 
 def search_path(folders: Sequence[str | Path] = ()) -> Iterator[Path]:

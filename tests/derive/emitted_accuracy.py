@@ -20,9 +20,15 @@ from elastolink import generated
 from elastolink.derive.checks import ALLOWED, Exact, Judgement, Point, exact_at, judge, worst
 from forces_truth import VARIANTS
 from forces_truth import exact_points as exact_forces
+from free_free_truth import MODES_MODULE, ROD_MODULES, exact_free_free
 from linkage_truth import exact_points
 from meissner_truth import exact_meissner
 from multibody_truth import exact_points as exact_multibody
+from overhang_truth import exact_points as exact_overhang
+from rod_polynomial_truth import MODULE as ROD_POLYNOMIALS
+from rod_polynomial_truth import exact_polynomials
+from rod_truth import MODULES as MOVING_RODS
+from rod_truth import exact_moving
 from sensitivity_truth import EXACT as SENSITIVITIES
 from sliding_truth import EXACT as SLIDING
 
@@ -234,10 +240,18 @@ def _modal_points(module: str, function: str) -> Iterator[tuple[tuple[str, ...],
 
 
 def _exact(module: str, function: str) -> tuple[Exact, ...]:
+    if module == "quick_return_overhang_modes":
+        return exact_overhang(function)
     if "_multibody" in module:
         return exact_multibody(module)
     if "_forces" in module:
         return exact_forces(module, function)
+    if module == MODES_MODULE or module.startswith(ROD_MODULES):
+        return exact_free_free(module, function)
+    if module == ROD_POLYNOMIALS:
+        return exact_polynomials(function)
+    if module in MOVING_RODS:
+        return exact_moving(module, function)
     if module in SENSITIVITIES:
         return SENSITIVITIES[module]()
     if module in SLIDING:

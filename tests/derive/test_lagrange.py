@@ -145,6 +145,16 @@ def test_variational_equations_are_the_derivative_of_the_residual():
     assert varied.damping == sp.diag(c, 0, 0)
     # the rod's force stiffens: its multiplier stands in the stiffness
     assert varied.stiffness.has(*found.multipliers)
+    rates = dict(zip(found.coordinates, found.velocities, strict=True))
+    pushes = dict(zip(found.velocities, varied.accelerations, strict=True))
+
+    def along(matrix):
+        chain = [matrix.diff(one) * rate for one, rate in {**rates, **pushes}.items()]
+        return sum(chain, matrix.diff(found.t))
+
+    once = along(found.jacobian)
+    assert sp.expand(once - varied.jacobian_rate) == sp.zeros(1, 3)
+    assert sp.expand(along(once) - varied.jacobian_acceleration) == sp.zeros(1, 3)
 
 
 def equation_of_motion(system: DiscreteSystem, q: sp.Matrix, qd: sp.Matrix, qdd: sp.Matrix):

@@ -290,9 +290,8 @@ def test_the_hash_covers_every_model_file_that_is_read(entry):
         wanted.add(name)
         text = (entry.paths()[0].parent / name).read_text()
         near = re.findall(r"^from \.(\w+) import", text, re.M)
-        near += [
-            n.strip() for g in re.findall(r"^from \. import (.+)", text, re.M) for n in g.split(",")
-        ]
+        groups = re.findall(r"^from \. import (.+)", text, re.M)
+        near += [n.split()[0] for group in groups for n in group.split(",")]
         pending |= {Path(f"{n}.py") for n in near} - {Path(n) for n in wanted}
     assert wanted == set(entry.sources)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
+import pytest
 from elastolink.runtime.hill import discriminant
 from elastolink.runtime.results import Check, DeferredChecks, Result, provenance
 from elastolink.runtime.series.periodic import PeriodicFunction
@@ -91,6 +92,17 @@ def test_json_holds_mappings_and_exported_properties():
     found = sample(marks={"measured": (1.0, np.inf)}).to_dict()
     assert found["marks"] == {"measured": [1.0, None]}
     assert found["largest"] == 23.0
+
+
+def test_netcdf_splits_complex_arrays(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    path = sample(x=np.array([1.0 + 2.0j, -3.0j, 4.0])).save(tmp_path / "r.nc")
+    with xarray.open_dataset(path) as kept:
+        assert kept["x_real"].dims == kept["x_imag"].dims == ("x",)
+        np.testing.assert_array_equal(kept["x_real"].values, [1.0, 0.0, 4.0])
+        np.testing.assert_array_equal(kept["x_imag"].values, [2.0, -3.0, 0.0])
+        np.testing.assert_array_equal(kept["table"].values, sample().table)
+        assert "x" not in kept.variables
 
 
 def test_without_checks_it_passes_and_says_so():

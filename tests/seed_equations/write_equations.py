@@ -9,7 +9,10 @@ from pathlib import Path
 import sympy as sp
 from seed_ledger import VERDICTS, Entry, entries, inventory, title
 
-TARGET = Path(__file__).resolve().parents[2] / "docs" / "equations.md"
+TESTS = Path(__file__).resolve().parents[1]
+TARGET = TESTS.parent / "docs" / "equations.md"
+# What pytest's conftest does for the entries' own imports.
+sys.path += [str(TESTS / "derive"), str(TESTS / "convergence")]
 _HEAD = """# The documents' equations, checked
 
 Each row is one equation of a document: the verdict of the test named in its last cell, the printed

@@ -188,6 +188,20 @@ def test_variational_equations_are_the_derivative_of_the_motion(systems):
         np.testing.assert_allclose(found["damping"][:, k], damping, atol=1e-8)
 
 
+def test_the_jacobian_is_differentiated_along_the_motion(systems):
+    system = systems("driven")
+    t, step = 0.3, 1e-4
+    q, qd = cartesian(STROKE * np.sin(DRIVE * t), 0.9, STROKE * DRIVE * np.cos(DRIVE * t), 1.4)
+    qdd, multipliers = system.accelerations(q, qd, t)
+    found = system.variations(q, qd, qdd, multipliers, t)
+    before, now, after = (
+        system.violation(q + s * qd + s**2 / 2 * qdd, t + s)["jacobian"] for s in (-step, 0.0, step)
+    )
+    np.testing.assert_allclose(found["jacobian_rate"], (after - before) / (2 * step), atol=1e-8)
+    second = (after - 2 * now + before) / step**2
+    np.testing.assert_allclose(found["jacobian_acceleration"], second, atol=1e-6)
+
+
 def test_names_and_parameters(systems, emit):
     system = systems("multiplier")
     assert system.labels == ("s", "px", "py")

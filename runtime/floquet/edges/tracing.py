@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import bad
-from ...families import LinearPeriodic
+from ...families import DAMPING, LinearPeriodic
 from ...results import Result, provenance
 from ..boundary_speeds import SpeedBoundaries, speed_boundaries, speed_span
-from ..first_order import canonical_form, numbers
+from ..first_order import at_geometry, canonical_form, numbers
 from ..monodromy_matrix import floquet_multipliers
 from .checks import edge_checks
 from .damped_edges import damped_regions
@@ -149,7 +149,7 @@ def stability_edges(
     margin : float
         Factor beyond the range up to which is searched, so that regions are seen whole.
     **parameters : float
-        Parameter values that replace the system's own.
+        Parameter values that replace the system's own; geometry too, where it can be changed.
 
     Returns
     -------
@@ -174,8 +174,10 @@ def stability_edges(
     rtol, margin = (_number(name, value) for name, value in (("rtol", rtol), ("margin", margin)))
     if not 1e-13 <= rtol <= 1e-6:
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-6", "choose 1e-11")
+    system, values = at_geometry(system, parameters)
+    parameters = {name: float(numbers(name, value)) for name, value in values.items()}
     form = canonical_form(system, low, parameters)
-    sharp = replace(system, terms=tuple(t for t in system.terms if t.array != "C"))
+    sharp = system.without(*DAMPING)
     if not canonical_form(sharp, low, parameters).conservative:
         raise bad(
             "system",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic, Term
+from ...families import DAMPING, LinearPeriodic, Term
 from ...results import Check
 from ..monodromy_matrix import floquet_multipliers
 from .ends import expected
@@ -169,8 +170,8 @@ class TongueChecks:
         if self.resonance.detuning != "speed":
             speed, given[self.resonance.detuning] = np.full(len(at), self.speed), at
         factor = float(self.places.damping.ravel()[place])
-        terms = tuple(_damped(term, factor) for term in self.system.terms)
-        exact = floquet_multipliers(replace(self.system, terms=terms), speed, rtol=1e-11, **given)
+        damped = self.system.with_changed_terms(partial(_damped, factor=factor))
+        exact = floquet_multipliers(damped, speed, rtol=1e-11, **given)
         told = self._told(place, at)
         nearest = np.argmin(np.abs(told[:, :, None] - exact.multipliers[:, None, :]), axis=-1)
         modulus = np.take_along_axis(np.abs(exact.multipliers), nearest, axis=-1)
@@ -198,7 +199,7 @@ class TongueChecks:
 
 def _damped(term: Term, factor: float) -> Term:
     """Return a term, multiplied by a factor where it is damping."""
-    if term.array != "C" or factor == 1.0:
+    if term.array not in DAMPING or factor == 1.0:
         return term
     given = term.function
     scaled = (lambda theta: factor * given(theta)) if callable(given) else factor * given

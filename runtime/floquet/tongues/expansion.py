@@ -17,7 +17,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from ...errors import bad
-from ...families import LinearPeriodic, Term
+from ...families import DAMPING, LinearPeriodic, Term
 from ..first_order import SPEED_POWER, even_angles
 
 Array = NDArray[np.float64]
@@ -27,6 +27,7 @@ RealSeries = dict[Index, Array]
 Series = dict[Index, ComplexArray]
 
 ZERO: Index = (0, 0, 0, 0)
+_ARRAYS = ("M", "A", "B", *DAMPING, "K", "Kg")
 _NODES = 24
 # Chebyshev coefficients below this, over the largest, are round-off of the samples.
 _NOISE = 1e-14
@@ -128,6 +129,7 @@ def generator_series(point: Point, order: int) -> RealSeries:
     lower: RealSeries = {}
     accumulate(lower, arrays["B"])
     accumulate(lower, arrays["K"], -1.0)
+    accumulate(lower, arrays["D"], -1.0)
     accumulate(lower, multiply(back, slope, order), -1.0)
     out: RealSeries = {}
     first, last = slice(0, n), slice(n, 2 * n)
@@ -157,17 +159,17 @@ def _inverse(mass: RealSeries, order: int) -> RealSeries:
 
 
 def _arrays(point: Point, order: int) -> dict[str, RealSeries]:
-    """Return M, A, B, C and K + Kg of the equation in the angle, as series of samples."""
+    """Return M, A, B, C, D and K + Kg of the equation in the angle, as series of samples."""
     system = point.system
     theta = even_angles(system.period, _samples(system, order))
     factors = _factors(point, order)
-    out: dict[str, RealSeries] = {name: {} for name in ("M", "A", "B", "C", "K")}
+    out: dict[str, RealSeries] = {name: {} for name in ("M", "A", "B", *DAMPING, "K")}
     for term, factor in zip(system.terms, factors, strict=True):
-        if term.array not in ("M", "A", "B", "C", "K", "Kg") or not factor:
+        if term.array not in _ARRAYS or not factor:
             continue
         values = np.asarray(term(theta), dtype=float)
         into = out["K" if term.array == "Kg" else term.array]
-        damping = int(term.array == "C")
+        damping = int(term.array in DAMPING)
         if point.parameter is None and not term.constant:
             mean = np.broadcast_to(values.mean(axis=0), values.shape)
             parts = [(0, mean), (1, values - mean)]
@@ -292,6 +294,4 @@ def constant_at(system: LinearPeriodic, parameters: Mapping[str, float]) -> bool
     def rests(term: Term) -> bool:
         return term.constant or (term.scale is not None and not np.any(scales[term.scale]))
 
-    return all(
-        rests(term) for term in system.terms if term.array in ("M", "A", "B", "C", "K", "Kg")
-    )
+    return all(rests(term) for term in system.terms if term.array in _ARRAYS)

@@ -1,0 +1,106 @@
+"""``elastolink simulate`` and ``stability`` of scenes whose equations are constrained."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from ..errors import bad
+from . import options as opt
+
+if TYPE_CHECKING:
+    from ..constrained import ConstrainedMultipliers, PeriodicOrbit
+    from ..scenes import Scene
+    from ..systems.rod import FreeFreeRod
+
+
+def is_constrained(scene: Scene) -> bool:
+    """Return True where the scene's formulation leads to a constrained system."""
+    return bool(scene.model["formulation"] == "free_free")
+
+
+def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
+    """Return the scene's system at the crank speed of the option, or of the scene.
+
+    Raises
+    ------
+    BadInput
+        If the option is no single speed.
+    """
+    from ..scenes import load_scene
+    from .linkages import speed_of
+
+    if options.speed is not None and ":" in options.speed:
+        fix = "give one, or use formulation 'free_free_linear'"
+        raise bad(
+            "--speed", repr(options.speed), "one speed: each has its own periodic motion", fix
+        )
+    speed = speed_of(options, scene)
+    changes = opt.settings(options.set)
+    found = load_scene(options.scene, overrides={**changes, "operation.speed": speed})
+    system: FreeFreeRod = found.system()  # type: ignore[assignment]
+    return system
+
+
+def stability(options: argparse.Namespace, scene: Scene) -> int:
+    """Find the periodic motion by shooting, and the multipliers about it."""
+    from ..constrained import orbit_multipliers
+    from ..systems.rod import rod_orbit
+
+    orbit = rod_orbit(at_speed(options, scene))
+    if not orbit.converged:
+        return opt.finish(options, orbit, [f"no periodic motion: {orbit.message}"])
+    result = orbit_multipliers(orbit)
+    rows = [
+        (f"{value.real:+.9f} {value.imag:+.9f}i", f"{abs(value):.9f}") for value in result.physical
+    ]
+    lines = [
+        *opt.table(("physical multiplier", "modulus"), rows),
+        "",
+        f"{_verdict(orbit, result)}; largest deflection {orbit.deflection:.3g} of the "
+        f"length; {len(result.others)} more multipliers belong to the constraints and are 1",
+    ]
+    return opt.finish(options, result, lines, beside=(orbit,))
+
+
+def _verdict(orbit: PeriodicOrbit, found: ConstrainedMultipliers) -> str:
+    """Return the verdict, and whether the equations hold where it was found."""
+    told = ("stable" if found.stable else "unstable") + " about the periodic motion"
+    reached = orbit.checks["linear range"]
+    if not orbit.checks["accuracy"].passed:
+        return f"not known: the periodic motion is known to {orbit.error:.2g} only"
+    if not reached.passed:
+        return (
+            f"no verdict on the rod: the motion leaves the linear range, {reached.limit:g} of the "
+            f"length, where the equations hold; by them it is {told}"
+        )
+    return told
+
+
+def simulate(options: argparse.Namespace, scene: Scene) -> int:
+    """Integrate the constrained equations from the undeformed rod."""
+    from ..constrained.steppers import METHODS
+    from ..systems.rod.motion import rod_motion
+
+    for name in ("initial", "steps"):
+        if getattr(options, name) is not None:
+            fix = "leave it out: the motion starts from the undeformed rod"
+            raise bad(f"--{name}", "a value", "none for constrained equations", fix)
+    method = options.method or "projection"
+    if method not in METHODS:
+        raise bad("--method", repr(method), f"one of {sorted(METHODS)}", "choose one")
+    rod = at_speed(options, scene)
+    result = rod_motion(rod, options.revolutions, method=method, progress=sys.stderr.isatty())
+    norms = [
+        (name, f"{float(getattr(result, f'{name}_norm').max()):.2e}")
+        for name in ("position", "velocity", "acceleration")
+    ]
+    lines = [
+        *opt.ranges(result),
+        "",
+        *opt.table(("constraints, level of", "largest scaled defect"), norms),
+        "",
+        f"status: {result.message}",
+    ]
+    return opt.finish(options, result, lines)

@@ -1,0 +1,105 @@
+"""``elastolink steady-state``: periodic motion of a flexible link, at one speed or over many."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ..errors import bad
+from . import options as opt
+from .linkages import speed_of
+
+if TYPE_CHECKING:
+    from ..response import SteadyPeaks, SteadyState
+
+_PLACES = 41
+_ROWS = 25
+_HEADER = ("speed [rad/s]", "deflection [m]", "at x/length", "multiplier from 1", "motion")
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand."""
+    steady = opt.command(
+        commands,
+        "steady-state",
+        _steady_state,
+        summary="Periodic motion of a flexible link without marching; resonances over the speed.",
+        example=(
+            "elastolink steady-state beale_1992_flexible_rod --speed '100 rad/s'\n"
+            "  elastolink steady-state beale_1992_flexible_rod --set links.crank_ratio=0.1 \\\n"
+            "      --set rod.damping_ratio=0.002 --speed 60:1000:471 --plot resonances.png"
+        ),
+    )
+    opt.scene_options(steady)
+    steady.add_argument(
+        "--speed",
+        metavar="SPEED",
+        help="'500 rpm', or START:STOP:COUNT[UNIT], rad/s without a unit; default operation.speed",
+    )
+    steady.add_argument(
+        "--at",
+        type=float,
+        metavar="X",
+        help="place on the link, 0 to 1, whose deflection is shown; default where it is largest",
+    )
+
+
+def _steady_state(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    opt.picture(options)
+    if options.at is not None and not 0.0 <= options.at <= 1.0:
+        raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
+    scene = opt.load(options)
+    if options.speed is not None and ":" in options.speed:
+        speeds = opt.values(options.speed, "frequency", "--speed")
+        if speeds[0] <= 0:
+            raise bad("--speed", repr(options.speed), "positive speeds", "raise the lower end")
+    else:
+        speeds = [speed_of(options, scene)]
+    system = scene.linear_system()
+    shown = sys.stderr.isatty() and not options.json
+    if len(speeds) > 1:
+        from ..response import steady_peaks
+
+        # Of many motions the largest deflections are kept, not the motions.
+        found = steady_peaks(system, np.array(speeds), x=options.at, progress=shown)
+        more = {"peak_deflection": found.peak.tolist()}
+        return opt.finish(options, found, _lines(found), more=more)
+    from ..response import steady_state
+
+    result = steady_state(system, np.array(speeds), progress=shown)
+    places = np.linspace(0.0, 1.0, _PLACES) if options.at is None else np.array([options.at])
+    reached = result.peak(places)[0]
+    rows = [_row(result, 0, float(np.max(reached)), float(places[np.argmax(reached)]))]
+    more = {"peak_deflection": [float(np.max(reached))]}
+    return opt.finish(options, result, opt.table(_HEADER, rows), more=more)
+
+
+def _row(
+    found: SteadyState | SteadyPeaks, index: int, peak: float, place: float
+) -> tuple[str, str, str, str, str]:
+    return (
+        f"{found.speed[index]:.6g}",
+        f"{peak:.6g}",
+        f"{place:.2f}",
+        f"{found.distance[index]:.3g}",
+        "stable" if found.stable[index] else "unstable",
+    )
+
+
+def _lines(found: SteadyPeaks) -> list[str]:
+    """Return a row per speed, or per resonance where there are many."""
+    import numpy as np
+
+    speeds, peaks = found.speed, found.peak
+    chosen = np.arange(len(speeds))
+    title: list[str] = []
+    if len(speeds) > _ROWS:
+        inner = (peaks[1:-1] > peaks[:-2]) & (peaks[1:-1] >= peaks[2:])
+        chosen = np.flatnonzero(inner) + 1
+        chosen = np.sort(chosen[np.argsort(-peaks[chosen], kind="stable")[:_ROWS]])
+        title = [f"{len(speeds)} speeds; where the deflection is larger than beside:", ""]
+    rows = [_row(found, int(i), float(peaks[i]), float(found.place[i])) for i in chosen]
+    return [*title, *opt.table(_HEADER, rows)]

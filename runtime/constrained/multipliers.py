@@ -1,0 +1,340 @@
+"""Floquet multipliers of a constrained system in its redundant coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import bad
+from ..results import Check, Result, provenance
+from .gauss_steps import Ring
+from .orbits import OrbitSource, PeriodicOrbit
+from .shooting import Shot, junctions
+from .variational import Array, Scale, Tangent, linearised
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+ComplexArray = NDArray[np.complex128]
+
+_EPS = float(np.finfo(float).eps)
+# Of the difference between a grid and one twice as fine, in the finer one (order 24: 2^-24).
+_LEFT = 1.0 / 64
+# Error from which a multiplier says nothing about stability.
+_TELLING = 0.1
+# In place of an error that is not finite.
+_HOPELESS = 1e6
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConstrainedMultipliers(Result):
+    """Floquet multipliers about a periodic motion: physical ones, and those of the constraints.
+
+    The variation of the index-reduced equations moves 2n numbers, n coordinates and n velocities.
+    Variations that meet the k constraints at position and velocity level stay so: restricted to
+    them the flow has the 2(n - k) physical multipliers.  What is left over, violations of the
+    constraints, obeys ``d2 Phi/dt2 = 0`` whatever the motion: 2k multipliers 1, in k Jordan
+    blocks.
+
+    Attributes
+    ----------
+    physical : ndarray of complex, shape (2(n - k),)
+        By falling modulus, then by the size of the argument, upper half plane first.
+    error : ndarray, shape (2(n - k),)
+        Absolute error of each physical multiplier.
+    others : ndarray of complex, shape (2k,)
+        Eigenvalues of the flow on the violations, as computed; exactly they are 1.
+    others_error : float
+        How far from 1 rounding can drive eigenvalues in Jordan blocks of two: a square root.
+    violation_defect : float
+        Flow on the violations less its exact form, relative; free of that square root.
+    monodromy : ndarray, shape (2n, 2n)
+        Whole monodromy matrix in coordinates and velocities.
+    reduced : ndarray, shape (2(n - k), 2(n - k))
+        Monodromy matrix in an orthonormal basis of the tangent space, states scaled.
+    basis : ndarray, shape (2n, 2(n - k))
+        That basis, in coordinates and velocities.
+    period : float
+        Period [s].
+    """
+
+    physical: ComplexArray
+    others: ComplexArray
+    others_error: float
+    violation_defect: float
+    monodromy: Array
+    reduced: Array
+    basis: Array
+    period: float
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "physical": ("multiplier",),
+        "error": ("multiplier",),
+        "others": ("other",),
+        "monodromy": ("state", "state_1"),
+        "reduced": ("tangent", "tangent_1"),
+        "basis": ("state", "tangent"),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("stable", "largest", "growth")
+
+    @property
+    def multipliers(self) -> ComplexArray:
+        """All 2n multipliers, the physical ones first."""
+        return np.concatenate([self.physical, self.others])
+
+    @property
+    def largest(self) -> float:
+        """Largest modulus of a physical multiplier."""
+        return float(np.max(np.abs(self.physical), initial=0.0))
+
+    @property
+    def stable(self) -> bool:
+        """True where no physical multiplier is outside the unit circle by more than its error.
+
+        Never True where that is not known: an error of 0.1 or more says nothing, the multiplier
+        then has to be inside by its error.
+        """
+        slack = np.where(self.error < _TELLING, self.error, -self.error)
+        return bool(np.all(np.abs(self.physical) <= 1.0 + slack))
+
+    @property
+    def growth(self) -> float:
+        """Largest growth rate of the logarithm of a disturbance [1/s]."""
+        return float(np.log(self.largest) / self.period) if self.largest > 0 else -np.inf
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw physical and constraint multipliers and the unit circle; return the axes."""
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            ax = Figure().add_subplot()
+        circle = np.exp(1j * np.linspace(0.0, 2 * np.pi, 361))
+        ax.plot(circle.real, circle.imag, color="0.6", linewidth=0.8)
+        ax.plot(self.physical.real, self.physical.imag, "o", markersize=4, label="physical")
+        if len(self.others):
+            ax.plot(
+                self.others.real,
+                self.others.imag,
+                "s",
+                markersize=7,
+                markerfacecolor="none",
+                label="of the constraints",
+            )
+            ax.legend(frameon=False, fontsize="small")
+        ax.set_aspect("equal")
+        ax.set_xlabel("real part of multiplier")
+        ax.set_ylabel("imaginary part of multiplier")
+        return ax
+
+
+def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
+    """Return the Floquet multipliers about a periodic motion, in the system's own coordinates.
+
+    Answers what Beale & Scott leave open in section 3.1: the coordinates stay those that refer to
+    the ground, and nothing is linearised by hand.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+        A motion that converged.
+
+    Returns
+    -------
+    ConstrainedMultipliers
+        Its checks: ``orbit``, the accuracy of the motion itself, whose error enters that of the
+        multipliers where it is larger than was asked; ``accuracy`` of the monodromy matrix;
+        ``violations``, the flow across the
+        constraints against its exact form; ``tangent``, what the flow carries out of the tangent
+        space; ``liouville``, the determinant against the integral of the divergence; where no
+        forces act but the Lagrangian's, ``symplectic`` and ``reciprocal pairs``.
+
+    Raises
+    ------
+    BadInput
+        If the orbit did not converge.
+    """
+    if orbit.message:
+        raise bad("orbit", orbit.message, "a periodic motion", "mend the shooting first")
+    return linear_multipliers(orbit.source, orbit.checks["accuracy"], orbit.provenance)
+
+
+def linear_multipliers(
+    source: OrbitSource, accuracy: Check, origin: Mapping[str, str]
+) -> ConstrainedMultipliers:
+    """Return the multipliers about a motion on a finer and a coarser grid, known so accurately."""
+    fine, coarse = (_Turn.of(source, shot) for shot in (source.fine, source.coarse))
+    along = fine.tangent.along
+    reduced, rough = fine.reduced, along.T @ coarse.whole @ along
+    norm = float(np.linalg.norm(reduced))
+    # A rounded coefficient turns all phases of a period alike; a fine step covers some 2.5 rad.
+    rounding = _EPS * (16.0 + 2.0 * len(source.fine.ring.q)) * max(norm, 1.0)
+    shift = float(np.linalg.norm(reduced - rough)) * _LEFT + rounding
+    if not accuracy.passed:
+        # About a motion that is off by so much, the coefficients are off by that part or so.
+        shift += _carried(accuracy.value, source) * max(norm, 1.0)
+    physical, error = _eigenvalues(reduced, shift)
+    others, defect, root = _of_violations(fine, source.fine.ring.period, source.scale)
+    size = source.scale.whole
+    checks = {
+        "orbit": accuracy,
+        "accuracy": Check(shift / max(norm, 1.0), 1e-6),
+        "violations": Check(defect, 1e-9),
+        "tangent": Check(fine.leak / max(norm, 1.0), 1e-9),
+        "liouville": _liouville(fine, source.fine, shift),
+    }
+    if not fine.forced:
+        checks |= _conservative(fine, physical, error, shift)
+    return ConstrainedMultipliers(
+        method=f"variational equations along {len(source.fine.ring.q)} Gauss-Legendre steps, "
+        "restricted to the tangent space of the constraints",
+        error=error,
+        error_norm="absolute, of each physical multiplier",
+        checks=checks,
+        provenance=provenance(origin),
+        physical=physical,
+        others=others,
+        others_error=root,
+        violation_defect=defect,
+        monodromy=fine.whole * size / size[:, None],
+        reduced=reduced,
+        basis=along / size[:, None],
+        period=source.fine.ring.period,
+    )
+
+
+def _carried(error: float, source: OrbitSource) -> float:
+    """Return what a relative error of the motion may do to the flow over a period, relatively."""
+    turned = 2 * np.pi + source.scale.rate * source.fine.ring.period
+    return float(np.nan_to_num(error, nan=_HOPELESS, posinf=_HOPELESS) * turned)
+
+
+@dataclass(frozen=True)
+class _Turn:
+    """One turn of the variational equations."""
+
+    whole: Array
+    reduced: Array
+    leak: float
+    logarithm: float
+    sign: float
+    tangent: Tangent
+    form: Array
+    forced: bool
+
+    @classmethod
+    def of(cls, source: OrbitSource, shot: Shot) -> _Turn:
+        system, scale, ring = source.system, source.scale, shot.ring
+        meeting = junctions(system, ring, scale)
+        back = np.swapaxes(ring.following(meeting.along), -1, -2)
+        carried = shot.sweep.maps @ meeting.along
+        steps = back @ carried
+        left = np.swapaxes(ring.following(meeting.across), -1, -2) @ carried
+        sign, logarithm = np.linalg.slogdet(steps)
+        whole, reduced = np.eye(shot.sweep.maps.shape[-1]), np.eye(steps.shape[-1])
+        for one, inner in zip(shot.sweep.maps, steps, strict=True):
+            whole, reduced = one @ whole, inner @ reduced
+        first = Tangent(meeting.normals[0], meeting.along[0], meeting.across[0])
+        return cls(
+            whole,
+            reduced,
+            float(np.max(np.abs(left), initial=0.0)),
+            float(np.sum(logarithm)),
+            float(np.prod(sign)),
+            first,
+            _symplectic_form(source, ring),
+            shot.sweep.found.forced,
+        )
+
+
+def _symplectic_form(source: OrbitSource, ring: Ring) -> Array:
+    """Return the form ``dq . dp' - dq' . dp`` at the start, in scaled states.
+
+    With ``p = dL/dqd``, D = M' + P - P^T where P = dp/dq: the antisymmetric part of the damping
+    matrix is all of P that the form needs.
+    """
+    scale = source.scale
+    found = linearised(source.system, ring.q[:1], ring.qd[:1], ring.start[:1])
+    n = found.mass.shape[-1]
+    form = np.zeros((2 * n, 2 * n))
+    form[:n, :n] = (found.damping[0] - found.damping[0].T) / (2.0 * scale.rate)
+    form[:n, n:] = found.mass[0]
+    form[n:, :n] = -found.mass[0]
+    pair = np.concatenate([scale.size, scale.size])
+    scaled: Array = form / pair[:, None] / pair
+    return scaled
+
+
+def _eigenvalues(matrix: Array, shift: float) -> tuple[ComplexArray, Array]:
+    """Return the eigenvalues in a fixed order, each with its error from that of the matrix."""
+    if not matrix.size:
+        return np.zeros(0, dtype=complex), np.zeros(0)
+    from ..floquet.eigenvalues import conditions, multiplier_order
+
+    values, vectors = np.linalg.eig(matrix)
+    values = values.astype(complex)
+    norm = float(np.linalg.norm(matrix))
+    condition = conditions(vectors[None])[0]
+    near = np.sum(np.abs(values[:, None] - values) <= 2 * np.sqrt(norm * shift), axis=-1)
+    root = 2 * norm * (shift / norm) ** (1 / np.maximum(near, 2))
+    error = np.minimum(condition * shift, root)
+    with np.errstate(divide="ignore"):
+        order = multiplier_order(np.log(np.abs(values)), np.angle(values))
+    return values[order], error[order]
+
+
+def _of_violations(turn: _Turn, period: float, scale: Scale) -> tuple[ComplexArray, float, float]:
+    """Return the eigenvalues across the constraints, their defect, and what rounding may do."""
+    normals, across = turn.tangent.normals, turn.tangent.across
+    k = normals.shape[0] // 2
+    if k == 0:
+        return np.zeros(0, dtype=complex), 0.0, 0.0
+    # Violations (Phi, dPhi/dt / rate) before and after: exactly [[1, period rate], [0, 1]].
+    square = normals @ across
+    carried = np.linalg.solve(square.T, (normals @ turn.whole @ across).T).T
+    exact = np.eye(2 * k)
+    exact[:k, k:] += period * scale.rate * np.eye(k)
+    size = float(np.linalg.norm(exact))
+    away = float(np.linalg.norm(carried - exact))
+    values = np.linalg.eigvals(across.T @ turn.whole @ across).astype(complex)
+    # z = value - 1 of a disturbed block: |z|^2 <= (period rate + |z|) |disturbance|.
+    disturbed = away + 16.0 * k * _EPS * size * float(np.linalg.cond(square))
+    reach = 2.0 * (np.sqrt(period * scale.rate * disturbed) + disturbed)
+    return values, away / size, float(reach)
+
+
+def _liouville(turn: _Turn, shot: Shot, shift: float) -> Check:
+    """Compare the determinant with the divergence of the index-reduced flow.
+
+    The violations have determinant 1, so that of the whole is that of the physical part.
+    """
+    ring, sweep = shot.ring, shot.sweep
+    trace = np.trace(sweep.found.by_qd, axis1=-2, axis2=-1)
+    total = float(ring.step * np.sum(trace @ ring.tableau.b))
+    gap = abs(turn.logarithm - total) if turn.sign > 0 else np.inf
+    p = len(turn.reduced)
+    return Check(gap, 8 * p * shift * max(1.0, float(np.linalg.norm(turn.reduced))) + 1e-12)
+
+
+def _conservative(
+    turn: _Turn, physical: ComplexArray, error: Array, shift: float
+) -> dict[str, Check]:
+    """Check the form that the reduced flow keeps, and that multipliers come in reciprocal pairs."""
+    along = turn.tangent.along
+    form = along.T @ turn.form @ along
+    kept = turn.reduced.T @ form @ turn.reduced
+    norm = float(np.linalg.norm(turn.reduced))
+    defect = float(np.linalg.norm(kept - form) / (np.linalg.norm(form) * norm**2))
+    gaps = np.abs(physical[:, None] * physical - 1.0)
+    own = error / np.maximum(np.abs(physical), np.finfo(float).tiny)
+    partner = np.argmin(gaps, axis=-1)
+    value = gaps[np.arange(len(physical)), partner]
+    limit = 4 * (own + own[partner]) + 64 * _EPS
+    worst = int(np.argmax(value / limit))
+    return {
+        "symplectic": Check(defect, max(8 * len(along.T) * shift, 1e-12)),
+        "reciprocal pairs": Check(float(value[worst]), float(limit[worst])),
+    }

@@ -1,0 +1,144 @@
+"""The linear equations of accelerations and multipliers, scaled, with a named refusal."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import Problem, RedundantConstraints
+
+Array = NDArray[np.float64]
+
+# A singular value of the scaled Jacobian below this part of the largest counts as zero.
+RANK = 1e-11
+
+
+def powers_of_two(values: Array) -> Array:
+    """Return the powers of two next to ``1 / values``; 1 where a value is zero.
+
+    Scaling by them is exact.
+    """
+    used = np.where((values > 0) & np.isfinite(values), values, 1.0)
+    scaled: Array = np.exp2(-np.round(np.log2(used)))
+    return scaled
+
+
+def scaling(mass: Array, jacobian: Array) -> tuple[Array, Array]:
+    """Return factors of columns and rows that make masses and constraint rows of unit size.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (*batch, n, n)
+        Mass matrix.
+    jacobian : ndarray, shape (*batch, k, n)
+        Jacobian of the constraints.
+
+    Returns
+    -------
+    columns : ndarray, shape (*batch, n)
+        ``S``: ``q = S q'``; the coordinates are measured by their inertia.
+    rows : ndarray, shape (*batch, k)
+        ``R``: the rows of ``R Phi_q S`` have unit length.
+    """
+    columns = powers_of_two(np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1))))
+    rows = powers_of_two(np.linalg.norm(jacobian * columns[..., None, :], axis=-1))
+    return columns, rows
+
+
+def check_rank(jacobian: Array, columns: Array, rows: Array) -> None:
+    """Refuse a Jacobian whose rows depend on each other.
+
+    Parameters
+    ----------
+    jacobian, columns, rows : ndarray
+        As in :func:`scaling`.
+
+    Raises
+    ------
+    RedundantConstraints
+        If the smallest singular value of the scaled Jacobian is below 1e-11 of the largest.
+    """
+    k, n = jacobian.shape[-2:]
+    if k == 0:
+        return
+    if k > n:
+        raise _redundant(f"{k} constraints on {n} coordinates")
+    scaled = rows[..., :, None] * jacobian * columns[..., None, :]
+    values = np.linalg.svd(scaled, compute_uv=False)
+    least = float(np.min(values[..., -1] / np.maximum(values[..., 0], np.finfo(float).tiny)))
+    if not least > RANK:
+        raise _redundant(f"a Jacobian of reciprocal condition {least:.2g}")
+
+
+def _redundant(found: str) -> RedundantConstraints:
+    return RedundantConstraints(
+        Problem(
+            "constraints",
+            found,
+            "rows that do not depend on each other at every state",
+            "drop a redundant constraint, or leave the position where the linkage can branch",
+        )
+    )
+
+
+def kkt_matrix(mass: Array, jacobian: Array) -> Array:
+    """Return ``[[M, -Phi_q^T], [Phi_q, 0]]``, shape ``(*batch, n + k, n + k)``."""
+    k, n = jacobian.shape[-2:]
+    matrix = np.zeros((*mass.shape[:-2], n + k, n + k))
+    matrix[..., :n, :n] = mass
+    matrix[..., :n, n:] = -np.swapaxes(jacobian, -1, -2)
+    matrix[..., n:, :n] = jacobian
+    return matrix
+
+
+def solve_multipliers(
+    mass: Array, jacobian: Array, forces: Array, gamma: Array
+) -> tuple[Array, Array]:
+    """Solve ``M a = Phi_q^T lam + forces``, ``Phi_q a = gamma``.
+
+    The matrix is solved whole, which wants inertia only in what the constraints allow; rows and
+    columns are scaled by powers of two.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (*batch, n, n)
+        Mass matrix.
+    jacobian : ndarray, shape (*batch, k, n)
+        Jacobian of the constraints.
+    forces : ndarray, shape (*batch, n)
+        Right-hand side of the motion.
+    gamma : ndarray, shape (*batch, k)
+        Right-hand side of the constraints.
+
+    Returns
+    -------
+    a : ndarray, shape (*batch, n)
+        Accelerations.
+    lam : ndarray, shape (*batch, k)
+        Multipliers.
+
+    Raises
+    ------
+    RedundantConstraints
+        If the rows of the Jacobian depend on each other, or a motion that they allow has no
+        inertia.
+    """
+    columns, rows = scaling(mass, jacobian)
+    check_rank(jacobian, columns, rows)
+    n = mass.shape[-1]
+    scale = np.concatenate([columns, rows], axis=-1)
+    matrix = scale[..., :, None] * kkt_matrix(mass, jacobian) * scale[..., None, :]
+    right = scale * np.concatenate([forces, gamma], axis=-1)
+    try:
+        solved = np.linalg.solve(matrix, right[..., None])[..., 0]
+    except np.linalg.LinAlgError as singular:
+        raise RedundantConstraints(
+            Problem(
+                "mass",
+                "a motion without inertia that the constraints allow",
+                "a mass matrix that is positive on what the constraints leave free",
+                "give that motion a mass, or hold it by a constraint",
+            )
+        ) from singular
+    solved *= scale
+    return solved[..., :n], solved[..., n:]

@@ -1,0 +1,87 @@
+"""Damping by modal ratios, added to any linear-periodic system at run time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from numbers import Real
+
+import numpy as np
+
+from ..errors import bad
+from ..families import Array, LinearPeriodic, Term
+
+
+def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
+    """Return the system with the same damping ratio in each mode of the frozen mechanism.
+
+    At each crank angle the damping matrix is ``C = sum_k 2 zeta omega_k (M phi_k)(M phi_k)^T``
+    with the natural frequencies and mass-normalised modes of M and K at that angle.
+
+    On shapes that move with the mechanism the rates of the coordinates are not all of the
+    velocity: its projection on the shapes has the coordinates ``qd + td M^-1 A q``.  That whole
+    velocity is damped where the system has moving shapes (``D = C M^-1 A``), so that the answer
+    does not depend on the basis; elsewhere the rates of the coordinates.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With a positive definite mass matrix.
+    ratio : float
+        zeta, not negative; the parameter ``damping_ratio`` of the new system.
+
+    Returns
+    -------
+    LinearPeriodic
+        The matrices are those of the system's own parameters: changing stiffness or mass later
+        does not change the damping.  Another geometry does: ``with_geometry`` damps the modes
+        that the mechanism has there.
+
+    Raises
+    ------
+    BadInput
+        If the ratio is no number, negative or not finite, or the system has that parameter already.
+    """
+    if not (isinstance(ratio, Real) and np.isfinite(ratio) and ratio >= 0.0):
+        raise bad("ratio", repr(ratio), "a finite number, 0 or more", "correct it")
+    if "damping_ratio" in system.parameters:
+        raise bad("system", "modal damping already", "none", "set its damping_ratio instead")
+    matrices = partial(_damping, system)
+    fixed = all(system.is_constant(name) for name in ("M", "K"))
+    function = matrices(np.zeros(1))[0] if fixed else matrices
+    terms = [Term("C", "damping_ratio", function)]
+    if system.moving_shape is not None and system.has("A"):
+        terms.append(Term("D", "damping_ratio", partial(_carried, system)))
+    damped = system.with_terms(*terms, scales={"damping_ratio": float(ratio)})
+    if system.rebuild is None:
+        return damped
+    return replace(damped, rebuild=partial(_damped_anew, system.rebuild, system.parameters, ratio))
+
+
+def _damped_anew(
+    rebuild: Callable[[Mapping[str, float]], LinearPeriodic],
+    parameters: Mapping[str, float],
+    ratio: float,
+    geometry: Mapping[str, float],
+) -> LinearPeriodic:
+    """Return another geometry's system with its own modes damped."""
+    return with_modal_damping(replace(rebuild(geometry), parameters=dict(parameters)), ratio)
+
+
+def _carried(system: LinearPeriodic, theta: Array) -> Array:
+    """Return ``C M^-1 A`` at crank angles, ``(nt, n, n)``."""
+    drift = np.linalg.solve(system.array("M", theta), system.array("A", theta))
+    return np.asarray(_damping(system, theta) @ drift)
+
+
+def _damping(system: LinearPeriodic, theta: Array) -> Array:
+    """Return ``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at crank angles, ``(nt, n, n)``."""
+    mass, stiffness = system.array("M", theta), system.array("K", theta)
+    factor = np.linalg.cholesky(mass)
+    inverse = np.linalg.inv(factor)
+    plain = inverse @ stiffness @ np.swapaxes(inverse, -1, -2)
+    squares, modes = np.linalg.eigh(0.5 * (plain + np.swapaxes(plain, -1, -2)))
+    carried = factor @ modes
+    weights = 2.0 * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
+    return np.asarray((carried * weights) @ np.swapaxes(carried, -1, -2))

@@ -1,0 +1,319 @@
+"""Elastic modes of a free-free beam, and the shapes that the paper's conjecture makes of them.
+
+The modes belong to Beale & Scott's section 2.3: orthonormal over unit length, without mean and
+without moment about the middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ....generated import beam_free_free_modes as emitted
+from ...errors import bad
+from .inputs import require_modes, require_places, require_points
+
+Array = NDArray[np.float64]
+_Function = Callable[..., tuple[Array, ...]]
+_DEFECT: _Function = emitted.root_defect
+_CONSTANTS: _Function = emitted.mode_constants
+_SHAPES: _Function = emitted.modes
+_PRODUCTS: _Function = emitted.slope_products
+_SQUARES: _Function = emitted.slope_squares
+# pi to twice the digits of a double: the multiples that roots start from are rounded once.
+_PI = Fraction(pi) + Fraction(1.2246467991473532e-16)
+_NEWTON = 8
+_MOST = 1000  # modes
+
+
+@dataclass(frozen=True)
+class _Roots:
+    """Roots ``start + offset`` of cos b cosh b = 1, and the parity of their modes."""
+
+    roots: Array
+    parity: Array
+
+
+@lru_cache(maxsize=32)
+def _solved(count: int) -> _Roots:
+    exact = [_PI * (2 * i + 1) / 2 for i in range(1, count + 1)]
+    start = np.array([float(value) for value in exact])
+    rest = np.array([float(value - Fraction(float(value))) for value in exact])
+    parity = np.where(np.arange(1, count + 1) % 2 == 1, 1.0, -1.0)
+    offset = np.zeros(count)
+    for _ in range(_NEWTON):
+        defect, slope = _DEFECT(offset, start, parity)
+        offset = offset - defect / slope
+    roots = start + (offset + rest)
+    for array in (roots, parity):
+        array.flags.writeable = False
+    return _Roots(roots, parity)
+
+
+def free_free_roots(count: int) -> Array:
+    """Return the first positive roots of ``cos b cosh b = 1``, rounded correctly or nearly so.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        Mode i of a free-free beam of length L has ``k_i = b_i / L`` (Beale & Scott (39)).
+
+    Raises
+    ------
+    BadInput
+        If the count is not a whole number from 1 to 1000.
+    """
+    return _solved(_counted(count)).roots
+
+
+def _counted(count: int) -> int:
+    return require_modes(count, _MOST, "the beam has long ceased to be slender for such modes")
+
+
+@dataclass(frozen=True)
+class FreeFreeModes:
+    """Elastic modes 1, 2, ..., ``size`` of a free-free beam of unit length.
+
+    ``psi_i`` solves ``psi'''' = b_i^4 psi`` with ``psi'' = psi''' = 0`` at both ends and has unit
+    square, no mean and no moment about the middle (Beale & Scott (34)-(36)); it is 2 at the right
+    end, eta = 1, and 2 or -2 at the left end, eta = 0.
+
+    Attributes
+    ----------
+    size : int
+        Number of modes.
+
+    Raises
+    ------
+    BadInput
+        If the size is not a whole number from 1 to 1000.
+    """
+
+    size: int
+
+    def __post_init__(self) -> None:
+        """Refuse a size that is none."""
+        object.__setattr__(self, "size", _counted(self.size))
+
+    @cached_property
+    def roots(self) -> Array:
+        """Roots b_i, shape ``(size,)``."""
+        return _solved(self.size).roots
+
+    @cached_property
+    def parity(self) -> Array:
+        """1 for modes that are even about the middle, -1 for odd ones, shape ``(size,)``."""
+        return _solved(self.size).parity
+
+    @cached_property
+    def _constants(self) -> tuple[Array, Array, Array, Array]:
+        """Phase, amplitude and weight of the modes, and their slope at the right end."""
+        number = np.arange(1, self.size + 1)
+        phase = np.asarray((number + 1) % 4 * (pi / 2), dtype=np.float64)
+        amplitude, weight, slope = _CONSTANTS(self.roots, self.parity)
+        return phase, amplitude, weight, slope
+
+    @property
+    def left_values(self) -> Array:
+        """Values at the left end, shape ``(size,)``."""
+        return 2.0 * self.parity
+
+    @property
+    def end_slopes(self) -> Array:
+        """Slopes at the right end, shape ``(size,)``; at the left ``-parity`` times that."""
+        return self._constants[3]
+
+    def __call__(self, eta: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """Return the modes and their first three derivatives along eta.
+
+        Parameters
+        ----------
+        eta : array_like
+            Places from the left end over the length, from 0 to 1, any shape.
+
+        Returns
+        -------
+        value, slope, curvature, third : ndarray
+            Shape ``(*eta.shape, size)`` each.
+        """
+        return self.at(np.asarray(eta, dtype=float)[..., None])
+
+    def at(self, eta: float | Array) -> tuple[Array, Array, Array, Array]:
+        """Return the modes and three derivatives at one place, or at places of shape (..., 1)."""
+        phase, amplitude, weight, _ = self._constants
+        found = _SHAPES(eta, self.roots, phase, self.parity, amplitude, weight)
+        value, slope, curvature, third = found
+        return value, slope, curvature, third
+
+    @cached_property
+    def slope_integrals(self) -> tuple[Array, Array, Array]:
+        """``int s^k psi_i' psi_j' ds`` for k = 0, 1, 2, s from the middle; ``(size, size)`` each.
+
+        By Green's identity from the end values, no quadrature.
+        """
+        b, p, ends = self.roots, self.parity, self.end_slopes
+        rows, columns = np.triu_indices(self.size, 1)
+        pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
+        found = _PRODUCTS(*pairs)
+        plain, second = _SQUARES(ends)
+        made = []
+        for products, squares in zip(found, (plain, np.zeros(self.size), second), strict=True):
+            whole = np.diag(squares)
+            whole[rows, columns] = whole[columns, rows] = products
+            made.append(whole)
+        return made[0], made[1], made[2]
+
+    def tension(self) -> Array:
+        """Return ``int (1 - eta^2)/2 psi_i' psi_j'``, the tension of a rod that turns about a pin.
+
+        Returns
+        -------
+        ndarray, shape (size, size)
+            At ``eta = s + 1/2``, in the integrals over s.
+        """
+        plain, first, second = self.slope_integrals
+        return 0.375 * plain - 0.5 * first - 0.5 * second
+
+
+class FreeFreeBasis:
+    """Free-free modes bent through the pin and the block; see :class:`MovingBasis`.
+
+    ``chi_i = psi_i(eta) - psi_i(0) - (eta / xi) (psi_i(xi) - psi_i(0))``: what the constrained
+    equations (42)-(49) become where the rod's angle against its frame is small, the linearisation
+    that Beale & Scott conjecture (section 3.1).
+    """
+
+    def __init__(self, size: int) -> None:
+        """Choose how many modes."""
+        self._modes = FreeFreeModes(size)
+
+    @property
+    def size(self) -> int:
+        """Number of shapes."""
+        return self._modes.size
+
+    @property
+    def modes(self) -> FreeFreeModes:
+        """The modes that the shapes are made of."""
+        return self._modes
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """One name per shape."""
+        return tuple(f"free-free {i}" for i in range(1, self.size + 1))
+
+    def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
+        """Return the shapes or a derivative by eta, to the third.
+
+        Parameters
+        ----------
+        x : ndarray
+            Places eta on the rod, from 0 to 1, shape ``(nx,)``.
+        place : ndarray
+            Places xi of the block, shape ``(nt,)``.
+        derivative : int
+            Which derivative by eta.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(nt, nx, n)``.
+
+        Raises
+        ------
+        BadInput
+            If a point or the block is not on the rod, or the derivative is not one of 0 to 3.
+        """
+        if derivative not in range(4):
+            raise bad("derivative", derivative, "0, 1, 2 or 3", "higher ones are not offered")
+        lean, _ = self._lean(place)
+        points = require_points(x)
+        eta = points[:, None]
+        of_mode = self._modes(points)[derivative]
+        if derivative == 0:
+            return of_mode - self._modes.left_values - eta * lean[:, None, :]
+        taken = lean[:, None, :] if derivative == 1 else 0.0
+        return np.broadcast_to(of_mode - taken, (len(lean), *of_mode.shape)).copy()
+
+    def array(self, name: str, place: Array) -> Array:
+        """Return the integrals of one name at places xi ``(nt,)``; ``(nt, n, n)`` or ``(nt, n)``.
+
+        In closed form: the modes are orthonormal and free of mean and moment, so that only the
+        straight parts of the shapes are left to integrate.
+
+        Raises
+        ------
+        BadInput
+            If there is no array of that name, or the block is not on the rod.
+        """
+        makers = {
+            "overlap": self._overlap,
+            "drift": self._drift,
+            "drift_drift": self._drift_drift,
+            "bending": self._bending,
+            "bending_drift": self._bending_drift,
+            "tension": self._tension,
+            "moment": self._moment,
+            "mean": self._mean,
+        }
+        if name not in makers:
+            raise bad("array", name, f"one of {sorted(makers)}", "see MovingBasis")
+        return makers[name](*self._lean(place))
+
+    def _lean(self, place: Array) -> tuple[Array, Array]:
+        """Return the slope of the line through pin and block on each mode, and its rate by xi."""
+        xi = require_places(place)
+        value, slope, _, _ = self._modes(xi)
+        lean = (value - self._modes.left_values) / xi[:, None]
+        return lean, (slope - lean) / xi[:, None]
+
+    def _overlap(self, lean: Array, _: Array) -> Array:
+        left = self._modes.left_values
+        return np.eye(self.size) + _straight(left, lean, left, lean)
+
+    def _drift(self, lean: Array, rate: Array) -> Array:
+        return _straight(self._modes.left_values, lean, np.zeros(self.size), rate)
+
+    def _drift_drift(self, lean: Array, rate: Array) -> Array:
+        none = np.zeros(self.size)
+        return _straight(none, rate, none, rate)
+
+    def _bending(self, lean: Array, _: Array) -> Array:
+        elastic = np.diag(self._modes.roots**4)
+        return np.broadcast_to(elastic, (len(lean), *elastic.shape)).copy()
+
+    def _bending_drift(self, lean: Array, _: Array) -> Array:
+        return np.zeros((len(lean), self.size, self.size))
+
+    def _tension(self, lean: Array, _: Array) -> Array:
+        # int (1 - eta^2)/2 psi' = -psi(0)/2 by parts, int (1 - eta^2)/2 = 1/3
+        cross = _outer(np.broadcast_to(self._modes.left_values / 2, lean.shape), lean)
+        return self._modes.tension() + cross + np.swapaxes(cross, -1, -2) + _outer(lean, lean) / 3.0
+
+    def _moment(self, lean: Array, _: Array) -> Array:
+        return -self._modes.left_values / 2 - lean / 3
+
+    def _mean(self, lean: Array, _: Array) -> Array:
+        return -self._modes.left_values - lean / 2
+
+
+def _outer(rows: Array, columns: Array) -> Array:
+    return rows[..., :, None] * columns[..., None, :]
+
+
+def _straight(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Return ``int (a_i + b_i eta) (c_j + d_j eta) d eta``."""
+    shape = np.broadcast_shapes(a.shape, b.shape, c.shape, d.shape)
+    a, b, c, d = (np.broadcast_to(item, shape) for item in (a, b, c, d))
+    return _outer(a, c) + (_outer(a, d) + _outer(b, c)) / 2 + _outer(b, d) / 3

@@ -1,0 +1,120 @@
+"""The transverse vibration of the rod on a moving basis, as a linear periodic system."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from functools import partial
+
+from ....derive.spec import ModelSpec
+from ...families import LinearPeriodic
+from ...mechanisms import QuickReturn
+from ..assembly import assemble
+from ..modules import EmittedModule, find_module
+from .basis import Array, MovingBasis
+from .inputs import require_drop, require_numbers
+
+DROPPED = ("frame", "tension")
+
+
+def rod_system(
+    basis: MovingBasis,
+    *,
+    crank_ratio: float,
+    frame: float,
+    length: float,
+    bending_stiffness: float,
+    mass_per_length: float,
+    damping: float = 0.0,
+    internal_damping: float = 0.0,
+    drop: Collection[str] = (),
+    provenance: Mapping[str, str] | None = None,
+) -> LinearPeriodic:
+    """Return the vibration of the flexible rod of a quick-return (Beale & Scott (16), (18)).
+
+    The coordinates are those of ``v = L sum_i q_i e_i``, the action has been divided by m L^3.
+
+    Parameters
+    ----------
+    basis : MovingBasis
+        Shapes of the rod.
+    crank_ratio : float
+        Crank length over base length G/a_x, positive; not 1.
+    frame : float
+        Base length a_x [m].
+    length : float
+        Length L of the rod from pin to tip [m].
+    bending_stiffness : float
+        EI [N m^2].
+    mass_per_length : float
+        m [kg/m].
+    damping : float
+        Viscous damping c per length, on dv/dt [N s/m^2].
+    internal_damping : float
+        Kelvin-Voigt damping c_i: the bending moment is ``EI v'' + c_i dv''/dt`` [N m^2 s].
+    drop : collection of str
+        Terms to leave out.  The centrifugal tension on v is the sum of ``tension``, on the
+        deflection from Buckens' frame, and ``frame``, what that frame's small rotation adds.
+        ``()`` keeps both; ``("frame", "tension")`` is the system as printed.
+    provenance : mapping, optional
+        Scene and options to record.
+
+    Returns
+    -------
+    LinearPeriodic
+        With parameters ``bending_stiffness mass_per_length damping internal_damping`` and
+        geometry ``crank_ratio frame length``.
+
+    Raises
+    ------
+    BadInput
+        If a number is not usable, a term to drop is unknown, or the crank cannot turn fully with
+        the block on the rod.
+    """
+    geometry = {"crank_ratio": crank_ratio, "frame": frame, "length": length}
+    parameters = {
+        "bending_stiffness": bending_stiffness,
+        "mass_per_length": mass_per_length,
+        "damping": damping,
+        "internal_damping": internal_damping,
+    }
+    dropped = require_drop(drop, DROPPED)
+    spec = ModelSpec("quick_return", "moving_basis", flexible=("rod",), drop=dropped)
+    told = {**(provenance or {})}
+    return _made(basis, parameters, find_module(spec), told, geometry)
+
+
+def _made(
+    basis: MovingBasis,
+    parameters: Mapping[str, float],
+    emitted: EmittedModule,
+    told: Mapping[str, str],
+    geometry: Mapping[str, float],
+) -> LinearPeriodic:
+    free = ("damping", "internal_damping")
+    require_numbers({**parameters, **geometry}, zero=free)
+    frame, length = float(geometry["frame"]), float(geometry["length"])
+    linkage = QuickReturn(frame=frame, crank=float(geometry["crank_ratio"]) * frame, rod=length)
+    linkage.require_full_turn()
+    system = assemble(
+        emitted.module,
+        geometry={**linkage.geometry, "length": length},
+        parameters=parameters,
+        basis=basis,
+        labels=basis.labels,
+        reference_length=length,
+        provenance={**told, **emitted.provenance},
+    )
+    rebuild = partial(_made, basis, parameters, emitted, told)
+    return replace(
+        system,
+        limits={name: "non-negative" if name in free else "positive" for name in parameters},
+        geometry=dict(geometry),
+        rebuild=rebuild,
+        moving_shape=partial(_shapes, basis, linkage),
+    )
+
+
+def _shapes(basis: MovingBasis, linkage: QuickReturn, x: Array, theta: Array) -> Array:
+    """Return the shapes at places x/L and crank angles, ``(nt, nx, n)``."""
+    return basis.shapes(x, linkage.motion(theta).slide / linkage.rod)

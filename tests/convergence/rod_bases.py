@@ -1,0 +1,210 @@
+"""Errors of every moving basis of the rod against the number of modes, on equal physics.
+
+Frozen frequencies are compared with the roots of the pinned beam with an overhang; tip deflections
+with those of sixteen two-segment polynomials, which agree with twelve to ten digits.  The steady
+motion is found by Fourier collocation, the one from rest by Gauss collocation of order 12: neither
+is the solver of the library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+
+import numpy as np
+from elastolink.runtime.floquet import floquet_multipliers
+from elastolink.runtime.floquet.first_order import canonical_form, even_angles
+from elastolink.runtime.mechanisms import QuickReturn
+from elastolink.runtime.systems.rod import (
+    FreeFreeBasis,
+    OverhangBasis,
+    PolynomialBasis,
+    TwoSegmentBasis,
+    rod_system,
+)
+from elastolink.runtime.systems.rod.overhang import overhang_roots
+from rod_reference import Rod, flexible, stiff
+from scipy.linalg import eigh
+
+BASES: Mapping[str, Callable] = {
+    "overhang": OverhangBasis,
+    "polynomial": PolynomialBasis,
+    "two_segment": TwoSegmentBasis,
+    "free_free_linear": FreeFreeBasis,
+}
+RODS: Mapping[str, Callable[[], Rod]] = {
+    "flexible": lambda: flexible(0.01, 100.0),
+    "stiff": stiff,
+}
+# Harmonics that the tip deflection of either rod needs for twelve digits, and steps a turn.
+_ANGLES = {"flexible": 31, "stiff": 61}
+_STEPS = 512
+_STAGES = 6
+REFERENCE = 16
+
+
+def frequencies(basis, place: float) -> np.ndarray:
+    """Return omega sqrt(m L^4/EI) of the rod held still with the block at x1/L."""
+    at = np.array([place])
+    squares = eigh(basis.array("bending", at)[0], basis.array("overlap", at)[0], eigvals_only=True)
+    return np.sqrt(squares)
+
+
+def frequency_error(basis, place: float, mode: int) -> float:
+    """Return the relative error of one frozen frequency; mode from 1."""
+    exact = overhang_roots(np.array([place]), mode)[0, -1] ** 2
+    return float(abs(frequencies(basis, place)[mode - 1] / exact - 1))
+
+
+def made(rod: Rod, basis):
+    """Return the linear periodic system of a rod on a basis."""
+    return rod_system(
+        basis,
+        crank_ratio=rod.crank / rod.frame,
+        frame=rod.frame,
+        length=rod.length,
+        bending_stiffness=rod.bending_stiffness,
+        mass_per_length=rod.mass_per_length,
+        drop=() if rod.tension else ("frame", "tension"),
+    )
+
+
+def _tip(rod: Rod, basis, theta: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Return the tip deflection over the rod's length."""
+    linkage = QuickReturn(frame=rod.frame, crank=rod.crank, rod=rod.length)
+    shapes = basis.shapes(np.array([1.0]), linkage.motion(theta).slide / rod.length)
+    return np.einsum("tn,tn->t", shapes[:, 0], q)
+
+
+def _form(rod: Rod, basis, theta: np.ndarray):
+    """Return generator and forcing of (q, p), and the scale of q."""
+    system = made(rod, basis)
+    form = canonical_form(system, rod.speed, {}, forcing=True)
+    n = 2 * system.size
+    generator = form.generator(theta)[0]
+    return generator[:, :n, :n], generator[:, :n, -1], form.scale[0, : system.size]
+
+
+def steady_tip(rod: Rod, basis, count: int) -> np.ndarray:
+    """Return the periodic tip deflection at an odd number of even angles."""
+    theta = even_angles(2 * np.pi, count)
+    generator, forcing, scale = _form(rod, basis, theta)
+    m, k = generator.shape[-1], np.arange(count)
+    apart = k[:, None] - k + np.eye(count)
+    slope = np.where(np.eye(count), 0.0, 0.5 * (-1.0) ** (k[:, None] - k))
+    slope /= np.sin(np.pi * apart / count)
+    matrix = np.einsum("jk,ab->jakb", slope, np.eye(m))
+    matrix[k, :, k, :] -= generator
+    states = np.linalg.solve(matrix.reshape(count * m, -1), forcing.ravel()).reshape(count, m)
+    return _tip(rod, basis, theta, states[:, : m // 2] * scale)
+
+
+@lru_cache(maxsize=1)
+def _gauss() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return nodes, stage weights and final weights of Gauss collocation on [0, 1]."""
+    x = (1 + np.polynomial.legendre.leggauss(_STAGES)[0]) / 2
+    powers = np.arange(_STAGES)
+    vandermonde = np.linalg.inv(x[:, None] ** powers)
+    inner = (x[:, None] ** (powers + 1) / (powers + 1)) @ vandermonde
+    return x, inner, (1 / (powers + 1)) @ vandermonde
+
+
+def transient_tip(rod: Rod, basis, steps: int = _STEPS) -> np.ndarray:
+    """Return the tip deflection from rest over the first turn, at the end of each step."""
+    x, inner, final = _gauss()
+    h = 2 * np.pi / steps
+    starts = h * np.arange(steps)
+    generator, forcing, scale = _form(rod, basis, (starts[:, None] + h * x).ravel())
+    m = generator.shape[-1]
+    generator = generator.reshape(steps, _STAGES, m, m)
+    right = np.concatenate([generator, forcing.reshape(steps, _STAGES, m, 1)], axis=-1)
+    matrix = -h * np.einsum("tiab,ij->tiajb", generator, inner).reshape(steps, _STAGES * m, -1)
+    matrix += np.eye(_STAGES * m)
+    slopes = np.linalg.solve(matrix, right.reshape(steps, _STAGES * m, -1))
+    maps = h * np.einsum("j,tjab->tab", final, slopes.reshape(steps, _STAGES, m, m + 1))
+    states = np.zeros((steps + 1, m))
+    for k in range(steps):
+        states[k + 1] = states[k] + maps[k] @ np.append(states[k], 1.0)
+    theta = h * np.arange(steps + 1)
+    return _tip(rod, basis, theta, states[:, : m // 2] * scale)
+
+
+@lru_cache(maxsize=8)
+def reference(rod_name: str, kind: str) -> np.ndarray:
+    """Return the tip deflection that the others are compared with."""
+    return _deflection(rod_name, TwoSegmentBasis(REFERENCE), kind)
+
+
+def _deflection(rod_name: str, basis, kind: str) -> np.ndarray:
+    rod = RODS[rod_name]()
+    if kind == "steady":
+        return steady_tip(rod, basis, _ANGLES[rod_name])
+    return transient_tip(rod, basis)
+
+
+def deflection_error(rod_name: str, basis, kind: str) -> float:
+    """Return the largest error of the tip deflection over its peak.
+
+    Parameters
+    ----------
+    rod_name : str
+        ``flexible`` or ``stiff``.
+    basis : MovingBasis
+        Shapes of the rod.
+    kind : str
+        ``steady``, or ``from rest`` over the first turn.
+    """
+    truth = reference(rod_name, kind)
+    ours = _deflection(rod_name, basis, kind)
+    return float(np.max(np.abs(ours - truth)) / np.max(np.abs(truth)))
+
+
+def condition(basis, place: float) -> float:
+    """Return the condition of the mass matrix, scaled to a unit diagonal."""
+    mass = basis.array("overlap", np.array([place]))[0]
+    scale = 1 / np.sqrt(np.diag(mass))
+    return float(np.linalg.cond(mass * scale * scale[:, None]))
+
+
+def order(counts, errors) -> float:
+    """Return the exponent k of the fit error ~ n^-k."""
+    return float(-np.polyfit(np.log(counts), np.log(errors), 1)[0])
+
+
+def tongue(basis, around: float, ratio: float = 0.05, growth: float = 1.01) -> tuple[float, float]:
+    """Return the crank speeds between which the flexible rod grows by more than a factor a turn.
+
+    The region about a speed inside it, its ends to 0.13 rad/s.
+
+    Parameters
+    ----------
+    basis : MovingBasis
+        Shapes of the rod.
+    around : float
+        A crank speed [rad/s] inside.
+    ratio : float
+        Crank over base length.
+    growth : float
+        Factor a turn.
+    """
+    system = made(flexible(ratio, around), basis)
+
+    def grows(speeds: np.ndarray) -> np.ndarray:
+        found = floquet_multipliers(system, speeds, rtol=1e-8).multipliers
+        return np.abs(found).max(axis=-1) > growth
+
+    ends = []
+    for direction in (-1.0, 1.0):
+        inside, width = around, 16.0
+        while width > 0.05:
+            speeds = inside + direction * width * np.arange(9)
+            still = grows(speeds)
+            if not still[0]:
+                raise ValueError(f"no growth at {inside:g} rad/s")
+            if still.all():
+                inside = speeds[-1]
+            else:
+                inside = speeds[np.argmin(still) - 1]
+                width /= 8
+        ends.append(float(inside + direction * width * 4))
+    return ends[0], ends[1]

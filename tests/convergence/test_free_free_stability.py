@@ -1,0 +1,159 @@
+"""Stability of the constrained free-free equations, the open question of Beale & Scott's 3.1."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from elastolink.runtime.constrained import orbit_multipliers
+from elastolink.runtime.systems.rod import rod_orbit
+from free_free_loads import (
+    about,
+    difference,
+    in_step,
+    linear,
+    loaded,
+    part_of_inertia,
+    rod,
+    slope,
+)
+from free_free_table import DOCUMENT, filled
+
+NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]\d+)?")
+
+SPEED = 150.0
+PHYSICS = [(), ("tension",)]
+# The linear form without the term that the frame adds.
+FRAMELESS = {(): ("frame",), ("tension",): ("frame", "tension")}
+
+
+@pytest.mark.parametrize("drop", PHYSICS)
+@pytest.mark.parametrize("ratio", [0.05, 0.2])
+@pytest.mark.parametrize("modes", [1, 2, 3])
+def test_about_the_undeformed_rod_they_are_those_of_the_conjectured_linear_form(modes, ratio, drop):
+    orbit, found = about(loaded(rod(modes, ratio, SPEED, drop), part_of_inertia(0.0)))
+    assert orbit.deflection < 1e-14
+    conjectured = linear(modes, ratio, SPEED, drop)
+    away = np.abs(difference(found.physical, conjectured.multipliers))
+    # Two independent eigenproblems: both figures count, and both are round-off.
+    assert np.max(away) <= np.max(found.error) + np.max(conjectured.error) < 5e-12
+    assert np.max(np.abs(found.others - 1.0)) <= min(found.others_error, 1e-5)
+    # Without the frame term the linear form is another system.
+    frameless = linear(modes, ratio, SPEED, FRAMELESS[drop])
+    assert np.max(np.abs(difference(found.physical, frameless.multipliers))) > 2e-4
+
+
+@pytest.mark.parametrize("drop", PHYSICS)
+@pytest.mark.parametrize("modes", [1, 2])
+def test_about_the_orbit_the_difference_falls_like_amplitude_squared(modes, drop):
+    """The crank sets the amplitude; linear and constrained form share every coefficient."""
+    amplitude, away = [], []
+    for ratio in (0.02, 0.01, 0.005, 0.0025):
+        orbit, found = about(rod(modes, ratio, SPEED, drop))
+        same = linear(modes, ratio, SPEED, drop)
+        amplitude.append(orbit.deflection)
+        away.append(np.max(np.abs(difference(found.physical, same.multipliers))))
+        assert away[-1] > 100 * (np.max(found.error) + np.max(same.error))
+    assert slope(amplitude, away) == pytest.approx(2.0, abs=0.06)
+
+
+@pytest.mark.parametrize("drop", PHYSICS)
+def test_at_fixed_coefficients_a_load_in_step_leaves_exactly_the_square(drop):
+    """A mirror image run backwards turns the load over: odd powers of it cannot occur."""
+    still = about(loaded(rod(2, 0.1, SPEED, drop), part_of_inertia(0.0)))[1]
+    sizes, away = np.array([0.4, 0.2, 0.1, 0.05]), []
+    for size in sizes:
+        found = about(loaded(rod(2, 0.1, SPEED, drop), in_step(size, SPEED)))[1]
+        away.append(difference(found.physical, still.physical))
+    away = np.array(away)
+    for column in away.T:
+        assert slope(sizes, column) == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drop", PHYSICS)
+def test_a_fraction_of_the_inertia_load_leaves_a_product_with_the_motion_too(drop):
+    """Load times rate of the line: first order in the fraction, but itself of the ratio squared.
+
+    The difference is ``a(eps) s + b(eps) s^2`` for a part s of the load, both of order eps^2:
+    with the machine's own load, s = 1, it is of the order of the amplitude squared.
+    """
+    odd, even = [], []
+    for ratio in (0.01, 0.005):
+        still = about(loaded(rod(2, ratio, SPEED, drop), part_of_inertia(0.0)))[1]
+        values = []
+        for part in (1.0, -1.0, 0.5, -0.5):
+            found = about(loaded(rod(2, ratio, SPEED, drop), part_of_inertia(part)))[1]
+            values.append(difference(found.physical, still.physical))
+        whole, against, half, half_against = values
+        odd.append((whole - against) / 2)
+        even.append((whole + against) / 2)
+        np.testing.assert_allclose((half - half_against) / 2, odd[-1] / 2, rtol=0.01)
+        np.testing.assert_allclose((half + half_against) / 2, even[-1] / 4, rtol=0.01)
+    np.testing.assert_allclose(odd[0] / odd[1], 4.0, atol=0.1)
+    np.testing.assert_allclose(even[0] / even[1], 4.0, atol=0.1)
+
+
+@pytest.mark.parametrize("drop", PHYSICS)
+def test_without_the_frame_term_the_difference_does_not_fall_with_the_load(drop):
+    frameless, same = linear(2, 0.1, SPEED, FRAMELESS[drop]), linear(2, 0.1, SPEED, drop)
+    term = np.max(np.abs(difference(same.multipliers, frameless.multipliers)))
+    away = []
+    for part in (0.1, 0.01, 0.001):
+        found = about(loaded(rod(2, 0.1, SPEED, drop), part_of_inertia(part)))[1]
+        away.append(np.max(np.abs(difference(found.physical, frameless.multipliers))))
+        rest = np.max(np.abs(difference(found.physical, same.multipliers)))
+        assert rest < 0.05 * part  # with the term it falls
+    np.testing.assert_allclose(away, term, rtol=0.05)
+    assert term > 1e-3
+
+
+def test_the_verdict_in_a_tongue_is_that_of_the_linear_form():
+    """Principal resonance of the first mode; the orbit deflects by 0.5 % of the length."""
+    orbit, found = about(rod(2, 0.005, 1725.0))
+    linear_form = linear(2, 0.005, 1725.0)
+    assert not found.stable
+    assert not linear_form.stable
+    growth = np.max(np.abs(linear_form.multipliers)) - 1.0
+    assert found.largest - 1.0 == pytest.approx(growth, rel=0.02)
+    assert 0.004 < orbit.deflection < 0.006
+
+
+def test_the_practical_range_of_the_paper_is_stable_in_ground_coordinates_too():
+    """Its fastest corner: 20 rad/s, ratio 0.3."""
+    orbit, found = about(rod(2, 0.3, 20.0))
+    assert found.stable
+    assert orbit.deflection < 1e-3
+    same = linear(2, 0.3, 20.0)
+    assert np.max(np.abs(difference(found.physical, same.multipliers))) < 1e-4
+
+
+def test_beyond_the_linear_range_shooting_diverges_and_says_so():
+    """The paper's own observation at large deflections, at the speed of its Fig. 12."""
+    orbit = rod_orbit(rod(2, 0.2, 900.0))
+    assert orbit.message.startswith("diverging shooting")
+    assert not orbit.passed
+    assert not orbit.checks["linear range"].passed
+
+
+def test_what_sorting_eigenvalues_would_lose():
+    """The whole matrix: six eigenvalues scatter about 1, the physical ones are as good."""
+    found = orbit_multipliers(rod_orbit(rod(2, 0.1, SPEED)))
+    values = np.linalg.eigvals(found.monodromy)
+    near = np.sort(np.abs(values - 1.0))[:6]
+    assert 1e-9 < near[-1] < 1e-3
+    assert found.violation_defect < 1e-11
+
+
+@pytest.mark.slow
+def test_the_document_holds_what_is_computed():
+    written = DOCUMENT.read_text()
+    computed = filled(written)
+    assert NUMBER.sub("#", written) == NUMBER.sub("#", computed)
+    pairs = zip(NUMBER.findall(written), NUMBER.findall(computed), strict=True)
+    # The last printed digit may fall either way on another machine.
+    for one, other in pairs:
+        whole, _, power = one.partition("e")
+        digit = 10.0 ** (int(power or 0) - len(whole.partition(".")[2]))
+        assert abs(float(one) - float(other)) <= 1.01 * digit

@@ -1,0 +1,118 @@
+"""The bases of the rod against the number of modes: observed orders, one limit, the page."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from elastolink.runtime.response import steady_state
+from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, TwoSegmentBasis
+from rod_bases import (
+    BASES,
+    RODS,
+    deflection_error,
+    frequency_error,
+    made,
+    order,
+    steady_tip,
+    tongue,
+    transient_tip,
+)
+from write_rod_convergence import PLACES, TARGET, page
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_orders_of_the_frozen_frequencies(place):
+    """Over three doublings: 1/n for one polynomial, n^-3 for modes whose shear cannot jump."""
+    counts = (6, 12, 24, 48)
+    found = {
+        name: order(counts, [frequency_error(BASES[name](n), place, 1) for n in counts])
+        for name in ("polynomial", "free_free_linear")
+    }
+    assert found["polynomial"] == pytest.approx(1.0, abs=0.15)
+    assert found["free_free_linear"] == pytest.approx(3.0, abs=0.3)
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("mode", [1, 2, 3])
+def test_two_segments_converge_spectrally(place, mode):
+    """The order itself grows: faster than any power, until round-off."""
+    counts = (8, 12, 16)
+    errors = [frequency_error(TwoSegmentBasis(n), place, mode) for n in counts]
+    assert errors[2] < 1e-6
+    if errors[2] > 1e-8:
+        assert order(counts[1:], errors[1:]) > order(counts[:2], errors[:2]) > 6
+    else:
+        assert order(counts[:2], errors[:2]) > 6
+
+
+def test_overhang_modes_are_the_frozen_modes():
+    for place in PLACES:
+        for mode in (1, 2, 3):
+            assert frequency_error(OverhangBasis(3), place, mode) < 1e-11
+
+
+@pytest.mark.parametrize("rod", RODS)
+def test_all_bases_have_one_limit(rod):
+    """The steady tip deflection; what is allowed is twice what the page states."""
+    assert deflection_error(rod, TwoSegmentBasis(12), "steady") < 1e-11
+    assert deflection_error(rod, OverhangBasis(12), "steady") < 1e-5
+    assert deflection_error(rod, BASES["free_free_linear"](16), "steady") < 4e-4
+    assert deflection_error(rod, PolynomialBasis(16), "steady") < 3e-2
+
+
+@pytest.mark.parametrize("rod", RODS)
+def test_three_polynomial_modes_are_far_from_it(rod):
+    assert 0.1 < deflection_error(rod, PolynomialBasis(3), "steady") < 0.2
+    errors = [deflection_error(rod, PolynomialBasis(n), "steady") for n in (4, 8, 16)]
+    assert order((4, 8, 16), errors) == pytest.approx(1.1, abs=0.25)
+
+
+def test_combination_tongue_of_three_polynomial_modes_is_a_fifth_too_high():
+    """Both regions about omega1 + omega2, of growth beyond 1 % a turn; they do not even meet."""
+    converged = tongue(TwoSegmentBasis(6), 3530.0)
+    three = tongue(PolynomialBasis(3), 4320.0)
+    assert three[0] > converged[1] * 1.1
+    assert 0.2 < sum(three) / sum(converged) - 1 < 0.25
+
+
+def test_a_tongue_wants_a_speed_inside():
+    with pytest.raises(ValueError, match="no growth at 1000"):
+        tongue(PolynomialBasis(2), 1000.0, ratio=1e-4)
+
+
+@pytest.mark.parametrize("rod", RODS)
+def test_the_measures_own_solvers(rod):
+    """More angles and shorter steps change nothing that the page states."""
+    at, basis = RODS[rod](), TwoSegmentBasis(6)
+    coarse, fine = steady_tip(at, basis, 31 if rod == "flexible" else 61), steady_tip(at, basis, 93)
+    assert np.abs(fine).max() == pytest.approx(np.abs(coarse).max(), rel=5e-3)
+    start = fine[0]
+    assert coarse[0] == pytest.approx(start, rel=1e-9, abs=1e-11 * np.abs(fine).max())
+    short = transient_tip(at, basis, 1024)[::2]
+    assert np.abs(transient_tip(at, basis) - short).max() < 1e-5 * np.abs(short).max()
+
+
+def test_steady_motion_is_the_librarys():
+    """Fourier collocation against shooting, one overhang mode."""
+    rod = RODS["stiff"]()
+    ours = steady_tip(rod, OverhangBasis(1), 61)
+    found = steady_state(made(rod, OverhangBasis(1)), rod.speed, rtol=1e-7)
+    theirs = found.deflection(1.0) / rod.length
+    assert ours[0] == pytest.approx(theirs[0], rel=1e-5, abs=1e-6 * np.abs(theirs).max())
+    assert np.abs(ours).max() == pytest.approx(np.abs(theirs).max(), rel=5e-3)
+
+
+_NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]\d+)?")
+
+
+@pytest.mark.slow
+def test_page_is_current():
+    """Words alike; numbers to what another linear algebra library may change."""
+    written, ours = TARGET.read_text(encoding="utf-8"), page()
+    assert _NUMBER.sub("#", written) == _NUMBER.sub("#", ours), "run write_rod_convergence.py"
+    for theirs, mine in zip(_NUMBER.findall(written), _NUMBER.findall(ours), strict=True):
+        # Errors to 15 %; orders, percents and speeds to their last place.
+        allowed = {"rel": 0.15} if "e" in theirs else {"rel": 5e-4, "abs": 0.11}
+        assert float(mine) == pytest.approx(float(theirs), **allowed)

@@ -1,0 +1,347 @@
+"""Free-free modes and the rod in Buckens' frame by hand, in many digits.
+
+Modes are sums of four growing and decaying exponentials on roots refined to the last digit, their
+integrals those of polynomials times exponentials.  Energies and constraints of the rod are typed
+from a sketch, every derivative is a difference in hundreds of digits.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import itertools
+from collections.abc import Callable
+from functools import lru_cache
+
+import mpmath
+import numpy as np
+from elastolink import generated
+from elastolink.derive.checks import Exact, Point
+
+MODES_MODULE = "beam_free_free_modes"
+ROD_MODULES = "quick_return_rod_free_free_"
+DIGITS = 140
+ROD_DIGITS = 320  # third differences take 180 of them
+STEP = mpmath.mpf(10) ** -60
+NUMBERS = (*range(1, 13), 30, 59, 60)
+
+
+def parity(i: int) -> int:
+    return 1 if i % 2 else -1
+
+
+@lru_cache(maxsize=64)
+def root(i: int):
+    """Return the i-th positive root of ``cos b cosh b = 1``."""
+    with mpmath.workdps(DIGITS):
+        start = (i + mpmath.mpf(1) / 2) * mpmath.pi
+        return mpmath.findroot(lambda b: mpmath.cos(b) - 1 / mpmath.cosh(b), start)
+
+
+@lru_cache(maxsize=64)
+def exponentials(i: int):
+    """Return psi_i as pairs (factor, exponent) in s from the middle; psi_i is 2 at s = 1/2."""
+    with mpmath.workdps(DIGITS):
+        b = root(i)
+        swing, rise = (
+            (mpmath.cos(b / 2), mpmath.cosh(b / 2))
+            if parity(i) > 0
+            else (mpmath.sin(b / 2), mpmath.sinh(b / 2))
+        )
+        j, p = mpmath.mpc(0, 1), parity(i)
+        turned = swing if p > 0 else swing * j
+        return (
+            (1 / (2 * turned), j * b),
+            (p / (2 * turned), -j * b),
+            (1 / (2 * rise), b),
+            (p / (2 * rise), -b),
+        )
+
+
+def mode(i: int, s, order: int = 0):
+    """Return a derivative of psi_i at s."""
+    with mpmath.workdps(DIGITS):
+        return mpmath.re(sum(a * r**order * mpmath.exp(r * s) for a, r in exponentials(i)))
+
+
+def _moment(power: int, rate):
+    """Return ``int s^power exp(rate s) ds`` over the beam."""
+    half = mpmath.mpf(1) / 2
+    if abs(rate) < mpmath.mpf(10) ** -100:
+        return (half ** (power + 1) - (-half) ** (power + 1)) / (power + 1)
+    total, sign, factor = mpmath.mpc(0), 1, mpmath.mpf(1)
+    for k in range(power + 1):
+        ends = half ** (power - k) * mpmath.exp(rate * half)
+        ends -= (-half) ** (power - k) * mpmath.exp(-rate * half)
+        total += sign * factor * ends / rate ** (k + 1)
+        sign, factor = -sign, factor * (power - k)
+    return total
+
+
+@lru_cache(maxsize=4096)
+def integral(power: int, i: int, j: int, orders: tuple[int, int]):
+    """Return ``int s^power psi_i^(k) psi_j^(l) ds``."""
+    with mpmath.workdps(DIGITS):
+        total = mpmath.mpc(0)
+        for a, r in exponentials(i):
+            for c, q in exponentials(j):
+                total += a * c * r ** orders[0] * q ** orders[1] * _moment(power, r + q)
+        return mpmath.re(total)
+
+
+def fair(function: Callable, names: tuple[str, ...], point: Point) -> dict[str, float]:
+    """Return ``|f| + sum |x df/dx|``: a scale, from differences in double precision."""
+    taken = inspect.signature(function).parameters
+    arguments = {k: v for k, v in point.arguments.items() if k in taken}
+
+    def values(changes: dict[str, float]) -> np.ndarray:
+        return np.array(function(**{**arguments, **changes}), dtype=float)
+
+    total, step = abs(values({})), 1e-6
+    for name in point.inputs:
+        if name in arguments and arguments[name] != 0.0:
+            ends = [values({name: arguments[name] * (1 + sign * step)}) for sign in (1, -1)]
+            total = total + abs(ends[0] - ends[1]) / (2 * step)
+    return dict(zip(names, total, strict=True))
+
+
+# ---------------------------------------------------------------- the modes
+
+
+def _at_modes(function: str):
+    """Yield points and exact values of one function of the module of modes."""
+    for i in NUMBERS:
+        b, p = root(i), parity(i)
+        fixed = {"parity": float(p)}
+        start = float((i + mpmath.mpf(1) / 2) * mpmath.pi)
+        with mpmath.workdps(DIGITS):
+            if function == "root_defect":
+                for offset in (float(b - start), 0.1, -0.2):
+                    at = mpmath.mpf(start) + offset
+                    values = {
+                        "defect": mpmath.sin(offset) - p / mpmath.cosh(at),
+                        "defect_slope": mpmath.cos(offset)
+                        + p * mpmath.sinh(at) / mpmath.cosh(at) ** 2,
+                    }
+                    yield Point(f"mode {i}", {"offset": offset, "start": start}, fixed), values
+            elif function == "mode_constants":
+                waves = [mode(i, mpmath.mpf(0), k) for k in (0, 1, 2, 3)]
+                k = 0 if p > 0 else 1
+                swing = abs(waves[k] - waves[k + 2] / b**2) / (2 * b**k)
+                values = {
+                    "amplitude": swing,
+                    "weight": 1 / (1 + p * mpmath.exp(-b)),
+                    "end_slope": mode(i, mpmath.mpf(1) / 2, 1),
+                }
+                yield Point(f"mode {i}", {"root": float(b)}, fixed), values
+            elif function == "slope_squares":
+                values = {"plain": integral(0, i, i, (1, 1)), "second": integral(2, i, i, (1, 1))}
+                slope = float(mode(i, mpmath.mpf(1) / 2, 1))
+                yield Point(f"mode {i}", {"end_slope": slope}), values
+            else:
+                yield from _shapes_at(i, fixed)
+
+
+def _shapes_at(i: int, fixed: dict[str, float]):
+    b, p = root(i), parity(i)
+    inputs = {
+        "root": float(b),
+        "amplitude": float(mpmath.sqrt(mpmath.cosh(b)) / _rise(b, p)),
+        "weight": float(1 / (1 + p * mpmath.exp(-b))),
+        "phase": float((i + 1) % 4 * mpmath.pi / 2),
+    }
+    for eta in (0.0, 1e-9, 0.11, 0.5, 0.77, 1.0 - 2.0**-40, 1.0):
+        s = mpmath.mpf(eta) - mpmath.mpf(1) / 2
+        names = ("value", "slope", "curvature", "third")
+        values = {name: mode(i, s, k) for k, name in enumerate(names)}
+        yield Point(f"mode {i} at {eta:g}", {"eta": eta, **inputs}, fixed), values
+
+
+def _rise(b, p: int):
+    return mpmath.cosh(b / 2) if p > 0 else mpmath.sinh(b / 2)
+
+
+def _pairs():
+    names = ("plain", "first", "second")
+    for i, j in itertools.permutations((1, 2, 3, 4, 11, 30, 59, 60), 2):
+        inputs = {
+            "root": float(root(i)),
+            "other": float(root(j)),
+            "end_slope": float(mode(i, mpmath.mpf(1) / 2, 1)),
+            "other_end_slope": float(mode(j, mpmath.mpf(1) / 2, 1)),
+        }
+        fixed = {"parity": float(parity(i)), "other_parity": float(parity(j))}
+        values = {name: integral(k, i, j, (1, 1)) for k, name in enumerate(names)}
+        # Zero by symmetry, but for the last of these digits.
+        chopped = {name: v if abs(v) > mpmath.mpf(10) ** -100 else 0 for name, v in values.items()}
+        yield Point(f"modes {i}, {j}", inputs, fixed), chopped
+
+
+# ---------------------------------------------------------------- the rod
+
+
+class Rod:
+    """The rod by hand at one point: energies and constraints of numbers."""
+
+    def __init__(self, numbers: dict, count: int, tension: bool) -> None:
+        self.n, self.count = numbers, count
+        every = range(1, count + 1)
+        zero = mpmath.mpf(0)
+
+        def tensions(weights) -> list[list]:
+            return [
+                [sum(w * integral(k, i, j, (1, 1)) for k, w in enumerate(weights)) for j in every]
+                for i in every
+            ]
+
+        eighth, quarter = mpmath.mpf(1) / 8, mpmath.mpf(1) / 4
+        none = [[zero] * count for _ in every]
+        # int (1/4 - s^2)/2 psi' psi', and the pin's approach (1/2) int (1/2 - s) psi' psi'
+        self.pull = tensions((eighth, zero, -mpmath.mpf(1) / 2)) if tension else none
+        self.approach = tensions((quarter, -mpmath.mpf(1) / 2, zero)) if tension else none
+        self.home = self._place(numbers["gamma"], numbers["t"])
+
+    def _place(self, gamma, t):
+        n = self.n
+        turned = gamma - n["speed"] * t
+        return (n["crank"] * mpmath.cos(turned) + n["frame"] * mpmath.cos(gamma)) / n["length"]
+
+    def constraints(self, q, t):
+        """Return the loops: pin along and across, block across, the modes as Taylor's series."""
+        n, length = self.n, self.n["length"]
+        r1, r2, gamma, *f = q
+        cos, sin = mpmath.cos(gamma), mpmath.sin(gamma)
+        moved = self._place(gamma, t) - self.home
+        left = sum(2 * parity(i + 1) * a for i, a in enumerate(f))
+        held = mpmath.mpf(0)
+        for i, a in enumerate(f, start=1):
+            terms = [n[f"psi_{i}" + (f"_d{k}" if k else "")] for k in range(4)]
+            shape = sum(c * moved**k / mpmath.factorial(k) for k, c in enumerate(terms))
+            held += a * shape
+        theta = n["speed"] * t
+        short = sum(self.approach[i][j] * a * b for i, a in enumerate(f) for j, b in enumerate(f))
+        pin = r1 * cos + r2 * sin - length / 2 + length * short
+        away = r2 * cos - r1 * sin
+        reach = n["crank"] * (mpmath.sin(theta) * cos - mpmath.cos(theta) * sin) - n["frame"] * sin
+        return [pin, away + length * left, away + length * held - reach]
+
+    def _bent(self, f):
+        pulled = [sum(row[j] * f[j] for j in range(self.count)) for row in self.pull]
+        return [a - b for a, b in zip(f, pulled, strict=True)]
+
+    def mass(self, q):
+        """Return the diagonal of the mass matrix."""
+        m, length = self.n["mass_per_length"], self.n["length"]
+        f = q[3:]
+        turning = mpmath.mpf(1) / 12 + sum(a * b for a, b in zip(f, self._bent(f), strict=True))
+        return [m * length] * 2 + [m * length**3 * turning] + [m * length**3] * self.count
+
+    def rest(self, q, qd):
+        """Return inertia at zero acceleration less elastic forces."""
+        m, length = self.n["mass_per_length"], self.n["length"]
+        f, fd, turning = q[3:], qd[3:], qd[2]
+        bent = self._bent(f)
+        coriolis = 2 * m * length**3 * turning * sum(a * b for a, b in zip(fd, bent, strict=True))
+        elastic = self.n["bending_stiffness"] / length
+        own = [
+            elastic * root(i) ** 4 * a - m * length**3 * turning**2 * b
+            for i, (a, b) in enumerate(zip(f, bent, strict=True), start=1)
+        ]
+        return [mpmath.mpf(0)] * 2 + [coriolis] + own
+
+    def jacobian(self, q, t):
+        """Return the columns of the Jacobian."""
+        return [self._slope(lambda x: self.constraints(x, t), q, i) for i in range(len(q))]
+
+    def _slope(self, function, q, i):
+        ends = [function([*q[:i], q[i] + sign * STEP, *q[i + 1 :]]) for sign in (1, -1)]
+        return [(a - b) / (2 * STEP) for a, b in zip(*ends, strict=True)]
+
+    def along(self, q, qd, qdd, t, order: int):
+        """Return the first or second time derivative of the constraints along a path."""
+
+        def at(s):
+            path = [a + s * b + s * s / 2 * c for a, b, c in zip(q, qd, qdd, strict=True)]
+            return self.constraints(path, t + s)
+
+        high, low = at(STEP), at(-STEP)
+        if order == 1:
+            return [(a - b) / (2 * STEP) for a, b in zip(high, low, strict=True)]
+        middle = at(mpmath.mpf(0))
+        return [(a - 2 * b + c) / STEP**2 for a, b, c in zip(high, middle, low, strict=True)]
+
+    def residual(self, q, qd, qdd, lam, t):
+        """Return what Lagrange's equations leave."""
+        columns = self.jacobian(q, t)
+        pulled = [sum(a * b for a, b in zip(column, lam, strict=True)) for column in columns]
+        terms = zip(self.mass(q), qdd, self.rest(q, qd), pulled, strict=True)
+        return [m * a + c - p for m, a, c, p in terms]
+
+
+def _entries(name: str, columns) -> dict:
+    return {
+        f"{name}_{i + 1}_{j + 1}": value
+        for j, column in enumerate(columns)
+        for i, value in enumerate(column)
+    }
+
+
+def rod_arrays(numbers: dict, count: int, tension: bool) -> dict:
+    """Return every array of the three emitted functions, entry by entry."""
+    rod = Rod(numbers, count, tension)
+    names = ["R1", "R2", "gamma", *(f"f{i}" for i in range(1, count + 1))]
+    q, qd, qdd = ([numbers[f"{name}{end}"] for name in names] for end in ("", "_dot", "_ddot"))
+    lam, t = [numbers[f"lam_{k}"] for k in (1, 2, 3)], numbers["t"]
+    still = [mpmath.mpf(0)] * len(q)
+    every = range(len(q))
+    found = {f"mass_{i + 1}_{i + 1}": value for i, value in enumerate(rod.mass(q))}
+    found |= _entries("rest", [rod.rest(q, qd)])
+    found |= _entries("constraints", [rod.constraints(q, t)])
+    found |= _entries("jacobian", rod.jacobian(q, t))
+    found |= _entries("velocity_rhs", [[-v for v in rod.along(q, still, still, t, 1)]])
+    found |= _entries("gamma", [[-v for v in rod.along(q, qd, still, t, 2)]])
+    found |= _entries("damping", [rod._slope(lambda x: rod.rest(q, x), qd, i) for i in every])
+    slopes = [rod._slope(lambda x: rod.residual(x, qd, qdd, lam, t), q, i) for i in every]
+    found |= _entries("stiffness", slopes)
+    for name, order in (("jacobian_rate", 1), ("jacobian_acceleration", 2)):
+        columns = [
+            rod._slope(lambda x, order=order: rod.along(x, qd, qdd, t, order), q, i) for i in every
+        ]
+        found |= _entries(name, columns)
+    return found
+
+
+@lru_cache(maxsize=16)
+def _rod_points(module: str) -> tuple[tuple[Point, dict], ...]:
+    count = int(module.removeprefix(ROD_MODULES).split("_")[0])
+    tension = not module.endswith("without_tension")
+    emitted = importlib.import_module(f"{generated.__name__}.{module}")
+    random = np.random.default_rng(57 + count)
+    names = dict.fromkeys((*inspect.signature(emitted.variations).parameters,))
+    made = []
+    for k in range(3):
+        inputs = {}
+        for name in names:
+            positive = any(name == parameter for parameter, _, _ in emitted.PARAMETERS)
+            size = 10.0 ** random.uniform(-2, 2)
+            inputs[name] = float(size if positive else random.choice((-1, 1)) * size)
+        if k == 0:  # the rod undeformed and at rest in itself
+            inputs |= {name: 0.0 for name in names if name.startswith("f") and name[1:2].isdigit()}
+        with mpmath.workdps(ROD_DIGITS):
+            exact = rod_arrays({n: mpmath.mpf(v) for n, v in inputs.items()}, count, tension)
+        made.append((Point("undeformed" if k == 0 else f"random {k}", inputs), exact))
+    return tuple(made)
+
+
+def exact_free_free(module: str, function: str) -> tuple[Exact, ...]:
+    """Return exact values of one emitted function of the modes or of a rod."""
+    emitted = importlib.import_module(f"{generated.__name__}.{module}")
+    names = emitted.RETURNS[function]
+    if module != MODES_MODULE:
+        points = _rod_points(module)
+    elif function == "slope_products":
+        points = tuple(_pairs())
+    else:
+        points = tuple(_at_modes(function))
+    called = getattr(emitted, function)
+    return tuple(Exact(p, values, fair(called, names, p)) for p, values in points)

@@ -1,0 +1,145 @@
+"""Modes of the beam with an overhang from six conditions: in doubles, as textbooks do, and exact.
+
+Sine and hyperbolic sine from the pin up to the support, all four waves of ``beta eta`` beyond it;
+the conditions are six linear equations.  Shares nothing with the package but the conditions.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import mpmath
+import numpy as np
+
+DIGITS = 60
+
+
+def _waves(lib, phase, order):
+    """Return sin, cos, sinh, cosh or a derivative of them."""
+    s, c, sh, ch = lib.sin(phase), lib.cos(phase), lib.sinh(phase), lib.cosh(phase)
+    circular = ((s, c), (c, -s), (-s, -c), (-c, s))[order % 4]
+    return (*circular, *((sh, ch) if order % 2 == 0 else (ch, sh)))
+
+
+def conditions(lib, xi, beta):
+    """Return six rows on two waves before the support and four beyond it."""
+    rows = []
+    at, tip = beta * xi, beta
+    for order in (0, 1, 2):
+        sine, _, rise, _ = _waves(lib, at, order)
+        beyond = _waves(lib, at, order)
+        if order == 0:
+            rows += [[sine, rise, 0, 0, 0, 0], [0, 0, *beyond]]
+        else:
+            rows.append([sine, rise, *(-w for w in beyond)])
+    rows += [[0, 0, *_waves(lib, tip, order)] for order in (2, 3)]
+    return rows
+
+
+def naive_modes(place, roots, x):
+    """Return the textbook's modes in doubles, of unit square by quadrature, shape (nx, n).
+
+    The null vector of the six equations, each divided by its largest entry.
+    """
+    found = []
+    nodes, weights = gauss(place, 160)
+    for beta in roots:
+        rows = np.array(conditions(np, place, beta))
+        rows /= np.max(np.abs(rows), axis=1, keepdims=True)
+        size = np.max(np.abs(rows), axis=0)
+        factors = np.linalg.svd(rows / size)[2][-1] / size
+
+        def mode(eta, factors=factors, beta=beta):
+            waves = _waves(np, beta * eta, 0)
+            before = factors[0] * waves[0] + factors[1] * waves[2]
+            beyond = sum(f * w for f, w in zip(factors[2:], waves, strict=True))
+            return np.where(eta <= place, before, beyond)
+
+        found.append(mode(x) / np.sqrt(np.sum(weights * mode(nodes) ** 2)))
+    return np.stack(found, axis=-1)
+
+
+def gauss(place, count):
+    """Return nodes on both sides of the support, and weights."""
+    s, w = np.polynomial.legendre.leggauss(count)
+    s, w = (1 + s) / 2, w / 2
+    rest = 1 - place
+    return np.concatenate([place * s, place + rest * s]), np.concatenate([place * w, rest * w])
+
+
+# ---------------------------------------------------------------- many digits
+
+
+class Mode:
+    """One mode in many digits, of unit square, positive at the tip."""
+
+    def __init__(self, xi, beta):
+        self.xi, self.beta = xi, beta
+        rows = conditions(mpmath, xi, beta)
+        # At a root one of the six follows from the others; the tip is 1 instead.
+        rows[2] = [0, 0, *_waves(mpmath, beta, 0)]
+        self.factors = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix([0, 0, 1, 0, 0, 0]))
+        self.scale = 1 / mpmath.sqrt(product(self, self, (0, 0)))
+
+    scale = 1
+
+    def side(self, eta, order, beyond):
+        """Return a derivative on one side of the support."""
+        waves = _waves(mpmath, self.beta * eta, order)
+        parts = waves if beyond else (waves[0], waves[2])
+        factors = self.factors[2:] if beyond else self.factors[:2]
+        total = sum(f * w for f, w in zip(factors, parts, strict=True))
+        return self.scale * self.beta**order * total
+
+
+def product(one, two, orders, weight=lambda eta: 1):
+    """Return the integral of a weight and derivatives of two modes."""
+    total = 0
+    for beyond, ends in ((False, (0, one.xi)), (True, (one.xi, 1))):
+        total += mpmath.quad(
+            lambda eta, beyond=beyond: (
+                weight(eta) * one.side(eta, orders[0], beyond) * two.side(eta, orders[1], beyond)
+            ),
+            ends,
+        )
+    return total
+
+
+def determinant(xi, beta):
+    """Return the determinant of the six conditions."""
+    return mpmath.det(mpmath.matrix(conditions(mpmath, xi, beta)))
+
+
+def root(xi, start):
+    """Return a root to many digits, by secants."""
+    step = mpmath.mpf(start) * mpmath.mpf(10) ** -12
+    return mpmath.findroot(
+        lambda beta: determinant(xi, beta) * mpmath.exp(-2 * beta),
+        (mpmath.mpf(start), mpmath.mpf(start) + step),
+        tol=mpmath.mpf(10) ** (2 - 2 * mpmath.mp.dps),
+        verify=False,
+    )
+
+
+@lru_cache(maxsize=256)
+def mode_at(xi, start):
+    """Return the mode whose root is near a start, at a place given in many digits."""
+    return Mode(xi, root(xi, start))
+
+
+class Drift:
+    """Central difference of a mode along the support's place, as a mode is used."""
+
+    STEP = mpmath.mpf(10) ** -12
+
+    def __init__(self, xi, start, second=False):
+        self.xi, self.second = xi, second
+        moves = (-1, 0, 1) if second else (-1, 1)
+        self.modes = [mode_at(xi + k * self.STEP, start) for k in moves]
+
+    def side(self, eta, order, beyond):
+        """Return a derivative by eta on one side of the support."""
+        values = [mode.side(eta, order, beyond) for mode in self.modes]
+        if self.second:
+            return (values[0] - 2 * values[1] + values[2]) / self.STEP**2
+        return (values[1] - values[0]) / (2 * self.STEP)

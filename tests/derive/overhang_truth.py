@@ -1,0 +1,293 @@
+"""Modes of the beam with an overhang in many digits, by cosh and sinh as they stand.
+
+With 320 digits the textbook's shapes lose nothing; derivatives along the support's place are
+differences.  Integrals over end values, for which any values may be passed in, are judged by the
+derived expression before any lowering.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from functools import lru_cache
+
+import mpmath
+import numpy as np
+from elastolink.derive.checks import Exact, Point, exact_at, reference_of
+from elastolink.derive.models import overhang_modes
+from elastolink.derive.spec import ModelSpec
+from elastolink.generated import quick_return_overhang_modes as emitted
+
+DIGITS = 320
+_STEP = mpmath.mpf(10) ** -60
+_TRIG = (mpmath.sin, mpmath.cos, lambda v: -mpmath.sin(v), lambda v: -mpmath.cos(v))
+_HYP = (mpmath.sinh, mpmath.cosh)
+
+
+def near(a, x, order):
+    """Return a derivative of ``sin x - (sin a / sinh a) sinh x``."""
+    return _TRIG[order](x) - mpmath.sin(a) / mpmath.sinh(a) * _HYP[order % 2](x)
+
+
+def far(b, y, order):
+    """Return a derivative by y of the free bay's shape, times ``2 exp(-b)``."""
+    first = mpmath.sin(b) + mpmath.sinh(b)
+    second = mpmath.cos(b) + mpmath.cosh(b)
+    cosines = _TRIG[(order + 1) % 4](y) + _HYP[(order + 1) % 2](y)
+    sines = _TRIG[order](y) + _HYP[order % 2](y)
+    return 2 * mpmath.exp(-b) * (first * cosines - second * sines)
+
+
+def determinant(xi, beta):
+    """Return the characteristic function over growing factors."""
+    a, b = beta * xi, beta * (1 - xi)
+    ours = (near(a, a, 1), near(a, a, 2))
+    theirs = (-far(b, b, 1), far(b, b, 2))
+    return 2 * mpmath.exp(-a) * mpmath.sinh(a) * (ours[0] * theirs[1] - ours[1] * theirs[0])
+
+
+def slope_of(function, at):
+    """Return a central difference that keeps hundreds of digits."""
+    return (function(at + _STEP) - function(at - _STEP)) / (2 * _STEP)
+
+
+@lru_cache(maxsize=256)
+def amplitudes(xi, beta):
+    """Return both amplitudes of a mode of unit square."""
+    a, b = beta * xi, beta * (1 - xi)
+    ours, theirs = (near(a, a, 1), near(a, a, 2)), (-far(b, b, 1), far(b, b, 2))
+    left = ours[0] * theirs[0] + ours[1] * theirs[1]
+    right = ours[0] ** 2 + ours[1] ** 2
+    square = (1 - xi) * (right * far(b, mpmath.mpf(0), 0)) ** 2 / 4
+    square -= xi * left**2 * near(a, mpmath.mpf(0), 1) * near(a, mpmath.mpf(0), 3) / 2
+    return left / mpmath.sqrt(square), right / mpmath.sqrt(square)
+
+
+@lru_cache(maxsize=256)
+def root_rate(xi, beta):
+    """Return the relative rate of a root: a quarter of slope times reaction over beta^4."""
+    a, b = beta * xi, beta * (1 - xi)
+    left, right = amplitudes(xi, beta)
+    return (right * far(b, mpmath.mpf(0), 0)) ** 2 / 4 + (
+        left**2 * near(a, mpmath.mpf(0), 1) * near(a, mpmath.mpf(0), 3) / 2
+    )
+
+
+def shape(xi, beta, eta, order, side):
+    """Return a derivative by eta of the mode on one side of the support."""
+    left, right = amplitudes(xi, beta)
+    if side == "before":
+        return left * beta**order * near(beta * xi, beta * eta, order)
+    return right * (-beta) ** order * far(beta * (1 - xi), beta * (1 - eta), order)
+
+
+def drift(xi, beta, eta, order, side):
+    """Return a derivative by eta of the mode's derivative along xi, the root moving with it."""
+    rate = root_rate(xi, beta)
+    return slope_of(lambda h: shape(xi + h, beta * (1 + rate * h), eta, order, side), mpmath.mpf(0))
+
+
+def end_values(numbers):
+    """Return what the emitted ``end_values`` should."""
+    with mpmath.workdps(DIGITS):
+        xi, beta = numbers["place"], numbers["beta"]
+        left, right = amplitudes(xi, beta)
+        rate = root_rate(xi, beta)
+        growth = [
+            slope_of(lambda h, i=i: amplitudes(xi + h, beta * (1 + rate * h))[i], mpmath.mpf(0))
+            for i in (0, 1)
+        ]
+        pin, tip = mpmath.mpf(0), mpmath.mpf(1)
+        found = {
+            "left_amplitude": left,
+            "right_amplitude": right,
+            "left_growth": growth[0] / left,
+            "right_growth": growth[1] / right,
+            "rate": rate,
+            "span_rate": beta * (1 + xi * rate),
+            "hang_rate": beta * ((1 - xi) * rate - 1),
+        }
+        for name, function in (("", shape), ("_drift", drift)):
+            before = function(xi, beta, xi, 3, "before")
+            found |= {
+                f"root_slope{name}": function(xi, beta, pin, 1, "before"),
+                f"root_shear{name}": function(xi, beta, pin, 3, "before"),
+                f"slope{name}": function(xi, beta, xi, 1, "before"),
+                f"moment{name}": function(xi, beta, xi, 2, "before"),
+                f"shear{name}": before,
+                f"reaction{name}": function(xi, beta, xi, 3, "beyond") - before,
+                f"tip{name}": function(xi, beta, tip, 0, "beyond"),
+                f"tip_slope{name}": function(xi, beta, tip, 1, "beyond"),
+            }
+        return found
+
+
+def characteristic(numbers):
+    """Return what the emitted ``characteristic`` should."""
+    with mpmath.workdps(DIGITS):
+        xi, beta = numbers["place"], numbers["beta"]
+        # The factor exp(-a - b) is exp(-beta): its slope belongs to the value.
+        return {
+            "residual": determinant(xi, beta),
+            "residual_slope": slope_of(lambda at: determinant(xi, at), beta),
+        }
+
+
+def modes(side):
+    """Return what the emitted shapes of one side should, for a given amplitude."""
+    factor = "left_amplitude" if side == "before" else "right_amplitude"
+
+    def values(numbers):
+        with mpmath.workdps(DIGITS):
+            xi, beta, eta = (numbers[name] for name in ("place", "beta", "eta"))
+            found = {}
+            for order, name in enumerate(("value", "slope_along", "curvature", "third")):
+                if side == "before":
+                    part = beta**order * near(beta * xi, beta * eta, order)
+                else:
+                    part = (-beta) ** order * far(beta * (1 - xi), beta * (1 - eta), order)
+                found[name] = numbers[factor] * part
+            return found
+
+    return values
+
+
+def drifts(side):
+    """Return what the emitted drift of one side should, for given amplitude and rates."""
+
+    def values(numbers):
+        with mpmath.workdps(DIGITS):
+            xi, beta, eta, rate = (numbers[name] for name in ("place", "beta", "eta", "rate"))
+            before = side == "before"
+            factor = numbers["left_amplitude" if before else "right_amplitude"]
+            growth = numbers["left_growth" if before else "right_growth"]
+            phase = numbers["span_rate" if before else "hang_rate"]
+            found = {}
+            for order, name in enumerate(("drift", "drift_slope", "drift_curvature")):
+
+                def moved(h, order=order):
+                    root = beta * (1 + rate * h)
+                    if before:
+                        part = near(beta * xi + phase * h, root * eta, order)
+                    else:
+                        part = far(beta * (1 - xi) + phase * h, root * (1 - eta), order)
+                        part *= (-1) ** order
+                    return factor * (1 + growth * h) * root**order * part
+
+                found[name] = slope_of(moved, mpmath.mpf(0))
+            return found
+
+    return values
+
+
+# ---------------------------------------------------------------- places and points
+
+HELD_PINNED = (3.926602312047919, 7.068582745628732, 10.210176122813031)  # tan a = tanh a
+HELD_FREE = (1.8751040687119611, 4.694091132974175, 7.854757438237613)  # 1 + cos b cosh b = 0
+# Where the support meets a node: of slope in both bays, of moment in both, of a free-free mode.
+NAMED = {
+    "a node of slope": HELD_PINNED[0] / (HELD_PINNED[0] + HELD_FREE[1]),
+    "another node of slope": HELD_PINNED[1] / (HELD_PINNED[1] + HELD_FREE[0]),
+    "a node of moment": math.pi / (math.pi + HELD_PINNED[0]),
+    "a node of the first free-free mode": 0.7758420986,
+    "the tip": 1.0,
+    "just before the tip": 0.999,
+    "1e-9 before the tip": 1.0 - 1e-9,
+    "a twentieth": 0.05,
+    "a thousandth": 1e-3,
+    "the middle": 0.5,
+}
+
+
+def exact_root(place, mode):
+    """Return a root to many digits, from the emitted residual's bracket of a double."""
+    from elastolink.runtime.systems.rod.overhang import overhang_roots
+
+    start = overhang_roots(place, mode)[0, -1]
+    with mpmath.workdps(DIGITS):
+        root = mpmath.mpf(float(start))
+        xi = mpmath.mpf(place)
+        for _ in range(4):
+            root -= determinant(xi, root) / slope_of(lambda at: determinant(xi, at), root)
+        return root
+
+
+def _cases():
+    random = np.random.default_rng(505)
+    for i in range(12):
+        yield f"random {i}", float(random.uniform(0.03, 1.0)), int(random.integers(1, 61))
+    for name, place in NAMED.items():
+        for mode in (1, 2, 60):
+            yield f"{name}, mode {mode}", place, mode
+
+
+@lru_cache(maxsize=1)
+def _roots():
+    return tuple((name, place, float(exact_root(place, mode))) for name, place, mode in _cases())
+
+
+def _near_points(place):
+    return {"the pin": 0.0, "close to the pin": 1e-9, "midway": 0.4 * place, "the support": place}
+
+
+def _far_points(place):
+    found = {"the support": place, "the tip": 1.0}
+    if place < 1.0:
+        rest = 1.0 - place
+        found |= {"midway": place + 0.6 * rest, "close to the tip": 1.0 - 1e-7 * rest}
+    return found
+
+
+def _points(function):
+    wanted = tuple(inspect.signature(getattr(emitted, function)).parameters)
+    for name, place, beta in _roots():
+        base = {"place": place, "beta": beta}
+        if function == "characteristic":
+            yield Point(f"{name}, a root", base)
+            yield Point(f"{name}, off a root", {"place": place, "beta": 0.93 * beta})
+            continue
+        if function == "end_values":
+            yield Point(name, base)
+            continue
+        values = emitted.end_values(beta, place)
+        base |= dict(zip(emitted.RETURNS["end_values"], map(float, values), strict=True))
+        points = _near_points(place) if function.endswith("before") else _far_points(place)
+        for where, eta in points.items():
+            inputs = {**base, "eta": eta}
+            yield Point(f"{name}, {where}", {key: inputs[key] for key in wanted})
+
+
+def _integral_points(function):
+    wanted = tuple(inspect.signature(getattr(emitted, function)).parameters)
+    cases = _roots()
+    for (name, place, beta), (_, _, other) in zip(cases, (*cases[1:], cases[0]), strict=True):
+        inputs = {"place": place}
+        for suffix, root in (("_1", beta), ("_2", other), ("", beta)):
+            values = emitted.end_values(root, place)
+            found = dict(zip(emitted.RETURNS["end_values"], map(float, values), strict=True))
+            inputs |= {f"{key}{suffix}": value for key, value in (found | {"beta": root}).items()}
+        yield Point(name, {key: inputs[key] for key in wanted})
+
+
+@lru_cache(maxsize=1)
+def _forms():
+    spec = ModelSpec("quick_return", "overhang_modes")
+    return {kernel.name: kernel.form for kernel in overhang_modes.MODEL.energies(spec).kernels}
+
+
+@lru_cache(maxsize=8)
+def exact_points(function: str) -> tuple[Exact, ...]:
+    """Return the exact values of one emitted function at random and nasty points."""
+    if function.endswith("_integrals"):
+        form = _forms()[function]
+        reference = reference_of(form.inputs, form.outputs, form.steps)
+        return tuple(exact_at(reference, point) for point in _integral_points(function))
+    references = {
+        "characteristic": characteristic,
+        "end_values": end_values,
+        "modes_before": modes("before"),
+        "modes_beyond": modes("beyond"),
+        "drift_before": drifts("before"),
+        "drift_beyond": drifts("beyond"),
+    }
+    return tuple(exact_at(references[function], point) for point in _points(function))

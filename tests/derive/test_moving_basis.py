@@ -1,0 +1,404 @@
+"""Derivation of the rod's equations: moving support, tension, floating frame, projection."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+from elastolink.derive.arrays import BasisIntegral, BasisProduct, CrankMotion, DiscreteSystem
+from elastolink.derive.lagrange import NotRepresentable
+from elastolink.derive.models import flexible_rod as rod
+from elastolink.derive.moving_basis import Moments, MovingShapes, project_moving
+from elastolink.derive.pipeline import module_text
+from elastolink.derive.records import EndForce, Essential, PointTerm, Support
+from elastolink.derive.spec import ModelSpec
+from elastolink.derive.variational import hamilton, quadratic_action
+from elastolink.runtime.systems.assembly import assemble
+from numpy.polynomial.legendre import leggauss
+from rod_newton import PlainBasis, Rod, linear_forces, second_order
+
+SPEC = ModelSpec("quick_return", "moving_basis", flexible=("rod",))
+PRINTED = SPEC.with_(drop=("frame", "tension"))
+x, t, v, phi, block = rod.x, rod.t, rod.v, rod.phi, rod.block
+mass, stiffness, length = rod.density, rod.stiffness, rod.length
+turn, bend, sliding = sp.symbols("turn bend sliding", real=True)
+MOTION = CrankMotion(
+    rod.theta2, rod.rate, rod.acceleration, {rod.theta4: turn, turn: bend, rod.place: sliding}
+)
+SHAPES = MovingShapes(length, rod.place, rod.eta)
+FOLLOWERS = {phi: rod.theta4, block: length * rod.place}
+
+
+def projected(action, **options):
+    return project_moving(action, v, SHAPES, MOTION, followers=FOLLOWERS, **options)
+
+
+def terms(system: DiscreteSystem, array: str) -> dict[str, sp.Expr]:
+    """Return the coefficients of an array by the names of the integrals."""
+    if array not in system.arrays:
+        return {}
+    return {what.name: sp.expand(value) for value, what in system.arrays[array].terms}
+
+
+def undamped(spec):
+    return rod.action(spec).with_(dissipation=sp.S.Zero)
+
+
+# ---------------------------------------------------------------- the continuum
+
+
+def test_tension_is_the_centrifugal_force_of_what_lies_beyond():
+    found = rod.tension_in(hamilton(rod.action(SPEC)))
+    s = sp.Symbol("s")
+    force = sp.integrate(mass * phi.diff(t) ** 2 * s, (s, x, length))
+    assert sp.expand(found - force) == 0
+
+
+def test_damping_is_in_the_equation_and_in_the_moment():
+    equations = hamilton(rod.action(PRINTED))
+    drag = -rod.damping * v.diff(t) - rod.internal * v.diff(x, 4, t)
+    difference = equations.equations[v] - hamilton(undamped(PRINTED)).equations[v]
+    assert sp.expand(difference - drag).doit() == 0
+    moment = equations.condition(length, v, 1)
+    bent = stiffness * v.diff(x, 2) + rod.internal * v.diff(x, 2, t)
+    assert sp.expand(moment + bent).doit() == 0
+    (jump,) = [j for j in equations.jumps if j.order == 1]
+    assert sp.expand(jump.value + bent).doit() == 0 and jump.applied == 0
+
+
+def test_dissipation_takes_rates_alone():
+    wrong = rod.action(PRINTED).with_(dissipation=rod.damping * v * v.diff(t))
+    with pytest.raises(ValueError, match="first rates alone"):
+        hamilton(wrong)
+
+
+@pytest.mark.parametrize("where", ["tip", "spring", "axial"])
+def test_a_change_of_the_action_alone_moves_the_conditions(where):
+    """A tip mass, a spring at the tip, an axial pull: into the natural conditions by hand."""
+    extra, number = sp.symbols("extra number", positive=True)
+    base = undamped(SPEC)
+    along, across = x + rod.u, v
+    place = sp.Matrix(
+        [
+            along * sp.cos(phi) - across * sp.sin(phi),
+            along * sp.sin(phi) + across * sp.cos(phi),
+        ]
+    )
+    added = {
+        "tip": PointTerm(length, extra / 2 * sp.trigsimp(place.diff(t).dot(place.diff(t)))),
+        "spring": PointTerm(length, -extra / 2 * v**2),
+    }
+    if where == "axial":
+        given = base.with_(end_forces=(EndForce(length, rod.u, 0, number),))
+    else:
+        given = base.with_(point_terms=(added[where],))
+    equations = hamilton(given)
+    force = rod.tension_in(equations)
+    plain = rod.tension_in(hamilton(base))
+    expected = {"tip": extra * length * phi.diff(t) ** 2, "spring": 0, "axial": number}[where]
+    assert sp.expand(force - plain - expected) == 0
+    change = equations.condition(length, v, 0) - hamilton(base).condition(length, v, 0)
+    linear = {rod.u: 0}
+    pull = {
+        "tip": -extra * (v.diff(t, 2) + x * phi.diff(t, 2) - v * phi.diff(t) ** 2),
+        "spring": -extra * v,
+        "axial": 0,
+    }[where]
+    assert sp.expand(change.subs(linear).doit() - pull) == 0
+
+
+# ---------------------------------------------------------------- the floating frame
+
+
+def test_frame_is_the_line_of_least_squares():
+    """Rotation and offset of a polynomial deflection, by minimising the squares."""
+    found = rod.buckens_frame()
+    deflection = 3 * x - 7 * x**2 / length + x**4 / length**3
+    slope, start = sp.symbols("slope start")
+    off = sp.integrate((deflection - slope * x - start) ** 2, (x, 0, length))
+    best = sp.solve([sp.diff(off, slope), sp.diff(off, start)], [slope, start], dict=True)[0]
+    moments = {s: sp.integrate(w * deflection, (x, 0, length)) for s, w in found.weights.items()}
+    assert sp.simplify(found.rotation.subs(moments) - best[slope]) == 0
+    # The pin (v = 0) lies at minus the line's start from the frame.
+    assert sp.simplify(found.offset.subs(moments) + best[start]) == 0
+
+
+@pytest.mark.parametrize("force", [length**2 - x**2, (length - x) * x, length**3 - x**3])
+def test_frame_part_is_the_difference_of_two_works(force):
+    """Against direct integration, for any tension that ends at the tip."""
+    part = rod.frame_part(force)
+    deflection = x * (x - length / 3) * (2 * length - x)
+    moments = {s: sp.integrate(w * deflection, (x, 0, length)) for s, w in part.weights.items()}
+    frame = rod.buckens_frame()
+    rotation = frame.rotation.subs(
+        {s: sp.integrate(w * deflection, (x, 0, length)) for s, w in frame.weights.items()}
+    )
+    slope = sp.diff(deflection, x)
+    work = sp.integrate(force * (slope**2 - (slope - rotation) ** 2) / 2, (x, 0, length))
+    assert sp.simplify(part.expression.subs(moments) + work) == 0
+
+
+def test_frame_part_needs_a_free_tip():
+    with pytest.raises(ValueError, match="vanish at the tip"):
+        rod.frame_part(length + x)
+
+
+# ---------------------------------------------------------------- projection
+
+
+def test_every_array_follows_from_the_chain_rule():
+    """By hand: expand v = L (q1 e1 + q2 e2) in shapes of x and s, and differentiate in time."""
+    base = undamped(SPEC)
+    given = quadratic_action(base, {rod.tension: rod.tension_in(hamilton(base))}, (rod.u,))
+    found = projected(given)
+    s, l = sp.Symbol("s"), length  # noqa: E741
+    shapes = (x * (x - s) / l**2, x**2 * (x - s) / l**3)
+    q = [sp.Function(f"q{i}")(t) for i in range(2)]
+    place = sp.Function("place")(t)
+    deflection = l * sum(a * e for a, e in zip(q, shapes, strict=True))
+    density = given.density.subs(v, deflection.subs(s, l * place)).doit()
+    energy = sp.integrate(sp.expand(density), (x, 0, length))
+    rate, drift = sp.symbols("rate drift")
+    plain = {place.diff(t): drift * rate, phi.diff(t): turn * rate}
+    energy = energy.subs(plain).subs(place, rod.place).expand()
+    names = {"M": (1, 1, 0), "A": (1, 0, 1), "B": (0, 0, 2), "K": (0, 0, 0)}
+    for array, (left, right, power) in names.items():
+        total = sp.zeros(2, 2)
+        for value, what in found.arrays[array].terms:
+            total += value * integral(what, shapes, s)
+        for i in range(2):
+            for j in range(2):
+                one = q[i].diff(t) if left else q[i]
+                two = q[j].diff(t) if right else q[j]
+                by_hand = sp.diff(energy, one, two).coeff(rate, power)
+                by_hand = by_hand.subs({f: 0 for f in (*q, *(c.diff(t) for c in q))})
+                if array == "K":
+                    by_hand = -by_hand
+                difference = total[i, j] - by_hand.subs(drift, sliding)
+                assert sp.simplify(difference) == 0, (array, i, j)
+
+
+def integral(what: BasisIntegral, shapes, s):
+    """Return the matrix of an integral over explicit shapes, xi put in."""
+
+    def derived(shape, orders):
+        # By eta = x/L and xi = s/L.
+        scaled = shape * length ** (orders[0] + orders[1])
+        return sp.diff(scaled, (x, orders[0]), (s, orders[1]))
+
+    weight = what.weight.subs(rod.eta, x / length)
+    rows = [derived(e, what.row) for e in shapes]
+    columns = [derived(e, what.column) for e in shapes]
+    values = sp.Matrix(2, 2, lambda i, j: sp.expand(weight * rows[i] * columns[j]))
+    if what.at is None:
+        values = values.applyfunc(lambda e: sp.integrate(e, (x, 0, length)) / length)
+    else:
+        values = values.subs(x, what.at * length)
+    return values.subs(s, length * rod.place)
+
+
+def test_points_stand_at_fixed_places():
+    """A tip mass and a spring at half the length: values of the shapes there, by their names."""
+    tip, spring = sp.symbols("tip spring", positive=True)
+    base = undamped(PRINTED)
+    found = projected(
+        base.with_(
+            point_terms=(
+                PointTerm(length, tip / 2 * v.diff(t) ** 2),
+                PointTerm(length / 2, -spring / 2 * v**2),
+            )
+        )
+    )
+    before = projected(base)
+    assert terms(found, "M") == {**terms(before, "M"), "overlap_at_1": tip * length**2}
+    assert terms(found, "A") == {**terms(before, "A"), "drift_at_1": tip * length**2 * sliding}
+    drifted = tip * length**2 * sliding**2
+    assert terms(found, "B") == {**terms(before, "B"), "drift_drift_at_1": drifted}
+    expected = {**terms(before, "K"), "overlap_at_1_over_2": spring * length**2}
+    assert terms(found, "K") == expected
+    moving = base.with_(point_terms=(PointTerm(block, -spring / 2 * v**2),))
+    with pytest.raises(NotRepresentable, match="no fixed fraction"):
+        projected(moving)
+
+
+def test_varying_mass_brings_its_weight():
+    taper = sp.Rational(1, 3)
+    shaped = undamped(PRINTED)
+    shaped = shaped.with_(
+        density=sp.expand(shaped.density.subs(mass, mass * (1 - taper * x / length)))
+    )
+    found = {what.name: what for _, what in projected(shaped).arrays["M"].terms}
+    ((name, what),) = found.items()
+    assert name == "overlap_weight_1_minus_1_over_3"
+    assert sp.expand(what.weight - (1 - rod.eta / 3)) == 0
+
+
+def test_drag_on_the_rate_goes_to_c_and_d():
+    c = sp.Symbol("c", positive=True)
+    plain = undamped(PRINTED)
+    by_force = projected(plain.with_(force_density={v: -c * v.diff(t)}))
+    by_power = projected(plain.with_(dissipation=c / 2 * v.diff(t) ** 2))
+    assert dict(by_force.arrays) == dict(by_power.arrays)
+    assert terms(by_force, "C") == {"overlap": c * length**3}
+    assert terms(by_force, "D") == {"drift": c * length**3 * sliding}
+
+
+def test_an_even_load_and_a_force_at_the_tip_are_forces():
+    load, push = sp.symbols("load push", real=True)
+    given = undamped(PRINTED)
+    given = given.with_(
+        force_density={v: load * phi.diff(t) ** 2}, end_forces=(EndForce(length, v, 0, push),)
+    )
+    found = projected(given)
+    assert terms(found, "f")["mean"] == load * turn**2 * length**2
+    assert terms(found, "p") == {"shape_at_1": push * length}
+
+
+def test_moments_give_products():
+    a, b = sp.symbols("a b")
+    part = Moments(5 * a**2 * phi.diff(t) ** 2 + 2 * a * b, {a: sp.Integer(1), b: x}, "both")
+    found = projected(undamped(PRINTED), moments=(part,))
+    (spun,) = [(f, w) for f, w in found.arrays["B"].terms if isinstance(w, BasisProduct)]
+    mean = [sp.Symbol(f"mean_{end}") for end in ("row", "column")]
+    assert spun[0] == turn**2 * length**4
+    assert spun[1].form == 10 * mean[0] * mean[1]
+    (still,) = [(f, w) for f, w in found.arrays["K"].terms if isinstance(w, BasisProduct)]
+    moment = [sp.Symbol(f"moment_{end}") for end in ("row", "column")]
+    assert sp.expand(still[0] * still[1].form) == sp.expand(
+        -2 * length**5 * (mean[0] * moment[1] + moment[0] * mean[1])
+    )
+    with pytest.raises(ValueError, match="not quadratic"):
+        projected(undamped(PRINTED), moments=(replace(part, expression=a**3),))
+
+
+@pytest.mark.parametrize(
+    "change, refusal, words",
+    [
+        ({"essential": (Essential(length, v, 0),)}, ValueError, "not held at"),
+        ({"essential": (Essential(sp.Integer(0), v, 1),)}, ValueError, "not held at"),
+        ({"supports": (Support(2 * block, v, rod.reaction),)}, ValueError, "not held at"),
+    ],
+)
+def test_shapes_hold_where_the_action_says(change, refusal, words):
+    with pytest.raises(refusal, match=words):
+        projected(undamped(PRINTED).with_(**change))
+
+
+@pytest.mark.parametrize(
+    "density, words",
+    [
+        (v.diff(t, 2) ** 2, "second time derivatives"),
+        (v * v.diff(t), "no array"),
+        (v**2 * phi.diff(t), "no array"),
+        (v.diff(t) * v.diff(x) * phi.diff(t) ** 2, "rates"),
+        (v.diff(t) * phi.diff(t) ** 2, "momentum"),
+        (v.diff(x, 2, t) * phi.diff(t), "derivative"),
+    ],
+)
+def test_terms_without_a_place_are_refused(density, words):
+    with pytest.raises(NotRepresentable, match=words):
+        projected(undamped(PRINTED).with_(density=density))
+
+
+@pytest.mark.parametrize("drop", [("spin",), ("tension", "axial")])
+def test_unknown_terms_are_refused(drop):
+    with pytest.raises(ValueError, match="unknown terms"):
+        rod.action(SPEC.with_(drop=drop))
+
+
+def test_stability_alone_has_no_forcing():
+    text = module_text(SPEC.with_(outputs=("stability",)), rod.MODEL, "0" * 32)
+    assert "forcing" not in text.split("SPEC =")[1].split("\n\n")[1]
+    assert '("f"' not in text and '("g"' not in text and '("B"' in text
+
+
+# ---------------------------------------------------------------- emitted numbers
+
+
+def emitted(model, spec, tmp_path):
+    """Return a module as the pipeline writes it, loaded."""
+    path = tmp_path / "emitted_rod.py"
+    path.write_text(module_text(spec, model, "0" * 32))
+    found = importlib.util.spec_from_file_location("emitted_rod", path)
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
+
+
+class Defined(PlainBasis):
+    """The plain shapes, integrated as a module's own table says."""
+
+    def __init__(self, size, module):
+        super().__init__(size)
+        self.rows = {name: row for name, *row in module.BASIS}
+
+    def array(self, name, place):
+        weight, row, column, at = self.rows[name]
+        nodes, weights = leggauss(self.size + 4)
+        eta, w = ((nodes + 1) / 2, weights / 2) if at is None else (np.array([at]), np.ones(1))
+        w = w * np.polynomial.Polynomial(weight)(eta)
+        left, right = (
+            None
+            if orders is None
+            else (self.drifts if orders[1] else self.shapes)(eta, place, orders[0])
+            for orders in (row, column)
+        )
+        if right is None:
+            return np.einsum("x,txi->ti", w, left)
+        return np.einsum("x,txi,txj->tij", w, left, right)
+
+
+@pytest.mark.parametrize("drop", [(), ("frame",), ("frame", "tension"), ("tension",)])
+def test_the_table_defines_the_names_of_the_protocol(drop):
+    name = "quick_return_rod_moving_basis" + "".join(f"_without_{term}" for term in drop)
+    module = importlib.import_module(f"elastolink.generated.{name}")
+    place = np.array([0.2, 0.7, 1.0])
+    defined, named = Defined(3, module), PlainBasis(3)
+    for row in module.BASIS:
+        found = defined.array(row[0], place)
+        np.testing.assert_allclose(found, named.array(row[0], place), rtol=1e-12, atol=1e-15)
+    used = {term[-1] for term in module.TERMS} - set(module.RETURNS.get("basis_products", ()))
+    vectors = set() if "basis_products" not in module.RETURNS else {"mean", "moment"}
+    assert used | vectors == {row[0] for row in module.BASIS}
+
+
+def test_a_tip_mass_in_the_action_moves_the_emitted_numbers(tmp_path):
+    """A third of the rod's mass at its tip: by Newton's law, its pull on the rod included."""
+    share = sp.Rational(1, 3)
+
+    def energies(spec):
+        base = rod.action(spec)
+        along = x + rod.u
+        place = sp.Matrix(
+            [along * sp.cos(phi) - v * sp.sin(phi), along * sp.sin(phi) + v * sp.cos(phi)]
+        )
+        square = sp.expand(place.diff(t).dot(place.diff(t)))
+        square = sp.expand(square.subs(sp.sin(phi) ** 2, 1 - sp.cos(phi) ** 2))
+        tip = PointTerm(length, share * mass * length / 2 * square)
+        return base.with_(point_terms=(tip,))
+
+    module = emitted(replace(rod.MODEL, energies=energies), SPEC, tmp_path)
+    numbers = {
+        "bending_stiffness": 40.0,
+        "mass_per_length": 2.5,
+        "damping": 3.0,
+        "internal_damping": 0.07,
+    }
+    lengths = {"frame": 0.6, "crank": 0.18, "length": 1.3}
+    system = assemble(module, geometry=lengths, parameters=numbers, basis=Defined(2, module))
+    found = second_order(system, 0.9, 5.0, 11.0)
+    truth = Rod(**lengths, **numbers, taut=True, tip=2.5 * 1.3 / 3)
+    by_newton = linear_forces(truth, 2, 0.9, 5.0, 11.0)
+    for matrix, expected in zip(found, by_newton, strict=True):
+        expected = expected / (2.5 * 1.3**3)
+        size = np.max(np.abs(expected))
+        np.testing.assert_allclose(matrix, expected, rtol=0, atol=1e-11 * size)
+    # It is no small change.
+    bare = linear_forces(replace(truth, tip=0.0), 2, 0.9, 5.0, 11.0)
+    assert all(
+        np.max(np.abs(a - b)) > 0.01 * np.max(np.abs(a))
+        for a, b in zip(by_newton, bare, strict=True)
+    )

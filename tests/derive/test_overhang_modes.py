@@ -1,0 +1,140 @@
+"""The overhang modes' derivation: what it solves, what it proves, and what moves with it."""
+
+from __future__ import annotations
+
+import mpmath
+import pytest
+import sympy as sp
+from elastolink.derive.greens_identity import NoPrimitive
+from elastolink.derive.models import overhang_ends, overhang_integrals, overhang_problem
+from elastolink.derive.models.overhang_integrals import DRIFT, MODE, Ends, eta, place
+from elastolink.derive.models.overhang_waves import CLOSE, HANG, REST, RUN, SPAN, Wave, proven
+from elastolink.derive.safe import UnsafeRewriting
+from overhang_reference import DIGITS, Drift, mode_at
+
+
+def test_shapes_solve_the_boundary_value_problem():
+    for free, point, support, ends in ((False, RUN, SPAN, (0, 2)), (True, REST, HANG, (2, 3))):
+        shape, v = overhang_problem.plain_shape(free), point.phase
+        assert sp.expand(sp.diff(shape, v, 4) - shape) == 0
+        for order in ends:
+            assert sp.simplify(sp.diff(shape, v, order).subs(v, 0)) == 0
+        assert sp.simplify(shape.subs(v, support.phase)) == 0
+
+
+def test_the_characteristic_function_is_that_of_the_conditions():
+    """The determinant of the six conditions but for a factor without a root."""
+    from overhang_reference import determinant
+
+    residual = overhang_ends.residual()[0]
+    steps = [*SPAN.steps(overhang_ends.beta * place)]
+    steps += HANG.steps(overhang_ends.beta * (1 - place))
+    ratios = []
+    with mpmath.workdps(DIGITS):
+        for xi, beta in ((0.3, 2.5), (0.62, 7.7), (0.9, 4.4)):
+            numbers = {place: mpmath.mpf(xi), overhang_ends.beta: mpmath.mpf(beta)}
+            for symbol, value in steps:
+                numbers[symbol] = sp.lambdify(list(numbers), value, "mpmath")(*numbers.values())
+            found = sp.lambdify(list(numbers), residual, "mpmath")(*numbers.values())
+            plain = determinant(numbers[place], numbers[overhang_ends.beta])
+            a, b = numbers[SPAN.phase], numbers[HANG.phase]
+            ratios.append(found * mpmath.exp(a + b) / plain)
+        assert all(abs(ratio / ratios[0] - 1) < mpmath.mpf(10) ** -15 for ratio in ratios)
+
+
+def test_a_wrong_form_is_refused():
+    with pytest.raises(UnsafeRewriting):
+        proven(SPAN.odd, 2 * SPAN.fade * sp.cosh(SPAN.phase))
+    with pytest.raises(NoPrimitive):
+        overhang_integrals.square_primitive.__wrapped__(((MODE, 0), (MODE, 0)), -1)
+
+
+def test_waves_near_zero_and_far_away():
+    wave = Wave.of("v")
+    for value in (1e-9, 0.3, 1.5, 1.6, 20.0, 400.0):
+        numbers = {}
+        with mpmath.workdps(400):
+            for symbol, expression in wave.steps(sp.Float(value, 400)):
+                numbers[symbol] = sp.sympify(expression).subs(numbers).evalf(60)
+            v = mpmath.mpf(value)
+            scale = 2 * mpmath.exp(-v)
+            excess = scale * (mpmath.sinh(v) - mpmath.sin(v))
+            spread = scale * (mpmath.cosh(v) - mpmath.cos(v))
+            # The series leaves out less than the last digit of a double.
+            assert abs(mpmath.mpf(str(numbers[wave.excess])) / excess - 1) < 1e-17
+            assert abs(mpmath.mpf(str(numbers[wave.spread])) / spread - 1) < 1e-17
+
+
+def test_orthogonality_is_a_result():
+    pair = (Ends.of("_1"), Ends.of("_2"))
+    assert overhang_integrals.pair_integral(sp.S.One, (MODE, 0), (MODE, 0), pair) == 0
+    drift = overhang_integrals.pair_integral(sp.S.One, (MODE, 0), (DRIFT, 0), pair)
+    turned = overhang_integrals.pair_integral(sp.S.One, (DRIFT, 0), (MODE, 0), pair)
+    assert sp.simplify(drift + turned) == 0
+
+
+@pytest.mark.parametrize("power", [0, 1, 2, 3])
+def test_weights_that_the_model_does_not_use(power):
+    """Metamorphic: any polynomial tension, from the same identity, against quadrature."""
+    from overhang_reference import product
+
+    pair, one = (Ends.of("_1"), Ends.of("_2")), Ends.of()
+    weight = eta**power
+    closed = overhang_integrals.in_roots(
+        overhang_integrals.pair_integral(weight, (MODE, 1), (MODE, 1), pair), pair
+    ).subs(*overhang_integrals.gap_step(pair))
+    own = overhang_integrals.square_integral((MODE, 1), (MODE, 1), power, one)
+    with mpmath.workdps(DIGITS):
+        xi = mpmath.mpf("0.37")
+        modes = [mode_at(xi, start) for start in (2.5, 5.9)]
+        roots = [mode.beta for mode in modes]
+        assert abs(roots[0] - roots[1]) > 1
+        numbers = {place: xi}
+        for ends, mode in zip(pair, modes, strict=True):
+            numbers |= values_at(ends, mode)
+        exact = product(*modes, (1, 1), lambda x: x**power)
+        assert abs(evaluate(closed, numbers) - exact) < mpmath.mpf(10) ** -40
+        exact = product(modes[0], modes[0], (1, 1), lambda x: x**power)
+        found = evaluate(own, {place: xi, **values_at(one, modes[0])})
+        assert abs(found - exact) < mpmath.mpf(10) ** -40
+
+
+def values_at(ends, mode):
+    """Return the end values of a mode in many digits, by symbol."""
+    beyond = {"pin": False, "before": False, "after": True, "tip": True}
+    where = {"pin": 0, "before": mode.xi, "after": mode.xi, "tip": 1}
+    found = {ends.beta: mode.beta}
+    for (at, kind, order), symbol in ends.values.items():
+        if kind != MODE:
+            continue
+        found[symbol] = mode.side(where[at], order, beyond[at])
+        if at == "after":
+            found[symbol] -= mode.side(where[at], order, False)
+    return found
+
+
+def evaluate(expression, numbers):
+    """Return the value of an expression in many digits."""
+    return sp.lambdify(list(numbers), expression, "mpmath")(*numbers.values())
+
+
+def test_conditions_on_the_drift_follow_from_those_on_the_mode():
+    """``f = -e'`` at the support, ``f'`` continuous, ``f''`` jumping against ``e'''``."""
+    ends = Ends.of()
+    with mpmath.workdps(DIGITS):
+        xi = mpmath.mpf("0.61")
+        mode, moved = mode_at(xi, 6.0), Drift(xi, 6.0)
+        assert abs(moved.side(xi, 0, False) + mode.side(xi, 1, False)) < 1e-20
+        assert abs(moved.side(xi, 1, True) - moved.side(xi, 1, False)) < 1e-18
+        jump = mode.side(xi, 3, True) - mode.side(xi, 3, False)
+        assert abs(moved.side(xi, 2, True) - moved.side(xi, 2, False) + jump) < 1e-17
+    assert ends.at("before", DRIFT, 0) == -ends.at("before", MODE, 1)
+    assert ends.at("after", DRIFT, 1) == ends.at("before", DRIFT, 1)
+    reaction = ends.values["after", MODE, 3]
+    assert ends.at("after", DRIFT, 2) == ends.at("before", DRIFT, 2) - reaction
+
+
+def test_the_close_form_is_another_writing_of_the_same_shape():
+    form = overhang_problem.beyond_from_support()
+    assert form.has(CLOSE.excess, CLOSE.spread)
+    assert not form.has(REST.sine, REST.fade)

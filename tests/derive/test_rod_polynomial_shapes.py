@@ -1,0 +1,86 @@
+"""Emitted piecewise polynomial shapes: from their definition, on both sides of the block."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+from elastolink.derive.checks import judge, worst
+from elastolink.derive.models.rod_polynomials import MODEL
+from elastolink.derive.spec import ModelSpec
+from elastolink.generated import quick_return_rod_polynomials as emitted
+from rod_polynomial_truth import exact_polynomials
+
+eta, xi = sp.symbols("eta xi", positive=True)
+SPEC = ModelSpec("quick_return", "rod_polynomials")
+KERNELS = {kernel.name: kernel.form for kernel in MODEL.energies(SPEC).kernels}
+FREE = eta**3 - 2 * eta + sp.Rational(1, 3)  # any polynomial will do
+LENGTH = {"bay": xi, "tail": 1 - xi}
+LOCAL = {"bay": eta / xi, "tail": (eta - xi) / (1 - xi)}
+
+
+def definition(name):
+    """Return the whole shape in (eta, xi) with a polynomial chosen, and the kernel's arguments."""
+    kind, side = name.split("_")
+    s = LOCAL[side]
+    place = {"eta": eta, "gap": eta - xi, "xi": xi, "s": s, "length": LENGTH[side]}
+    if kind == "through":
+        rates = {f"p_d{k}": sp.diff(FREE, eta, k) for k in (1, 2, 3)}
+        factor = eta if side == "bay" else xi
+        return factor * (eta - xi) * FREE, {**place, "p": FREE, **rates}
+    rates = {f"j_d{k}": sp.diff(FREE, eta, k).subs(eta, s) for k in (1, 2, 3)}
+    factors = {"turn_bay": s * (s - 1), "turn_tail": s}
+    factors |= {"bubble_bay": s * (1 - s) ** 2, "bubble_tail": s**2}
+    local = FREE.subs(eta, s)
+    return LENGTH[side] * factors[name] * local, {**place, "j": local, **rates}
+
+
+@pytest.mark.parametrize("name", sorted(KERNELS))
+def test_kernels_are_the_derivatives_of_the_shape(name):
+    shape, arguments = definition(name)
+    expected = {
+        "value": shape,
+        "slope": sp.diff(shape, eta),
+        "curvature": sp.diff(shape, eta, 2),
+        "shear": sp.diff(shape, eta, 3),
+        "drift": sp.diff(shape, xi),
+        "drift_curvature": sp.diff(shape, xi, eta, eta),
+    }
+    for output, formula in KERNELS[name].outputs:
+        chosen = {symbol: arguments[symbol.name] for symbol in formula.free_symbols}
+        assert sp.simplify(formula.subs(chosen, simultaneous=True) - expected[output]) == 0
+
+
+@pytest.mark.parametrize("name", sorted(emitted.RETURNS))
+def test_emitted_functions_keep_their_digits(name):
+    """At most a few roundings; 32 are allowed everywhere."""
+    judged = worst(
+        judgement
+        for exact in exact_polynomials(name)
+        for judgement in judge(getattr(emitted, name), emitted.RETURNS[name], exact)
+    )
+    assert {output: j.measure for output, j in judged.items() if not j.measure < 4} == {}
+
+
+def test_sides_meet_at_the_block_with_one_slope():
+    one, rates = np.array(1.0), (np.array(-3.0), np.array(7.0), np.array(2.0))
+    zero, place = np.array(0.0), np.array(0.6)
+    pairs = (
+        (
+            emitted.through_bay(place, zero, one, *rates),
+            emitted.through_tail(zero, place, one, *rates),
+        ),
+        (
+            emitted.turn_bay(one, place, one, *rates),
+            emitted.turn_tail(zero, 1 - place, one, *rates),
+        ),
+        (
+            emitted.bubble_bay(one, place, one, *rates),
+            emitted.bubble_tail(zero, 1 - place, one, *rates),
+        ),
+    )
+    for bay, tail in pairs:
+        left, right = (dict(zip(emitted.RETURNS["turn_bay"], s, strict=True)) for s in (bay, tail))
+        assert left["value"] == right["value"] == 0.0
+        assert left["slope"] == right["slope"]
+        assert left["drift"] == right["drift"] == -left["slope"]

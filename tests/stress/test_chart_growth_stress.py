@@ -1,0 +1,271 @@
+"""Charts of several modes where the growth is large or overflows, and at a speed that is given."""
+
+from __future__ import annotations
+
+import elastolink as el
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.charts.characteristic import weighed_characteristic
+from elastolink.runtime.charts.invariants import instability_kind, largest_modulus
+from elastolink.runtime.charts.lines import Lines
+from elastolink.runtime.charts.sampling import Sampler, Series
+from elastolink.runtime.charts.verdict import undecided, verdict
+from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
+
+
+def _scales(values):
+    return {name: np.asarray(value, float) for name, value in values.items()}
+
+
+def divergent(modes, first=-1.0):
+    """The first mode is pushed away by k, or held where k is negative."""
+    held = np.zeros((modes, modes))
+    held[1:, 1:] = np.diag(np.arange(2.0, modes + 1))
+    own, pair = np.zeros_like(held), np.zeros_like(held)
+    own[0, 0] = first
+    pair[0, 1] = pair[1, 0] = 0.2
+    terms = (
+        Term("M", None, np.eye(modes)),
+        Term("K", None, held),
+        Term("K", "k", own),
+        Term("K", None, lambda theta: np.cos(theta)[:, None, None] * pair),
+    )
+    return LinearPeriodic(modes, terms, {"k": 1.0}, _scales)
+
+
+def rod(basis):
+    return rod_system(
+        basis,
+        crank_ratio=0.1,
+        frame=0.59997,
+        length=1.0,
+        bending_stiffness=0.7e11 * 0.5208e-6,
+        mass_per_length=7.15,
+    )
+
+
+@pytest.mark.parametrize("modes", [2, 3, 5])
+def test_growth_that_overflows_is_unstable(modes):
+    """At 0.005 rad/s the state grows by exp(2 pi sqrt(k) / speed), 1e385 and more."""
+    speeds = np.array([0.005, 0.5, 1.0])
+    system = divergent(modes)
+    chart = el.stability_chart(system, ("speed", speeds), ("k", [0.5, 1.0]))
+    assert np.all(chart.largest[:, 0] == np.inf)
+    assert not np.any(chart.stable)
+    assert not np.any(chart.undecided)
+    assert np.all(chart.kind == 1)
+    for i, k in enumerate(chart.y):
+        direct = el.floquet_multipliers(system, speeds[1:], k=k)
+        wanted = np.max(np.abs(direct.multipliers), axis=-1)
+        assert np.allclose(chart.largest[i, 1:], wanted, rtol=1e-8)
+
+
+def test_one_growing_point_leaves_the_others_decided():
+    """Multipliers from 86 to 1e54 on one line, each known to its own error."""
+    speeds = np.linspace(0.05, 1.0, 20)
+    system = divergent(2)
+    chart = el.stability_chart(system, ("speed", speeds), ("k", [0.5, 1.0]))
+    assert not np.any(chart.stable)
+    assert not np.any(chart.undecided)
+    assert chart.largest.max() > 1e50
+    direct = el.floquet_multipliers(system, speeds[5:], k=0.5)
+    wanted = np.max(np.abs(direct.multipliers), axis=-1)
+    assert np.allclose(chart.largest[0, 5:], wanted, rtol=1e-8)
+
+
+def test_stable_points_beside_overflow_are_found():
+    """One chart from a spring that holds to one that pushes, over speeds down to 0.004 rad/s."""
+    speeds = np.concatenate([[0.004], np.linspace(0.7, 3.0, 60)])
+    system = divergent(2, first=1.0)
+    stiff = np.linspace(-1.0, 1.0, 12)
+    chart = el.stability_chart(system, ("speed", speeds), ("k", stiff))
+    assert np.all(chart.largest[:3, 0] == np.inf)
+    direct = el.floquet_multipliers(system, speeds[None, 1:], k=stiff[:, None])
+    modulus = np.max(np.abs(direct.multipliers), axis=-1)
+    clear = np.abs(modulus - 1.0) > 1e-6
+    assert np.array_equal(chart.stable[:, 1:][clear], modulus[clear] < 1.0)
+    assert np.mean(chart.undecided[:, 1:]) < 0.02
+    assert 0.1 < np.mean(chart.stable[:, 1:]) < 0.9
+
+
+def test_waves_alone_move_a_system_whose_mean_stiffness_vanishes():
+    """At k = 0 the mean rate is zero, the stiffness 0.2 cos(theta) / speed^2 is not."""
+    pair = np.array([[0.3, 0.2], [0.2, 0.1]])
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", "k", np.diag([1.0, 2.0])),
+        Term("K", None, lambda theta: np.cos(theta)[:, None, None] * pair),
+    )
+    system = LinearPeriodic(2, terms, {"k": 1.0}, _scales)
+    speeds, stiff = np.array([0.02, 0.3, 1.0]), np.linspace(-1.0, 1.0, 3)
+    chart = el.stability_chart(system, ("speed", speeds), ("k", stiff))
+    direct = el.floquet_multipliers(system, speeds[1:], k=0.0)
+    wanted = np.max(np.abs(direct.multipliers), axis=-1)
+    assert np.allclose(chart.largest[1, 1:], wanted, rtol=1e-7)
+    assert not chart.stable[1, 0]
+
+
+def test_lines_are_not_made_again_and_again_where_nothing_settles(monkeypatch):
+    made = []
+    plain = Lines._series
+    monkeypatch.setattr(Lines, "_series", lambda *a: made.append(1) or plain(*a))
+    rows = np.linspace(0.5, 2.0, 10)
+    chart = el.stability_chart(
+        divergent(2), ("speed", np.linspace(0.02, 1.0, 100)), ("k", rows), boundaries=False
+    )
+    assert chart.nodes == (0, 0)
+    assert not np.any(chart.stable)
+    # Two ends to judge by, up to nine to begin with, one per row, four for the error.
+    assert len(made) <= 2 + 9 + len(rows) + 4
+
+
+def test_a_matrix_that_is_not_a_number_is_undecided():
+    values = np.array([[[-1.0, 0.5], [np.nan, 0.5]], [[np.inf, np.inf], [-np.inf, -np.inf]]])
+    largest, stable, slack = largest_modulus(values, reduced=True)
+    assert np.isnan(largest[0, 1])
+    assert np.all(largest[1] == np.inf)
+    assert not np.any(stable[[0, 1, 1], [1, 0, 1]])
+    assert slack[0, 1] == np.inf
+    assert np.all(slack[1] == 0.0)
+    system = divergent(2)
+    axes = (np.array([0.5, 1.0]), np.array([0.5, 1.0]))
+    sampler = Sampler(system, ("speed", "k"), axes, 1e-11)
+    series = Series(values, np.zeros((2, 2)), 0.0, (0, 0), "")
+    found = verdict(sampler, series)
+    assert undecided(sampler, series, found).tolist() == [[False, True], [False, False]]
+    kind = instability_kind(values, found[1], hill=False, reduced=True)
+    assert kind[1].tolist() == [-1, 1]
+    assert kind[0, 1] == 0
+
+
+@pytest.mark.parametrize("basis", [PolynomialBasis(3), OverhangBasis(2)])
+def test_the_second_solution_is_another_one(basis):
+    """Fast cranks want the least number of stretches, of which the second solution has more."""
+    system = rod(basis).with_geometry(crank_ratio=0.2)
+    speeds = np.array([3000.0, 4000.0])
+    sampler = Sampler(system, ("speed", "damping"), (speeds, np.array([0.0, 1e-9])), 1e-11)
+    lines = Lines(sampler)
+    low, high = 1.0 / speeds[1] ** 2, 1.0 / speeds[0] ** 2
+    one, other = (lines._line(0.0, low, high, None, f).pieces[0] for f in (1.0, 1.37))
+    assert other.maps.shape[1] > one.maps.shape[1]
+
+
+def _characteristic_in_many_digits(matrix):
+    """Faddeev and LeVerrier in 80 digits."""
+    with mpmath.workdps(80):
+        x = mpmath.matrix(matrix.tolist())
+        m = matrix.shape[0]
+        power, found = mpmath.eye(m), []
+        for k in range(1, m + 1):
+            product = x * power
+            found.append(-sum(product[i, i] for i in range(m)) / k)
+            power = product + found[-1] * mpmath.eye(m)
+        return np.array([float(c) for c in found])
+
+
+@pytest.mark.parametrize("modes", [2, 4, 6])
+def test_coefficients_keep_their_digits_beside_a_large_multiplier(modes):
+    """Random matrices with multipliers from 0.03 to 30: within round-off of the matrices."""
+    rng = np.random.default_rng(modes)
+    size = 2 * modes
+    basis = rng.normal(size=(40, size, size)) + 3.0 * np.eye(size)
+    spread = np.geomspace(0.03, 30.0, size)
+    matrices = basis @ (spread[:, None] * np.linalg.inv(basis))
+    found, weight = weighed_characteristic(matrices, size)
+    wanted = np.array([_characteristic_in_many_digits(x) for x in matrices])
+    assert np.all(np.abs(found - wanted) <= 32 * size * np.finfo(float).eps * weight)
+
+
+def test_error_figures_of_circulatory_systems_hold():
+    """Undamped: the last coefficient is the determinant, 1; the others from multipliers."""
+    rng = np.random.default_rng(4)
+    covered = []
+    for _ in range(6):
+        turn = rng.normal(size=(4, 4))
+        waves = rng.normal(size=(4, 4)) * 0.6
+        terms = (
+            Term("M", None, np.eye(4)),
+            Term("K", "k", np.diag(rng.uniform(1.0, 20.0, 4))),
+            Term("K", None, 0.7 * (turn - turn.T)),
+            Term("K", None, lambda t, w=waves + waves.T: np.cos(t)[:, None, None] * w),
+        )
+        system = LinearPeriodic(4, terms, {"k": 1.0}, _scales)
+        axes = ("speed", np.linspace(0.7, 3.0, 40)), ("k", np.linspace(0.5, 1.5, 5))
+        chart = el.stability_chart(system, *axes)
+        direct = el.floquet_multipliers(system, chart.x[None, :], k=chart.y[:, None])
+        wanted = np.array([[np.poly(v).real[1:] for v in row] for row in direct.multipliers])
+        size = np.maximum(1.0, np.max(np.abs(wanted), axis=-1))
+        assert np.all(np.abs(chart.invariants[..., -1] - 1.0) <= chart.error * size)
+        moved = np.sum(direct.error / np.abs(direct.multipliers), axis=-1)
+        gap = np.max(np.abs(chart.invariants - wanted), axis=-1) / size
+        covered += (gap <= chart.error + moved).ravel().tolist()
+    assert np.mean(covered) >= 0.99
+
+
+def test_a_given_speed_is_a_slice_of_the_chart_over_speeds():
+    """Damping, several powers of the speed, and geometry as an axis."""
+    system = rod(PolynomialBasis(2)).with_parameters(damping=30.0)
+    ratios, masses = np.linspace(0.05, 0.2, 4), np.linspace(6.5, 8.0, 3)
+    chart = el.stability_chart(
+        system, ("crank_ratio", ratios), ("mass_per_length", masses), speed=1500.0
+    )
+    assert chart.speed == 1500.0
+    assert chart.passed
+    for i, mass in enumerate(masses):
+        other = el.stability_chart(
+            system.with_parameters(mass_per_length=mass),
+            ("crank_ratio", ratios),
+            ("speed", [1400.0, 1500.0]),
+        )
+        assert np.allclose(chart.invariants[i], other.invariants[1], atol=1e-9)
+        assert np.array_equal(chart.stable[i], other.stable[1])
+
+
+def test_one_mode_at_a_given_speed_agrees_with_multipliers():
+    system = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    inertias, stiff = np.linspace(6e-4, 2.2e-3, 5), system.parameters["bending_stiffness"]
+    chart = el.stability_chart(
+        system,
+        ("follower_inertia", inertias),
+        ("bending_stiffness", stiff * np.array([0.8, 1.0, 1.3])),
+        speed=70.0,
+    )
+    direct = el.monodromy(
+        system, 70.0, follower_inertia=chart.x[None, :], bending_stiffness=chart.y[:, None]
+    )
+    wanted = np.trace(direct.matrix, axis1=-2, axis2=-1) / 2
+    assert np.allclose(chart.invariants[..., 0], wanted, rtol=1e-8, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("axes", "speed", "match"),
+    [
+        (("crank_ratio", "mass_per_length"), None, "give speed"),
+        (("damping", "mass_per_length"), None, "give speed"),
+        (("speed", "mass_per_length"), 100.0, "leave it out"),
+        (("crank_ratio", "mass_per_length"), -5.0, "positive number"),
+        (("crank_ratio", "mass_per_length"), np.nan, "positive number"),
+        (("crank_ratio", "mass_per_length"), "fast", "positive number"),
+    ],
+)
+def test_a_missing_or_useless_speed_is_refused(axes, speed, match):
+    values = {
+        "speed": [900.0, 1000.0],
+        "crank_ratio": [0.1, 0.2],
+        "mass_per_length": [7.0, 8.0],
+        "damping": [0.0, 1.0],
+    }
+    with pytest.raises(el.BadInput, match=match):
+        el.stability_chart(
+            rod(PolynomialBasis(1)), *((name, values[name]) for name in axes), speed=speed
+        )
+
+
+def test_two_axes_of_geometry_are_weighed_before_work():
+    ratios, frames = np.linspace(0.05, 0.2, 50), np.linspace(0.5, 0.6, 20000)
+    with pytest.raises(el.BadInput, match="fewer modes or points"):
+        el.stability_chart(
+            rod(OverhangBasis(4)), ("crank_ratio", ratios), ("frame", frames), speed=800.0
+        )

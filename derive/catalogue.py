@@ -77,6 +77,7 @@ def _multibody(mechanism: str, *more: str) -> CatalogueEntry:
 
 
 _ROD_DROPS: tuple[tuple[str, ...], ...] = ((), ("frame",), ("frame", "tension"), ("tension",))
+_BEAMS = ("cubic", "internal_node", "curvature", "timoshenko")
 _COUPLER = ("complete", "printed", "reduced")
 
 CATALOGUE = (
@@ -141,6 +142,40 @@ CATALOGUE = (
         module=".models.free_free_modes",
         sources=("free_free_modes.py",),
         specs=(ModelSpec("beam", "free_free_modes"),),
+    ),
+    CatalogueEntry(
+        mechanism="beam_element",
+        formulations=_BEAMS,
+        module=".models.beam_elements",
+        sources=("beam_elements.py", "beam_shapes.py"),
+        specs=tuple(ModelSpec("beam_element", name) for name in _BEAMS),
+    ),
+    CatalogueEntry(
+        mechanism="beam_shapes",
+        formulations=_BEAMS,
+        module=".models.beam_shapes",
+        sources=("beam_shapes.py",),
+        specs=tuple(ModelSpec("beam_shapes", name) for name in _BEAMS),
+    ),
+    CatalogueEntry(
+        mechanism="beam_section",
+        formulations=("sandwich",),
+        module=".models.beam_sandwich",
+        sources=("beam_sandwich.py",),
+        specs=(ModelSpec("beam_section", "sandwich"),),
+    ),
+    CatalogueEntry(
+        mechanism="beam",
+        formulations=("dynamic_stiffness",),
+        module=".models.beam_dynamic_stiffness",
+        sources=(
+            "beam_dynamic_stiffness.py",
+            "beam_frequency_functions.py",
+            "beam_frequency_problem.py",
+            "beam_frequency_shapes.py",
+            "overhang_waves.py",
+        ),
+        specs=(ModelSpec("beam", "dynamic_stiffness"),),
     ),
     CatalogueEntry(
         mechanism="quick_return",
@@ -212,6 +247,13 @@ CATALOGUE = (
         module=".models.hill_meissner",
         sources=("hill_meissner.py",),
         specs=(ModelSpec("hill", "meissner"),),
+    ),
+    CatalogueEntry(
+        mechanism="newmark",
+        formulations=("stability",),
+        module=".models.newmark",
+        sources=("newmark.py",),
+        specs=(ModelSpec("newmark", "stability"),),
     ),
 )
 

@@ -15,13 +15,14 @@ from .entries import ConstrainedSystem, MatrixForm, TranscendentalSystem
 from .perturbation.bloch import Recursion
 from .perturbation.printing import recursion_lines, word_lines
 from .pipeline import Model, equations_of_motion, only_wanted
-from .projection import tidy
+from .projection.galerkin import tidy
 from .records import ActionDensity, EquationsOfMotion, FieldEquations, Lagrangian
 from .separation import StagedSystem
 from .spec import ModelSpec
 from .staged import ClosedForm, KernelForms, Steps
 
 _WIDTH = 110  # characters in a line of an equation
+_DIGITS = 8  # of a constant
 _SILENT = re.compile(r"\\(mathrm|left|right|frac|dot|ddot|quad)\b|[{}_^ ]")
 _PARTS = re.compile(r"(?P<stem>[A-Za-z]+)(?P<digits>\d*)(?:_(?P<word>\w+))?")
 _LETTERS = {"th": "theta", "lam": "lambda"}
@@ -53,6 +54,11 @@ class _Printer(LatexPrinter):  # type: ignore[misc]
 
     def _print_AppliedUndef(self, expr: AppliedUndef, exp: str | None = None) -> str:
         return _powered(_name(expr.func.__name__), exp)
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        """Print a constant of many digits with the first ones."""
+        text = str(super()._print_Float(sp.Float(expr, _DIGITS)))
+        return text if expr == sp.Float(expr, _DIGITS) else text + r"\ldots"
 
     def _print_Derivative(self, expr: sp.Derivative) -> str:
         inner = self._print(expr.expr)
@@ -270,7 +276,12 @@ def _heading(words: str) -> Iterator[str]:
 
 
 def _equation(left: str, right: Any, factor: str = "") -> str:
-    """Return ``left = right``, broken between terms where it is long; a wide matrix by entries."""
+    """Return ``left = right``, broken between terms where it is long; a wide matrix by entries.
+
+    What has cases is given case by case.
+    """
+    if isinstance(right, sp.Piecewise) and not factor:
+        return "".join(_sum(left, [*_case_terms(value), _case(c)]) for value, c in right.args)
     if isinstance(right, sp.MatrixBase) and _row_width(right) > _WIDTH:
         return _entries(left, right)
     terms = _terms(sp.sympify(right))
@@ -279,6 +290,17 @@ def _equation(left: str, right: Any, factor: str = "") -> str:
     if factor:
         terms = [rf"\left({' '.join(terms)}\right) \delta {factor}"]
     return _sum(left, terms)
+
+
+def _case_terms(value: sp.Expr) -> list[str]:
+    terms = _terms(value)
+    return _terms(sp.expand(value)) if max(map(_width, terms)) > _WIDTH else terms
+
+
+def _case(condition: Any) -> str:
+    words = "otherwise" if condition == sp.true else "for"
+    shown = "" if condition == sp.true else f" {_tex(condition)}"
+    return rf"\quad \text{{{words}}}{shown}"
 
 
 def _sum(left: str, terms: Sequence[str]) -> str:
@@ -325,7 +347,8 @@ def _width(text: str) -> int:
 
 
 def _tex(expression: Any) -> str:
-    return str(_Printer({"mul_symbol": r" \, "}).doprint(expression))
+    # A row of a matrix or of cases a line.
+    return str(_Printer({"mul_symbol": r" \, "}).doprint(expression)).replace(r"\\", "\\\\\n")
 
 
 def _text(words: str) -> str:

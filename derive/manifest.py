@@ -17,7 +17,8 @@ from .spec import Entry, ModelSpec
 
 _HERE = Path(__file__).parent
 _NAMED = b'name = "elastolink"'
-# What can change an emitted byte: all here, in perturbation/ and in rigid/, but the bookkeeping.
+# What can change an emitted byte: all here and in the folders of every model, but the bookkeeping.
+_FOLDERS = ("perturbation", "projection", "rigid")
 _BOOKKEEPING = {
     "__init__.py",
     "catalogue.py",
@@ -34,7 +35,7 @@ _BOOKKEEPING = {
 @lru_cache(maxsize=1)
 def _shared_sources() -> str:
     digest = hashlib.sha256(f"ir {IR_VERSION}".encode())
-    folders = (_HERE, _HERE / "perturbation", _HERE / "rigid")
+    folders = (_HERE, *(_HERE / name for name in _FOLDERS))
     found = [path for folder in folders for path in folder.glob("*.py")]
     own = [path for path in sorted(found) if path.name not in _BOOKKEEPING]
     templates = sorted((_HERE.parent / "templates").glob("*.j2"))

@@ -12,10 +12,10 @@ from typing import Any, Generic, TypeVar
 import sympy as sp
 
 from .arrays import MATRICES, BasisEntry, DiscreteSystem, IndexedEntry, IndexedVector
-from .basis_terms import BasisFactor, basis_kernels, basis_rows
 from .describe import Description
 from .ir import Argument, Kernel, ModuleSpec, Result, TermRow
 from .lowering import lower_kernel
+from .projection.basis_terms import BasisFactor, basis_kernels, basis_rows
 from .spec import ModelSpec
 from .staged import Steps
 

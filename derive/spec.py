@@ -22,6 +22,10 @@ DERIVED_AS = {
     ("quick_return", name): "moving_basis"
     for name in ("overhang", "polynomial", "two_segment", "free_free_linear")
 }
+# Formulations in which every link is a beam, by the element that they are made of.
+BEAM_FORMULATIONS = {
+    f"{kind}_beams": kind for kind in ("cubic", "internal_node", "curvature", "timoshenko")
+}
 # Names for sets of terms left out, by mechanism and formulation of the module.
 NAMED_DROPS: Mapping[tuple[str, str], Mapping[str, tuple[str, ...]]] = {
     ("quick_return", "moving_basis"): {"as_printed": ("frame", "tension")},
@@ -90,7 +94,12 @@ class ModelSpec:
         return replace(self, **changes)
 
     def derived(self) -> ModelSpec:
-        """Return the spec of the module that serves this one, names for sets of terms spelt out."""
+        """Return the spec of the module that serves this one, names for sets of terms spelt out.
+
+        Links that are beams are put together at run time from the element that they are made of.
+        """
+        if self.formulation in BEAM_FORMULATIONS:
+            return ModelSpec("beam_element", BEAM_FORMULATIONS[self.formulation])
         formulation = DERIVED_AS.get((self.mechanism, self.formulation), self.formulation)
         sets = NAMED_DROPS.get((self.mechanism, formulation), {})
         drop = tuple(term for name in self.drop for term in sets.get(name, (name,)))

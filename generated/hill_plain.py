@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash b20e69ea4005a5e11098176ca94f9e20; derived with SymPy 1.14.0.
+Content hash dda6d576d309b7ae679a6c7c80a159ec; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "b20e69ea4005a5e11098176ca94f9e20"
+CONTENT = "dda6d576d309b7ae679a6c7c80a159ec"
 EXTERNAL = ('f',)
 MODAL_1 = ((1.0,),)
 MODAL_2 = ((2.0,),)

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 49 operations
     dynamics: 141 operations
     variations: 253 operations
-Content hash 4dac3f58d688a5c50ca569d6d6246dd3; derived with SymPy 1.14.0.
+Content hash ce23c61cf3c14ccae029f1b2c6be680c; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":1,"outputs":[]}'
 )
-CONTENT = "4dac3f58d688a5c50ca569d6d6246dd3"
+CONTENT = "ce23c61cf3c14ccae029f1b2c6be680c"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = ('psi_1', 'psi_1_d1', 'psi_1_d2', 'psi_1_d3')

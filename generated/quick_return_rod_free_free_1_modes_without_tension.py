@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 43 operations
     dynamics: 132 operations
     variations: 245 operations
-Content hash 074fb5ecab14d86268033ca6733e407c; derived with SymPy 1.14.0.
+Content hash 817933a57a71e0d131e5390c41170f9c; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":1,"outputs":[]}'
 )
-CONTENT = "074fb5ecab14d86268033ca6733e407c"
+CONTENT = "817933a57a71e0d131e5390c41170f9c"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = ('psi_1', 'psi_1_d1', 'psi_1_d2', 'psi_1_d3')

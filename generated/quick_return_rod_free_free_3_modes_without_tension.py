@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 58 operations
     dynamics: 168 operations
     variations: 303 operations
-Content hash 21846e32ba059ee3c564466a111082c3; derived with SymPy 1.14.0.
+Content hash 23ef3c3028e6fe991d615a8712bae90d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":3,"outputs":[]}'
 )
-CONTENT = "21846e32ba059ee3c564466a111082c3"
+CONTENT = "23ef3c3028e6fe991d615a8712bae90d"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 133 operations
     dynamics: 315 operations
     variations: 478 operations
-Content hash 256bf64358baa2c716a28f1a2d632237; derived with SymPy 1.14.0.
+Content hash e24437d10e40e5aa84e6d45563124fc4; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":4,"outputs":[]}'
 )
-CONTENT = "256bf64358baa2c716a28f1a2d632237"
+CONTENT = "e24437d10e40e5aa84e6d45563124fc4"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 167 operations
     dynamics: 402 operations
     variations: 575 operations
-Content hash 0237f7221e8766b6588000e851c8ede2; derived with SymPy 1.14.0.
+Content hash e8a3052b2774541e1e242dccb9752f44; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":5,"outputs":[]}'
 )
-CONTENT = "0237f7221e8766b6588000e851c8ede2"
+CONTENT = "e8a3052b2774541e1e242dccb9752f44"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4', 'f5')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 72 operations
     dynamics: 202 operations
     variations: 361 operations
-Content hash 3cf7f4ca8519eaa20bcc0e70b70cd688; derived with SymPy 1.14.0.
+Content hash 46eb4140b653c3026cbacaa85c93cff0; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":5,"outputs":[]}'
 )
-CONTENT = "3cf7f4ca8519eaa20bcc0e70b70cd688"
+CONTENT = "46eb4140b653c3026cbacaa85c93cff0"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4', 'f5')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 101 operations
     shaking_moment: 107 operations
     load_forces: 75 operations
-Content hash b8c8452373cad6b1f39189b5c5e35d44; derived with SymPy 1.14.0.
+Content hash d8d52d562b1dda55de7de08829f38a6a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"slider_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "b8c8452373cad6b1f39189b5c5e35d44"
+CONTENT = "d8d52d562b1dda55de7de08829f38a6a"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

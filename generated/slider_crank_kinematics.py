@@ -11,7 +11,7 @@ the guide.
 
 Cost per evaluation:
     motion: 78 operations
-Content hash 4ddf838ea9c3754c9845f304e09656ff; derived with SymPy 1.14.0.
+Content hash 751bc8d38e4fd29ed3a987c716420680; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"slider_crank",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "4ddf838ea9c3754c9845f304e09656ff"
+CONTENT = "751bc8d38e4fd29ed3a987c716420680"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -107,6 +107,7 @@ def test_what_is_required_and_declared():
         "benchmark",
         "cluster",
         "dae",
+        "fatigue",
         "dev",
     }
     for minor in (11, 12, 13):

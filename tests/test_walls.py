@@ -27,6 +27,7 @@ LAZY = {
     "numba",
     "flint",
     "sksundae",
+    "rainflow",
 }
 # Proofs of emitted functions at many digits; nothing else of derive/ may import the module.
 CHECKS = "derive/checks.py"

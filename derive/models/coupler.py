@@ -26,7 +26,7 @@ from ..describe import Description
 from ..ir import Argument
 from ..lagrange import euler_lagrange
 from ..pipeline import Model
-from ..projection import project, sine_basis
+from ..projection.galerkin import project, sine_basis
 from ..records import (
     VECTORS,
     ActionDensity,

@@ -24,11 +24,11 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..describe import Description
-from ..integrals import definite
 from ..ir import Argument
 from ..jets import JetSpace, linear_jets, quadratic_jets
-from ..moving_basis import Moments, MovingShapes, project_moving
 from ..pipeline import Model
+from ..projection.integrals import definite
+from ..projection.moving_basis import Moments, MovingShapes, project_moving
 from ..records import (
     ActionDensity,
     CrankMotion,

@@ -13,9 +13,9 @@ from functools import lru_cache
 import sympy as sp
 
 from ..describe import Description
-from ..greens_identity import integral, primitive
 from ..ir import Argument, Result
 from ..pipeline import Model
+from ..projection.greens_identity import integral, primitive
 from ..safe import UnsafeRewriting
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms, Steps

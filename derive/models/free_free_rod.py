@@ -15,10 +15,10 @@ import sympy as sp
 
 from ..describe import Description
 from ..entries import ConstrainedSystem
-from ..greens_identity import integral, primitive
 from ..ir import Argument
 from ..lagrange import variational_equations
 from ..pipeline import Model
+from ..projection.greens_identity import integral, primitive
 from ..records import EquationsOfMotion, Lagrangian
 from ..spec import Choices, ModelSpec
 from ..staged import Steps

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from .. import piecewise
 from ..describe import Description
 from ..ir import Argument, Result
 from ..pipeline import Model
+from ..projection import piecewise
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms, Steps
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ..greens_identity import derivative
+from ..projection.greens_identity import derivative
 from ..staged import Step
 from .overhang_integrals import (
     AFTER,

@@ -19,7 +19,7 @@ from itertools import product
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from ..greens_identity import NoPrimitive, primitive
+from ..projection.greens_identity import NoPrimitive, primitive
 
 eta, place = sp.symbols("eta place", positive=True)
 MODE, DRIFT = "e", "f"

@@ -7,6 +7,7 @@ from .perturbation import benchmark_perturbation
 from .records import Benchmark, Row
 from .rod import benchmark_rod
 from .slices import benchmark_slices
+from .stress_curve import benchmark_stress_curve
 
 __all__ = [
     "Benchmark",
@@ -17,4 +18,5 @@ __all__ = [
     "benchmark_perturbation",
     "benchmark_rod",
     "benchmark_slices",
+    "benchmark_stress_curve",
 ]

@@ -19,6 +19,7 @@ from typing import NoReturn
 from ..errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from . import (
     balancing,
+    beams,
     boundaries,
     classification,
     clearance,
@@ -46,6 +47,7 @@ _GROUPS = (
     driving,
     balancing,
     response,
+    beams,
     stability,
     boundaries,
     proofs,

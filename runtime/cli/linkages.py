@@ -183,6 +183,19 @@ def speed_of(options: argparse.Namespace, scene: Scene) -> float:
     return speed
 
 
+def refuse_frame(scene: Scene) -> None:
+    """Refuse a scene without a crank.
+
+    Raises
+    ------
+    BadInput
+        If the scene is of a frame.
+    """
+    if scene.model["mechanism"] == "frame":
+        fix = "use frequencies or stress"
+        raise bad(f"scene {scene.name}", "a frame, which has no crank", "a linkage", fix)
+
+
 def _speed(options: argparse.Namespace, scene: Scene) -> float:
     if options.speed is not None:
         return opt.quantity(options.speed, "frequency", "--speed")

@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import refuse_frame, speed_of
 
 if TYPE_CHECKING:
+    from ..families import Array, LinearPeriodic
     from ..response import SteadyPeaks, SteadyState
 
 _PLACES = 41
 _ROWS = 25
+# Of the coordinates of beams, by the end of their names; all others are rotations.
+_UNITS = {**dict.fromkeys(("x", "y", "along", "across"), "m"), "curvature": "1/m"}
 _HEADER = ("speed [rad/s]", "deflection [m]", "at x/length", "multiplier from 1", "motion")
 
 
@@ -44,6 +47,12 @@ def add(commands: Any) -> None:
         help="place on the link, 0 to 1, whose deflection is shown; default where it is largest",
     )
 
+    steady.add_argument(
+        "--method",
+        default=None,
+        help="see steady_state; default shooting, for beams harmonic_balance",
+    )
+
 
 def _steady_state(options: argparse.Namespace) -> int:
     import numpy as np
@@ -52,6 +61,7 @@ def _steady_state(options: argparse.Namespace) -> int:
     if options.at is not None and not 0.0 <= options.at <= 1.0:
         raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
     scene = opt.load(options)
+    refuse_frame(scene)
     if options.speed is not None and ":" in options.speed:
         speeds = opt.values(options.speed, "frequency", "--speed")
         if speeds[0] <= 0:
@@ -60,6 +70,9 @@ def _steady_state(options: argparse.Namespace) -> int:
         speeds = [speed_of(options, scene)]
     system = scene.linear_system()
     shown = sys.stderr.isatty() and not options.json
+    if system.structure is not None:
+        return _of_beams(options, system, np.array(speeds), shown)
+    opt.refuse_unused(options, ("method",) if len(speeds) > 1 else (), "one speed")
     if len(speeds) > 1:
         from ..response import steady_peaks
 
@@ -69,12 +82,36 @@ def _steady_state(options: argparse.Namespace) -> int:
         return opt.finish(options, found, _lines(found), more=more)
     from ..response import steady_state
 
-    result = steady_state(system, np.array(speeds), progress=shown)
+    result = steady_state(
+        system, np.array(speeds), method=options.method or "shooting", progress=shown
+    )
     places = np.linspace(0.0, 1.0, _PLACES) if options.at is None else np.array([options.at])
     reached = result.peak(places)[0]
     rows = [_row(result, 0, float(np.max(reached)), float(places[np.argmax(reached)]))]
     more = {"peak_deflection": [float(np.max(reached))]}
     return opt.finish(options, result, opt.table(_HEADER, rows), more=more)
+
+
+def _of_beams(
+    options: argparse.Namespace, system: LinearPeriodic, speeds: Array, shown: bool
+) -> int:
+    """Show the motion of a linkage of beams: the largest values of its coordinates."""
+    import numpy as np
+
+    from ..response import steady_state
+
+    opt.refuse_unused(options, ("at",), "a link with mode shapes")
+    if len(speeds) > 1:
+        fix = "elastolink stress takes many: --speed START:STOP:COUNT"
+        raise bad("--speed", f"{len(speeds)} speeds", "one for a linkage of beams", fix)
+    method = options.method or "harmonic_balance"
+    result = steady_state(system, speeds, method=method, stability=False, progress=shown)
+    peaks = np.max(np.abs(result.q[0]), axis=0)
+    rows = [
+        (label, f"{peak:.6g}", _UNITS.get(label.rpartition(".")[2], "rad"))
+        for label, peak in zip(system.labels, peaks, strict=True)
+    ]
+    return opt.finish(options, result, opt.table(("coordinate", "largest", ""), rows))
 
 
 def _row(
@@ -85,7 +122,7 @@ def _row(
         f"{peak:.6g}",
         f"{place:.2f}",
         f"{found.distance[index]:.3g}",
-        "stable" if found.stable[index] else "unstable",
+        "unknown" if found.stable is None else "stable" if found.stable[index] else "unstable",
     )
 
 

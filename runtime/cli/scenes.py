@@ -116,12 +116,12 @@ def _several(numbers: tuple[float, ...], dimension: str) -> str:
 
 
 def draw_scene(scene: Scene, ax: Axes) -> Axes:
-    """Draw the linkage of a scene at several crank angles, or the function of a Hill equation.
+    """Draw a scene's linkage at several crank angles, its frame, or a Hill equation's function.
 
     Parameters
     ----------
     scene : Scene
-        With a ``[links]`` or a ``[function]`` table.
+        With a ``[links]``, a ``[members]`` or a ``[function]`` table.
     ax : Axes
         Where to draw.
 
@@ -135,6 +135,8 @@ def draw_scene(scene: Scene, ax: Axes) -> Axes:
     ax.set_title(scene.name, fontsize="medium")
     if scene.model["mechanism"] in LINKAGES and scene.layout.formulations:
         return _draw_linkage(scene, ax)
+    if "members" in scene:
+        return _draw_frame(scene, ax)
     if "function" in scene:
         return _draw_function(scene, ax)
     ax.set_axis_off()
@@ -157,6 +159,23 @@ def _draw_linkage(scene: Scene, ax: Axes) -> Axes:
             ax.plot(x, y, "-o", markersize=3, color=colour, linewidth=width, zorder=2 + (i == 2))
     fixed = [place[0] for place in joints.values() if np.ptp(place, axis=0).max() == 0.0]
     ax.plot(*np.transpose(fixed), "^", color="black", markersize=7, zorder=4)
+    return _to_scale(ax)
+
+
+def _draw_frame(scene: Scene, ax: Axes) -> Axes:
+    nodes = scene["nodes"]
+    for name, member in scene["members"].items():
+        ends = (nodes[member["start"]]["place"], nodes[member["end"]]["place"])
+        ax.plot(*zip(*ends, strict=True), "-o", color="C0", markersize=3, linewidth=1.8)
+        x, y = (sum(pair) / 2.0 for pair in zip(*ends, strict=True))
+        ax.annotate(name, (x, y), xytext=(4, 4), textcoords="offset points", fontsize="small")
+    for table in nodes.values():
+        if table.get("held"):
+            ax.plot(*table["place"], "^", color="black", markersize=7, zorder=4)
+    return _to_scale(ax)
+
+
+def _to_scale(ax: Axes) -> Axes:
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")

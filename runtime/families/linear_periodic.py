@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
+
+if TYPE_CHECKING:
+    from ..beams.structure import Structure
 
 Array = NDArray[np.float64]
 MATRICES = ("M", "A", "B", "S", "C", "D", "K", "Kg")
@@ -112,6 +116,11 @@ class LinearPeriodic:
         From a full geometry to the system made for it, parameters and further terms aside.
     limits : mapping
         Of parameters that must be finite and ``positive`` or ``non-negative``, which of the two.
+    relative_deflection : callable or None
+        Crank angles ``(nt,)`` [rad] to what turns coordinates into deflections over the length of
+        their link, ``(nt, k, n)``, at k watched places; None where the shapes tell.
+    structure : object or None
+        Beams and nodes that the system was made from.
     """
 
     size: int
@@ -127,6 +136,8 @@ class LinearPeriodic:
     geometry: Mapping[str, float] = field(default_factory=dict)
     rebuild: Callable[[Mapping[str, float]], LinearPeriodic] | None = None
     limits: Mapping[str, str] = field(default_factory=dict)
+    relative_deflection: Callable[[Array], Array] | None = None
+    structure: Structure | None = None
 
     def __post_init__(self) -> None:
         """Check that every term names a known array and has the system's size."""
@@ -212,6 +223,15 @@ class LinearPeriodic:
             return largest
         amplitude: Array = np.max(np.abs(np.fft.rfft(flat, axis=0)), axis=1) / len(flat)
         return amplitude
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled: not the samples, which are made again where they are needed."""
+        return {name: value for name, value in vars(self).items() if name != "kept"}
+
+    @cached_property
+    def kept(self) -> dict[object, tuple[Array, ...]]:
+        """Samples of the terms that one solver leaves for the next, by what they are for."""
+        return {}
 
     def is_damped(self, **axes: ArrayLike) -> bool:
         """Return True where some damping term is not zero at every angle and parameter value.

@@ -23,6 +23,7 @@ def eigenvalues(
     error: Array,
     segments: NDArray[np.int64],
     volume: Array,
+    relative: bool = False,
 ) -> tuple[Array, Array, Array]:
     """Return the multipliers of a batch by logarithm, with their errors, in a fixed order.
 
@@ -41,6 +42,8 @@ def eigenvalues(
         Segments per period that gave the matrices, shape ``(nb,)``.
     volume : ndarray
         Logarithm of the determinant, by Liouville, shape ``(nb,)``.
+    relative : bool
+        Whether small multipliers are to keep their relative digits.
 
     Returns
     -------
@@ -50,13 +53,15 @@ def eigenvalues(
     m = scaled.shape[-1]
     unit, extra = _unit_size(scaled)
     power = exponent + extra
-    logarithm, angle, uncertain = _eigenvalues(unit, power, error)
+    logarithm, angle, uncertain = spectrum(unit, power, error)
     if m == 2:
         _second_from_determinant(logarithm, angle, uncertain, volume)
     else:
         hidden = np.max(uncertain - np.maximum(logarithm, 0.0), axis=-1) > np.log(_HIDDEN)
         # Without growth it is a defect that makes multipliers uncertain; no route mends that.
         hidden &= power > 12
+        if relative:
+            hidden |= np.max(uncertain - logarithm, axis=-1) > np.log(_HIDDEN)
         for number in np.unique(segments[hidden]):
             index = np.flatnonzero(hidden & (segments == number))
             logarithm[index], angle[index], uncertain[index] = _graded(
@@ -88,9 +93,7 @@ def _second_from_determinant(logarithm: Array, angle: Array, error: Array, volum
     )[apart]
 
 
-def _eigenvalues(
-    scaled: Array, power: NDArray[np.int64], error: Array
-) -> tuple[Array, Array, Array]:
+def spectrum(scaled: Array, power: NDArray[np.int64], error: Array) -> tuple[Array, Array, Array]:
     """Return log modulus, argument and log error of the eigenvalues of ``scaled 2**power``."""
     m = scaled.shape[-1]
     values, vectors = np.linalg.eig(scaled)

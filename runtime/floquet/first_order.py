@@ -30,6 +30,8 @@ _KIND = {
     **{"M": "M", "A": "A", "B": "K", "C": "C", "D": "K", "K": "K", "Kg": "K"},
     **{"f": "f", "h": "f", "p": "f"},
 }
+# Decay over a step, in phases of one radian, that A-stable collocation still damps away.
+_DECAY = 40.0
 # Amplitude, over the largest, from which a harmonic has to be resolved.
 _SEEN = 1e-6
 
@@ -300,6 +302,29 @@ class CanonicalForm:
         sizes = np.linalg.norm(values[..., :n, :n], axis=(-2, -1))
         mean: Array = np.mean(sizes, axis=1)
         return mean
+
+    @cached_property
+    def needed_rate(self) -> Array:
+        """Rate [1/rad] that A-stable steps have to resolve, shape ``(nb,)``.
+
+        Strong damping is not in it: an overdamped mode dies, or follows its load, after a time that
+        is short beside a step.  Whether that was right is told by halving the steps.
+        """
+        if not self.damped or not self._dissipative:
+            return self.rate
+        factors = self.factors.copy()
+        factors[[term.array in DAMPING for term in self.system.terms]] = 0.0
+        calm = replace(self, factors=factors).rate
+        return np.minimum(self.rate, np.maximum(calm, self.rate / _DECAY))
+
+    @property
+    def _dissipative(self) -> bool:
+        """True where the mean damping matrix neither feeds a motion nor turns it."""
+        mean = self.mean["C"]
+        size = np.max(np.abs(mean), axis=(-2, -1), initial=0.0)
+        turned = np.max(np.abs(mean - np.swapaxes(mean, -1, -2)), axis=(-2, -1), initial=0.0)
+        lowest = np.linalg.eigvalsh(mean)[:, 0]
+        return bool(np.all((turned <= 1e-9 * size) & (lowest >= -1e-9 * size)))
 
     def _spectral(self, name: str) -> Array:
         """Return the spectral norm of a mean matrix in coordinates of unit mass."""

@@ -15,7 +15,9 @@ from ..results import Check, Result, provenance
 from .eigenvalues import eigenvalues
 from .first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from .krein import SignatureSource
-from .period_products import STAGES, period_product
+from .period_products import STAGES
+from .refined_products import PHASE, rounding_error
+from .speed_tables import looked_up
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,10 +26,6 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)
-# Phase that the first try lets pass per segment; collocation of order 16 is then near 1e-9.
-_PHASE = 3.0
-_MOST_SEGMENTS = 2**20
-_FEWEST = 16
 # Error of a multiplier up to which it says anything about stability.
 _TELLING = 0.1
 
@@ -116,16 +114,12 @@ def monodromy(
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-11")
     system, parameters = at_geometry(system, parameters)
     form = canonical_form(system, speed, parameters)
-    count = len(form.speed)
     m = 2 * system.size
-    scaled = np.zeros((count, m, m))
-    exponent = np.zeros(count, dtype=np.int64)
-    error = np.zeros(count)
-    segments = np.zeros(count, dtype=np.int64)
-    for group, first in _groups(form):
-        part = form.take(group)
-        scaled[group], exponent[group], error[group], segments[group] = _refined(part, first, rtol)
-    allowed = np.maximum(rtol, 100 * _rounding(form, segments))
+    scaled, exponent, error, segments = looked_up(form, parameters, rtol)
+    allowed, over = np.full(len(error), rtol), np.flatnonzero(error > rtol)
+    if len(over):
+        least = rounding_error(form.take(over), segments[over])
+        allowed[over] = np.maximum(rtol, 100 * least)
     checks = _monodromy_checks(form, scaled, exponent, error, np.minimum(allowed, 1e-2))
     # The exponent stays only where the unscaled matrix would overflow.
     size = np.log2(np.maximum(np.max(np.abs(scaled), axis=(-2, -1)), 1e-300)) + exponent
@@ -148,78 +142,6 @@ def monodromy(
         scale=scale.reshape(*batch, m),
         segments=segments.reshape(batch),
     )
-
-
-def _groups(form: CanonicalForm) -> list[tuple[NDArray[np.intp], int]]:
-    """Split the batch by the number of segments to begin with, a power of two."""
-    # Eight angles a segment have to see the highest harmonic twice a wave at the least.
-    fewest = max(_FEWEST, form.reach / 4)
-    wanted = np.maximum(form.rate * form.system.period / _PHASE, fewest)
-    level = np.ceil(np.log2(wanted)).astype(int)
-    if np.max(level, initial=0) >= np.log2(_MOST_SEGMENTS):
-        worst = int(np.argmax(level))
-        raise bad(
-            "speed",
-            f"{form.speed[worst]:.6g} rad/s, where the highest mode turns through "
-            f"{form.rate[worst] * form.system.period:.3g} rad in a period",
-            f"at most {_PHASE * _MOST_SEGMENTS / 2:.3g} rad",
-            "raise the speed or leave out the highest modes",
-        )
-    return [(np.flatnonzero(level == value), 2 ** int(value)) for value in np.unique(level)]
-
-
-Refined = tuple[Array, NDArray[np.int64], Array, NDArray[np.int64]]
-
-
-def _refined(form: CanonicalForm, first: int, rtol: float) -> Refined:
-    """Double the number of segments until each matrix of the batch agrees with its forerunner."""
-    count = len(form.speed)
-    value, exponent = period_product(form, first)
-    error = np.full(count, np.inf)
-    used = np.full(count, first, dtype=np.int64)
-    open_: NDArray[np.intp] = np.arange(count)
-    before = np.ones(count)
-    number = first
-    while len(open_):
-        number *= 2
-        part = form.take(open_)
-        new, power = period_product(part, number)
-        difference = _distance(value[open_], exponent[open_], new, power)
-        rounding = _rounding(part, number)
-        # The change overestimates the error of the finer result; where it shrinks as fast as the
-        # order promises, one more such shrinking is counted on, with a margin.
-        gain = np.clip(difference / before[open_], 1e-3, 1.0)
-        gain[difference > 1e-3] = 1.0
-        error[open_] = difference * gain + rounding
-        value[open_], exponent[open_], used[open_] = new, power, number
-        # Round-off, not truncation, where halving the segments no longer helps.
-        stuck = (difference > 0.25 * before[open_]) & (difference < 1e-3)
-        error[open_[stuck]] += 2 * difference[stuck]
-        done = (error[open_] <= rtol) | stuck
-        before[open_] = difference
-        open_ = open_[~done]
-        if 2 * number > _MOST_SEGMENTS:
-            break
-    return value, exponent, error, used
-
-
-def _rounding(form: CanonicalForm, segments: int | NDArray[np.int64]) -> Array:
-    """Return the error of the scaled matrices that round-off makes, shape ``(nb,)``."""
-    # Where the coefficients rest, all segments round alike, so that their errors add up.
-    steps = 8.0 + 0.5 * segments
-    value: Array = _EPS * (steps + 0.5 * form.activity * form.system.period)
-    return value
-
-
-def _distance(
-    first: Array, first_power: NDArray[np.int64], second: Array, second_power: NDArray[np.int64]
-) -> Array:
-    """Return the largest difference of entries over the largest entry of the second."""
-    shift = np.clip(first_power - second_power, -1000, 1000)
-    aligned = np.ldexp(first, shift[:, None, None])
-    top = np.max(np.abs(second), axis=(-2, -1))
-    distance: Array = np.max(np.abs(aligned - second), axis=(-2, -1)) / top
-    return np.where(np.isfinite(distance), distance, 1.0)
 
 
 def symplectic_unit(n: int) -> Array:
@@ -353,6 +275,9 @@ def floquet_multipliers(
 
     Where growth hides the small multipliers in the rounding of the monodromy matrix, the product
     of its segments is decomposed without being formed, so that all multipliers keep their digits.
+    Where damping makes multipliers small, their absolute error alone is held: see
+    :func:`relative_multipliers`.  Of stiff systems, :func:`characteristic_exponents` gives the
+    lowest modes at a small part of the cost.
 
     Parameters
     ----------
@@ -377,18 +302,67 @@ def floquet_multipliers(
     BadInput
         As :func:`monodromy`.
     """
+    return _multipliers(system, speed, rtol, False, parameters)
+
+
+def relative_multipliers(
+    system: LinearPeriodic, speed: ArrayLike, *, rtol: float = 1e-11, **parameters: ArrayLike
+) -> FloquetMultipliers:
+    """Return the Floquet multipliers with the relative digits of the small ones too.
+
+    As :func:`floquet_multipliers`, and dearer: the decay of every mode is resolved by segments, and
+    their product is decomposed without being formed, so that a multiplier of 1e-200 keeps as many
+    digits as one of 1.  Where one is below the smallest number, its logarithm in ``exponents``
+    still has them.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system; forcing plays no part.
+    speed : array_like
+        Crank speeds [rad/s], positive.
+    rtol : float
+        Wanted error of the monodromy matrix, see :func:`monodromy`.
+    **parameters : array_like
+        Parameter values that replace the system's own.
+
+    Returns
+    -------
+    FloquetMultipliers
+        ``error`` is absolute, and small beside each multiplier.
+
+    Raises
+    ------
+    BadInput
+        As :func:`monodromy`.
+    """
+    return _multipliers(system, speed, rtol, True, parameters)
+
+
+def _multipliers(
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    rtol: float,
+    relative: bool,
+    parameters: Mapping[str, ArrayLike],
+) -> FloquetMultipliers:
     system, parameters = at_geometry(system, parameters)
     matrices = monodromy(system, speed, rtol=rtol, **parameters)
     form = canonical_form(system, speed, parameters)
     count, m = len(form.speed), form.size
     volume = _trace_integral(form)
+    segments = matrices.segments.reshape(count)
+    if relative:
+        decay = np.ceil(np.log2(np.maximum(form.rate * system.period / PHASE, 1.0)))
+        segments = np.maximum(segments, 2 ** np.minimum(decay, 18).astype(np.int64))
     logarithm, angle, error = eigenvalues(
         form,
         matrices.scaled.reshape(count, m, m),
         matrices.exponent.reshape(count),
         matrices.error.reshape(count),
-        matrices.segments.reshape(count),
+        segments,
         volume,
+        relative,
     )
     with np.errstate(over="ignore"):
         modulus, absolute = np.exp(logarithm), np.exp(error)
@@ -425,7 +399,8 @@ def _product(logarithm: Array, error: Array, volume: Array) -> Check:
     """Product of the multipliers against the determinant, in logarithms, at the worst place."""
     own = np.exp(np.minimum(error - np.maximum(logarithm, -1e4), 0.0))
     limit = 2 * np.sum(own, axis=-1) + 64 * _EPS * (1 + np.abs(volume))
-    finite = np.all(np.isfinite(logarithm), axis=-1)
+    # One multiplier lost in round-off, and the product says nothing.
+    finite = np.all(np.isfinite(logarithm) & (own < 1.0), axis=-1)
     total = np.sum(np.where(np.isfinite(logarithm), logarithm, 0.0), axis=-1)
     value = np.where(finite, np.abs(total - volume), 0.0)
     worst = int(np.argmax(value / limit))

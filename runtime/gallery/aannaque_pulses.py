@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Fig. 7.12 gives its lengths beside the curves; these are the ones of Figs. 8.19 to 8.23.
-_FRAMES = (0.547, 0.600, 0.632, 0.642, 0.652, 0.662)
+FRAMES = (0.547, 0.600, 0.632, 0.642, 0.652, 0.662)
 _REVERSAL = 0.66
 
 
@@ -26,7 +26,7 @@ def figure_7_12(axes: Sequence[Axes]) -> Drawn:
     """Draw the follower's acceleration for several distances of the pivots."""
     ax = axes[0]
     speed = load_scene(SCENE)["operation"]["speed"]
-    for frame, colour in zip(_FRAMES, COLOURS, strict=False):
+    for frame, colour in zip(FRAMES, COLOURS, strict=False):
         motion = cycle(frame)
         greatest = degrees(float(np.max(motion.transmission_angle)))
         label = rf"$L_4$ = {frame:.3f} m, $\gamma_{{\max}}$ = {greatest:.0f}°"
@@ -63,8 +63,8 @@ def crossover() -> float:
 
 
 def _pulse_rows() -> list[Quoted]:
-    pulses = np.array([pulses_of(frame) for frame in _FRAMES])
-    last = cycle(_FRAMES[-1])
+    pulses = np.array([pulses_of(frame) for frame in FRAMES])
+    last = cycle(FRAMES[-1])
     later = last.theta2 > radians(90.0)
     place = last.theta2[later][int(np.argmax(np.abs(last.alpha4[later])))]
     greatest = degrees(float(np.max(last.transmission_angle)))

@@ -1,4 +1,4 @@
-"""Aannaque's Figs. 7.2 and 7.3 and appendix E: Meissner's functions J, and Strutt's chart."""
+"""Aannaque's Fig. 7.2 and appendix E: Meissner's function J_2, and Strutt's chart."""
 
 from __future__ import annotations
 
@@ -22,10 +22,8 @@ from ..hill.cases.strutt import (
     strutt_chart,
 )
 from ..hill.exact.matrix import hill_boundaries
-from ..hill.half_trace import discriminant
-from ..series.periodic import PeriodicFunction
 from .records import Drawn, Quoted
-from .smith_linkages import RIG, RPM, Array
+from .smith_linkages import Array
 from .style import COLOURS, legend_below, panel_title
 
 if TYPE_CHECKING:
@@ -39,9 +37,6 @@ _SHADE, _PLUS, _MINUS = "#e4e9ee", COLOURS[0], COLOURS[1]
 _WIDEST = 4
 _D_RANGE, _EPS_RANGE = (-2.0, 20.0), (0.0, 20.0)
 _DAMPING = 0.1
-# Fig. 7.3: the first mode of one of Smith's couplers stands for the mechanism's own.
-_RIG, _INERTIA = RIG["84"], 3
-_INTERVALS = 180
 
 
 def _half_trace_2(x1: Array, x2: Array) -> Array:
@@ -153,101 +148,6 @@ def _verdict_row() -> Quoted:
         "400 random points; matrices by general exponentials",
         "7.2.3",
     )
-
-
-# ---------------------------------------------------------------- Fig. 7.3
-
-
-@lru_cache(maxsize=1)
-def _example() -> tuple[float, PeriodicFunction]:
-    """Return natural frequency [rad/s] and periodic coefficient of the scalar example."""
-    inertia = float(_RIG.inertias[_INERTIA])
-    return _RIG.frequency, _RIG.function("complete", inertia)
-
-
-def _real_part(speed: Array, intervals: int) -> Array:
-    """Return J of so many intervals: the real part of a multiplier inside stable bands."""
-    frequency, f = _example()
-    levels = (frequency / speed[:, None]) ** 2 + interval_values(f, intervals)
-    found = piecewise_monodromy(levels, np.full(intervals, 2.0 * pi / intervals))
-    return found.half_trace
-
-
-def figure_7_3(axes: Sequence[Axes]) -> Drawn:
-    """Draw J_2, J_3, J_4 and the real part of a multiplier over the speed."""
-    ax = axes[0]
-    speed = np.linspace(150.0, 620.0, 941) * RPM
-    frequency, f = _example()
-    fine = _real_part(speed, _INTERVALS)
-    ax.plot(speed / RPM, fine, color="0.15", lw=2.0, label=f"{_INTERVALS} intervals")
-    for count, colour in zip((2, 3, 4), COLOURS, strict=False):
-        ax.plot(speed / RPM, _real_part(speed, count), color=colour, label=f"$J_{count}$")
-    ax.set_xlim(speed[0] / RPM, speed[-1] / RPM)
-    ax.set_ylim(-1.5, 1.5)
-    ax.axhline(1.0, color="0.6", lw=0.6)
-    ax.axhline(-1.0, color="0.6", lw=0.6)
-    ax.set_xlabel("crank speed [rpm]")
-    ax.set_ylabel("half trace")
-    legend_below([ax])
-    note = (
-        "The document's curves belong to a mode of its own mechanism and are not legible; here the "
-        "first mode of the coupler of Smith's (5,1,5,2), 1/16 in, stands for it. Inside stable "
-        "bands J is the real part of both multipliers."
-    )
-    return Drawn(tuple(_convergence_rows(speed, fine, frequency, f)), (note,))
-
-
-def _peaks(speed: Array, values: Array) -> Array:
-    """Return the speeds of local maxima, refined by a parabola."""
-    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
-    before, at, after = values[inner - 1], values[inner], values[inner + 1]
-    shift = 0.5 * (before - after) / (before - 2.0 * at + after)
-    return np.asarray(speed[inner] + shift * (speed[1] - speed[0]))
-
-
-def _convergence_rows(
-    speed: Array, fine: Array, frequency: float, f: PeriodicFunction
-) -> list[Quoted]:
-    reference = _peaks(speed, fine)
-    rows = []
-    for count, allowed in ((2, 0.05), (3, 0.05), (4, 0.05)):
-        found = _peaks(speed, _real_part(speed, count))
-        off = [float(np.min(np.abs(found - peak)) / peak) for peak in reference]
-        rows.append(
-            Quoted(
-                f"critical speeds from J_{count}, farthest off those of 180 intervals, relative",
-                0.0,
-                max(off),
-                allowed,
-                "'a good approximation', read as 5 %",
-                "7.2.3",
-            )
-        )
-    means = [frequency / k for k in range(1, 20)]
-    nearest = [float(np.min(np.abs(np.array(means) - peak)) / peak) for peak in reference]
-    rows.append(
-        Quoted(
-            "critical speeds off whole divisions of the natural frequency, relative",
-            0.0,
-            max(nearest),
-            0.05,
-            "maxima of the half trace against Omega/k, read as 5 %",
-            "7.2.3",
-        )
-    )
-    exact = discriminant(f, (frequency / speed) ** 2, 1.0).value
-    gaps = [float(np.max(np.abs(_real_part(speed, n) - exact))) for n in (90, 180)]
-    rows.append(
-        Quoted(
-            "order of convergence in the number of intervals",
-            2.0,
-            float(np.log2(gaps[0] / gaps[1])),
-            0.05,
-            "from 90 to 180; 'converges quite rapidly'",
-            "7.2.3",
-        )
-    )
-    return rows
 
 
 # ---------------------------------------------------------------- appendix E

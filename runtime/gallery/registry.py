@@ -8,7 +8,6 @@ from ..hill.cases.strutt import Which
 from . import (
     aannaque_forces,
     aannaque_kinematics,
-    aannaque_pulses,
     aannaque_space,
     aannaque_stability,
     beale_chart,
@@ -30,7 +29,10 @@ from . import (
     smith_speeds,
     smith_waves,
 )
+from .aannaque_figures import CHAPTERS_4_TO_7
 from .records import FigureEntry
+from .response_entries import RESPONSE_FIGURES
+from .rig_entries import RIG_APPENDICES, RIG_FIGURES
 from .smith_linkages import PROPORTIONS, RIGS
 
 _END_LOADS = tuple(
@@ -256,6 +258,7 @@ _SMITH = (
         "smith", "45", "Calibration: sinusoidal and point-load shapes", smith_waves.figure_45
     ),
     *_WAVES,
+    *RESPONSE_FIGURES,
     *_CHARTS,
     FigureEntry(
         "smith",
@@ -346,25 +349,9 @@ _AANNAQUE = (
             ("c", "follower", "follower"),
         )
     ),
-    FigureEntry(
-        "aannaque",
-        "7.2",
-        "Instability regions corresponding to J_2 = 1 and J_2 = -1",
-        aannaque_stability.figure_7_2,
-        size=(6.2, 6.4),
-    ),
-    FigureEntry(
-        "aannaque",
-        "7.3",
-        "Functions J and the real part of a multiplier",
-        aannaque_stability.figure_7_3,
-    ),
-    FigureEntry(
-        "aannaque",
-        "7.12",
-        "Acceleration of the follower for various transmission angles",
-        aannaque_pulses.figure_7_12,
-    ),
+    *CHAPTERS_4_TO_7,
+    *RIG_FIGURES,
+    *RIG_APPENDICES,
     *(
         FigureEntry(
             "aannaque",

@@ -31,7 +31,8 @@ def figures(document: str | None = None, figure: str | None = None) -> tuple[Fig
         Short name; all documents by default.
     figure : str, optional
         A label such as ``84`` or ``27(c)`` (``27c`` will do); a number alone stands for all its
-        parts.  All figures by default.
+        parts, the letter of an appendix for all its sheets, ``C.3`` for the sheet that holds it.
+        All figures by default.
 
     Raises
     ------
@@ -47,7 +48,11 @@ def figures(document: str | None = None, figure: str | None = None) -> tuple[Fig
         return entries
     wanted = _plain(figure)
     exact = tuple(entry for entry in entries if _plain(entry.label) == wanted)
-    parts = tuple(entry for entry in entries if _number(entry.label) == wanted)
+    parts = tuple(
+        entry
+        for entry in entries
+        if _number(entry.label) == wanted or wanted in _spanned(entry.label)
+    )
     if not (exact or parts):
         labels = ", ".join(entry.label for entry in entries)
         raise bad("figure", repr(figure), f"one of {labels}", "correct the label")
@@ -175,3 +180,13 @@ def _plain(label: str) -> str:
 def _number(label: str) -> str:
     plain = _plain(label)
     return plain.rstrip("abcdefghijklmnopqrstuvwxyz") if plain[:1].isdigit() else plain
+
+
+def _spanned(label: str) -> tuple[str, ...]:
+    """Return what a sheet ``C.1-C.6`` answers to: each figure on it, and its letter."""
+    first, _, last = label.partition("-")
+    if not last:
+        return ()
+    letter, _, low = first.partition(".")
+    high = last.rpartition(".")[2]
+    return (letter.lower(), *(f"{letter.lower()}.{k}" for k in range(int(low), int(high) + 1)))

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _RIG = RIG["84"]
 # Between the least and the greatest logarithmic decrement measured at 1/16 in (section 9.5.5).
 _DECREMENT = 0.075
+_SAMPLES = 512
 _NOTE = (
     "Which coupler and which follower inertia is not said: the 1/16 in coupler and the least "
     "inertia are taken. Periodic response with viscous damping of logarithmic decrement "
@@ -45,9 +46,7 @@ def _system(equation: str, damped: bool) -> LinearPeriodic:
 
 
 def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Array]:
-    """Return crank angles and the first mode's periodic motion at them, by shooting.
-
-    The end of one turn depends linearly on its start, so that three turns fix the periodic start.
+    """Return crank angles over one closed turn and the first mode's periodic motion at them.
 
     Parameters
     ----------
@@ -56,27 +55,22 @@ def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Arra
     speed : float
         Crank speed [rad/s].
     """
-    size = 1e-3
+    from ..response import steady_state
 
-    def end(q: float, qd: float) -> Array:
-        run = _quiet(system, speed, (q, qd))
-        return np.array([run[1][-1], run[2][-1] / speed])
-
-    rest = end(0.0, 0.0)
-    columns = [(end(*start) - rest) / size for start in ((size, 0.0), (0.0, size * speed))]
-    start = np.linalg.solve(np.eye(2) - np.array(columns).T, rest)
-    theta, q, _ = _quiet(system, speed, (float(start[0]), float(start[1] * speed)))
-    return theta, q
-
-
-def _quiet(
-    system: LinearPeriodic, speed: float, start: tuple[float, float]
-) -> tuple[Array, Array, Array]:
     with warnings.catch_warnings():
         # Resonant amplitudes may pass the linear range; the figure's own note says so.
         warnings.simplefilter("ignore", LinearRangeWarning)
-        run = simulate(system, speed, 1.0, initial=start, samples=720)
-    return run.theta, run.q[:, 0], run.qd[:, 0]
+        state = steady_state(system, speed, samples=_SAMPLES)
+    q = state.q[:, 0]
+    return np.append(state.theta, 2 * pi), np.append(q, q[0])
+
+
+def _from_rest(system: LinearPeriodic, speed: float) -> tuple[Array, Array]:
+    """Return crank angles of one turn and the first mode from rest."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        run = simulate(system, speed, 1.0, initial=(0.0, 0.0), samples=_SAMPLES)
+    return run.theta, run.q[:, 0]
 
 
 def wave_figure(divisor: float) -> Callable[[Sequence[Axes]], Drawn]:
@@ -92,7 +86,7 @@ def wave_figure(divisor: float) -> Callable[[Sequence[Axes]], Drawn]:
         ):
             theta, q = periodic_response(_system(equation, True), speed)
             ax.plot(np.degrees(theta), length * q, color=colour, label=f"{label}, damped")
-        theta, q, _ = _quiet(_system("reduced", False), speed, (0.0, 0.0))
+        theta, q = _from_rest(_system("reduced", False), speed)
         ax.plot(
             np.degrees(theta),
             length * q,

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from . import de_vogelaere, gauss_legendre, kutta_merson, magnus4, rk4
 from .expm import expm
+from .newmark import SECOND_ORDER
 from .protocol import Generator, OneStep
 from .tableau import ExplicitTableau, GaussTableau, gauss_tableau, rooted_trees
 
@@ -27,6 +28,7 @@ SCIPY_METHODS = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 __all__ = [
     "METHODS",
     "SCIPY_METHODS",
+    "SECOND_ORDER",
     "ExplicitTableau",
     "GaussTableau",
     "Generator",

@@ -21,7 +21,7 @@ def solve_ring(maps: Array, loads: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     maps : ndarray
-        Shape ``(nb, ns, m, m)``, ns a power of two.
+        Shape ``(nb, ns, m, m)``.
     loads : ndarray
         Shape ``(nb, ns, m)``.
 
@@ -46,10 +46,13 @@ def solve_ring(maps: Array, loads: Array) -> tuple[Array, Array]:
     size = np.linalg.norm(left[:, 0], axis=(-2, -1)) + np.linalg.norm(right[:, 0], axis=(-2, -1))
     sensitivity = np.where(singular, np.inf, np.linalg.norm(inverse, axis=(-2, -1)) * size)
     for middle, back, ahead, load in reversed(levels):
-        following = np.roll(nodes, -1, axis=1)
-        rest = load - _apply(back, nodes) - _apply(ahead, following)
+        pairs = middle.shape[1]
+        following = np.roll(nodes, -1, axis=1)[:, :pairs]
+        first, alone = nodes[:, :pairs], nodes[:, pairs:]
+        rest = load - _apply(back, first) - _apply(ahead, following)
         between = np.linalg.solve(middle, rest[..., None])[..., 0]
-        nodes = np.stack([nodes, between], axis=2).reshape(count, -1, m)
+        both = np.stack([first, between], axis=2).reshape(count, -1, m)
+        nodes = np.concatenate([both, alone], axis=1)
     nodes[singular] = np.nan
     return nodes, sensitivity
 
@@ -57,8 +60,14 @@ def solve_ring(maps: Array, loads: Array) -> tuple[Array, Array]:
 def _joined(
     left: Array, right: Array, loads: Array
 ) -> tuple[Array, Array, Array, tuple[Array, Array, Array, Array]]:
-    """Eliminate every other node from ``left[k] y[k] + right[k] y[k+1] = loads[k]``."""
+    """Eliminate every other node from ``left[k] y[k] + right[k] y[k+1] = loads[k]``.
+
+    The last of an odd number stays as it is.
+    """
     m = left.shape[-1]
+    even = left.shape[1] - left.shape[1] % 2
+    rest = (left[:, even:], right[:, even:], loads[:, even:])
+    left, right, loads = left[:, :even], right[:, :even], loads[:, :even]
     column = np.concatenate([right[:, 0::2], left[:, 1::2]], axis=-2)
     reflections, triangle = np.linalg.qr(column, mode="complete")
     turned = np.swapaxes(reflections, -1, -2)
@@ -67,7 +76,9 @@ def _joined(
     both = np.concatenate([loads[:, 0::2], loads[:, 1::2]], axis=-1)
     load = _apply(turned, both)
     level = (triangle[..., :m, :], back[..., :m, :], ahead[..., :m, :], load[..., :m])
-    return back[..., m:, :], ahead[..., m:, :], load[..., m:], level
+    kept = (back[..., m:, :], ahead[..., m:, :], load[..., m:])
+    joined = [np.concatenate([new, old], axis=1) for new, old in zip(kept, rest, strict=True)]
+    return joined[0], joined[1], joined[2], level
 
 
 def _apply(matrices: Array, vectors: Array) -> Array:

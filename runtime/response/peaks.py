@@ -15,8 +15,11 @@ from ..families import LinearPeriodic
 from ..floquet.first_order import canonical_form, numbers
 from ..progress import bar
 from ..results import Check, Result, provenance
+from .checks import warn_beyond
+from .result import SteadyState
 from .shooting import first_segments
-from .steady_state import SteadyState, check_work, in_parts, steady_state, warn_beyond
+from .shot import check_work, in_parts
+from .steady_state import steady_state
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -122,6 +125,7 @@ def steady_peaks(
     speeds = numbers("speed", speed)
     if speeds.ndim != 1 or not len(speeds):
         raise bad("speed", f"shape {speeds.shape}", "a row of speeds [rad/s]", "give some")
+    require_shapes("steady_peaks", system)
     places = np.linspace(0.0, 1.0, _PLACES) if x is None else np.atleast_1d(numbers("x", x))
     if places.ndim > 1 or not len(places) or not np.all((places >= 0) & (places <= 1)):
         raise bad("x", str(x), "places x/length from 0 to 1", "divide by the length")
@@ -156,6 +160,13 @@ def steady_peaks(
         place=out["place"],
         distance=out["distance"],
     )
+
+
+def require_shapes(where: str, system: LinearPeriodic) -> None:
+    """Refuse a system whose deflection is not known, before work starts."""
+    if system.shapes(np.zeros(1), np.zeros(1)) is None:
+        fix = "take stress_curve for a structure of beams, or steady_state and its q"
+        raise bad(where, "a system without mode shapes", "one with them", fix)
 
 
 def _parts(

@@ -15,7 +15,7 @@ from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
 from ..results import Result, provenance
 from .frozen import frozen_frequencies
-from .peaks import peak_error, quiet_state
+from .peaks import peak_error, quiet_state, require_shapes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -163,6 +163,7 @@ def resonance_curve(
         raise bad("x", repr(x), "one place x/length from 0 to 1", "divide by the length")
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
+    require_shapes("resonance_curve", system)
     mean = frozen_frequencies(system, 0.0, **parameters).mean
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import bad
-from ..families import DAMPING
 from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import STAGES
 from ..integrators.gauss_legendre import gauss_maps
@@ -20,9 +19,6 @@ Array = NDArray[np.float64]
 _EPS = float(np.finfo(float).eps)
 # Phase of the highest mode that a segment of the first try covers; collocation of order 16.
 _PHASE = 3.0
-# Decay over a segment, in phases: the method is A-stable, and what has died away asks for no
-# steps; beyond it the collocation hardly damps any more.
-_DECAY = 40.0
 _FEWEST = 16
 _MOST_SEGMENTS = 2**18
 # Angles from which on an unresolved tail of harmonics is told, not chased.
@@ -86,21 +82,7 @@ def needed_rate(form: CanonicalForm) -> Array:
     Strong damping is not in it: an overdamped mode follows its load after a time that is short
     beside a segment.  Whether that was right is told by halving the segments.
     """
-    if not form.damped or not _dissipative(form):
-        return form.rate
-    factors = form.factors.copy()
-    factors[[term.array in DAMPING for term in form.system.terms]] = 0.0
-    calm = replace(form, factors=factors).rate
-    return np.minimum(form.rate, np.maximum(calm, form.rate / _DECAY))
-
-
-def _dissipative(form: CanonicalForm) -> bool:
-    """Return True where the mean damping matrix neither feeds a motion nor turns it."""
-    mean = form.mean["C"]
-    size = np.max(np.abs(mean), axis=(-2, -1), initial=0.0)
-    turned = np.max(np.abs(mean - np.swapaxes(mean, -1, -2)), axis=(-2, -1), initial=0.0)
-    lowest = np.linalg.eigvalsh(mean)[:, 0]
-    return bool(np.all((turned <= 1e-9 * size) & (lowest >= -1e-9 * size)))
+    return form.needed_rate
 
 
 def periodic_orbits(

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...derive.spec import BEAM_FORMULATIONS
 from ..errors import BadInput, Problem
+from .beam_tables import complete_beams
 from .checks import body_problems
 from .rod_tables import complete_crank, complete_rod
 from .schema import Layout
@@ -31,6 +33,8 @@ def complete(values: Values, layout: Layout) -> None:
     """
     if layout.mechanism == "hill":
         _pad_series(values["function"])
+    if layout.formulations == tuple(BEAM_FORMULATIONS):
+        complete_beams(values, layout.flexible)
     if "rod" in layout.flexible:
         complete_crank(values["links"])
         complete_rod(values["rod"])

@@ -5,7 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ...derive.spec import DERIVED_AS, NAMED_DROPS
+from ...derive.spec import BEAM_FORMULATIONS, DERIVED_AS, NAMED_DROPS
+from .beam_tables import (
+    BEAM_DROPS,
+    BEAM_PARAMETERS,
+    DAMPING,
+    FRAME,
+    JOINTS,
+    MATERIAL,
+    MEMBERS,
+    MESH,
+    NODES,
+    beam_table,
+)
 from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
 from .schema import Key, Layout, Table
 
@@ -423,6 +435,38 @@ HILL = Layout(
     parameters=_HILL_PARAMETERS,
 )
 
+_BEAM_TABLES = (MATERIAL, JOINTS, MESH, DAMPING, _ACTING_GRAVITY, _OPERATION)
+
+
+def _beams(mechanism: str, geometry: Table, links: tuple[str, ...]) -> Layout:
+    """Return the layout of a linkage all of whose links are beams."""
+    lengths = {key.name for key in geometry.keys}
+    parameters = {
+        name: dimension
+        for name, dimension in BEAM_PARAMETERS.items()
+        if dimension != "length" or name in lengths
+    }
+    return Layout(
+        mechanism,
+        tuple(BEAM_FORMULATIONS),
+        (geometry, *(beam_table(link) for link in links), *_BEAM_TABLES, chart_table(parameters)),
+        flexible=links,
+        parameters=parameters,
+        closed_in_modes=True,
+        named_drops=BEAM_DROPS,
+    )
+
+
+FOUR_BAR_OF_BEAMS = _beams("four_bar", _GEOMETRY, LINKS[1:])
+SLIDER_CRANK_OF_BEAMS = _beams("slider_crank", _SLIDER_CRANK, SLIDER_CRANK_LINKS[:2])
+FRAME_OF_BEAMS = Layout(
+    "frame",
+    tuple(BEAM_FORMULATIONS),
+    (NODES, MEMBERS, FRAME, MATERIAL, MESH, DAMPING, _ACTING_GRAVITY),
+    closed_in_modes=True,
+    named_drops=BEAM_DROPS,
+)
+
 LAYOUTS = (
     RIGID_FOUR_BAR,
     FLEXIBLE_COUPLER,
@@ -430,5 +474,8 @@ LAYOUTS = (
     QUICK_RETURN,
     FLEXIBLE_ROD,
     FREE_FREE_ROD,
+    FOUR_BAR_OF_BEAMS,
+    SLIDER_CRANK_OF_BEAMS,
+    FRAME_OF_BEAMS,
     HILL,
 )

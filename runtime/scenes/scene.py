@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...derive.spec import ModelSpec
+from ...derive.spec import BEAM_FORMULATIONS, ModelSpec
 from ..errors import bad
 from .schema import Layout
 from .validation import nearest
@@ -26,6 +26,7 @@ _BUILDERS = {
     "hill": ("..systems.hill", "hill_system"),
     "quick_return": ("..systems.rod.from_scene", "rod_of_scene"),
 }
+_BEAM_BUILDER = ("..beams.from_scene", "beams_of_scene")
 _OWN_BUILDER = (".own", "own_system")
 LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
 # Keys that no file gives and that follow from the others.
@@ -236,6 +237,8 @@ class Scene:
                 "use kinematics or forces, or choose a scene with a flexible link",
             )
         module, function = _BUILDERS.get(mechanism, _OWN_BUILDER)
+        if self.layout.formulations == tuple(BEAM_FORMULATIONS):
+            module, function = _BEAM_BUILDER
         builder = getattr(importlib.import_module(module, __package__), function)
         built: LinearPeriodic | Constrained = builder(self)
         return built

@@ -52,7 +52,7 @@ class Key:
     length: int | None = None
     rising: bool = False
     least: int | None = None
-    most: int | None = None
+    most: float | None = None
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from ..errors import bad
 from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import ordered_product
+from ..floquet.second_order import second_order_at
 from ..floquet.spring_form import spring_generator
 from ..integrators import OneStep
 from ..integrators import de_vogelaere as _de_vogelaere
+from ..integrators.newmark import RULES, StepRule, acceleration, step_maps
 
 Array = NDArray[np.float64]
 Tick = Callable[[int], None]
@@ -133,6 +135,8 @@ def march(
     """
     if method.name == "de_vogelaere":
         return _march_de_vogelaere(form, grid, q, slope, bound, tick)
+    if method.name in RULES:
+        return _march_second_order(RULES[method.name], form, grid, (q, slope), bound, tick)
     n = form.system.size
 
     def generator(theta: Array) -> Array:
@@ -174,6 +178,36 @@ def _march_de_vogelaere(
     )
     states = _Runner(maps, grid, cyclic(form), np.full(n, bound)).run(state, tick)
     return March(states[:, :n], states[:, m : m + n] / half, None, float("nan"))
+
+
+def _march_second_order(
+    rule: StepRule,
+    form: CanonicalForm,
+    grid: Grid,
+    start: tuple[Array, Array],
+    bound: float,
+    tick: Tick | None,
+) -> March:
+    n = form.system.size
+
+    def arrays(theta: Array) -> list[Array]:
+        found = second_order_at(form, theta)
+        parts = (found.mass[0], found.rate[0], found.stiffness[0], found.force[0])
+        return [np.broadcast_to(a, (len(theta), *a.shape[1:])) for a in parts]
+
+    def maps(theta: Array) -> Array:
+        ends = np.append(theta, theta[-1] + grid.step)
+        mass, rate, stiffness, force = arrays(ends)
+        return step_maps(rule, mass, rate, stiffness, force, grid.step)
+
+    state = np.concatenate([*start, [1.0]])
+    if rule.carries_acceleration:
+        mass, rate, stiffness, force = arrays(np.array([grid.start]))
+        first = acceleration(mass, rate, stiffness, force)[0] @ state
+        state = np.concatenate([*start, first, [1.0]])
+    states = _Runner(maps, grid, cyclic(form), np.full(n, bound)).run(state, tick)
+    # The determinant of these steps is not that of the canonical state.
+    return March(states[:, :n], states[:, n : 2 * n], None, float("nan"))
 
 
 class _Runner:

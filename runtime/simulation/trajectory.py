@@ -15,7 +15,7 @@ from ..errors import LinearRangeWarning, StepTooLongWarning, bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import CanonicalForm, canonical_form, even_angles, numbers
 from ..floquet.spring_form import spring_generator
-from ..integrators import METHODS, SCIPY_METHODS, OneStep
+from ..integrators import METHODS, SCIPY_METHODS, SECOND_ORDER, OneStep
 from ..integrators.gauss_legendre import gauss_legendre
 from ..results import Check, Result, provenance
 from .adaptive import adaptive_march
@@ -134,7 +134,8 @@ def simulate(
     revolutions : float
         Length of the motion in revolutions of the crank.
     method : str
-        ``gauss_legendre`` (order 12), ``magnus4``, ``rk4``, ``de_vogelaere``, with fixed steps;
+        ``gauss_legendre`` (order 12), ``magnus4``, ``rk4``, ``de_vogelaere``, ``newmark`` (gamma
+        1/2, beta 1/4), ``generalized_alpha`` (rho_inf 0.9), with fixed steps;
         ``kutta_merson``, adaptive unless ``steps`` is given; or SciPy's ``RK45``, ``DOP853``,
         ``Radau``, ``BDF``, ``LSODA``.
     initial : pair of array_like, optional
@@ -194,9 +195,10 @@ def simulate(
     if method in SCIPY_METHODS or (method == "kutta_merson" and steps is None):
         raw, error = _adaptive(run, method, 1e-8 if rtol is None else rtol)
         return _finish(run, method, raw, error, _FAIR)
+    one_step = {**METHODS, **SECOND_ORDER}[method]
     if steps is not None:
-        _warn_long_step(form, METHODS[method], steps)
-    raw, error = _fixed(run, METHODS[method], steps, rtol)
+        _warn_long_step(form, one_step, steps)
+    raw, error = _fixed(run, one_step, steps, rtol)
     return _finish(run, method, raw, error, _FAIR if rtol is None else rtol)
 
 
@@ -444,7 +446,7 @@ def _check_arguments(
     bound: float,
     start: float,
 ) -> None:
-    names = [*METHODS, *SCIPY_METHODS]
+    names = [*METHODS, *SECOND_ORDER, *SCIPY_METHODS]
     if method not in names:
         raise bad("method", repr(method), f"one of {names}", "correct the name")
     for name, value in (("revolutions", revolutions), ("bound", bound)):

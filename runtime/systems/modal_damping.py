@@ -24,6 +24,13 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
     velocity is damped where the system has moving shapes (``D = C M^-1 A``), so that the answer
     does not depend on the basis; elsewhere the rates of the coordinates.
 
+    Of a structure of beams these are displacements along fixed axes, whose rates are the elastic
+    velocity seen from the ground (Aannaque (4.35)).  Axes that turn with the links would do as
+    well, but those that meet at a pin turn differently.  The choice hardly matters: the four-bar
+    of Table 4.1 (one element a link, 2 %) moves by less than 0.4 % of its peaks at 62 rad/s, 0.3 %
+    at 30, when its pins' velocities are taken in the axes of crank and follower, and by 0.13 % and
+    0.08 % with D as above.
+
     Parameters
     ----------
     system : LinearPeriodic

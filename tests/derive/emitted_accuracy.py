@@ -16,14 +16,19 @@ from pathlib import Path
 
 import mpmath
 import numpy as np
+from beam_truth import MODULES as BEAMS
+from beam_truth import SANDWICH, exact_beams
 from elastolink import generated
 from elastolink.derive.checks import ALLOWED, Exact, Judgement, Point, exact_at, judge, worst
 from forces_truth import VARIANTS
 from forces_truth import exact_points as exact_forces
 from free_free_truth import MODES_MODULE, ROD_MODULES, exact_free_free
+from frequency_truth import MODULE as FREQUENCY_FUNCTIONS
+from frequency_truth import exact_frequency_functions
 from linkage_truth import exact_points
 from meissner_truth import exact_meissner
 from multibody_truth import exact_points as exact_multibody
+from newmark_truth import exact_newmark
 from overhang_truth import exact_points as exact_overhang
 from rod_polynomial_truth import MODULE as ROD_POLYNOMIALS
 from rod_polynomial_truth import exact_polynomials
@@ -240,6 +245,12 @@ def _modal_points(module: str, function: str) -> Iterator[tuple[tuple[str, ...],
 
 
 def _exact(module: str, function: str) -> tuple[Exact, ...]:
+    if module == SANDWICH or module in BEAMS:
+        return exact_beams(module)
+    if module == FREQUENCY_FUNCTIONS:
+        return exact_frequency_functions(function)
+    if module == "newmark_stability":
+        return exact_newmark()
     if module == "quick_return_overhang_modes":
         return exact_overhang(function)
     if "_multibody" in module:
@@ -304,7 +315,10 @@ def _page(found: tuple[Row, ...]) -> str:
         "at 80 random and many nasty poses, masses or loads all drawn at random, or one of them",
         "alone; equations in redundant coordinates at 12 random states.  Intervals of Meissner's",
         "equation with phases to 1e6 and growth to exp(600), levels down to 5e-324, whole quarter",
-        "turns, and several intervals where both ends of a region meet.",
+        "turns, and several intervals where both ends of a region meet.  Beam elements: lengths",
+        "and stiffnesses over twelve decades, their shapes at nodes, a hair's breadth from nodes,",
+        "and where they change sign; beams of Timoshenko with next to no shear and next to no",
+        "bending.",
         "",
         "| module | function | output | points | worst measure | at |",
         "| --- | --- | --- | ---: | ---: | --- |",

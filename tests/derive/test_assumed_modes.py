@@ -79,3 +79,18 @@ def test_bases_that_do_not_fit_are_refused():
     loose = au.FiniteBasis(x, length, (x, x**2))
     with pytest.raises(ValueError, match=r"x of v does not vanish at 0 \(derivative 1\)"):
         au.assumed_modes(arm(), {u: BASES[u], v: loose})
+
+
+def test_fields_that_share_their_coordinates():
+    """A beam that shears: the deflection x^2 and the rotation x go with one coordinate."""
+    psi = sp.Function("psi")(x, t)
+    ga = sp.Symbol("GA", positive=True)
+    strain = ei * psi.diff(x) ** 2 + ga * (v.diff(x) - psi) ** 2
+    action = au.ActionDensity(x, t, length, (v, psi), mu / 2 * v.diff(t) ** 2 - strain / 2)
+    q = sp.Function("q")(t)
+    found = au.assumed_shapes(action, (q,), {v: (x**2,), psi: (x,)}).expression
+    # By hand: int x^4 dx, int 1 dx, int (2x - x)^2 dx.
+    kinetic, stored = mu * length**5 / 10 * q.diff(t) ** 2, (ei * length + ga * length**3 / 3) / 2
+    assert sp.expand(found - kinetic + stored * q**2) == 0
+    with pytest.raises(ValueError, match="1 shapes of psi"):
+        au.assumed_shapes(action, (q, q), {v: (x**2, x**3), psi: (x,)})

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
-from elastolink.derive.assumed_modes import assumed_modes
-from elastolink.derive.bases import FiniteBasis, sine_basis
 from elastolink.derive.lagrange import NotRepresentable, euler_lagrange, quadratic_form
 from elastolink.derive.linear import linear_periodic
-from elastolink.derive.projection import project, project_action
+from elastolink.derive.projection.assumed_modes import assumed_modes
+from elastolink.derive.projection.bases import FiniteBasis, sine_basis
+from elastolink.derive.projection.galerkin import project, project_action
 from elastolink.derive.records import ActionDensity, CrankMotion, Essential, Lagrangian
 from elastolink.derive.variational import hamilton
 

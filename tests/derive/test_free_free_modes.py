@@ -7,11 +7,16 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive import greens_identity
 from elastolink.derive.catalogue import find
-from elastolink.derive.greens_identity import NoPrimitive, derivative, integral, primitive
 from elastolink.derive.models import free_free_modes as ff
 from elastolink.derive.models import free_free_rod as rod
+from elastolink.derive.projection import greens_identity
+from elastolink.derive.projection.greens_identity import (
+    NoPrimitive,
+    derivative,
+    integral,
+    primitive,
+)
 from elastolink.derive.spec import ModelSpec
 
 S = ff.MIDDLE

@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive import piecewise as pw
 from elastolink.derive.models.hill_meissner import MODEL
+from elastolink.derive.projection import piecewise as pw
 from elastolink.derive.safe import UnsafeRewriting
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import hill_meissner

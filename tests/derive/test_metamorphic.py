@@ -8,7 +8,7 @@ import mpmath
 import pytest
 import sympy as sp
 from elastolink.derive.lagrange import euler_lagrange, quadratic_form
-from elastolink.derive.projection import (
+from elastolink.derive.projection.galerkin import (
     FiniteBasis,
     mass_normalised,
     project,

@@ -11,8 +11,8 @@ import sympy as sp
 from elastolink.derive.arrays import BasisIntegral, BasisProduct, CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import NotRepresentable
 from elastolink.derive.models import flexible_rod as rod
-from elastolink.derive.moving_basis import Moments, MovingShapes, project_moving
 from elastolink.derive.pipeline import module_text
+from elastolink.derive.projection.moving_basis import Moments, MovingShapes, project_moving
 from elastolink.derive.records import EndForce, Essential, PointTerm, Support
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton, quadratic_action

@@ -5,10 +5,10 @@ from __future__ import annotations
 import mpmath
 import pytest
 import sympy as sp
-from elastolink.derive.greens_identity import NoPrimitive
 from elastolink.derive.models import overhang_ends, overhang_integrals, overhang_problem
 from elastolink.derive.models.overhang_integrals import DRIFT, MODE, Ends, eta, place
 from elastolink.derive.models.overhang_waves import CLOSE, HANG, REST, RUN, SPAN, Wave, proven
+from elastolink.derive.projection.greens_identity import NoPrimitive
 from elastolink.derive.safe import UnsafeRewriting
 from overhang_reference import DIGITS, Drift, mode_at
 

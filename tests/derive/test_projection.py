@@ -8,7 +8,7 @@ import mpmath
 import pytest
 import sympy as sp
 from elastolink.derive.lagrange import NotRepresentable
-from elastolink.derive.projection import (
+from elastolink.derive.projection.galerkin import (
     FiniteBasis,
     antisymmetric_gauge,
     mass_normalised,

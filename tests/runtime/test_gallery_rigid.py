@@ -70,7 +70,7 @@ def test_a_chapter_alone_is_no_figure():
 
 
 def test_names_of_files_sort_as_the_figures_do():
-    stems = [entry.stem for entry in figures("aannaque")]
+    stems = [entry.stem for entry in figures("aannaque") if "table" not in entry.stem]
     assert stems == sorted(stems)
     assert stems[0] == "aannaque_03_04" and "aannaque_07_12" in stems
 

@@ -1,4 +1,4 @@
-"""The gallery's stability charts: Smith's Fig. 38, Aannaque's Figs. 7.2, 7.3 and appendix E."""
+"""The gallery's stability charts: Smith's Fig. 38, Aannaque's Fig. 7.2 and appendix E."""
 
 from dataclasses import replace
 
@@ -12,7 +12,6 @@ from elastolink.runtime.plotting import new_figure
 FIGURES = (
     ("smith", "38", 1),
     ("aannaque", "7.2", 0),
-    ("aannaque", "7.3", 0),
     ("aannaque", "E.1", 0),
     ("aannaque", "E.2", 0),
     ("aannaque", "E.3", 1),
@@ -64,9 +63,3 @@ def test_curves_of_both_signs_are_drawn():
     aannaque_stability.figure_7_2([ax])
     lines = [text.get_text() for text in ax.figure.legends[0].get_texts()]
     assert lines[:2] == ["$J_2 = 1$", "$J_2 = -1$"]
-
-
-def test_peaks_are_refined_between_samples():
-    x = np.linspace(0.0, 10.0, 101)
-    peaks = aannaque_stability._peaks(x, np.cos(x - 1.234))
-    assert peaks == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)

@@ -240,7 +240,7 @@ def test_plots_are_drawn():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"method": "harmonic_balance"}, "not there yet"),
+        ({"method": "harmonics"}, "one of"),
         ({"method": "shoting"}, "one of"),
         ({"rtol": 0.0}, "rtol"),
         ({"samples": 0}, "samples"),

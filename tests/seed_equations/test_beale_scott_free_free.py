@@ -8,10 +8,10 @@ import mpmath
 import pytest
 import seed_free_free as truth
 import sympy as sp
-from elastolink.derive.greens_identity import integral, primitive
 from elastolink.derive.lagrange import euler_lagrange
 from elastolink.derive.models import free_free_modes as ff
 from elastolink.derive.models import free_free_rod as rod
+from elastolink.derive.projection.greens_identity import integral, primitive
 from elastolink.derive.records import Lagrangian
 from elastolink.derive.spec import ModelSpec
 from seed_ledger import establishes

@@ -140,7 +140,7 @@ def test_every_problem_of_a_file_is_reported_at_once():
         ({"model.outputs": ["stablity"]}, "did you mean stability?"),
         ({"model.balanced": ["frame"]}, "model.balanced[0]"),
         ({"model.mechanism": "four-bar"}, "did you mean four_bar?"),
-        ({"model.mechanism": "crane"}, "[schema]"),
+        ({"model.mechanism": "trolley"}, "[schema]"),
         ({"model.mechanism": None}, "model.mechanism"),
         ({"model.formulation": None}, "model.formulation"),
         ({"chart.x": "follower_inertia"}, "chart"),

@@ -125,6 +125,34 @@ def meeting_labels(modes: Modes, plus: Array, minus: Array) -> tuple[Whole, Whol
     return found, chosen, off
 
 
+def principal_labels(modes: Modes, real: Array) -> tuple[Whole, Whole, Array]:
+    """Return mode from 1, number and how far off, of meetings of a mode with itself.
+
+    Parameters
+    ----------
+    modes : Modes
+        At the meetings.
+    real : ndarray, shape (k,)
+        The multiplier there, +1 or -1.
+    """
+    k, n = modes.turns.shape
+    options: dict[tuple[int, int, int], dict[int, float]] = {}
+    for row in range(k):
+        parity = 0 if real[row] > 0 else 1
+        for i in range(n):
+            total = 2 * float(modes.turns[row, i])
+            if np.isfinite(total):
+                middle = 2 * round((total - parity) / 2) + parity
+                for number in range(middle - 4, middle + 5, 2):
+                    options.setdefault((i + 1, number, parity), {})[row] = abs(total - number)
+    mode, chosen = np.zeros((2, k), dtype=np.int64)
+    off = np.full(k, np.nan)
+    for row, (i, number, parity) in _assigned(k, options).items():
+        mode[row], chosen[row] = i, abs(number)
+        off[row] = options[i, number, parity][row]
+    return mode, chosen, off
+
+
 Unit = tuple[int, int]
 
 

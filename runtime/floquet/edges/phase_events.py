@@ -183,8 +183,10 @@ def _followed(phases: Array, flags: Flags) -> tuple[Array, Flags]:
     return lifted, ordered
 
 
-def meetings(samples: Samples) -> Events:
+def meetings(samples: Samples, principal: bool = False) -> Events:
     """Return where sums of the phases of two modes pass a whole number of turns.
+
+    With ``principal`` a mode meets itself instead: its two multipliers, at +1 or -1.
 
     A multiplier of positive signature at phase a meets one of negative signature at -b, the
     conjugate of b, where a + b is a whole number of turns.  Meetings while one of the two is off
@@ -194,10 +196,10 @@ def meetings(samples: Samples) -> Events:
     rows: list[tuple[float, float, float, Array, Array, Array]] = []
     real = samples.open & (_off_turn(2 * samples.phase) < _LOCKED)
     for k in range(n):
-        for other in range(k + 1, n):
+        for other in (k,) if principal else range(k + 1, n):
             total = samples.phase[:, k] + samples.phase[:, other]
             locked = samples.open[:, k] & samples.open[:, other] & (_off_turn(total) < _LOCKED)
-            hidden = real[:, k] | real[:, other]
+            hidden = np.zeros_like(locked) if principal else real[:, k] | real[:, other]
             for first, last, run in _passages(total / _TURN_ROUND, locked & ~hidden, hidden):
                 inside = run[len(run) // 2] if run else None
                 low, high, middle = (_at(samples.speed, i) for i in (first, last, inside))

@@ -263,7 +263,7 @@ def _undamped(
     beside = beside[(beside > span[0]) & (beside < span[1])]
     events = meetings(sampled_phases(system, span, parameters, rtol, beside))
     edges = refined_edges(PairFunction(system, parameters, rtol), events)
-    combined = _combined(system, events, edges, parameters)
+    combined = combined_regions(system, events, edges, parameters)
     near = np.concatenate(
         [principal.lower, principal.upper, edges.lower, edges.upper, events.inside]
     )
@@ -276,7 +276,7 @@ def _undamped(
     return joined(principal, combined), float(np.max(edges.least[usable], initial=0.0))
 
 
-def _combined(
+def combined_regions(
     system: LinearPeriodic, events: Events, edges: Edges, parameters: Mapping[str, float]
 ) -> Regions:
     """Return the combination regions in which pairs meet, with labels."""

@@ -1,0 +1,1 @@
+"""From continua to coordinates: bases, integrals over them, and the projected action."""

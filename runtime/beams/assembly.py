@@ -1,0 +1,229 @@
+"""The arrays of a structure of beams as functions of the crank angle (Aannaque 4.27-4.31).
+
+What turns with a beam is a sum of products of cosine and sine of its angle with constant matrices,
+found once; the angles, and how the rigid beams move, are shared by all arrays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .elements import ElementArrays, element_arrays
+from .freedoms import PlacedElement
+from .structure import Beam, Structure
+from .turning import products, rotation, rotation_slope, turned
+
+Array = NDArray[np.float64]
+Kernel = tuple[PlacedElement, Array]
+
+
+@dataclass(frozen=True)
+class RigidMotion:
+    """How the rigid beams move at crank angles ``(nt,)``, over the crank speed.
+
+    Attributes
+    ----------
+    products : mapping of str to ndarray
+        By beam, the products of cosine and sine of its angle, ``(nt, 6)``.
+    turning : mapping of str to ndarray
+        By beam, d phi/d theta, ``(nt,)``.
+    first, second : ndarray, shape (nt, number of coordinates)
+        First and second derivative of the rigid place of each coordinate, held ones included.
+    """
+
+    products: dict[str, Array]
+    turning: dict[str, Array]
+    first: Array
+    second: Array
+
+
+class AngleArrays:
+    """Arrays of a structure at crank angles; all that turns or hurries is found once per call.
+
+    Parameters
+    ----------
+    structure : Structure
+        Beams, nodes and their motion.
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        self.free = structure.freedoms.free
+        self.count = len(structure.freedoms.all)
+        self._last: tuple[Array, RigidMotion] | None = None
+
+    def motion(self, theta: Array) -> RigidMotion:
+        """Return the rigid motion at crank angles ``(nt,)``; the last one is kept."""
+        last = self._last
+        if last is None or not np.array_equal(last[0], theta):
+            last = self._last = (theta.copy(), rigid_motion(self.structure, theta))
+        return last[1]
+
+    @cached_property
+    def local(self) -> tuple[tuple[PlacedElement, ElementArrays], ...]:
+        """Every element with its arrays in its own axes."""
+        return tuple(
+            (placed, beam_element(placed.beam, placed.length)) for placed in self.structure.elements
+        )
+
+    def mass(self, theta: Array) -> Array:
+        """Return M of the distributed mass, ``(nt, n, n)``."""
+        return self._free(self._sum(self.mass_kernels, theta))
+
+    def coupling(self, theta: Array) -> Array:
+        """Return A: what the turning of the beams couples, ``(nt, n, n)`` (4.28)."""
+        return self._free(self._sum(self._coupling_kernels, theta, turning=1))
+
+    def centripetal(self, theta: Array) -> Array:
+        """Return B: the square of the turning, ``(nt, n, n)``."""
+        return self._free(self._sum(self._centripetal_kernels, theta, turning=2))
+
+    def stiffness(self, theta: Array) -> Array:
+        """Return K of the beams, ``(nt, n, n)``."""
+        return self._free(self._sum(self._stiffness_kernels, theta))
+
+    def mass_slope(self, theta: Array) -> Array:
+        """Return dM/dtheta of the distributed mass, ``(nt, n, n)``."""
+        found = self._sum(self._mass_slope_kernels, theta, turning=1)
+        return self._free(found + np.swapaxes(found, -1, -2))
+
+    def retarded(self, theta: Array) -> Array:
+        """Return the damping C of Kelvin and Voigt's material, ``(nt, n, n)``."""
+        return self._free(self._sum(self._retarded_kernels, theta))
+
+    def retarded_turning(self, theta: Array) -> Array:
+        """Return its D: strain rates that come from turning, ``(nt, n, n)``."""
+        return self._free(self._sum(self._retarded_slope_kernels, theta, turning=1))
+
+    def inertia_force(self, theta: Array, derivative: int = 2) -> Array:
+        """Return the forces ``-M r_r''`` of the distributed mass, or ``-M r_r'``: ``(nt, n)``."""
+        motion = self.motion(theta)
+        return -self.distributed(motion.second if derivative == 2 else motion.first, theta)
+
+    def distributed(self, field: Array, theta: Array) -> Array:
+        """Return the distributed mass times values of all coordinates ``(nt, N)``: ``(nt, n)``."""
+        motion = self.motion(theta)
+        total = np.zeros((len(theta), self.count))
+        for placed, kernel in self.mass_kernels:
+            values = field[:, placed.indices]
+            weights = motion.products[placed.beam.name]
+            total[:, placed.indices] += np.einsum("tk,kij,tj->ti", weights, kernel, values)
+        return total[:, self.free]
+
+    @cached_property
+    def mass_kernels(self) -> tuple[Kernel, ...]:
+        """``R^T M_l R`` of each element, factors of the six products."""
+        return tuple(
+            (placed, turned(rotation(len(own.mass)), own.mass, rotation(len(own.mass))))
+            for placed, own in self.local
+        )
+
+    @cached_property
+    def _mass_slope_kernels(self) -> tuple[Kernel, ...]:
+        return tuple(
+            (placed, turned(rotation_slope(len(own.mass)), own.mass, rotation(len(own.mass))))
+            for placed, own in self.local
+        )
+
+    @cached_property
+    def _coupling_kernels(self) -> tuple[Kernel, ...]:
+        found = []
+        for placed, own in self.local:
+            r, slope = rotation(len(own.mass)), rotation_slope(len(own.mass))
+            found.append((placed, turned(r, own.mass, slope) + turned(r, own.coupling, r)))
+        return tuple(found)
+
+    @cached_property
+    def _centripetal_kernels(self) -> tuple[Kernel, ...]:
+        found = []
+        for placed, own in self.local:
+            r, slope = rotation(len(own.mass)), rotation_slope(len(own.mass))
+            mixed = turned(slope, own.coupling, r)
+            total = turned(slope, own.mass, slope) + turned(r, own.centripetal, r)
+            found.append((placed, total + mixed + np.swapaxes(mixed, -1, -2)))
+        return tuple(found)
+
+    @cached_property
+    def _stiffness_kernels(self) -> tuple[Kernel, ...]:
+        return tuple(
+            (p, turned(rotation(len(o.mass)), o.stiffness, rotation(len(o.mass))))
+            for p, o in self.local
+        )
+
+    @cached_property
+    def _retarded_kernels(self) -> tuple[Kernel, ...]:
+        return tuple((p, p.beam.section.retardation * k) for p, k in self._stiffness_kernels)
+
+    @cached_property
+    def _retarded_slope_kernels(self) -> tuple[Kernel, ...]:
+        return tuple(
+            (
+                p,
+                p.beam.section.retardation
+                * turned(rotation(len(o.mass)), o.stiffness, rotation_slope(len(o.mass))),
+            )
+            for p, o in self.local
+        )
+
+    def _sum(self, kernels: tuple[Kernel, ...], theta: Array, turning: int = 0) -> Array:
+        """Return the sum over the elements, all coordinates, ``(nt, N, N)``."""
+        motion = self.motion(theta)
+        total = np.zeros((len(theta), self.count, self.count))
+        for placed, kernel in kernels:
+            weights = motion.products[placed.beam.name]
+            if turning:
+                weights = weights * motion.turning[placed.beam.name][:, None] ** turning
+            rows, columns = np.ix_(placed.indices, placed.indices)
+            total[:, rows, columns] += np.tensordot(weights, kernel, axes=1)
+        return total
+
+    def _free(self, full: Array) -> Array:
+        rows, columns = np.ix_(self.free, self.free)
+        return np.ascontiguousarray(full[:, rows, columns])
+
+
+def beam_element(beam: Beam, length: float) -> ElementArrays:
+    """Return the arrays of one element of a beam, in its own axes."""
+    section, sheared = beam.section, beam.kind == "timoshenko"
+    return element_arrays(
+        beam.kind,
+        length=length,
+        mass_per_length=section.mass_per_length,
+        axial_stiffness=section.axial_stiffness,
+        bending_stiffness=section.bending_stiffness,
+        shear_stiffness=section.shear_stiffness if sheared else None,
+        rotary_inertia=section.rotary_inertia if sheared else 0.0,
+    )
+
+
+def rigid_motion(structure: Structure, theta: Array) -> RigidMotion:
+    """Return how the rigid beams of a structure move at crank angles ``(nt,)``."""
+    moving = structure.configuration(theta)
+    freedoms = structure.freedoms.all
+    first = np.zeros((len(theta), len(freedoms)))
+    second = np.zeros_like(first)
+    for beam in structure.beams:
+        own = moving[beam.name]
+        across = np.stack([-np.sin(own.angle), np.cos(own.angle)], axis=-1)
+        for i, freedom in enumerate(freedoms):
+            if freedom.beam != beam.name or freedom.part == "curvature":
+                continue
+            if freedom.part == "rotation":
+                first[:, i], second[:, i] = own.speed, own.angular_acceleration
+                continue
+            point = own.point(freedom.along)
+            for target, rates in ((first, point.velocity), (second, point.acceleration)):
+                if freedom.part == "across":
+                    target[:, i] = np.sum(rates * across, axis=-1)
+                else:
+                    target[:, i] = rates[..., 0 if freedom.part == "x" else 1]
+    return RigidMotion(
+        {beam.name: products(moving[beam.name].angle) for beam in structure.beams},
+        {beam.name: moving[beam.name].speed for beam in structure.beams},
+        first,
+        second,
+    )

@@ -1,0 +1,167 @@
+"""Curves of points of elastic links beside those of the rigid linkage (Aannaque 8.3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..results import Result, provenance
+from ._checks import is_finite
+from .assembly import Array
+from .beam_motion import beam_motion
+from .element_forms import required_structure
+from .recovered import chunks, linear_range
+from .recovery import recovery
+from .structure import Beam, Structure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticCurve(Result):
+    """Curve that a point of an elastic link draws, and that of the rigid linkage.
+
+    Attributes
+    ----------
+    link : str
+        The link.
+    along, across : float
+        Place of the point in the link's own axes [m].
+    speed : float
+        Crank speed [rad/s].
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    rigid, elastic : ndarray
+        Places of the point in the fixed axes [m], shape ``(nt, 2)``.
+    error : float
+        Largest error of a place [m]: by the error of the motion.
+    """
+
+    link: str
+    along: float
+    across: float
+    speed: float
+    theta: Array
+    rigid: Array
+    elastic: Array
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        "theta": ("sample",),
+        "rigid": ("sample", "direction"),
+        "elastic": ("sample", "direction"),
+    }
+
+    @property
+    def displacement(self) -> Array:
+        """Elastic displacement of the point along the fixed axes [m], ``(nt, 2)``."""
+        return np.asarray(self.elastic - self.rigid)
+
+    @property
+    def largest(self) -> float:
+        """Largest displacement [m]."""
+        return float(np.max(np.hypot(*self.displacement.T)))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw both curves, the rigid one dashed."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for values, style, label in ((self.rigid, "--", "rigid"), (self.elastic, "-", "elastic")):
+            closed = np.vstack([values, values[:1]])
+            ax.plot(closed[:, 0], closed[:, 1], style, label=label, linewidth=0.9)
+        ax.set_aspect("equal")
+        ax.set_xlabel("x [m]")
+        ax.set_ylabel("y [m]")
+        ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
+        ax.legend()
+        return ax
+
+
+def elastic_coupler_curve(
+    system: LinearPeriodic,
+    motion: Motion | float,
+    along: float | None = None,
+    across: float = 0.0,
+    *,
+    link: str = "coupler",
+) -> ElasticCurve:
+    """Return the curve of a point of an elastic link, beside that of the rigid linkage.
+
+    A point off the axis is carried by the section at its foot; one beyond the ends by the end
+    section.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams.
+    motion : SteadyState, Trajectory, BeamMotion or float
+        A computed motion, or a crank speed [rad/s], for the steady state there.
+    along, across : float, optional
+        Place of the point in the link's own axes [m]; by default the middle of the axis.
+    link : str
+        Which link.
+
+    Returns
+    -------
+    ElasticCurve
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or the structure stands still.
+    """
+    structure = required_structure(system)
+    beam = structure.beam(link)
+    foot = 0.5 * beam.length if along is None else along
+    for name, value in (("along", foot), ("across", across)):
+        if not is_finite(value):
+            raise bad(name, repr(value), "a finite length [m]", "correct it")
+    moving = beam_motion(system, motion)
+    if not structure.moving:
+        raise bad("system", "a structure that stands still", "a linkage", "use recover()")
+    shift, doubt = [], 0.0
+    for chunk in chunks(len(moving.theta)):
+        rows = _rows(system, structure, beam, moving.theta[chunk], float(foot), float(across))
+        shift.append(np.einsum("txn,tn->tx", rows, moving.q[chunk]))
+        doubt = max(doubt, float(np.max(np.abs(rows) @ moving.doubt)))
+    rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
+    return ElasticCurve(
+        method="shape functions",
+        error=float(np.sqrt(2.0)) * doubt,
+        error_norm="largest error of a place by that of the coordinates [m]; the mesh apart",
+        checks={**moving.checks, **linear_range(system, moving)},
+        provenance=provenance({**system.provenance, **moving.provenance}),
+        link=link,
+        along=float(foot),
+        across=float(across),
+        speed=moving.speed,
+        theta=moving.theta,
+        rigid=rigid,
+        elastic=rigid + np.concatenate(shift),
+    )
+
+
+def _rows(
+    system: LinearPeriodic,
+    structure: Structure,
+    beam: Beam,
+    theta: Array,
+    along: float,
+    across: float,
+) -> Array:
+    """Return what turns coordinates into the displacement of the point: ``(nt, 2, n)``."""
+    nearest = min(max(along, 0.0), beam.length)
+    made = recovery(system, theta, {beam.name: nearest / beam.length}, "shape")
+    u, v, turn = (made.forms[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
+    along_beam, across_beam = u - across * turn, v + (along - nearest) * turn
+    angle = structure.configuration(theta)[beam.name].angle[:, None]
+    x = np.cos(angle) * along_beam - np.sin(angle) * across_beam
+    y = np.sin(angle) * along_beam + np.cos(angle) * across_beam
+    return np.stack([x, y], axis=1)

@@ -1,0 +1,410 @@
+"""Element end forces and inertia of a structure of beams, linear in its motion.
+
+Each element is looked at in the axes of its rigid link.  Its end forces are those that the nodes
+exert; with them and its inertia it is in equilibrium, whatever its shape functions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import bad
+from ..families import LinearPeriodic, Term
+from .assembly import AngleArrays, Array
+from .axial_forces import AxialForces
+from .elements import ElementArrays
+from .freedoms import PlacedElement
+from .linear import lumped_values
+from .recovery_forms import LinearForm
+from .structure import Structure
+from .turning import rotation, rotation_slope
+
+# The terms that the structure itself gives; all others are taken for forces from outside.
+_OWN = {
+    "M": ("distributed_mass", "lumped_mass"),
+    "A": ("distributed_mass",),
+    "B": ("distributed_mass",),
+    "K": ("elasticity", None),
+    "Kg": ("distributed_mass", "lumped_mass", None),
+    "C": ("distributed_mass", None, "viscous", "rayleigh elastic", "rayleigh springs"),
+    "D": ("viscous",),
+    "f": ("distributed_mass", "lumped_mass"),
+    "g": ("distributed_mass", "lumped_mass"),
+    "p": (None,),
+}
+# Of those from outside, what they multiply, with the power of the speed.
+_OUTSIDE = {
+    "C": ("dq", 1, 1.0),
+    "D": ("q", 1, 1.0),
+    "K": ("q", 0, 1.0),
+    "Kg": ("q", 0, 1.0),
+    "f": ("1", 2, -1.0),
+    "h": ("1", 1, -1.0),
+    "p": ("1", 0, -1.0),
+    "g": ("1", 0, 0.0),
+}
+# Difference of two ways to the same matrix, over its largest entry.
+_SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Turning:
+    """One element at the given angles: its own axes, its turning, its rigid acceleration.
+
+    Attributes
+    ----------
+    own, slope, circle : ndarray, shape (nt, n_local, n)
+        From the free coordinates to local nodal values: R, dR/dphi, -d2R/dphi2.
+    rate, acceleration : ndarray, shape (nt,)
+        dphi/dtheta, d2phi/dtheta2.
+    rigid : ndarray, shape (nt, n_local)
+        Nodal values of the rigid acceleration over the squared crank speed.
+    back : ndarray, shape (nt, n_local, n_local)
+        R itself, from fixed to own axes.
+    """
+
+    own: Array
+    slope: Array
+    circle: Array
+    rate: Array
+    acceleration: Array
+    rigid: Array
+    back: Array
+
+
+class ElementForms:
+    """The elements of a system of beams at crank angles, as forms linear in its motion.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Made by ``linear_system``, with whatever damping was added.
+    theta : ndarray, shape (nt,)
+        Crank angles [rad].
+
+    Raises
+    ------
+    BadInput
+        If the system was not made from a structure, or has terms of inertia that are not its own.
+    """
+
+    def __init__(self, system: LinearPeriodic, theta: Array) -> None:
+        self.system = system
+        self.structure = required_structure(system)
+        self.theta = theta
+        self.arrays = AngleArrays(self.structure)
+        self.lumped, self.springs, self.dampers = lumped_values(self.structure)
+        self.full = system.has("A") or not self.structure.moving
+        self.factor = {
+            name: float(system.parameters.get(name, default))
+            for name, default in (
+                ("elasticity", 1.0),
+                ("distributed_mass", 1.0),
+                ("lumped_mass", 1.0),
+                ("rayleigh_stiffness", 0.0),
+                ("retardation", 1.0),
+            )
+        }
+
+    @property
+    def elements(self) -> tuple[tuple[PlacedElement, ElementArrays], ...]:
+        """Every element with its arrays in its own axes."""
+        return self.arrays.local
+
+    @cached_property
+    def turning(self) -> tuple[Turning, ...]:
+        """Every element's axes and rigid motion."""
+        motion = self.arrays.motion(self.theta)
+        moving = self.structure.configuration(self.theta)
+        found = []
+        for placed, own in self.elements:
+            size = len(own.mass)
+            c, s = motion.products[placed.beam.name][:, 1:3].T
+            parts, slopes = rotation(size), rotation_slope(size)
+            pick = np.zeros((size, self.arrays.count))
+            pick[np.arange(size), placed.indices] = 1.0
+            pick = pick[:, self.arrays.free]
+            turned = c[:, None, None] * parts["c"] + s[:, None, None] * parts["s"]
+            slope = c[:, None, None] * slopes["c"] + s[:, None, None] * slopes["s"]
+            back = parts["1"] + turned
+            found.append(
+                Turning(
+                    back @ pick,
+                    slope @ pick,
+                    turned @ pick,
+                    motion.turning[placed.beam.name],
+                    np.asarray(moving[placed.beam.name].angular_acceleration),
+                    np.einsum("tij,tj->ti", back, motion.second[:, placed.indices]),
+                    back,
+                )
+            )
+        return tuple(found)
+
+    @cached_property
+    def gravity(self) -> tuple[float, float]:
+        """Acceleration of gravity [m/s^2]: the one that the constant forces tell."""
+        probe = np.zeros(1)
+        forces = [self._axial(pair).force("static", probe)[0] for pair in ((0, 0), (1, 0), (0, 1))]
+        own = [t(probe)[0] for t in self.system.terms if t.array == "p" and t.scale is None]
+        if not own:
+            return (0.0, 0.0)
+        unit = np.stack([forces[1] - forces[0], forces[2] - forces[0]], axis=-1)
+        sizes = np.maximum(np.max(np.abs(unit), axis=0), np.finfo(float).tiny)
+        found = np.linalg.lstsq(unit / sizes, np.sum(own, axis=0) - forces[0], rcond=None)[0]
+        return (float(found[0] / sizes[0]), float(found[1] / sizes[1]))
+
+    def _axial(self, gravity: tuple[float, float]) -> AxialForces:
+        free = self.arrays.free
+        return AxialForces(self.arrays, np.diag(self.springs[free]), self.lumped, gravity)
+
+    @cached_property
+    def axial(self) -> AxialForces:
+        """The axial forces that the geometric stiffness holds."""
+        return self._axial(self.gravity)
+
+    @cached_property
+    def stiffening(self) -> dict[int, Array]:
+        """Axial forces of the geometric stiffness, ``(nt, elements, 3)`` by power of the speed."""
+        found: dict[int, Array] = {}
+        sources = {("distributed_mass", 2): "distributed", ("lumped_mass", 2): "lumped"}
+        for term in self.system.terms:
+            if term.array != "Kg" or not self._is_own(term):
+                continue
+            source = sources.get((term.scale or "", term.power), "static")
+            scale = 1.0 if term.scale is None else self.factor[term.scale]
+            value = scale * self.axial.along(source, self.theta)
+            found[term.power] = found.get(term.power, 0.0) + value
+        return found
+
+    @staticmethod
+    def _is_own(term: Term) -> bool:
+        return term.scale in _OWN.get(term.array, ())
+
+    @cached_property
+    def mass(self) -> Array:
+        """M of the system, ``(nt, n, n)``."""
+        return self.system.array("M", self.theta)
+
+    @cached_property
+    def outside(self) -> LinearForm:
+        """Accelerations ``M^-1 X`` of forces -X that act on the mass from outside: ``(nt, n)``.
+
+        Modal damping is one: spread over the mass like the inertia of these accelerations.
+        """
+        total = LinearForm()
+        scales = self.system.scale_values()
+        for term in self.system.terms:
+            if self._is_own(term):
+                continue
+            if term.array not in _OUTSIDE:
+                raise bad(
+                    f"term {term.array} ({term.scale})",
+                    "inertia that is not the structure's own",
+                    "masses on nodes and beams",
+                    "give it to Node or Section",
+                )
+            name, power, sign = _OUTSIDE[term.array]
+            scale = 1.0 if term.scale is None else float(scales[term.scale])
+            if not sign or not scale:
+                continue
+            value = np.asarray(sign * scale * term(self.theta))
+            total = total + LinearForm({(name, power + term.power): value})
+        return total.turned(_inverse(self.mass)) if total.parts else total
+
+    def local(self, e: int) -> LinearForm:
+        """Return the local nodal values of an element: ``R q``."""
+        return LinearForm({("q", 0): self.turning[e].own})
+
+    def rate(self, e: int) -> LinearForm:
+        """Return the time derivatives of the local nodal values."""
+        at = self.turning[e]
+        slope = at.rate[:, None, None] * at.slope
+        return LinearForm({("dq", 1): at.own, ("q", 1): slope})
+
+    def direct(self, e: int) -> LinearForm:
+        """Return nodal accelerations with the shapes as they are: elastic, rigid, weight, outside.
+
+        The field of the acceleration is ``N direct + J N across - N centripetal``.
+        """
+        at = self.turning[e]
+        parts = {("ddq", 2): at.own}
+        if self.full:
+            first, second = at.rate[:, None, None], at.acceleration[:, None, None]
+            parts["dq", 2] = 2.0 * first * at.slope
+            parts["q", 2] = second * at.slope - first**2 * at.circle
+        found = LinearForm(parts)
+        if self.structure.moving:
+            found = found + LinearForm({("1", 2): at.rigid})
+        if any(self.gravity):
+            field = self.axial.weight_field(self.theta)[:, self.elements[e][0].indices]
+            found = found + LinearForm({("1", 0): -np.einsum("tij,tj->ti", at.back, field)})
+        return found + self.outside.turned(at.own)
+
+    def across(self, e: int) -> LinearForm:
+        """Return nodal values of what acts at a right angle: Coriolis' and Euler's parts."""
+        at = self.turning[e]
+        if not self.full:
+            return LinearForm()
+        first, second = at.rate[:, None, None], at.acceleration[:, None, None]
+        turning = 2.0 * first**2 * at.slope + second * at.own
+        return LinearForm({("dq", 2): 2.0 * first * at.own, ("q", 2): turning})
+
+    def centripetal(self, e: int) -> LinearForm:
+        """Return nodal values of the part towards the centre, to be taken off."""
+        at = self.turning[e]
+        if not self.full:
+            return LinearForm()
+        return LinearForm({("q", 2): at.rate[:, None, None] ** 2 * at.own})
+
+    def strain(self, e: int) -> LinearForm:
+        """Return what the stiffness multiplies: values, and rates times the retardation."""
+        placed, at = self.elements[e][0], self.turning[e]
+        found = self.local(e)
+        tau = placed.beam.section.retardation * self.factor["retardation"]
+        if tau and self.has_damping("viscous"):
+            found = found + self.rate(e).scaled(tau)
+        share = self.factor["rayleigh_stiffness"]
+        if share and self.has_damping("rayleigh elastic"):
+            found = found + LinearForm({("dq", 1): share * at.own})
+        return found.scaled(self.factor["elasticity"])
+
+    def has_damping(self, scale: str) -> bool:
+        """Return True where the system has a damping of that kind."""
+        return any(term.array == "C" and term.scale == scale for term in self.system.terms)
+
+    def end_forces(self, e: int) -> LinearForm:
+        """Return the generalised forces of the nodes on an element, in its own axes."""
+        own = self.elements[e][1]
+        share = self.factor["distributed_mass"]
+        total = self.direct(e).turned(share * own.mass)
+        total = total + self.across(e).turned(share * own.coupling)
+        total = total - self.centripetal(e).turned(share * own.centripetal)
+        total = total + self.strain(e).turned(own.stiffness)
+        for power, forces in self.stiffening.items():
+            kernel = np.tensordot(forces[:, e], own.geometric, axes=1)
+            total = total + self.local(e).turned(kernel).faster(power)
+        return total
+
+    def node_forces(self) -> LinearForm:
+        """Return the forces of lumped masses, springs and dampers less loads: ``(nt, N)``.
+
+        They resist the motion of every coordinate, held ones included.
+        """
+        return self.node_inertia() + self.node_holds() - self.node_loads()
+
+    def node_inertia(self) -> LinearForm:
+        """Return lumped mass times acceleration less gravity, of every coordinate."""
+        lumped = self.factor["lumped_mass"] * self.lumped
+        pick = np.zeros((self.arrays.count, len(self.arrays.free)))
+        pick[self.arrays.free, np.arange(len(self.arrays.free))] = 1.0
+        spread = np.broadcast_to(pick, (len(self.theta), *pick.shape))
+        parts = {("ddq", 2): np.asarray(spread)}
+        if self.structure.moving:
+            parts["1", 2] = self.arrays.motion(self.theta).second
+        if any(self.gravity):
+            parts["1", 0] = -self.axial.weight_field(self.theta)
+        total = LinearForm(parts) + self.outside.turned(pick)
+        return total.turned(np.diag(lumped))
+
+    def node_holds(self) -> LinearForm:
+        """Return the forces of springs and dampers at the nodes, of every coordinate."""
+        free, count = self.arrays.free, self.arrays.count
+        pick = np.zeros((len(self.theta), count, len(free)))
+        pick[:, free, np.arange(len(free))] = 1.0
+        parts = {("q", 0): self.springs[:, None] * pick}
+        drag = self.dampers if self._has_dampers else np.zeros(count)
+        if self.has_damping("rayleigh springs"):
+            drag = drag + self.factor["rayleigh_stiffness"] * self.springs
+        if np.any(drag):
+            parts["dq", 1] = drag[:, None] * pick
+        return LinearForm(parts)
+
+    @property
+    def _has_dampers(self) -> bool:
+        return any(t.array == "C" and t.scale is None for t in self.system.terms)
+
+    def node_loads(self) -> LinearForm:
+        """Return constant loads on the nodes, of every coordinate."""
+        if not self.system.has("p"):
+            return LinearForm()
+        loads = np.broadcast_to(self.axial.node_forces, (len(self.theta), self.arrays.count))
+        return LinearForm({("1", 0): np.asarray(loads)})
+
+    @cached_property
+    def resisted(self) -> LinearForm:
+        """The forces that the motion needs at every coordinate ``(nt, N)``; of free ones none."""
+        total = self.node_forces()
+        for e, (placed, own) in enumerate(self.elements):
+            scatter = np.zeros((self.arrays.count, len(own.mass)))
+            scatter[placed.indices, np.arange(len(own.mass))] = 1.0
+            turned = scatter @ np.swapaxes(self.turning[e].back, -1, -2)
+            total = total + self.end_forces(e).turned(turned)
+        return total
+
+    @cached_property
+    def acceleration(self) -> LinearForm:
+        """``w^2 d2q/dtheta2`` from the equation of motion, in the rest: ``(nt, n)``."""
+        free = self.arrays.free
+        rest, mass = {}, None
+        for key, value in self.resisted.parts.items():
+            if key[0] == "ddq":
+                mass = value[:, free]
+            else:
+                rest[key] = value[:, free]
+        if mass is None:
+            raise bad("structure", "no mass", "beams with mass", "give a density")
+        return LinearForm(rest).turned(-_inverse(mass))
+
+    def require_same(self) -> None:
+        """Refuse a system whose stiffness or forces are not those of its structure.
+
+        Raises
+        ------
+        BadInput
+            If they differ, for example because terms were changed by hand.
+        """
+        free = self.arrays.free
+        still = self.resisted.parts
+        expected = {("q", 0): self.system.array("K", self.theta)}
+        for term in self.system.terms:
+            if term.array == "Kg" and term.power == 0:
+                scale = 1.0 if term.scale is None else self.system.scale_values()[term.scale]
+                expected["q", 0] = expected["q", 0] + scale * term(self.theta)
+        if self.structure.moving:
+            expected["1", 2] = -self.system.array("f", self.theta)
+        for key, value in expected.items():
+            found = still[key][:, free]
+            size = max(float(np.max(np.abs(value))), np.finfo(float).tiny)
+            if not np.max(np.abs(found - value)) <= _SAME * size:
+                raise bad(
+                    "system",
+                    f"a {'stiffness' if key[0] == 'q' else 'force'} that is not its structure's",
+                    "a system as linear_system makes it",
+                    "change the structure instead of the terms",
+                )
+
+
+def _inverse(matrices: Array) -> Array:
+    return np.asarray(np.linalg.inv(matrices), dtype=float)
+
+
+def required_structure(system: object) -> Structure:
+    """Return the structure of a system.
+
+    Raises
+    ------
+    BadInput
+        If the system was not made from beams.
+    """
+    found = system.structure if isinstance(system, LinearPeriodic) else None
+    if isinstance(found, Structure) and found.size == getattr(system, "size", None):
+        return found
+    raise bad(
+        "system",
+        f"{type(system).__name__} without beams, or with a sliding pin",
+        "a LinearPeriodic that keeps its structure",
+        "make it by linear_system or a scene of beams",
+    )

@@ -1,0 +1,344 @@
+"""Beam elements of four kinds: their matrices, shape functions, and nodal values of rigid motions.
+
+Every number comes from emitted closed forms (``elastolink.generated.beam_element_...`` and
+``beam_shapes_...``), derived by Hamilton's principle from the energies of a beam in a turning
+frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType, ModuleType
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import (
+    beam_element_cubic,
+    beam_element_curvature,
+    beam_element_internal_node,
+    beam_element_timoshenko,
+    beam_shapes_cubic,
+    beam_shapes_curvature,
+    beam_shapes_internal_node,
+    beam_shapes_timoshenko,
+)
+from ..errors import bad
+from ..families.emitted import array_function
+
+Array: TypeAlias = NDArray[np.float64]
+
+KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
+
+_END_VALUES = ("u1", "v1", "r1", "u2", "v2", "r2")
+NODAL_VALUES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "cubic": _END_VALUES,
+        "internal_node": (*_END_VALUES, "v3", "r3"),
+        "curvature": (*_END_VALUES, "k1", "k2"),
+        "timoshenko": _END_VALUES,
+    }
+)
+_ELEMENTS: Mapping[str, ModuleType] = MappingProxyType(
+    {
+        "cubic": beam_element_cubic,
+        "internal_node": beam_element_internal_node,
+        "curvature": beam_element_curvature,
+        "timoshenko": beam_element_timoshenko,
+    }
+)
+_SHAPES: Mapping[str, ModuleType] = MappingProxyType(
+    {
+        "cubic": beam_shapes_cubic,
+        "internal_node": beam_shapes_internal_node,
+        "curvature": beam_shapes_curvature,
+        "timoshenko": beam_shapes_timoshenko,
+    }
+)
+_ALONG = ("u", "strain")
+_ACROSS = ("v", "slope", "curvature", "third")
+_SECTION = ("rotation", "rotation_slope", "rotation_second")
+
+
+@dataclass(frozen=True)
+class ElementArrays:
+    """Matrices of one element in its local axes, n nodal values in the order of ``NODAL_VALUES``.
+
+    In axes that turn at the rate w the element has ``mass qdd + 2 w coupling qd + (stiffness + Kg -
+    w^2 centripetal + wd coupling) q``, with ``Kg = sum_k P_k geometric[k]`` for an axial force
+    ``P_0 + P_1 s + P_2 s^2`` [N], tension positive, s from 0 to 1.
+
+    Attributes
+    ----------
+    mass : ndarray, shape (n, n)
+        M: [kg] for displacements, [kg m], [kg m^2] where rotations enter.
+    coupling : ndarray, shape (n, n)
+        W, skew: ``int rho A N^T J N dx``, J = [[0, -1], [1, 0]].
+    centripetal : ndarray, shape (n, n)
+        The mass matrix without rotary inertia: the same as ``mass`` but for "timoshenko".
+    stiffness : ndarray, shape (n, n)
+        K [N/m], [N], [N m].
+    geometric : ndarray, shape (3, n, n)
+        Stiffness [1/m], ... per constant, linear and quadratic part of the axial force.
+    load : ndarray, shape (n, 4)
+        Nodal forces [N], [N m] per end values px1, px2, py1, py2 [N/m] of a force per length along
+        (x) and across (y) the element, linear between its ends.
+    """
+
+    mass: Array
+    coupling: Array
+    centripetal: Array
+    stiffness: Array
+    geometric: Array
+    load: Array
+
+
+def element_arrays(
+    kind: str,
+    *,
+    length: float,
+    mass_per_length: float,
+    axial_stiffness: float,
+    bending_stiffness: float,
+    shear_stiffness: float | None = None,
+    rotary_inertia: float = 0.0,
+) -> ElementArrays:
+    """Return the matrices of a beam element.
+
+    Parameters
+    ----------
+    kind : str
+        "cubic" (Hermite), "internal_node" (quintic, with a node in the middle), "curvature"
+        (quintic, with the curvatures of the ends) or "timoshenko" (shear and rotary inertia, free
+        of locking).  Axially all are linear.
+    length : float
+        Of the element [m].
+    mass_per_length : float
+        rho A [kg/m].
+    axial_stiffness : float
+        EA [N].
+    bending_stiffness : float
+        EI [N m^2].
+    shear_stiffness : float, optional
+        k G A [N]; "timoshenko" needs it, the other kinds do not use it.
+    rotary_inertia : float
+        rho I [kg m] per length; "timoshenko" alone uses it.
+
+    Returns
+    -------
+    ElementArrays
+        In local axes.
+
+    Raises
+    ------
+    BadInput
+        If the kind is unknown, a length or stiffness is not positive and finite, an inertia is
+        negative, or an entry exceeds the range of doubles.
+
+    Notes
+    -----
+    Aannaque (4.11)-(4.24), (4.38), (4.39), (A.3), (A.4), (A.7), (A.8), the slips mended.
+    """
+    _check_kind(kind)
+    numbers = {
+        "length": _positive("length", length),
+        "mass_per_length": _not_negative("mass_per_length", mass_per_length),
+        "axial_stiffness": _positive("axial_stiffness", axial_stiffness),
+        "bending_stiffness": _positive("bending_stiffness", bending_stiffness),
+    }
+    if kind == "timoshenko":
+        numbers["shear_stiffness"] = _positive("shear_stiffness", shear_stiffness)
+        numbers["rotary_inertia"] = _not_negative("rotary_inertia", rotary_inertia)
+    found = _in_range(_element(kind), **numbers)
+    arrays = {name: value for name, value in found.items() if not name.startswith("geometric")}
+    geometric = np.stack([found[f"geometric_{k}"] for k in range(3)])
+    return ElementArrays(
+        **{name: _fixed(value) for name, value in arrays.items()}, geometric=_fixed(geometric)
+    )
+
+
+def shape_functions(
+    kind: str,
+    xi: ArrayLike,
+    length: float,
+    derivative: int = 0,
+    *,
+    bending_stiffness: float | None = None,
+    shear_stiffness: float | None = None,
+) -> tuple[Array, Array]:
+    """Return the shape functions of the displacements along and across an element.
+
+    Parameters
+    ----------
+    kind : str
+        Of the element.
+    xi : array_like, shape (nx,)
+        Places over the element's length, 0 to 1.
+    length : float
+        Of the element [m].
+    derivative : int
+        0 to 3 derivatives by x.
+    bending_stiffness, shear_stiffness : float, optional
+        EI [N m^2] and k G A [N]; "timoshenko" needs them.
+
+    Returns
+    -------
+    u_shapes, v_shapes : ndarray, shape (nx, n)
+        Displacements (or their derivatives by x) per nodal value: ``u = u_shapes @ q_local``.
+
+    Raises
+    ------
+    BadInput
+        If the kind or the derivative is unknown, a place lies outside the element, or a number is
+        not positive.
+
+    Notes
+    -----
+    Aannaque (4.3), (4.4), (4.6), (4.10), (A.1), (A.2), (A.5), (A.6).
+    """
+    rows = _shape_rows(kind, xi, length, bending_stiffness, shear_stiffness)
+    if derivative not in range(4):
+        raise bad("derivative", derivative, "0, 1, 2 or 3", "give one of these")
+    across = rows[_ACROSS[derivative]]
+    along = rows[_ALONG[derivative]] if derivative < len(_ALONG) else np.zeros_like(across)
+    return along, across
+
+
+def section_rotation(
+    kind: str,
+    xi: ArrayLike,
+    length: float,
+    derivative: int = 0,
+    *,
+    bending_stiffness: float | None = None,
+    shear_stiffness: float | None = None,
+) -> Array:
+    """Return the shape functions of the rotation of the cross-section.
+
+    The rotation is the slope v' where there is no shear deformation.  Its first derivative times
+    EI is the bending moment, its second times EI less the shear force.
+
+    Parameters
+    ----------
+    kind, xi, length, bending_stiffness, shear_stiffness
+        As :func:`shape_functions`.
+    derivative : int
+        0 to 2 derivatives by x.
+
+    Returns
+    -------
+    ndarray, shape (nx, n)
+        Rotation [rad] (or its derivatives) per nodal value.
+
+    Raises
+    ------
+    BadInput
+        As :func:`shape_functions`.
+    """
+    rows = _shape_rows(kind, xi, length, bending_stiffness, shear_stiffness)
+    if derivative not in range(3):
+        raise bad("derivative", derivative, "0, 1 or 2", "give one of these")
+    names = _SECTION if kind == "timoshenko" else _ACROSS[1:]
+    return rows[names[derivative]]
+
+
+def rigid_field(kind: str, start: ArrayLike, end: ArrayLike, turning: ArrayLike) -> Array:
+    """Return the nodal values of a vector field that is linear along the element.
+
+    The rigid velocity or acceleration of a link is one; so are its displacements in a small rigid
+    motion.
+
+    Parameters
+    ----------
+    kind : str
+        Of the element.
+    start, end : array_like, shape (..., 2)
+        Components of the field along and across the element at its two ends.
+    turning : array_like, shape (...)
+        The matching turning: angular velocity, angular acceleration, or angle.
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        Local nodal values; curvatures are 0.
+
+    Raises
+    ------
+    BadInput
+        If the kind is unknown or a component is missing.
+    """
+    _check_kind(kind)
+    first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    for name, value in (("start", first), ("end", last)):
+        if value.shape[-1:] != (2,):
+            raise bad(name, f"shape {value.shape}", "shape (..., 2)", "give both components")
+    angle = np.asarray(turning, dtype=float)
+    values = [first[..., 0], first[..., 1], angle, last[..., 0], last[..., 1], angle]
+    if kind == "internal_node":
+        values += [(first[..., 1] + last[..., 1]) / 2.0, angle]
+    elif kind == "curvature":
+        values += [np.zeros_like(angle)] * 2
+    return np.stack(np.broadcast_arrays(*values), axis=-1)
+
+
+def _element(kind: str) -> Callable[..., dict[str, Array]]:
+    return array_function(_ELEMENTS[kind], "element")
+
+
+def _shape_rows(
+    kind: str,
+    xi: ArrayLike,
+    length: float,
+    bending_stiffness: float | None,
+    shear_stiffness: float | None,
+) -> dict[str, Array]:
+    _check_kind(kind)
+    place = np.atleast_1d(np.asarray(xi, dtype=float))
+    if not np.all((place >= 0.0) & (place <= 1.0)):
+        raise bad("xi", xi, "places from 0 to 1", "divide by the element's length")
+    numbers = {"length": _positive("length", length)}
+    if kind == "timoshenko":
+        numbers["bending_stiffness"] = _positive("bending_stiffness", bending_stiffness)
+        numbers["shear_stiffness"] = _positive("shear_stiffness", shear_stiffness)
+    found = _in_range(array_function(_SHAPES[kind], "shapes"), place, **numbers)
+    return {name: value[..., 0, :] for name, value in found.items()}
+
+
+def _in_range(
+    function: Callable[..., dict[str, Array]], *places: Array, **numbers: float
+) -> dict[str, Array]:
+    """Return what an emitted function gives, and refuse what doubles cannot hold."""
+    with np.errstate(all="ignore"):
+        found = function(*places, **{name: np.float64(value) for name, value in numbers.items()})
+    if not all(np.all(np.isfinite(value)) for value in found.values()):
+        raise bad(
+            "element",
+            f"entries beyond the range of doubles for {numbers}",
+            "lengths and stiffnesses of ordinary size",
+            "choose other units",
+        )
+    return found
+
+
+def _check_kind(kind: str) -> None:
+    if kind not in KINDS:
+        raise bad("kind", repr(kind), f"one of {KINDS}", "correct it")
+
+
+def _positive(name: str, value: float | None) -> float:
+    if value is None or not (np.isfinite(value) and value > 0.0):
+        raise bad(name, value, "a positive finite number", "give one")
+    return float(value)
+
+
+def _not_negative(name: str, value: float) -> float:
+    if not (np.isfinite(value) and value >= 0.0):
+        raise bad(name, value, "a finite number, not negative", "give one")
+    return float(value)
+
+
+def _fixed(array: Array) -> Array:
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,174 @@
+"""Frames of beams that stand still."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..errors import BadInput, Problem
+from ..mechanisms.linkage import LinkMotion
+from ._checks import are_finite, names_problems
+from .assembly import Array
+from .section import Section
+from .structure import Beam, Node, Structure, node_value_problems
+
+
+def frame(
+    places: Mapping[str, tuple[float, float]],
+    members: Mapping[str, tuple[str, str]],
+    sections: Section | Mapping[str, Section],
+    *,
+    supports: Mapping[str, Sequence[str]],
+    pins: Sequence[str] = (),
+    elements: int | Mapping[str, int | tuple[float, ...]] = 3,
+    kind: str = "cubic",
+    nodes: Mapping[str, Mapping[str, Any]] | None = None,
+    provenance: Mapping[str, str] | None = None,
+) -> Structure:
+    """Return a frame of beams that stands still.
+
+    Members that meet are rigidly joined, except at the nodes named as pins.
+
+    Parameters
+    ----------
+    places : mapping of str to pair of float
+        Places of the nodes [m].
+    members : mapping of str to pair of str
+        Names of the nodes at the ends of each beam.
+    sections : Section or mapping of str to Section
+        Of all members, or by member.
+    supports : mapping of str to sequence of str
+        By node, what the ground holds: some of ``x``, ``y``, ``rotation``.
+    pins : sequence of str
+        Nodes at which every member turns by itself.
+    elements, kind
+        As :func:`beam_linkage` takes them.
+    nodes : mapping of str to mapping, optional
+        By node, further values of :class:`Node`: masses, springs, loads.
+    provenance : mapping, optional
+        Scene and options to record.
+
+    Returns
+    -------
+    Structure
+
+    Raises
+    ------
+    BadInput
+        If a name or number is unusable.
+
+    Examples
+    --------
+    >>> bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    >>> portal = frame(
+    ...     {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)},
+    ...     {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")},
+    ...     bar,
+    ...     supports={"A": ("x", "y", "rotation"), "D": ("x", "y", "rotation")},
+    ... )
+    >>> portal.size
+    24
+    """
+    _check_form(places, members, elements, nodes)
+    _check(places, members, sections, [*supports, *pins, *(nodes or {})])
+    ends = {name: (_complex(places[a]), _complex(places[b])) for name, (a, b) in members.items()}
+    beams = tuple(
+        Beam(
+            name=name,
+            start=start,
+            end=end,
+            section=sections[name] if isinstance(sections, Mapping) else sections,
+            length=abs(ends[name][1] - ends[name][0]),
+            elements=elements[name] if isinstance(elements, Mapping) else elements,
+            kind=kind,
+        )
+        for name, (start, end) in members.items()
+    )
+    made = []
+    for letter in places:
+        meeting = tuple(beam.name for beam in beams if letter in (beam.start, beam.end))
+        values: dict[str, Any] = {
+            "held": tuple(supports.get(letter, ())),
+            "joined": () if letter in pins or len(meeting) < 2 else meeting,
+        }
+        made.append(Node(name=letter, **{**values, **(nodes or {}).get(letter, {})}))
+    return Structure(
+        beams=beams,
+        nodes=tuple(made),
+        configuration=partial(_standing, ends),
+        moving=False,
+        provenance=dict(provenance or {}),
+    )
+
+
+def _complex(place: tuple[float, float]) -> complex:
+    return complex(*place)
+
+
+def _standing(
+    ends: Mapping[str, tuple[complex, complex]], theta: Array
+) -> Mapping[str, LinkMotion]:
+    """Return the motion of beams that do not move."""
+    still = np.zeros((len(theta), 2))
+    none = np.zeros(len(theta))
+    found = {}
+    for name, (start, end) in ends.items():
+        origin = np.broadcast_to([start.real, start.imag], still.shape)
+        angle = np.full(len(theta), np.angle(end - start))
+        found[name] = LinkMotion(origin, still, still, angle, none, none)
+    return found
+
+
+def _check_form(
+    places: Mapping[str, tuple[float, float]],
+    members: Mapping[str, tuple[str, str]],
+    elements: object,
+    nodes: object,
+) -> None:
+    """Refuse values of another form."""
+    problems = node_value_problems(nodes)
+    for letter, place in places.items():
+        if not are_finite(place, 2):
+            problems.append(Problem(f"place of {letter}", repr(place), "two numbers", "correct it"))
+    for name, pair in members.items():
+        if names_problems("", pair) or len(pair) != 2:
+            found, fix = repr(pair), 'say ("A", "B")'
+            problems.append(Problem(f"member {name}", found, "the names of two nodes", fix))
+    if isinstance(elements, Mapping):
+        missing = sorted(set(members) - set(elements))
+        if missing:
+            found = f"none for {', '.join(missing)}"
+            problems.append(Problem("elements", found, "one each", "add them"))
+    if problems:
+        raise BadInput(*problems)
+
+
+def _check(
+    places: Mapping[str, tuple[float, float]],
+    members: Mapping[str, tuple[str, str]],
+    sections: Section | Mapping[str, Section],
+    named: Sequence[str],
+) -> None:
+    problems = []
+    ends = {letter for pair in members.values() for letter in pair}
+    for word, names in (("members", ends), ("supports, pins, nodes", set(named))):
+        strange = sorted(names - set(places))
+        if strange:
+            fix = "give it a place, or correct the name"
+            problems.append(Problem(word, f"node {', '.join(strange)}", "known nodes", fix))
+    if isinstance(sections, Mapping):
+        missing = sorted(set(members) - set(sections))
+        if missing:
+            problems.append(
+                Problem("sections", f"none for {', '.join(missing)}", "one each", "add")
+            )
+    for name, (first, second) in members.items():
+        known = first in places and second in places
+        if known and not problems and places[first] == places[second]:
+            found = f"of no length, from {first} to {second}"
+            problems.append(Problem(f"member {name}", found, "two places", "move a node"))
+    if problems:
+        raise BadInput(*problems)

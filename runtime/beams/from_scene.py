@@ -1,0 +1,122 @@
+"""Linkages and frames of beams: from a scene to its structure and its system."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ...derive.spec import BEAM_FORMULATIONS
+from ..families import LinearPeriodic
+from ..systems.modal_damping import with_modal_damping
+from .frames import frame
+from .inextensible import without_stretching
+from .linear import linear_system
+from .linkages import linkage_system
+from .section import Section
+from .structure import DIRECTIONS
+
+if TYPE_CHECKING:
+    from ..scenes import Scene
+
+
+def beams_of_scene(scene: Scene) -> LinearPeriodic:
+    """Return the vibration of a scene's linkage or frame of beams.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a formulation of beams, such as ``cubic_beams``.
+
+    Returns
+    -------
+    LinearPeriodic
+        With the scene's modal damping; ``.structure`` holds the beams.
+
+    Raises
+    ------
+    BadInput
+        If the crank cannot turn fully, or the numbers do not fit together.
+    """
+    drop = scene.model["drop"]
+    options: dict[str, Any] = {
+        "form": "instantaneous" if "turning" in drop else "full",
+        "geometric_stiffness": "geometric_stiffness" not in drop,
+        "rayleigh": tuple(
+            scene.get(f"damping.{key}", 0.0) for key in ("rayleigh_mass", "rayleigh_stiffness")
+        ),
+        "gravity": _gravity(scene),
+    }
+    kind = BEAM_FORMULATIONS[scene.model["formulation"]]
+    told = {"scene": scene.name, "scene_digest": scene.digest()}
+    if scene.model["mechanism"] == "frame":
+        system = _frame(scene, kind, told, options)
+    else:
+        links = scene.layout.flexible
+        system = linkage_system(
+            scene.mechanism(),
+            {link: section(scene[link]) for link in links},
+            elements={link: _elements(scene, scene[link]) for link in links},
+            kind=kind,
+            nodes={letter: _node(table) for letter, table in scene.get("joints", {}).items()},
+            provenance=told,
+            **options,
+        )
+    ratio = scene.get("damping.ratio", 0.0)
+    return with_modal_damping(system, ratio) if ratio else system
+
+
+def section(table: Mapping[str, Any]) -> Section:
+    """Return the section of a link's table."""
+    return Section(
+        area=table["area"],
+        second_moment=table["second_moment"],
+        modulus=table["modulus"],
+        density=table["density"],
+        thickness=table.get("thickness"),
+        shear_stiffness=table.get("shear_stiffness"),
+        retardation=table.get("retardation_time", 0.0),
+    )
+
+
+def _frame(
+    scene: Scene, kind: str, told: Mapping[str, str], options: Mapping[str, Any]
+) -> LinearPeriodic:
+    nodes, members = scene["nodes"], scene["members"]
+    structure = frame(
+        {name: table["place"] for name, table in nodes.items()},
+        {name: (table["start"], table["end"]) for name, table in members.items()},
+        {name: section(table) for name, table in members.items()},
+        supports={name: table.get("held", ()) for name, table in nodes.items()},
+        pins=[name for name, table in nodes.items() if table.get("pinned") == "yes"],
+        elements={name: _elements(scene, table) for name, table in members.items()},
+        kind=kind,
+        nodes={name: _node(table) for name, table in nodes.items()},
+        provenance=told,
+    )
+    system = linear_system(structure, **options)
+    return without_stretching(system) if scene["frame"]["axial"] == "rigid" else system
+
+
+def _elements(scene: Scene, table: Mapping[str, Any]) -> int:
+    return int(table.get("elements", scene["mesh"]["elements"]))
+
+
+def _node(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a joint's table says, as :class:`Node` takes it."""
+    plain = ("mass", "inertia", "carried_by", "held", "force")
+    found: dict[str, Any] = {key: table[key] for key in plain if key in table}
+    for group in ("stiffness", "damping"):
+        parts = {part: table.get(f"{group}_{part}") for part in DIRECTIONS}
+        given = {part: value for part, value in parts.items() if value is not None}
+        if given:
+            found[group] = given
+    return found
+
+
+def _gravity(scene: Scene) -> tuple[float, float]:
+    direction = scene.get("gravity.direction", None)
+    if direction is None:
+        return 0.0, 0.0
+    size = scene["gravity"]["acceleration"]
+    return size * math.cos(direction), size * math.sin(direction)

@@ -1,0 +1,435 @@
+"""Beams of three layers with a viscoelastic core: equivalent stiffness and damping.
+
+The layers bend together; the outer ones stretch, the core between them shears and loses energy.
+Stiffness and loss depend on the wave length of the deflection.  Aannaque 9.2 proposes such links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import beam_section_sandwich
+from ..errors import BadInput, Problem, bad
+from ..results import Result, provenance
+from ._checks import is_finite, sign_problems
+from .section import Section
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+# Sums of positive products throughout, some forty operations, each with half a unit: a bound.
+_ROUNDING = 64 * 2.0**-53
+# Sizes beyond which products of them could leave the range of doubles.
+_LARGEST = 1e18
+
+
+@dataclass(frozen=True)
+class ElasticLayer:
+    """Outer layer of a sandwich.
+
+    Parameters
+    ----------
+    thickness : float
+        Extent in the plane of bending [m].
+    modulus : float
+        Young's modulus [Pa].
+    density : float
+        Mass per volume [kg/m^3].
+
+    Raises
+    ------
+    BadInput
+        If a number is not positive.
+    """
+
+    thickness: float
+    modulus: float
+    density: float
+
+    def __post_init__(self) -> None:
+        """Check every number."""
+        _refuse(sign_problems("ElasticLayer", self, _names(self), positive=True, fix=_SI))
+
+
+@dataclass(frozen=True)
+class ViscoelasticLayer:
+    """Core of a sandwich, of complex shear modulus ``shear_modulus (1 + i loss_factor)``.
+
+    Parameters
+    ----------
+    thickness : float
+        Extent in the plane of bending [m].
+    shear_modulus : float
+        Its real part [Pa].
+    loss_factor : float
+        Imaginary part of the modulus over the real part; 0 or more.
+    density : float
+        Mass per volume [kg/m^3].
+
+    Raises
+    ------
+    BadInput
+        If a number is not positive, or the loss factor negative.
+    """
+
+    thickness: float
+    shear_modulus: float
+    loss_factor: float
+    density: float
+
+    def __post_init__(self) -> None:
+        """Check every number."""
+        names = [name for name in _names(self) if name != "loss_factor"]
+        problems = sign_problems("ViscoelasticLayer", self, names, positive=True, fix=_SI)
+        problems += sign_problems(
+            "ViscoelasticLayer", self, ["loss_factor"], positive=False, fix="correct it"
+        )
+        _refuse(problems)
+
+
+@dataclass(frozen=True)
+class SandwichSection:
+    """Equivalent uniform section of a sandwich at one wave number and one frequency.
+
+    Attributes
+    ----------
+    bending_stiffness : float
+        Real part of EI [N m^2].
+    loss_factor : float
+        Imaginary part of EI over its real part.
+    mass_per_length : float
+        [kg/m].
+    axial_stiffness : float
+        EA of the outer layers [N].
+    area : float
+        Of all layers [m^2].
+    wave_number, frequency : float
+        [rad/m] and [rad/s], for which it holds.
+    slack, bonded : float
+        EI without any resistance of the core to shear, and with a core rigid in shear [N m^2].
+    """
+
+    bending_stiffness: float
+    loss_factor: float
+    mass_per_length: float
+    axial_stiffness: float
+    area: float
+    wave_number: float
+    frequency: float
+    slack: float
+    bonded: float
+
+    @property
+    def retardation(self) -> float:
+        """Tau [s] of the material of Kelvin and Voigt with the same loss at this frequency."""
+        return self.loss_factor / self.frequency
+
+    def section(self) -> Section:
+        """Return a homogeneous section with the same EI, EA, mass per length and retardation.
+
+        Its axial damping is that of bending, and it has no thickness: stresses in a sandwich do
+        not follow from the distance to one axis.
+        """
+        modulus = self.axial_stiffness / self.area
+        return Section(
+            area=self.area,
+            second_moment=self.bending_stiffness / modulus,
+            modulus=modulus,
+            density=self.mass_per_length / self.area,
+            retardation=self.retardation,
+        )
+
+
+def sandwich_section(
+    base: ElasticLayer,
+    core: ViscoelasticLayer,
+    cover: ElasticLayer,
+    *,
+    width: float,
+    wave_number: float | None = None,
+    frequency: float | None = None,
+) -> SandwichSection:
+    """Return the equivalent section of a three-layer beam.
+
+    Parameters
+    ----------
+    base, core, cover : ElasticLayer, ViscoelasticLayer, ElasticLayer
+        The layers in order.
+    width : float
+        Extent across the plane of bending [m].
+    wave_number : float, optional
+        Of the deflection [rad/m]: ``n pi / L`` for mode n of a pinned beam.  Without it, that of
+        free bending waves of the given frequency.
+    frequency : float, optional
+        Of the vibration [rad/s].  Without it, that of free bending waves of the wave number.
+
+    Returns
+    -------
+    SandwichSection
+        Stiffness, loss factor, mass, retardation time.
+
+    Raises
+    ------
+    BadInput
+        If neither wave number nor frequency is given, or a number is not positive.
+
+    Notes
+    -----
+    Aannaque 9.2.  The outer layers do not shear and the core is not stretched: the model holds for
+    a core that is soft beside the outer layers, and wave lengths long beside the thickness.
+    """
+    given = {"width": width, "wave_number": wave_number, "frequency": frequency}
+    numbers = {name: value for name, value in given.items() if value is not None or name == "width"}
+    _refuse(
+        [
+            Problem(name, repr(value), "a positive number", _SI)
+            for name, value in numbers.items()
+            if value is None or not (is_finite(value) and value > 0)
+        ]
+    )
+    mass = width * sum(layer.density * layer.thickness for layer in (base, core, cover))
+    stiffness = _stiffness(base, core, cover, width)
+    if wave_number is None:
+        if frequency is None:
+            raise bad("sandwich_section", "no wave number, no frequency", "one", "give one of them")
+        wave_number = _free_wave(stiffness, mass, frequency)
+    values = [float(value) for value in stiffness(wave_number)]
+    if frequency is None:
+        with np.errstate(all="ignore"):
+            frequency = float(np.float64(wave_number) ** 2 * np.sqrt(values[0] / np.float64(mass)))
+    outer = base.modulus * base.thickness + cover.modulus * cover.thickness
+    found = SandwichSection(
+        bending_stiffness=values[0],
+        loss_factor=values[1],
+        mass_per_length=mass,
+        axial_stiffness=width * outer,
+        area=width * (base.thickness + core.thickness + cover.thickness),
+        wave_number=float(wave_number),
+        frequency=float(frequency),
+        slack=values[2],
+        bonded=values[3],
+    )
+    sizes = (mass, found.axial_stiffness, found.area, found.frequency)
+    if not all(is_finite(size) and size > 0 for size in sizes):
+        raise _beyond(f"mass, EA, area and frequency {sizes}")
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class SandwichStudy(Result):
+    """Loss factor and stiffness of a sandwich against the thicknesses of core and cover.
+
+    Attributes
+    ----------
+    core_thickness : ndarray
+        [m], shape ``(nc,)``.
+    cover_thickness : ndarray
+        [m], shape ``(nv,)``.
+    loss_factor : ndarray
+        Of the bending stiffness, shape ``(nc, nv)``.
+    bending_stiffness : ndarray
+        Real part of EI [N m^2], shape ``(nc, nv)``.
+    mass_per_length : ndarray
+        [kg/m], shape ``(nc, nv)``.
+    wave_number : float
+        [rad/m].
+    """
+
+    core_thickness: Array
+    cover_thickness: Array
+    loss_factor: Array
+    bending_stiffness: Array
+    mass_per_length: Array
+    wave_number: float
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "core_thickness": ("core_thickness",),
+        "cover_thickness": ("cover_thickness",),
+        **dict.fromkeys(
+            ("loss_factor", "bending_stiffness", "mass_per_length"),
+            ("core_thickness", "cover_thickness"),
+        ),
+    }
+
+    def best(self) -> tuple[float, float, float]:
+        """Return the core and cover thickness [m] with the largest loss factor, and that factor."""
+        row, column = np.unravel_index(np.argmax(self.loss_factor), self.loss_factor.shape)
+        return (
+            float(self.core_thickness[row]),
+            float(self.cover_thickness[column]),
+            float(self.loss_factor[row, column]),
+        )
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw lines of equal loss factor over both thicknesses [mm]."""
+        from ..plotting import axes_or_new
+
+        axes = axes_or_new(ax)
+        lines = axes.contour(
+            1e3 * self.cover_thickness, 1e3 * self.core_thickness, self.loss_factor, 12
+        )
+        axes.clabel(lines, fmt="%.2g")
+        axes.set_xlabel("thickness of the cover [mm]")
+        axes.set_ylabel("thickness of the core [mm]")
+        axes.set_title(f"loss factor at a wave length of {2 * np.pi / self.wave_number:.3g} m")
+        return axes
+
+
+def sandwich_study(
+    base: ElasticLayer,
+    core: ViscoelasticLayer,
+    cover: ElasticLayer,
+    *,
+    width: float,
+    wave_number: float,
+    core_thickness: ArrayLike,
+    cover_thickness: ArrayLike,
+) -> SandwichStudy:
+    """Return the loss factor of a sandwich against the thicknesses of its core and its cover.
+
+    Parameters
+    ----------
+    base, core, cover, width
+        As :func:`sandwich_section`; the thicknesses of core and cover are those below.
+    wave_number : float
+        Of the deflection [rad/m].
+    core_thickness, cover_thickness : array_like, shape (nc,), (nv,)
+        Thicknesses to try [m].
+
+    Returns
+    -------
+    SandwichStudy
+        Loss factor, stiffness and mass at every pair; the error figure is that of the arithmetic.
+
+    Raises
+    ------
+    BadInput
+        If a number is not positive or a list of thicknesses is empty.
+    """
+    cores, covers = _thicknesses("core", core_thickness), _thicknesses("cover", cover_thickness)
+    for name, value in (("width", width), ("wave_number", wave_number)):
+        if not (is_finite(value) and value > 0):
+            raise bad(name, repr(value), "a positive number", _SI)
+    stiffness, loss, _, _ = _evaluated(
+        np.full((len(cores), len(covers)), float(wave_number)),
+        _arguments(base, core, cover, width)
+        | {"core_thickness": cores[:, None], "cover_thickness": covers[None, :]},
+    )
+    mass = width * (
+        base.density * base.thickness
+        + core.density * cores[:, None]
+        + cover.density * covers[None, :]
+    )
+    return SandwichStudy(
+        core_thickness=cores,
+        cover_thickness=covers,
+        loss_factor=loss,
+        bending_stiffness=stiffness,
+        mass_per_length=mass,
+        wave_number=float(wave_number),
+        method="closed form",
+        error=_ROUNDING,
+        error_norm="relative, of each loss factor and stiffness; rounding alone, not the model",
+        error_kind="bound",
+        provenance=provenance({"module": beam_section_sandwich.CONTENT}),
+    )
+
+
+_SI = "give SI units"
+
+
+def _names(record: ElasticLayer | ViscoelasticLayer) -> list[str]:
+    return list(record.__dataclass_fields__)
+
+
+def _refuse(problems: list[Problem]) -> None:
+    if problems:
+        raise BadInput(*problems)
+
+
+def _thicknesses(name: str, values: ArrayLike) -> Array:
+    found = np.atleast_1d(np.asarray(values, dtype=float))
+    if found.ndim != 1 or not found.size or not np.all(np.isfinite(found) & (found > 0)):
+        raise bad(f"{name}_thickness", values, "positive numbers in a list", "give it in metres")
+    return found
+
+
+def _arguments(
+    base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer, width: float
+) -> dict[str, Any]:
+    return {
+        "width": float(width),
+        "base_modulus": float(base.modulus),
+        "base_thickness": float(base.thickness),
+        "core_shear_modulus": float(core.shear_modulus),
+        "core_loss": float(core.loss_factor),
+        "core_thickness": float(core.thickness),
+        "cover_modulus": float(cover.modulus),
+        "cover_thickness": float(cover.thickness),
+    }
+
+
+def _stiffness(
+    base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer, width: float
+) -> Callable[[float], tuple[Array, ...]]:
+    """Return the emitted function of the wave number alone."""
+    arguments = _arguments(base, core, cover, width)
+
+    def at(wave_number: float) -> tuple[Array, ...]:
+        return _evaluated(np.asarray(wave_number, dtype=float), arguments)
+
+    return at
+
+
+def _evaluated(wave_number: Array, arguments: Mapping[str, ArrayLike]) -> tuple[Array, ...]:
+    """Return what the emitted function gives, for sizes whose products are within doubles.
+
+    Raises
+    ------
+    BadInput
+        If a number other than the loss factor is outside it.
+    """
+    sizes = {**arguments, "wave_number": wave_number}
+    for name, size in sizes.items():
+        lowest = 0.0 if name == "core_loss" else 1.0 / _LARGEST
+        if not np.all((np.asarray(size) >= lowest) & (np.asarray(size) <= _LARGEST)):
+            raise _beyond(f"{name} of {size}")
+    found: tuple[Array, ...] = beam_section_sandwich.sandwich(  # type: ignore[no-untyped-call]
+        wave_number, **arguments
+    )
+    return found
+
+
+def _beyond(found: str) -> BadInput:
+    expected = f"sizes from {1.0 / _LARGEST:g} to {_LARGEST:g}"
+    return bad("sandwich", found, expected, "give SI units")
+
+
+def _free_wave(
+    stiffness: Callable[[float], tuple[Array, ...]], mass: float, frequency: float
+) -> float:
+    """Return the wave number of free bending waves: ``k^4 EI(k) = m w^2``, EI between its limits.
+
+    k^4 EI(k) grows with k, so that the root between the limits is the only one.
+    """
+    from scipy.optimize import brentq
+
+    with np.errstate(all="ignore"):
+        _, _, slack, bonded = stiffness(1.0)
+        load = float(np.float64(mass) * np.float64(frequency) ** 2)
+        ends = [float((load / limit) ** 0.25) for limit in (bonded, slack)]
+    if not all(is_finite(end) and end > 0 for end in (load, *ends)):
+        raise _beyond(f"free waves with wave numbers from {ends[0]} to {ends[1]}")
+    wide = (ends[0] * (1.0 - 1e-12), ends[1] * (1.0 + 1e-12))
+
+    def excess(wave_number: float) -> float:
+        return float(wave_number**4 * stiffness(wave_number)[0] / load - 1.0)
+
+    return float(brentq(excess, *wide, xtol=1e-15 * ends[0], rtol=4 * np.finfo(float).eps))

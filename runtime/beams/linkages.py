@@ -1,0 +1,220 @@
+"""Structures of beams from the linkages of one loop."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+from ..errors import BadInput, Problem, bad
+from ..families import LinearPeriodic
+from ..mechanisms import FourBar, Linkage, QuickReturn, SliderCrank
+from ..mechanisms.linkage import LinkMotion
+from .assembly import Array
+from .linear import linear_system
+from .section import Section
+from .structure import DIRECTIONS, Beam, Node, Structure, node_value_problems
+
+# The links that bend, with the joints at their ends; the first is the origin of the link's axes.
+BARS: Mapping[type[Linkage], Mapping[str, tuple[str, str]]] = MappingProxyType(
+    {
+        FourBar: {"crank": ("A", "B"), "coupler": ("B", "C"), "follower": ("D", "C")},
+        SliderCrank: {"crank": ("A", "B"), "coupler": ("B", "C")},
+        QuickReturn: {"crank": ("A", "B"), "rod": ("D", "C")},
+    }
+)
+# The crank turns with its shaft; pins to the frame hold a place; a slider moves along x.
+_HELD: Mapping[type[Linkage], Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        FourBar: {"A": DIRECTIONS, "D": ("x", "y")},
+        SliderCrank: {"A": DIRECTIONS, "C": ("y",)},
+        QuickReturn: {"A": DIRECTIONS, "D": ("x", "y")},
+    }
+)
+# Pins that slide along a bar.
+_SLIDING: Mapping[type[Linkage], Mapping[str, str]] = MappingProxyType({QuickReturn: {"B": "rod"}})
+
+
+def beam_linkage(
+    linkage: Linkage,
+    sections: Mapping[str, Section],
+    *,
+    elements: int | Mapping[str, int | tuple[float, ...]] = 3,
+    kind: str = "cubic",
+    joint_masses: Mapping[str, float] | None = None,
+    nodes: Mapping[str, Mapping[str, Any]] | None = None,
+    provenance: Mapping[str, str] | None = None,
+) -> Structure:
+    """Return a linkage all of whose links are beams.
+
+    The crank is clamped to a shaft that turns as prescribed; the other joints are pins.  The block
+    of a quick-return is one that slides along the rod without friction, a point of mass.
+
+    Parameters
+    ----------
+    linkage : FourBar, SliderCrank or QuickReturn
+        Lengths and assembly; the crank must be able to turn fully.
+    sections : mapping of str to Section
+        By link: crank, coupler and, of a four-bar, follower; of a quick-return crank and rod.
+    elements : int or mapping
+        Number of elements of every link, or by link as :class:`Beam` takes them.
+    kind : str
+        Element: ``cubic``, ``internal_node``, ``curvature`` or ``timoshenko``.
+    joint_masses : mapping of str to float, optional
+        Lumped masses [kg] by joint: A, B, C, D; of a slider-crank's slider at C.
+    nodes : mapping of str to mapping, optional
+        By joint, values of :class:`Node` that replace those of the linkage: ``{"A": {"held":
+        ("x", "y"), "stiffness": {"rotation": 2e4}}}`` puts the crank on a sprung shaft, ``{"D":
+        {"held": ("y",), "stiffness": {"x": 1e6}}}`` the follower's pivot on a spring.
+    provenance : mapping, optional
+        Scene and options to record.
+
+    Returns
+    -------
+    Structure
+
+    Raises
+    ------
+    BadInput
+        If the linkage is of another kind or its crank cannot turn fully, a link has no section, or
+        a name or value is unusable.
+    """
+    bars = BARS.get(type(linkage))
+    if bars is None:
+        found = type(linkage).__name__
+        expected = f"one of {', '.join(kind.__name__ for kind in BARS)}"
+        raise bad("beam_linkage", found, expected, "make a Structure from its beams and nodes")
+    linkage.require_full_turn()
+    _check_names(bars, sections, elements, joint_masses, nodes)
+    beams = tuple(
+        Beam(
+            name=name,
+            start=start,
+            end=end,
+            section=sections[name],
+            length=float(linkage.lengths[name]),
+            elements=elements[name] if isinstance(elements, Mapping) else elements,
+            kind=kind,
+        )
+        for name, (start, end) in bars.items()
+    )
+    made = tuple(
+        _node(letter, type(linkage), joint_masses or {}, nodes or {}) for letter in _letters(bars)
+    )
+    return Structure(
+        beams=beams,
+        nodes=made,
+        configuration=partial(_configuration, linkage, tuple(bars)),
+        provenance={**(provenance or {}), **linkage._told()},
+    )
+
+
+def linkage_system(
+    linkage: Linkage,
+    sections: Mapping[str, Section],
+    *,
+    form: str = "full",
+    geometric_stiffness: bool = True,
+    rayleigh: tuple[float, float] = (0.0, 0.0),
+    gravity: tuple[float, float] = (0.0, 0.0),
+    **structure: Any,
+) -> LinearPeriodic:
+    """Return the vibration of a linkage of beams, with its lengths as geometry to vary.
+
+    Parameters
+    ----------
+    linkage, sections, **structure
+        As :func:`beam_linkage` takes them.
+    form, geometric_stiffness, rayleigh, gravity
+        As :func:`linear_system` takes them.
+
+    Returns
+    -------
+    LinearPeriodic
+        ``with_geometry(frame=0.6)`` is the same linkage with another length.
+
+    Raises
+    ------
+    BadInput
+        As :func:`beam_linkage` and :func:`linear_system`.
+    """
+    options = {
+        "form": form,
+        "geometric_stiffness": geometric_stiffness,
+        "rayleigh": rayleigh,
+        "gravity": gravity,
+    }
+    return _made(linkage, dict(sections), dict(structure), options, linkage.lengths)
+
+
+def _made(
+    linkage: Linkage,
+    sections: Mapping[str, Section],
+    structure: Mapping[str, Any],
+    options: Mapping[str, Any],
+    geometry: Mapping[str, float],
+) -> LinearPeriodic:
+    changed = replace(linkage, **geometry)  # type: ignore[type-var]
+    system = linear_system(beam_linkage(changed, sections, **structure), **options)
+    rebuild = partial(_made, linkage, sections, structure, options)
+    return replace(system, geometry=dict(geometry), rebuild=rebuild)
+
+
+def _letters(bars: Mapping[str, tuple[str, str]]) -> tuple[str, ...]:
+    return tuple(sorted({letter for pair in bars.values() for letter in pair}))
+
+
+def _node(
+    letter: str,
+    linkage: type[Linkage],
+    masses: Mapping[str, float],
+    given: Mapping[str, Mapping[str, Any]],
+) -> Node:
+    values: dict[str, Any] = {
+        "held": _HELD[linkage].get(letter, ()),
+        "slides_on": _SLIDING.get(linkage, {}).get(letter),
+        "mass": masses.get(letter, 0.0),
+    }
+    return Node(name=letter, **{**values, **given.get(letter, {})})
+
+
+def _configuration(
+    linkage: Linkage, names: tuple[str, ...], theta: Array
+) -> Mapping[str, LinkMotion]:
+    motion = linkage.motion(theta)
+    return {name: motion.link(name) for name in names}
+
+
+def _check_names(
+    bars: Mapping[str, tuple[str, str]],
+    sections: Mapping[str, Section],
+    elements: object,
+    masses: Mapping[str, float] | None,
+    nodes: Mapping[str, Mapping[str, Any]] | None,
+) -> None:
+    if not isinstance(sections, Mapping):
+        found, fix = type(sections).__name__, 'say {"crank": Section(...), ...}'
+        raise bad("sections", found, "a Section by link", fix)
+    problems = node_value_problems(nodes)
+    if problems:
+        raise BadInput(*problems)
+    links, letters = set(bars), set(_letters(bars))
+    known = {
+        "sections": (set(sections), links),
+        "elements": (set(elements) if isinstance(elements, Mapping) else links, links),
+        "joint_masses": (set(masses or {}), letters),
+        "nodes": (set(nodes or {}), letters),
+    }
+    for name, (found, expected) in known.items():
+        strange = sorted(found - expected)
+        if strange:
+            expectation = f"some of {sorted(expected)}"
+            problems.append(Problem(name, ", ".join(strange), expectation, "correct the name"))
+    for name in ("sections", "elements"):
+        missing = sorted(links - known[name][0])
+        if missing:
+            problems.append(Problem(name, f"none for {', '.join(missing)}", "one each", "add it"))
+    if problems:
+        raise BadInput(*problems)

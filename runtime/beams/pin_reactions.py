@@ -1,0 +1,279 @@
+"""Pin forces, ground reactions and driving torque of a structure of beams in a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..results import Check, Result, provenance
+from .assembly import Array
+from .beam_motion import BeamMotion, beam_motion
+from .element_forms import ElementForms, required_structure
+from .recovered import chunks, evaluated, linear_range, propagated
+from .recovery import FORCES, METHODS
+from .recovery_forms import LinearForm
+from .stress_errors import CAUTION, energy_gap, softened
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+# Round-off of the balance of forces, over the largest end force of an element.
+_ROUNDING = 1e-9
+_PARTS = ("x", "y", "moment")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinReactions(Result):
+    """Forces at the nodes of a structure of beams, linear in its elastic motion.
+
+    Attributes
+    ----------
+    speed : float
+        Crank speed [rad/s].
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    on_beams : mapping of (str, str) to ndarray
+        By node and beam, what the node does to the end of the beam: force along the fixed axes
+        [N] and moment [N m], shape ``(nt, 3)``.
+    of_ground : mapping of str to ndarray
+        By node, what the ground does to it through supports, springs and dampers, likewise; only
+        nodes that the ground holds.
+    drag : ndarray
+        Forces [N] without a counterpart in the structure, such as those of modal damping: what
+        they do to the structure, shape ``(nt, 2)``.
+    momentum_rate : ndarray
+        Rate of change of the momentum less weight and constant loads [N], shape ``(nt, 2)``; the
+        ground and the drag bring it about.
+    error : float
+        Largest error of a force [N], moments over the longest beam's length: by the error of the
+        motion and, where :func:`steady_state` found it, by the mesh and its frequencies.
+    """
+
+    speed: float
+    theta: Array
+    on_beams: Mapping[tuple[str, str], Array]
+    of_ground: Mapping[str, Array]
+    drag: Array
+    momentum_rate: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "theta": ("sample",),
+        "drag": ("sample", "direction"),
+        "momentum_rate": ("sample", "direction"),
+    }
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the numeric fields, and the forces by node and beam."""
+        found = super().arrays()
+        for (node, beam), value in self.on_beams.items():
+            found |= {f"{node} on {beam} {p}": value[:, k] for k, p in enumerate(_PARTS)}
+        for node, value in self.of_ground.items():
+            found |= {f"ground on {node} {p}": value[:, k] for k, p in enumerate(_PARTS)}
+        return found
+
+    def force(self, node: str, beam: str) -> Array:
+        """Return the force of a node on a beam [N], ``(nt, 2)``.
+
+        Raises
+        ------
+        BadInput
+            If no beam of that name ends at that node.
+        """
+        if (node, beam) not in self.on_beams:
+            known = ", ".join(" on ".join(pair) for pair in self.on_beams)
+            raise bad("force", f"{node} on {beam}", f"one of {known}", "correct the names")
+        return self.on_beams[node, beam][:, :2]
+
+    def torque(self, node: str = "A") -> Array:
+        """Return the moment of the ground on a node [N m], ``(nt,)``: of a crank's shaft the drive.
+
+        Raises
+        ------
+        BadInput
+            If the ground does not hold the node.
+        """
+        if node not in self.of_ground:
+            known = ", ".join(self.of_ground)
+            raise bad("node", repr(node), f"one that the ground holds: {known}", "choose one")
+        return self.of_ground[node][:, 2]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the sizes of the forces of the ground and of the pins over the crank angle."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        degrees = np.degrees(self.theta)
+        for node, value in self.of_ground.items():
+            size = np.hypot(value[:, 0], value[:, 1])
+            ax.plot(degrees, size, label=f"ground on {node}", linewidth=0.9)
+        for (node, beam), value in self.on_beams.items():
+            if node not in self.of_ground:
+                size = np.hypot(value[:, 0], value[:, 1])
+                ax.plot(degrees, size, "--", label=f"{node} on {beam}", linewidth=0.9)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("force [N]")
+        ax.legend()
+        return ax
+
+
+def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) -> PinReactions:
+    """Return the forces at the nodes of a structure of beams, and of its ground.
+
+    They come from the end forces of the elements: stiffness, inertia of the rigid and the elastic
+    motion, geometric stiffness, weight.  A crank that is clamped to its shaft is driven by the
+    moment of the clamp.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+
+    Returns
+    -------
+    PinReactions
+        Its check ``balance`` compares the sum of all forces from outside with the rate of change
+        of the momentum, over the largest force: to round-off.  Moments balance only as far as
+        forces at displaced places are small of second order: linear equations know no more.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    moving = beam_motion(system, motion)
+    on_beams, of_ground, joined = _forces(system, moving)
+    drag, rate = joined["drag "], joined["momentum "]
+    total = sum((value[:, :2] for value in of_ground.values()), np.zeros_like(drag))
+    largest = max(float(np.max(np.abs(v[:, :2]))) for v in on_beams.values())
+    gap = float(np.max(np.abs(total + drag - rate)))
+    checks = {"balance": Check(gap / largest if largest else gap, _ROUNDING)}
+    return PinReactions(
+        method="end forces of the elements",
+        error=_figure(system, moving, np.stack(list(on_beams.values()))),
+        error_norm="largest error of a force [N]; of a moment, over the longest beam's length",
+        checks={**moving.checks, **checks, **linear_range(system, moving)},
+        provenance=provenance({**system.provenance, **moving.provenance}),
+        speed=moving.speed,
+        theta=moving.theta,
+        on_beams=on_beams,
+        of_ground=of_ground,
+        drag=drag,
+        momentum_rate=rate,
+    )
+
+
+def _forces(
+    system: LinearPeriodic, motion: BeamMotion
+) -> tuple[dict[tuple[str, str], Array], dict[str, Array], dict[str, Array]]:
+    """Return forces by node and beam, of the ground by node, and all of them with the sums."""
+    structure = required_structure(system)
+    pieces: list[dict[str, Array]] = []
+    for chunk in chunks(len(motion.theta)):
+        forms = ElementForms(system, motion.theta[chunk])
+        forms.require_same()
+        pieces.append(_at_nodes(forms, _Values(forms, motion, chunk)))
+    joined = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+    on_beams = {
+        (node.name, beam.name): joined[f"{node.name} {beam.name}"]
+        for node in structure.nodes
+        for beam in structure.beams
+        if node.name in (beam.start, beam.end)
+    }
+    of_ground = {node.name: joined[node.name] for node in structure.nodes if node.name in joined}
+    return on_beams, of_ground, joined
+
+
+class _Values:
+    """Values of forms in a motion, with the accelerations by the equation of motion."""
+
+    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice) -> None:
+        self.speed = motion.speed
+        self.q, self.slope = motion.q[chunk], motion.slope[chunk]
+        second = forms.acceleration.values(self.speed, self.q, self.slope)
+        self.second = second / self.speed**2
+
+    def __call__(self, form: LinearForm) -> Array:
+        return form.values(self.speed, self.q, self.slope, self.second)
+
+
+def _at_nodes(forms: ElementForms, values: _Values) -> dict[str, Array]:
+    """Return forces by node and beam, of the ground by node, drag and rate of momentum."""
+    structure, freedoms = forms.structure, forms.structure.freedoms
+    found: dict[str, Array] = {}
+    resisted = np.broadcast_to(
+        values(forms.node_inertia() - forms.node_loads()), (len(forms.theta), forms.arrays.count)
+    ).copy()
+    momentum = np.zeros((len(forms.theta), 2))
+    for e, (placed, _) in enumerate(forms.elements):
+        back = np.swapaxes(forms.turning[e].back, -1, -2)
+        fixed = values(forms.end_forces(e).turned(back))
+        resisted[:, placed.indices] += fixed
+        momentum += fixed[:, [0, 1]] + fixed[:, [3, 4]]
+        last = placed.number == len(placed.beam.places) - 2
+        if placed.number == 0:
+            found[f"{placed.beam.start} {placed.beam.name}"] = fixed[:, :3]
+        if last:
+            found[f"{placed.beam.end} {placed.beam.name}"] = fixed[:, 3:6]
+    lumped = np.broadcast_to(values(forms.node_inertia() - forms.node_loads()), resisted.shape)
+    for node in structure.nodes:
+        x, y = (freedoms.at(node.name, part) for part in ("x", "y"))
+        momentum += lumped[:, [x, y]]
+        if not (node.held or node.stiffness or node.damping):
+            continue
+        meeting = [b.name for b in structure.beams if node.name in (b.start, b.end)]
+        turning = {freedoms.at(node.name, name) for name in meeting}
+        moments = sum(resisted[:, place] for place in turning)
+        found[node.name] = np.stack([resisted[:, x], resisted[:, y], moments], axis=-1)
+    outside = _outside_forces(forms, values)
+    found["drag "] = -outside
+    found["momentum "] = momentum - outside
+    return found
+
+
+def _outside_forces(forms: ElementForms, values: _Values) -> Array:
+    """Return the sum of what drag from outside takes, counted among the inertia: ``(nt, 2)``."""
+    total = np.zeros((len(forms.theta), 2))
+    if not forms.outside.parts:
+        return total
+    share = forms.factor["distributed_mass"]
+    for e, (_, own) in enumerate(forms.elements):
+        at = forms.turning[e]
+        back = np.swapaxes(at.back, -1, -2)
+        force = values(forms.outside.turned(back @ (share * own.mass) @ at.own))
+        total += force[:, [0, 1]] + force[:, [3, 4]]
+    lumped = forms.factor["lumped_mass"] * forms.lumped
+    pick = np.zeros((forms.arrays.count, len(forms.arrays.free)))
+    pick[forms.arrays.free, np.arange(len(forms.arrays.free))] = 1.0
+    nodes = values(forms.outside.turned(lumped[:, None] * pick))
+    for node in forms.structure.nodes:
+        places = [forms.structure.freedoms.at(node.name, part) for part in ("x", "y")]
+        total += nodes[:, places]
+    return total
+
+
+def _figure(system: LinearPeriodic, motion: BeamMotion, forces: Array) -> float:
+    """Return the error of forces by that of the motion, by the mesh and by its frequencies."""
+    doubt = propagated(system, motion, 2)
+    longest = max(beam.length for beam in required_structure(system).beams)
+    by_motion = float(np.hypot(doubt[0], doubt[1]) + doubt[2] / longest)
+    stiffer = energy_gap(system, motion)
+    softer = softened(system, motion, stiffer)
+    if softer is None:
+        return by_motion
+    # As of stresses: what both recoveries differ by, at the ends of the beams.
+    first, second = (evaluated(system, motion, 2, method, FORCES) for method in METHODS)
+    gaps = [np.max(np.abs(first[name] - second[name])) for name in FORCES]
+    by_mesh = float(np.sqrt(stiffer) * np.linalg.norm([gaps[0], gaps[1], gaps[2] / longest]))
+    scale = np.array([1.0, 1.0, 1.0 / longest])
+    changed = np.stack(list(_forces(system, softer)[0].values()))
+    by_frequency = float(np.max(np.linalg.norm((changed - forces) * scale, axis=-1)))
+    return by_motion + CAUTION * (by_mesh + by_frequency)

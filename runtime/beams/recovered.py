@@ -1,0 +1,260 @@
+"""Displacements and forces along the beams in a motion, as a result."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import LinearRangeWarning, bad
+from ..families import LinearPeriodic
+from ..results import Check, Result, provenance
+from ..simulation.trajectory import LINEAR_RANGE
+from .assembly import Array
+from .beam_motion import BeamMotion, beam_motion
+from .element_forms import required_structure
+from .recovery import FORCES, METHODS, Recovery, recovery, stations_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+_CHUNK = 256
+QUANTITIES = ("along", "across", "slope", *FORCES)
+_UNITS = {"along": "m", "across": "m", "slope": "rad", "axial": "N", "shear": "N", "moment": "N m"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamForces(Result):
+    """Displacements and forces along the beams.
+
+    Attributes
+    ----------
+    speed : float
+        Crank speed [rad/s].
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    links : tuple of str
+        Beam of each station.
+    places : ndarray
+        x over the beam's length of each station, shape ``(stations,)``.
+    along, across : ndarray
+        Displacements from the rigid beam, in its axes [m], shape ``(nt, stations)``.
+    slope : ndarray
+        Rotation of the section from the rigid beam [rad].
+    axial : ndarray
+        Axial force [N], tension positive.
+    shear : ndarray
+        Force across the rigid beam that the part behind exerts on the part before [N].
+    moment : ndarray
+        Bending moment [N m], positive where the beam is hollow on its positive side: E I v''.
+    error : ndarray
+        Largest error of axial force [N], shear force [N] and moment [N m] over angles and
+        stations: by the error of the motion, and by the difference of the two ways to recover them.
+    """
+
+    speed: float
+    theta: Array
+    links: tuple[str, ...]
+    places: Array
+    along: Array
+    across: Array
+    slope: Array
+    axial: Array
+    shear: Array
+    moment: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "theta": ("sample",),
+        "places": ("station",),
+        "error": ("force",),
+        **dict.fromkeys(QUANTITIES, ("sample", "station")),
+    }
+
+    def of(self, link: str, quantity: str) -> Array:
+        """Return one quantity along one beam, ``(nt, its stations)``.
+
+        Raises
+        ------
+        BadInput
+            If either is unknown.
+        """
+        if quantity not in QUANTITIES:
+            raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "correct the name")
+        return np.asarray(getattr(self, quantity)[:, stations_on(self.links, link)])
+
+    def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
+        """Draw one quantity along each beam, between its extremes over the angles."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for link in dict.fromkeys(self.links):
+            own = stations_on(self.links, link)
+            values = self.of(link, quantity)
+            lines = ax.plot(self.places[own], values.max(axis=0), label=link, linewidth=0.9)
+            ax.plot(self.places[own], values.min(axis=0), color=lines[0].get_color(), linewidth=0.9)
+        ax.axhline(0.0, color="0.7", linewidth=0.6)
+        ax.set_xlabel("place x/length")
+        ax.set_ylabel(f"extremes of {quantity} [{_UNITS[quantity]}]")
+        ax.legend()
+        return ax
+
+
+def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:
+    """Return the places of a beam's stations among all.
+
+    Raises
+    ------
+    BadInput
+        If it has none.
+    """
+    if link not in links:
+        known = ", ".join(dict.fromkeys(links))
+        raise bad("link", repr(link), f"one of {known}", "choose one with stations")
+    return np.flatnonzero(np.array(links) == link).astype(np.int64)
+
+
+def recover(
+    system: LinearPeriodic,
+    motion: Motion | float | None = None,
+    *,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    method: str = "equilibrium",
+) -> BeamForces:
+    """Return displacements and forces along the beams of a system in a motion.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        As :func:`beam_motion` takes it.
+    stations : int or mapping of str to array_like, optional
+        Places on each beam: how many, or by beam the places x/length; by default 25.
+    method : str
+        ``"equilibrium"``: end forces of the elements, and between nodes what balances inertia,
+        weight and axial force.  ``"shape"``: E I v'' of the shape functions, Aannaque's way.
+
+    Returns
+    -------
+    BeamForces
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    _require_method(method)
+    moving = beam_motion(system, motion)
+    chosen = stations_of(required_structure(system), stations)
+    found: dict[str, Array] = {}
+    for name in METHODS:
+        for quantity, values in evaluated(system, moving, stations, name).items():
+            found[f"{name} {quantity}"] = values
+    gaps = [float(np.max(np.abs(found[f"equilibrium {n}"] - found[f"shape {n}"]))) for n in FORCES]
+    figure = np.array(gaps) + propagated(system, moving, stations)
+    more: dict[str, Any] = {name: found[f"{method} {name}"] for name in QUANTITIES}
+    return BeamForces(
+        method=method,
+        error=figure,
+        error_norm="largest error of axial force [N], shear force [N], moment [N m]; that of the "
+        "mesh's frequencies apart",
+        speed=moving.speed,
+        theta=moving.theta,
+        links=tuple(station.beam for station in chosen),
+        places=np.array([station.place for station in chosen]),
+        checks={**moving.checks, **linear_range(system, moving)},
+        provenance=provenance({**system.provenance, **moving.provenance}),
+        **more,
+    )
+
+
+def _require_method(method: str) -> None:
+    if method not in METHODS:
+        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+
+
+def evaluated(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    stations: int | Mapping[str, ArrayLike] | None,
+    method: str,
+    names: tuple[str, ...] = QUANTITIES,
+    *,
+    frozen: bool = False,
+) -> dict[str, Array]:
+    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates.
+
+    Parameters
+    ----------
+    system, stations, method
+        As :func:`recover` takes them.
+    motion : BeamMotion
+        The motion; a frozen one is taken for displacements without rates or accelerations.
+    names : tuple of str
+        Which quantities.
+    frozen : bool
+        Whether rates and accelerations of the coordinates are left out.
+    """
+    parts: dict[str, list[Array]] = {name: [] for name in names}
+    for chunk in chunks(len(motion.theta)):
+        made = recovery(system, motion.theta[chunk], stations, method)
+        q, slope = motion.q[chunk], motion.slope[chunk]
+        second = np.zeros_like(q) if frozen else None
+        slope = np.zeros_like(q) if frozen else slope
+        for name in names:
+            parts[name].append(made.values(name, motion.speed, q, slope, second))
+    return {name: np.concatenate(values) for name, values in parts.items()}
+
+
+def chunks(count: int) -> list[slice]:
+    """Return pieces of many angles, so that the arrays of one piece fit the memory."""
+    return [slice(start, start + _CHUNK) for start in range(0, count, _CHUNK)]
+
+
+def propagated(
+    system: LinearPeriodic, motion: BeamMotion, stations: int | Mapping[str, ArrayLike] | None
+) -> Array:
+    """Return what the error of the motion can do to axial force, shear force and moment.
+
+    The errors of the coordinates are taken to vary no faster than the crank turns, and not to
+    cancel each other.
+    """
+    if not np.any(motion.doubt):
+        return np.zeros(len(FORCES))
+    # A few angles tell the size of the coefficients.
+    picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
+    made: Recovery = recovery(system, motion.theta[picked], stations, "shape")
+    found = []
+    for name in FORCES:
+        rows = made.forms[name].at_speed(motion.speed)
+        found.append(max(float(np.max(np.abs(r) @ motion.doubt)) for r in (rows["q"],)))
+    return np.array(found)
+
+
+def linear_range(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Check]:
+    """Return the check of the largest deflection over the length of its beam.
+
+    Warns whoever called the caller where it is beyond 5 %.
+    """
+    if system.relative_deflection is None:
+        return {}
+    largest = 0.0
+    for chunk in chunks(len(motion.theta)):
+        rows = system.relative_deflection(motion.theta[chunk])
+        largest = max(
+            largest, float(np.max(np.abs(np.einsum("tkn,tn->tk", rows, motion.q[chunk]))))
+        )
+    if largest > LINEAR_RANGE:
+        warnings.warn(
+            f"deflection reaches {largest:.3g} of the length of its beam; the linear equations "
+            f"hold to about {LINEAR_RANGE}: lower the speed or stiffen the beams",
+            LinearRangeWarning,
+            stacklevel=3,
+        )
+    return {"linear range": Check(largest, LINEAR_RANGE)}

@@ -1,0 +1,369 @@
+"""Stresses in a linkage or a frame of beams over the cycle (Aannaque 7.4, 8.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import BadInput, Problem, bad
+from ..families import LinearPeriodic
+from ..results import Result, provenance
+from ._checks import is_finite
+from .assembly import Array
+from .beam_motion import beam_motion
+from .element_forms import required_structure
+from .recovered import linear_range, stations_on
+from .recovery import METHODS, Station, recovery, stations_of
+from .recovery_forms import LinearForm, stacked
+from .stress_errors import (
+    CAUTION,
+    energy_gap,
+    fibre_factors,
+    frozen,
+    largest_difference,
+    motion_error,
+    softened,
+    stresses,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+FIBRES = ("positive", "negative")
+# Angles per given one at which a periodic stress is looked at for its maximum.
+_FINER = 8
+
+
+@dataclass(frozen=True)
+class StressPeak:
+    """The largest size of a stress.
+
+    Attributes
+    ----------
+    value : float
+        Stress [Pa], tension positive.
+    theta : float
+        Crank angle [rad].
+    link : str
+        The beam.
+    place : float
+        x over its length.
+    fibre : str
+        ``positive``: the outer fibre on the beam's positive side, to the left of its direction;
+        or ``negative``.
+    """
+
+    value: float
+    theta: float
+    link: str
+    place: float
+    fibre: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StressResult(Result):
+    """Stresses along the beams over the cycle.
+
+    Attributes
+    ----------
+    speed : float
+        Crank speed [rad/s].
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    links : tuple of str
+        Beam of each station.
+    places : ndarray
+        x over the beam's length of each station, shape ``(stations,)``.
+    axial, bending : ndarray
+        Stress [Pa] of the axial force, and of the bending moment at the outer fibre on the beam's
+        positive side, shape ``(nt, stations)``; on the other side it has the other sign.
+    static_axial, static_bending : ndarray
+        The same of the quasi-static motion: equilibrium at each angle under the inertia of the
+        rigid motion and the constant loads, no rates.
+    motion_error, mesh_error, resonance_error : float
+        The parts of the error figure [Pa]: of the motion, of the recovery between nodes, and of
+        the frequencies of the mesh.
+    period : float or None
+        Period [rad] that the angles divide evenly; None of a motion that is not periodic.
+    """
+
+    speed: float
+    theta: Array
+    links: tuple[str, ...]
+    places: Array
+    axial: Array
+    bending: Array
+    static_axial: Array
+    static_bending: Array
+    motion_error: float
+    mesh_error: float
+    resonance_error: float
+    period: float | None = None
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "theta": ("sample",),
+        "places": ("station",),
+        **dict.fromkeys(
+            ("axial", "bending", "static_axial", "static_bending", "stress"), ("sample", "station")
+        ),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("stress",)
+
+    @property
+    def stress(self) -> Array:
+        """Largest size of the stress over the section [Pa], ``(nt, stations)``."""
+        return np.asarray(np.abs(self.axial) + np.abs(self.bending))
+
+    @property
+    def quasi_static(self) -> Array:
+        """Largest size of the quasi-static stress over the section [Pa], ``(nt, stations)``."""
+        return np.asarray(np.abs(self.static_axial) + np.abs(self.static_bending))
+
+    def fibre(self, name: str = "positive", part: str = "all") -> Array:
+        """Return the stress of one outer fibre [Pa], ``(nt, stations)``.
+
+        Parameters
+        ----------
+        name : str
+            ``"positive"`` or ``"negative"``.
+        part : str
+            ``"all"``, ``"quasi-static"`` or ``"dynamic"``, the difference of these.
+
+        Raises
+        ------
+        BadInput
+            If either is unknown.
+        """
+        if name not in FIBRES:
+            raise bad("fibre", repr(name), f"one of {FIBRES}", "correct the name")
+        sign = 1.0 if name == "positive" else -1.0
+        whole = self.axial + sign * self.bending
+        still = self.static_axial + sign * self.static_bending
+        parts = {"all": whole, "quasi-static": still, "dynamic": whole - still}
+        if part not in parts:
+            raise bad("part", repr(part), f"one of {tuple(parts)}", "correct the name")
+        return np.asarray(parts[part])
+
+    def at(self, link: str, place: float, fibre: str = "positive", part: str = "all") -> Array:
+        """Return the stress of a fibre over the angles ``(nt,)`` at the station nearest a place.
+
+        Raises
+        ------
+        BadInput
+            If the link has no station, or a name is unknown.
+        """
+        own = stations_on(self.links, link)
+        nearest = own[int(np.argmin(np.abs(self.places[own] - place)))]
+        return np.asarray(self.fibre(fibre, part)[:, nearest])
+
+    @cached_property
+    def maximum(self) -> StressPeak:
+        """The largest stress of all, over angles, stations and fibres."""
+        return max(self.maxima.values(), key=lambda peak: abs(peak.value))
+
+    @cached_property
+    def maxima(self) -> dict[str, StressPeak]:
+        """The largest stress of each beam."""
+        return {link: self._peak(link) for link in dict.fromkeys(self.links)}
+
+    def _peak(self, link: str) -> StressPeak:
+        own = stations_on(self.links, link)
+        best: StressPeak | None = None
+        for fibre in FIBRES:
+            theta, values = self._finer(self.fibre(fibre)[:, own])
+            row, column = np.unravel_index(int(np.argmax(np.abs(values))), values.shape)
+            value = float(values[row, column])
+            if best is None or abs(value) > abs(best.value):
+                place = float(self.places[own[column]])
+                best = StressPeak(value, float(theta[row]), link, place, fibre)
+        if best is None:
+            raise bad("maximum", "no station", "at least one", "give stations")
+        return best
+
+    def _finer(self, values: Array) -> tuple[Array, Array]:
+        """Return values of a periodic stress at more angles, by its Fourier series."""
+        if self.period is None or len(self.theta) < 3:
+            return self.theta, values
+        count = _FINER * len(self.theta)
+        spectrum = np.fft.rfft(values, axis=0)
+        if len(self.theta) % 2 == 0:
+            spectrum[-1] *= 0.5
+        fine = np.fft.irfft(spectrum, n=count, axis=0) * _FINER
+        return self.period * np.arange(count) / count, fine
+
+    def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
+        """Return the factor of safety of each beam: allowed over largest stress.
+
+        Parameters
+        ----------
+        limit : float or mapping of str to float
+            Allowed stress [Pa], of all or by beam.
+
+        Returns
+        -------
+        dict of str to float
+            By beam; inf where there is no stress.
+
+        Raises
+        ------
+        BadInput
+            If a limit is missing or not positive.
+        """
+        found, problems = {}, []
+        for link, peak in self.maxima.items():
+            own = limit.get(link, np.nan) if isinstance(limit, Mapping) else limit
+            if not (is_finite(own) and own > 0):
+                fix = "give a positive limit for each beam"
+                problems.append(Problem(f"limit of {link}", repr(own), "a stress [Pa]", fix))
+            else:
+                found[link] = float(own) / abs(peak.value) if peak.value else np.inf
+        if problems:
+            raise BadInput(*problems)
+        return found
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the stress at each beam's worst place over the crank angle, its static part dashed.
+
+        Of a structure that stands still, the stress along the beams.
+        """
+        from .stress_plots import draw
+
+        return draw(self, ax)
+
+
+def stress(
+    system: LinearPeriodic,
+    motion: Motion | float | None = None,
+    *,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    method: str = "equilibrium",
+) -> StressResult:
+    """Return the stresses along the beams of a linkage over the cycle, or of a frame.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams whose sections have a thickness.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    stations : int or mapping of str to array_like, optional
+        Places on each beam: how many, or by beam the places x/length; by default 25.
+    method : str
+        How forces are recovered: ``"equilibrium"`` or ``"shape"``, see :func:`recover`.
+
+    Returns
+    -------
+    StressResult
+        Its ``error`` is the largest error of a stress [Pa] over angles and stations.  It is made
+        of what the error of the motion does; of the difference of the two recoveries, for
+        ``equilibrium`` times the square root of the mesh's relative error; and, for a motion found
+        by :func:`steady_state`, of the change of the stress when the structure is made softer by
+        as much as the mesh is too stiff.  The last two count three times, as high modes are
+        further off than the energy tells.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If a deflection passes 5 % of the length of its beam.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or a section has no thickness.
+
+    Notes
+    -----
+    The mesh is too stiff by the square of the energy norm of the difference of the two recoveries
+    over that of the forces: for a natural mode this is the relative error of the squared frequency.
+    """
+    if method not in METHODS:
+        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+    structure = required_structure(system)
+    chosen = stations_of(structure, stations)
+    levers = fibre_factors(system, chosen)
+    moving = beam_motion(system, motion)
+    both = {name: stresses(system, moving, stations, name, levers) for name in METHODS}
+    still = frozen(system, moving)
+    static = stresses(system, still, stations, method, levers, frozen=True)
+    by_motion = motion_error(system, moving, stations, levers)
+    gap = largest_difference(both["equilibrium"], both["shape"])
+    stiffer = energy_gap(system, moving)
+    if method == "equilibrium":
+        gap *= np.sqrt(stiffer)
+    softer = softened(system, moving, stiffer)
+    by_frequency, norm = 0.0, "largest error of a stress over angles and stations [Pa]"
+    if softer is not None:
+        changed = stresses(system, softer, stations, method, levers)
+        by_frequency = largest_difference(both[method], changed)
+    return StressResult(
+        method=method,
+        error=by_motion + CAUTION * (gap + by_frequency),
+        error_norm=norm if softer else f"{norm}, that of the mesh's frequencies apart",
+        checks={**moving.checks, **linear_range(system, moving)},
+        provenance=provenance({**system.provenance, **moving.provenance}),
+        speed=moving.speed,
+        theta=moving.theta,
+        links=tuple(station.beam for station in chosen),
+        places=np.array([station.place for station in chosen]),
+        axial=both[method][0],
+        bending=both[method][1],
+        static_axial=static[0],
+        static_bending=static[1],
+        motion_error=by_motion,
+        mesh_error=gap,
+        resonance_error=by_frequency,
+        period=moving.period,
+    )
+
+
+def stress_operator(
+    system: LinearPeriodic,
+    theta: ArrayLike,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    *,
+    method: str = "equilibrium",
+    accelerations: bool = False,
+) -> tuple[LinearForm, tuple[Station, ...]]:
+    """Return the stresses of both outer fibres as a linear form of the motion, for many speeds.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams whose sections have a thickness.
+    theta : array_like, shape (nt,)
+        Crank angles [rad].
+    stations : int or mapping of str to array_like, optional
+        Places on each beam, as :func:`stress` takes them.
+    method : str
+        ``"equilibrium"`` or ``"shape"``.
+    accelerations : bool
+        Whether d2q/dtheta2 stays in the form; else the equation of motion replaces it, so that the
+        form needs ``q`` and ``dq/dtheta`` alone.
+
+    Returns
+    -------
+    form : LinearForm
+        Parts ``(nt, 2 stations, n)`` by what they multiply and the power of the speed: first the
+        fibres on the positive sides of all stations, then those on the negative sides [Pa].
+    stations : tuple of Station
+        The places.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    made = recovery(system, theta, stations, method)
+    if not accelerations:
+        made = made.without_accelerations()
+    areas, levers = fibre_factors(system, made.stations)
+    axial = made.forms["axial"].turned(np.diag(areas))
+    bending = made.forms["moment"].turned(np.diag(-levers))
+    return stacked([axial + bending, axial - bending]), made.stations

@@ -1,0 +1,453 @@
+"""Planar structures of beams: nodes, beams between them, and how the rigid beams move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import BadInput, Problem, bad
+from ..mechanisms.linkage import LinkMotion
+from ._checks import are_finite, is_finite, names_problems
+from .freedoms import Freedoms, PlacedElement, number_freedoms
+from .section import Section
+
+Array = NDArray[np.float64]
+Configuration = Callable[[Array], Mapping[str, LinkMotion]]
+
+KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
+DIRECTIONS = ("x", "y", "rotation")
+# Ends of beams that meet at a node may be so far apart, over the longest beam.
+_CLOSURE = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beam:
+    """A uniform straight beam between two nodes.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    start, end : str
+        Names of the nodes at its ends; x runs from the first to the second.
+    section : Section
+        Section and material.
+    length : float
+        Length [m].
+    elements : int or sequence of float
+        Number of equal elements, or their shares of the length, which add up to 1.
+    kind : str
+        Element: ``cubic``, ``internal_node``, ``curvature`` or ``timoshenko``.
+
+    Raises
+    ------
+    BadInput
+        If a value is unusable; every problem is listed.
+    """
+
+    name: str
+    start: str
+    end: str
+    section: Section
+    length: float
+    elements: int | tuple[float, ...] = 3
+    kind: str = "cubic"
+
+    def __post_init__(self) -> None:
+        """Check every value."""
+        where = f"beam {self.name}"
+        problems = []
+        if not (is_finite(self.length) and self.length > 0):
+            fix = "a beam of no length cannot bend: join its nodes"
+            problems.append(Problem(f"{where}: length", repr(self.length), "positive", fix))
+        if self.start == self.end:
+            problems.append(Problem(where, f"both ends at {self.start}", "two nodes", "name both"))
+        if self.kind not in KINDS:
+            problems.append(Problem(f"{where}: kind", repr(self.kind), f"one of {KINDS}", "choose"))
+        if not isinstance(self.section, Section):
+            found = type(self.section).__name__
+            problems.append(Problem(f"{where}: section", found, "a Section", "make one"))
+        elif self.kind == "timoshenko" and self.section.shear_stiffness is None:
+            fix = "give Section.shear_stiffness, or poisson to Section.rectangle"
+            problems.append(Problem(where, "no shear stiffness", "one for 'timoshenko'", fix))
+        problems += _division_problems(where, self.elements)
+        if problems:
+            raise BadInput(*problems)
+        if not isinstance(self.elements, int):
+            object.__setattr__(self, "elements", tuple(float(part) for part in self.elements))
+
+    @property
+    def places(self) -> Array:
+        """Places of the element ends along the beam [m], from 0 to the length."""
+        if isinstance(self.elements, int):
+            return np.linspace(0.0, self.length, self.elements + 1)
+        inner = self.length * np.cumsum((0.0, *self.elements))
+        inner[-1] = self.length
+        return inner
+
+
+@dataclass(frozen=True, kw_only=True)
+class Node:
+    """A point where beams meet: pinned to each other unless joined.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    mass : float
+        Lumped mass [kg].
+    inertia : float
+        Lumped moment of inertia [kg m^2], turning with ``carried_by``.
+    carried_by : str, optional
+        Beam whose rotation turns the inertia; by default the joined ones, or the only one.
+    joined : tuple of str
+        Beams that share one rotation here; all others have a rotation each.
+    held : tuple of str
+        Of ``x``, ``y`` and ``rotation``, those whose elastic displacement is 0; the rotation is
+        that of the joined beams, of all where none is joined.
+    stiffness, damping : mapping of str to float
+        Springs [N/m, N m/rad] and dampers [N s/m, N m s/rad] on ``x``, ``y``, ``rotation``, which
+        act on the elastic displacement.
+    force : pair of float
+        Constant load [N] in the fixed axes.
+    slides_on : str, optional
+        Beam along which the node slides without friction.
+
+    Raises
+    ------
+    BadInput
+        If a value is unusable; every problem is listed.
+    """
+
+    name: str
+    mass: float = 0.0
+    inertia: float = 0.0
+    carried_by: str | None = None
+    joined: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+    stiffness: Mapping[str, float] = field(default_factory=dict)
+    damping: Mapping[str, float] = field(default_factory=dict)
+    force: tuple[float, float] = (0.0, 0.0)
+    slides_on: str | None = None
+
+    def __post_init__(self) -> None:
+        """Check every value."""
+        where = f"node {self.name}"
+        values = {"mass": self.mass, "inertia": self.inertia}
+        for group in ("stiffness", "damping"):
+            if not isinstance(getattr(self, group), Mapping):
+                found, fix = repr(getattr(self, group)), 'say {"x": 1e6}, for example'
+                raise bad(f"{where}: {group}", found, "values by direction", fix)
+            values |= {f"{group} along {k}": v for k, v in getattr(self, group).items()}
+        problems = [
+            Problem(f"{where}: {name}", repr(value), "a number, 0 or more", "correct the sign")
+            for name, value in values.items()
+            if not (is_finite(value) and value >= 0)
+        ]
+        unnamed = names_problems(f"{where}: held", self.held)
+        held = () if unnamed else self.held
+        problems += unnamed + names_problems(f"{where}: joined", self.joined)
+        strange = {*held, *self.stiffness, *self.damping} - set(DIRECTIONS)
+        if strange:
+            found = ", ".join(sorted(map(str, strange)))
+            problems.append(Problem(where, found, f"some of {DIRECTIONS}", "correct the name"))
+        if not are_finite(self.force, 2):
+            problems.append(
+                Problem(f"{where}: force", str(self.force), "two numbers", "correct it")
+            )
+        if problems:
+            raise BadInput(*problems)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Structure:
+    """A linkage or a frame of beams.
+
+    Parameters
+    ----------
+    beams : tuple of Beam
+        The beams.
+    nodes : tuple of Node
+        The nodes.
+    configuration : callable
+        Crank angles ``(nt,)`` [rad] to the motion of each rigid beam, by name, at unit crank
+        speed: its origin at the start node.
+    period : float
+        Period of the motion in the crank angle [rad].
+    moving : bool
+        Whether anything moves.
+    provenance : mapping of str to str
+        Where it comes from.
+
+    Raises
+    ------
+    BadInput
+        If names are unknown or occur twice, a node has no beam, or ends that should meet do not.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        Names of the free coordinates: ``B.x``, ``B.y`` [m]; ``B.crank``, the rotation of the crank
+        at B [rad]; ``crank.1.x`` of its first inner node.  Of a node B that slides along a beam
+        there is one displacement, ``B.along`` that beam [m].
+    """
+
+    beams: tuple[Beam, ...]
+    nodes: tuple[Node, ...]
+    configuration: Configuration
+    period: float = 2.0 * np.pi
+    moving: bool = True
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check names, joints and that the ends of the beams meet."""
+        problems = _name_problems(self.beams, self.nodes)
+        if problems:
+            raise BadInput(*problems)
+        self._require_connected()
+        self._require_closed()
+
+    @cached_property
+    def freedoms(self) -> Freedoms:
+        """Numbering of all coordinates, held ones included."""
+        return number_freedoms(self.beams, self.nodes)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the free coordinates."""
+        found = self.freedoms.free_labels
+        for name in self.sliding:
+            kept = (label for label in found if label != f"{name}.y")
+            found = tuple(f"{name}.along" if label == f"{name}.x" else label for label in kept)
+        return found
+
+    @property
+    def sliding(self) -> tuple[str, ...]:
+        """Names of the nodes that slide along a beam: none or one."""
+        return tuple(node.name for node in self.nodes if node.slides_on is not None)
+
+    @property
+    def size(self) -> int:
+        """Number of free coordinates."""
+        return len(self.freedoms.free) - len(self.sliding)
+
+    @property
+    def elements(self) -> tuple[PlacedElement, ...]:
+        """The elements, beam by beam, with their places and coordinates."""
+        return self.freedoms.elements
+
+    def beam(self, name: str) -> Beam:
+        """Return a beam by name.
+
+        Raises
+        ------
+        BadInput
+            If there is none of that name.
+        """
+        for beam in self.beams:
+            if beam.name == name:
+                return beam
+        known = ", ".join(beam.name for beam in self.beams)
+        raise bad("beam", repr(name), f"one of {known}", "correct the name")
+
+    def node(self, name: str) -> Node:
+        """Return a node by name.
+
+        Raises
+        ------
+        BadInput
+            If there is none of that name.
+        """
+        for node in self.nodes:
+            if node.name == name:
+                return node
+        known = ", ".join(node.name for node in self.nodes)
+        raise bad("node", repr(name), f"one of {known}", "correct the name")
+
+    def index(self, label: str) -> int:
+        """Return the place of a free coordinate in q.
+
+        Raises
+        ------
+        BadInput
+            If there is no free coordinate of that name.
+        """
+        if label not in self.labels:
+            fix = "correct the name, or free it"
+            raise bad("coordinate", repr(label), f"one of {', '.join(self.labels)}", fix)
+        return self.labels.index(label)
+
+    def require_pinned(self, what: str) -> None:
+        """Refuse a node that slides.
+
+        Parameters
+        ----------
+        what : str
+            What cannot be done with it.
+
+        Raises
+        ------
+        BadInput
+            If a node slides along a beam.
+        """
+        for name in self.sliding:
+            found = f"node {name}, which slides along beam {self.node(name).slides_on}"
+            raise bad(what, found, "nodes that are pinned or joined", "use linear_system instead")
+
+    def places(self, theta: Array) -> Mapping[str, Array]:
+        """Return the rigid places of the nodes at crank angles ``(nt,)``: ``(nt, 2)`` each [m]."""
+        motion = self.configuration(np.atleast_1d(np.asarray(theta, dtype=float)))
+        found: dict[str, Array] = {}
+        for beam in self.beams:
+            for node, along in ((beam.start, 0.0), (beam.end, beam.length)):
+                if node not in found:
+                    found[node] = motion[beam.name].point(along).position
+        return found
+
+    def _require_connected(self) -> None:
+        """Refuse parts that nothing connects: each would be a structure of its own."""
+        reached = {self.beams[0].start}
+        pairs = [{beam.start, beam.end} for beam in self.beams]
+        pairs += [{n.name, self.beam(n.slides_on).start} for n in self.nodes if n.slides_on]
+        growing = True
+        while growing:
+            new = {node for pair in pairs if reached & pair for node in pair}
+            growing = not new <= reached
+            reached |= new
+        apart = sorted({node.name for node in self.nodes} - reached)
+        if apart:
+            raise bad(
+                "structure",
+                f"nodes {', '.join(apart)} that nothing connects with {self.beams[0].start}",
+                "one connected structure",
+                "add the missing beam, or make two structures",
+            )
+
+    def _require_closed(self) -> None:
+        """Refuse beams whose ends do not meet at their nodes, at a few crank angles."""
+        theta = self.period * np.array([0.0, 0.3, 0.7]) if self.moving else np.zeros(1)
+        motion = self.configuration(theta)
+        longest = max(beam.length for beam in self.beams)
+        for beam in self.beams:
+            if beam.name not in motion:
+                fix = "let the configuration return it"
+                raise bad("configuration", f"no motion of beam {beam.name}", "one", fix)
+        places = self.places(theta)
+        self._require_on_beam(motion, places, _CLOSURE * longest)
+        for beam in self.beams:
+            for node, along in ((beam.start, 0.0), (beam.end, beam.length)):
+                gap = motion[beam.name].point(along).position - places[node]
+                widest = float(np.max(np.abs(gap)))
+                if not widest <= _CLOSURE * longest:
+                    raise bad(
+                        f"beam {beam.name}",
+                        f"its end {widest:.3g} m away from node {node}",
+                        "ends that meet",
+                        "let length, places and configuration agree",
+                    )
+
+    def _require_on_beam(
+        self, motion: Mapping[str, LinkMotion], places: Mapping[str, Array], allowed: float
+    ) -> None:
+        """Refuse a sliding node that does not lie on its beam."""
+        for name in self.sliding:
+            beam = self.beam(str(self.node(name).slides_on))
+            link = motion[beam.name]
+            axis = np.stack([np.cos(link.angle), np.sin(link.angle)], axis=-1)
+            arm = places[name] - link.origin
+            along = np.sum(arm * axis, axis=-1)
+            beside = np.abs(arm[:, 1] * axis[:, 0] - arm[:, 0] * axis[:, 1])
+            beyond = np.maximum(-along, along - beam.length)
+            widest = float(max(np.max(beside), np.max(beyond)))
+            if not widest <= allowed:
+                found = f"{widest:.3g} m away from beam {beam.name}, on which it slides"
+                fix = "let places and configuration agree"
+                raise bad(f"node {name}", found, "a node on the beam", fix)
+
+
+def node_value_problems(nodes: object) -> list[Problem]:
+    """Return what is wrong with values for nodes, given by the names of both."""
+    where = "nodes"
+    if nodes is None:
+        return []
+    if not isinstance(nodes, Mapping) or not all(isinstance(v, Mapping) for v in nodes.values()):
+        fix = 'say {"B": {"mass": 0.2}}, for example'
+        return [Problem(where, repr(nodes), "mappings of values by node", fix)]
+    known = sorted({item.name for item in fields(Node)} - {"name"})
+    return [
+        Problem(f"{where}.{name}", repr(key), f"one of {', '.join(known)}", "correct the name")
+        for name, values in nodes.items()
+        for key in values
+        if key not in known
+    ]
+
+
+def _division_problems(where: str, elements: Any) -> list[Problem]:
+    name = f"{where}: elements"
+    if isinstance(elements, int) and not isinstance(elements, bool):
+        if elements < 1:
+            return [Problem(name, str(elements), "at least 1", "choose 3")]
+        return []
+    shares = tuple(elements) if isinstance(elements, (tuple, list, np.ndarray)) else ()
+    if not shares or not all(is_finite(part) for part in shares):
+        return [Problem(name, repr(elements), "a number or shares of the length", "choose 3")]
+    if min(shares) <= 0:
+        return [Problem(name, repr(elements), "positive shares", "leave the empty element out")]
+    if abs(sum(shares) - 1.0) > 1e-12:
+        return [Problem(name, f"shares that add up to {sum(shares):.6g}", "1", "scale them")]
+    return []
+
+
+def _name_problems(beams: tuple[Beam, ...], nodes: tuple[Node, ...]) -> list[Problem]:
+    """Return what is wrong with the names of beams and nodes."""
+    if not beams:
+        return [Problem("structure", "no beam", "at least one", "add beams")]
+    problems = []
+    for kind, names in (("beam", [b.name for b in beams]), ("node", [n.name for n in nodes])):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            found = f"{kind}s named twice: {', '.join(twice)}"
+            problems.append(Problem("structure", found, "a name each", "rename one"))
+    known = {node.name for node in nodes}
+    problems += _sliding_problems(beams, nodes)
+    for beam in beams:
+        missing = sorted({beam.start, beam.end} - known)
+        if missing:
+            found = f"end at {', '.join(missing)}"
+            fix = "add the node"
+            problems.append(Problem(f"beam {beam.name}", found, "nodes that are there", fix))
+    for node in nodes:
+        meeting = [beam.name for beam in beams if node.name in (beam.start, beam.end)]
+        named = {*node.joined, *([node.carried_by] if node.carried_by else [])}
+        strange = sorted(named - set(meeting))
+        where = f"node {node.name}"
+        if not meeting:
+            problems.append(Problem(where, "no beam", "a beam that ends there", "leave it out"))
+        elif strange:
+            found = f"{', '.join(strange)}, which does not end there"
+            problems.append(Problem(where, found, f"some of {meeting}", "correct the name"))
+    return problems
+
+
+def _sliding_problems(beams: tuple[Beam, ...], nodes: tuple[Node, ...]) -> list[Problem]:
+    """Return what is wrong with nodes that slide along a beam."""
+    sliding = [node for node in nodes if node.slides_on is not None]
+    problems = []
+    if len(sliding) > 1:
+        found = f"nodes {', '.join(node.name for node in sliding)} that slide"
+        problems.append(Problem("structure", found, "one at most", "pin the others"))
+    for node in sliding:
+        where = f"node {node.name}: slides_on"
+        own = [beam.name for beam in beams if node.name in (beam.start, beam.end)]
+        others = [beam.name for beam in beams if beam.name not in own]
+        if node.slides_on not in others:
+            found = repr(node.slides_on)
+            problems.append(Problem(where, found, f"one of {others}", "name another beam"))
+        if {"x", "y"} & set(node.held):
+            problems.append(Problem(where, "a node that is held", "a free one", "free x and y"))
+    return problems

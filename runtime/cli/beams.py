@@ -1,0 +1,312 @@
+"""Commands for linkages of beams: frequencies, critical speeds, stresses, running speeds."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ...derive.spec import BEAM_FORMULATIONS
+from ..errors import bad
+from . import options as opt
+from .linkages import refuse_frame, speed_of
+
+if TYPE_CHECKING:
+    from ..beams.stress import StressResult
+    from ..families import LinearPeriodic
+    from ..reduction.stress_curve import StressCurve
+    from ..scenes import Scene
+
+_EXAMPLE = "aannaque_1996_table_4_1"
+_SPEEDS = 1000
+_ROWS = 25
+_METHODS = ("mean_frequency", "running_mean", "response", "multipliers", "meissner")
+
+
+def add(commands: Any) -> None:
+    """Add the subcommands."""
+    frequencies = opt.command(
+        commands,
+        "frequencies",
+        _frequencies,
+        summary="Natural frequencies over the crank angle: means, ranges, crossings, veerings.",
+        example=f"elastolink frequencies {_EXAMPLE} --count 4 --plot frequencies.png",
+    )
+    opt.scene_options(frequencies)
+    frequencies.add_argument("--count", type=int, default=None, help="modes; default 6")
+    critical = opt.command(
+        commands,
+        "critical-speeds",
+        _critical,
+        summary="Critical speeds within a range: means over n, multipliers, J_N, the response.",
+        example=f"elastolink critical-speeds {_EXAMPLE} --range 20:70 --method mean_frequency",
+    )
+    opt.scene_options(critical)
+    _range_option(critical)
+    critical.add_argument("--method", choices=_METHODS, default="mean_frequency")
+    campbell = opt.command(
+        commands,
+        "campbell",
+        _campbell,
+        summary="Campbell diagram: frequencies against the crank speed, and the orders that meet.",
+        example=f"elastolink campbell {_EXAMPLE} --range 5:70 --plot campbell.png",
+    )
+    opt.scene_options(campbell)
+    _range_option(campbell)
+    stress = opt.command(
+        commands,
+        "stress",
+        _stress,
+        summary="Stresses of a linkage of beams: over the cycle at one speed, or over the speed.",
+        example=(
+            f"elastolink stress {_EXAMPLE} --speed '30 rad/s' --limit '250 MPa'\n"
+            f"  elastolink stress {_EXAMPLE} --speed 5:70:1000 --plot stress.png"
+        ),
+    )
+    opt.scene_options(stress)
+    stress.add_argument("--speed", help="'30 rad/s', or START:STOP:COUNT[UNIT]")
+    stress.add_argument("--limit", help="allowed stress, such as '250 MPa'")
+    running = opt.command(
+        commands,
+        "running-speed",
+        _running,
+        summary="A quiet running speed above limiting critical speeds, and how to get there.",
+        example=f"elastolink running-speed {_EXAMPLE} --range 5:45 --limit '250 MPa'",
+    )
+    opt.scene_options(running)
+    _range_option(running)
+    running.add_argument("--limit", required=True, help="allowed stress, such as '250 MPa'")
+    through = opt.command(
+        commands,
+        "run-through",
+        _through,
+        summary="A run-up or coast-down through critical speeds, as a transient.",
+        example=(
+            f"elastolink run-through {_EXAMPLE} --from '25 rad/s' --to '36 rad/s' --time '2 s' \\\n"
+            "      --plot run.png"
+        ),
+    )
+    opt.scene_options(through)
+    through.add_argument("--from", dest="start", required=True, help="first crank speed")
+    through.add_argument("--to", dest="stop", required=True, help="last crank speed")
+    through.add_argument("--time", required=True, help="duration of the change, such as '2 s'")
+
+
+def _range_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
+    )
+
+
+def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
+    """Return the range of speeds [rad/s]: the option, or that of the scene."""
+    if options.range is None:
+        found = scene.get("operation.speed_range", None)
+        if found is None:
+            raise bad("--range", "nothing", "LOW:HIGH", "give --range 5:70")
+        return float(found[0]), float(found[1])
+    if options.range.count(":") != 1:
+        raise bad("--range", repr(options.range), "LOW:HIGH", "write it like 5:70")
+    low, high = opt.values(f"{options.range}:2", "frequency", "--range")
+    if low <= 0:
+        raise bad("--range", repr(options.range), "positive speeds", "raise the lower end")
+    return low, high
+
+
+def _shown(options: argparse.Namespace) -> bool:
+    return sys.stderr.isatty() and not options.json
+
+
+def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
+    """Return the scene and its system, refused where the links are no beams."""
+    opt.picture(options)
+    scene = opt.load(options)
+    if moving:
+        refuse_frame(scene)
+    system = scene.linear_system()
+    if system.structure is not None:
+        return scene, system
+    where = f"scene {scene.name}"
+    if scene.model["formulation"] not in BEAM_FORMULATIONS:
+        raise bad(
+            where,
+            f"formulation '{scene.model['formulation']}'",
+            "links that are beams, such as formulation 'cubic_beams'",
+            "choose aannaque_1996_table_4_1, for example",
+        )
+    if scene.model["mechanism"] == "frame":
+        found, fix = "members that do not stretch", "say --set frame.axial=elastic"
+    else:
+        found, fix = "a pin that slides along a beam", "use frequencies or steady-state"
+    raise bad(where, found, "beams whose forces can be recovered", fix)
+
+
+def _limit(options: argparse.Namespace) -> float | None:
+    if options.limit is None:
+        return None
+    value = opt.quantity(options.limit, "stress", "--limit")
+    if value <= 0:
+        raise bad("--limit", repr(options.limit), "a positive stress", "correct the sign")
+    return value
+
+
+def _frequencies(options: argparse.Namespace) -> int:
+    from ..frequencies import natural_frequencies
+
+    opt.picture(options)
+    found = natural_frequencies(opt.load(options).linear_system(), count=options.count)
+    rows = [
+        (
+            str(k + 1),
+            f"{found.mean[k]:.7g}",
+            f"{found.frequency[:, k].min():.7g}",
+            f"{found.frequency[:, k].max():.7g}",
+        )
+        for k in range(found.frequency.shape[1])
+    ]
+    lines = opt.table(("mode", "mean [rad/s]", "least", "greatest"), rows)
+    lines.append(f"crossings: {len(found.crossings)}, veerings: {len(found.veerings)}")
+    return opt.finish(options, found, lines)
+
+
+def _critical(options: argparse.Namespace) -> int:
+    from ..frequencies import critical_speeds
+
+    opt.picture(options)
+    scene = opt.load(options)
+    refuse_frame(scene)
+    speeds = _speeds(options, scene)
+    system = scene.linear_system()
+    found = critical_speeds(system, speeds, method=options.method, progress=_shown(options))
+    rows = [
+        (f"{speed:.6g}", str(mode), str(n), f"{error:.2g}")
+        for speed, (mode, n), error in zip(found.speed, found.labels, found.error, strict=True)
+    ]
+    header = ("speed [rad/s]", "mode", "n", "error")
+    return opt.finish(options, found, opt.table(header, rows))
+
+
+def _campbell(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    from ..frequencies.campbell import campbell
+
+    opt.picture(options)
+    scene = opt.load(options)
+    refuse_frame(scene)
+    low, high = _speeds(options, scene)
+    speeds = np.linspace(low, high, 27)
+    found = campbell(scene.linear_system(), speeds, progress=_shown(options))
+    return opt.finish(options, found, opt.ranges(found))
+
+
+def _stress(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    scene, system = _of_beams(options)
+    limit = _limit(options)
+    if scene.model["mechanism"] == "frame":
+        from ..beams.stress import stress
+
+        opt.refuse_unused(options, ("speed",), "a linkage; a frame has no crank")
+        standing = stress(system)
+        return opt.finish(options, standing, _peaks(standing, limit))
+    if options.speed is None or ":" not in options.speed:
+        from ..beams.stress import stress
+
+        result = stress(system, speed_of(options, scene))
+        return opt.finish(options, result, _peaks(result, limit))
+    speeds = np.array(opt.values(options.speed, "frequency", "--speed"))
+    if limit is None:
+        from ..reduction.stress_curve import stress_curve
+
+        curve = stress_curve(system, speeds)
+        return opt.finish(options, curve, _curve_lines(curve))
+    from ..design import quiet_speeds
+
+    found = quiet_speeds(system, speeds, limit)
+    rows = [
+        (
+            f"{band.low:.5g}",
+            f"{band.high:.5g}",
+            f"{band.best:.5g}",
+            f"{band.ratio:.3g}",
+            "-" if band.above is None else f"{band.above:.5g}",
+        )
+        for band in found.bands
+    ]
+    header = ("from [rad/s]", "to", "quietest", "stress/limit", "beyond the critical speed")
+    more = {"bands": [[b.low, b.high, b.best, b.ratio, b.above] for b in found.bands]}
+    return opt.finish(options, found, opt.table(header, rows), more=more)
+
+
+def _peaks(found: StressResult, limit: float | None) -> list[str]:
+    """Return a row per link: its largest stress, where and when."""
+    import numpy as np
+
+    rows = [
+        (
+            link,
+            f"{peak.value / 1e6:.6g}",
+            f"{peak.place:.3g}",
+            f"{np.degrees(peak.theta):.4g}",
+            peak.fibre,
+            "-" if limit is None or not peak.value else f"{limit / abs(peak.value):.4g}",
+        )
+        for link, peak in found.maxima.items()
+    ]
+    return opt.table(("link", "stress [MPa]", "at x/length", "at [deg]", "fibre", "safety"), rows)
+
+
+def _curve_lines(curve: StressCurve) -> list[str]:
+    """Return a row per local maximum of the largest stress, the highest ones."""
+    import numpy as np
+
+    worst = np.max(curve.maximum, axis=1)
+    inner = np.flatnonzero((worst[1:-1] > worst[:-2]) & (worst[1:-1] >= worst[2:])) + 1
+    chosen = np.sort(inner[np.argsort(-worst[inner], kind="stable")[:_ROWS]])
+    rows = [
+        (f"{curve.speed[i]:.5g}", *(f"{value / 1e6:.5g}" for value in curve.maximum[i]))
+        for i in chosen
+    ]
+    title = f"{len(curve.speed)} speeds; largest stress [MPa] where it is higher than beside:"
+    return [title, "", *opt.table(("speed [rad/s]", *curve.links), rows)]
+
+
+def _running(options: argparse.Namespace) -> int:
+    from ..design import running_speed
+
+    scene, system = _of_beams(options, moving=True)
+    limit = _limit(options)
+    assert limit is not None
+    found = running_speed(system, _speeds(options, scene), limit)
+    lines = [
+        f"running speed: {found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}",
+        f"quiet from {found.band.low:.5g} to {found.band.high:.5g} rad/s",
+    ]
+    if found.band.above is not None:
+        lines.append(f"beyond the limiting critical speed {found.band.above:.5g} rad/s")
+        length = found.run_up_length
+        lines.append(
+            "no frame length that was tried brings it there within the limit: pass quickly"
+            if length is None
+            else f"frame length for the run-up: {length:.5g} m"
+        )
+    if found.best_damping is not None:
+        lines.append(f"damping ratio with the least stress there: {found.best_damping:.3g}")
+    more = {"bands": [[b.low, b.high, b.best, b.ratio, b.above] for b in found.quiet.bands]}
+    return opt.finish(options, found, lines, more=more)
+
+
+def _through(options: argparse.Namespace) -> int:
+    from ..design import SpeedProfile, run_through
+
+    _, system = _of_beams(options, moving=True)
+    profile = SpeedProfile.ramp(
+        opt.quantity(options.start, "frequency", "--from"),
+        opt.quantity(options.stop, "frequency", "--to"),
+        opt.quantity(options.time, "time", "--time"),
+    )
+    found = run_through(system, profile)
+    rows = [(link, f"{value / 1e6:.5g}") for link, value in found.largest.items()]
+    return opt.finish(options, found, opt.table(("link", "largest stress [MPa]"), rows))

@@ -1,0 +1,229 @@
+"""What damping and a length do to the stresses: curves over the speed for several values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..beams.element_forms import required_structure
+from ..errors import BadInput, Problem, bad
+from ..families import LinearPeriodic
+from ..floquet.first_order import numbers
+from ..kinematics import transmission_angle
+from ..mechanisms import FourBar
+from ..reduction.stress_curve import stress_curve
+from ..results import Check, Result, provenance
+from .speed_profile import Array
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, kw_only=True)
+class StressEffect(Result):
+    """Largest stresses over the speed for several values of one quantity.
+
+    Attributes
+    ----------
+    name : str
+        The quantity: ``damping_ratio``, or a length such as ``frame``.
+    values : ndarray, shape (nv,)
+        Its values.
+    speed : ndarray, shape (ns,)
+        Crank speeds [rad/s].
+    links : tuple of str
+        Links.
+    maximum : ndarray, shape (nv, ns, links)
+        Largest stress [Pa].
+    error : ndarray, shape (nv, ns, links)
+        Of each, relative.
+    transmission : ndarray or None
+        Of a four-bar whose length changes: least and greatest transmission angle [rad],
+        ``(nv, 2)``.
+    """
+
+    name: str
+    values: Array
+    speed: Array
+    links: tuple[str, ...]
+    maximum: Array
+    transmission: Array | None = None
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        "values": ("value",),
+        "speed": ("speed",),
+        "maximum": ("value", "speed", "link"),
+        "error": ("value", "speed", "link"),
+        "transmission": ("value", "end"),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("change",)
+
+    @property
+    def change(self) -> Array:
+        """Largest stress over that of the first value, ``(nv, ns, links)``: below 1 it helps."""
+        return np.asarray(self.maximum / self.maximum[:1])
+
+    def hurts(self, value: int = -1) -> Array:
+        """Return where a value stresses a link more than the first one does, ``(ns, links)``.
+
+        Parameters
+        ----------
+        value : int
+            Which of the values; the last by default.
+        """
+        doubt = self.error[value] + self.error[0]
+        return np.asarray(self.change[value] > 1.0 + doubt)
+
+    def best(self, limit: float = np.inf) -> Array:
+        """Return at each speed the value with the least largest stress of all links, ``(ns,)``.
+
+        Parameters
+        ----------
+        limit : float
+            The largest value that may be chosen.
+        """
+        allowed = np.flatnonzero(self.values <= limit)
+        if not allowed.size:
+            raise bad("limit", f"{limit:g}", f"at least {np.min(self.values):g}", "raise it")
+        worst = np.max(self.maximum[allowed], axis=2)
+        return np.asarray(self.values[allowed[np.argmin(worst, axis=0)]])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the largest stress of all links over the speed, a line for each value."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for value, rows in zip(self.values, self.maximum, strict=True):
+            ax.semilogy(self.speed, np.max(rows, axis=1) / 1e6, label=f"{value:g}", linewidth=0.9)
+        ax.set_xlabel("crank speed [rad/s]")
+        ax.set_ylabel("largest stress [MPa]")
+        ax.legend(title=self.name)
+        return ax
+
+
+def damping_effect(
+    system: LinearPeriodic,
+    speeds: ArrayLike,
+    ratios: Sequence[float],
+    *,
+    rtol: float = 1e-3,
+    executor: Executor | None = None,
+) -> StressEffect:
+    """Return the largest stresses for several ratios of modal damping (Aannaque 7.4.2).
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams with modal damping: ``with_modal_damping``.
+    speeds : array_like
+        Crank speeds [rad/s].
+    ratios : sequence of float
+        Damping ratios, positive.
+    rtol : float
+        Wanted error of the stresses, relative.
+    executor : concurrent.futures.Executor, optional
+        As :func:`stress_curve` takes it.
+
+    Raises
+    ------
+    BadInput
+        If the system has no modal damping, or a value is unusable.
+    """
+    required_structure(system)
+    if "damping_ratio" not in system.parameters:
+        fix = "add it with with_modal_damping"
+        raise bad("damping_effect", "a system without modal damping", "damping_ratio", fix)
+    values = _values("ratios", ratios)
+    systems = [system.with_parameters(damping_ratio=float(ratio)) for ratio in values]
+    return _curves("damping_ratio", values, systems, speeds, rtol, executor, None)
+
+
+def length_effect(
+    system: LinearPeriodic,
+    name: str,
+    values: Sequence[float],
+    speeds: ArrayLike,
+    *,
+    rtol: float = 1e-3,
+    executor: Executor | None = None,
+) -> StressEffect:
+    """Return the largest stresses for several values of a length (Aannaque 7.3, 7.5, 8.5).
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams with geometry to vary.
+    name : str
+        The length: ``frame`` is the distance of the ground pivots, L4.
+    values : sequence of float
+        Its values [m].
+    speeds : array_like
+        Crank speeds [rad/s].
+    rtol : float
+        Wanted error of the stresses, relative.
+    executor : concurrent.futures.Executor, optional
+        As :func:`stress_curve` takes it.
+
+    Raises
+    ------
+    BadInput
+        If the system has no such length, or the crank cannot turn at a value.
+    """
+    required_structure(system)
+    lengths = _values("values", values)
+    systems = [system.with_geometry(**{name: float(value)}) for value in lengths]
+    angles = None
+    if {"frame", "crank", "coupler", "follower"} <= set(system.geometry):
+        found = [transmission_angle(_four_bar(one)) for one in systems]
+        angles = np.array([[angle.least, angle.greatest] for angle in found])
+    return _curves(name, lengths, systems, speeds, rtol, executor, angles)
+
+
+def _four_bar(system: LinearPeriodic) -> FourBar:
+    lengths = system.geometry
+    return FourBar(
+        crank=lengths["crank"],
+        coupler=lengths["coupler"],
+        follower=lengths["follower"],
+        frame=lengths["frame"],
+    )
+
+
+def _values(where: str, values: Sequence[float]) -> Array:
+    array = np.atleast_1d(numbers(where, values))
+    if array.ndim != 1 or not array.size or not np.all(np.isfinite(array) & (array > 0)):
+        problem = Problem(where, str(values), "positive numbers", "correct them")
+        raise BadInput(problem)
+    return array
+
+
+def _curves(
+    name: str,
+    values: Array,
+    systems: Sequence[LinearPeriodic],
+    speeds: ArrayLike,
+    rtol: float,
+    executor: Executor | None,
+    angles: Array | None,
+) -> StressEffect:
+    curves = [stress_curve(one, speeds, rtol=rtol, executor=executor) for one in systems]
+    errors = np.array([curve.error for curve in curves])
+    return StressEffect(
+        method=curves[0].method,
+        error=errors,
+        error_norm="each largest stress, relative",
+        checks={"converged": Check(float(np.max(errors)) / rtol, 1.0)},
+        provenance=provenance(dict(systems[0].provenance)),
+        name=name,
+        values=values,
+        speed=curves[0].speed,
+        links=curves[0].links,
+        maximum=np.array([curve.maximum for curve in curves]),
+        transmission=angles,
+    )

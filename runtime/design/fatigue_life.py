@@ -1,0 +1,216 @@
+"""Fatigue of links in periodic motion: rainflow cycles, Goodman's line, Miner's sum (9.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..beams.stress import FIBRES, StressResult
+from ..errors import BadInput, ElastolinkError, Problem
+from ..results import Result
+
+Array = NDArray[np.float64]
+# Cycles beyond which a life is called endless.
+_ENDLESS = np.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """What a material bears under changing stress.
+
+    Parameters
+    ----------
+    tensile_strength : float
+        Ultimate strength [Pa]: the end of Goodman's line.
+    endurance_limit : float
+        Amplitude [Pa] borne for ever at no mean stress, surface and size accounted for.
+    exponent : float
+        Basquin's k > 0: life falls with the amplitude to this power.
+    knee : float
+        Cycles at which the endurance limit is reached.
+
+    Raises
+    ------
+    BadInput
+        If a value is not a positive number, or the limit is above the strength.
+    """
+
+    tensile_strength: float
+    endurance_limit: float
+    exponent: float = 9.0
+    knee: float = 1e6
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        problems = []
+        for name in ("tensile_strength", "endurance_limit", "exponent", "knee"):
+            value = getattr(self, name)
+            usable = isinstance(value, (int, float, np.integer, np.floating))
+            if not (usable and np.isfinite(value) and value > 0):
+                found, fix = repr(value), "correct it"
+                problems.append(Problem(f"Material.{name}", found, "a positive number", fix))
+        if not problems and self.endurance_limit >= self.tensile_strength:
+            expected = f"less than tensile_strength, {self.tensile_strength:g}"
+            found = f"{self.endurance_limit:g}"
+            problems.append(Problem("Material.endurance_limit", found, expected, "swap them"))
+        if problems:
+            raise BadInput(*problems)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fatigue(Result):
+    """Fatigue of the outer fibres over the stations of a motion.
+
+    Attributes
+    ----------
+    speed : float
+        Crank speed [rad/s].
+    links : tuple of str
+        Beam of each station.
+    places : ndarray, shape (stations,)
+        x over the beam's length.
+    amplitude : ndarray, shape (2, stations)
+        Largest amplitude of the cycles brought to no mean stress by Goodman's line [Pa], of the
+        fibre on the positive and on the negative side; inf where a cycle touches the strength.
+    safety : ndarray, shape (2, stations)
+        Endurance limit over that amplitude.
+    damage : ndarray, shape (2, stations)
+        Miner's sum of one revolution.
+    """
+
+    speed: float
+    links: tuple[str, ...]
+    places: Array
+    amplitude: Array
+    safety: Array
+    damage: Array
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        "places": ("station",),
+        **dict.fromkeys(("amplitude", "safety", "damage"), ("fibre", "station")),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("revolutions", "hours")
+
+    @property
+    def revolutions(self) -> float:
+        """Life of the worst place in revolutions; inf where every cycle is below the limit."""
+        worst = float(np.max(self.damage))
+        return 1.0 / worst if worst > 0 else _ENDLESS
+
+    @property
+    def hours(self) -> float:
+        """Life in hours at the crank speed."""
+        return self.revolutions * 2.0 * np.pi / self.speed / 3600.0
+
+    @property
+    def worst(self) -> tuple[str, float, str]:
+        """Link, place and fibre of the least safety."""
+        row, column = np.unravel_index(int(np.argmin(self.safety)), self.safety.shape)
+        return self.links[column], float(self.places[column]), FIBRES[row]
+
+
+def fatigue(stress: StressResult, material: Material) -> Fatigue:
+    """Return the fatigue of the links in a periodic motion.
+
+    The cycles of one revolution are counted by rainflow (ASTM E1049, extra ``fatigue``), begun at
+    the largest stress, so that a periodic history has closed cycles alone.  Each, with amplitude a
+    and mean m, has the amplitude ``a / (1 - m / tensile_strength)`` at no mean stress (Goodman; a
+    compressive mean counts as none), and by Basquin a share ``(amplitude/limit)^k / knee`` of the
+    life; amplitudes within the endurance limit none.
+
+    Parameters
+    ----------
+    stress : StressResult
+        Of a steady state.
+    material : Material
+        Strength and endurance.
+
+    Returns
+    -------
+    Fatigue
+        ``error`` is what the stresses' own error does to the least safety, relative.
+
+    Raises
+    ------
+    BadInput
+        If the motion is not periodic, or its stresses are not finite.
+    ElastolinkError
+        If the counting library is not installed.
+    """
+    for name, value, kind in (("stress", stress, StressResult), ("material", material, Material)):
+        if not isinstance(value, kind):
+            expected = f"a {kind.__name__}"
+            raise BadInput(Problem(f"fatigue {name}", repr(value), expected, "make one"))
+    if stress.period is None:
+        fix = "take the stress of a steady state"
+        problem = Problem("fatigue", "a motion that is not periodic", "a periodic one", fix)
+        raise BadInput(problem)
+    doubt = float(stress.error)
+    amplitude = np.zeros((2, len(stress.places)))
+    worse, damage = np.zeros_like(amplitude), np.zeros_like(amplitude)
+    for row, fibre in enumerate(FIBRES):
+        _, fine = stress._finer(stress.fibre(fibre))
+        if not np.all(np.isfinite(fine)):
+            fix = "choose a speed with a single periodic motion"
+            raise BadInput(Problem("fatigue", "stresses that are not finite", "finite ones", fix))
+        for column, history in enumerate(fine.T):
+            size, mean, counts = _cycles(history)
+            equivalent = _equivalent(size, mean, material)
+            # Both the amplitude and the mean may be larger by the stresses' error.
+            beyond = _equivalent(size + 2.0 * doubt, mean + doubt, material)
+            amplitude[row, column] = np.max(equivalent, initial=0.0)
+            worse[row, column] = np.max(beyond, initial=0.0)
+            damage[row, column] = _damage(equivalent, counts, material)
+    with np.errstate(divide="ignore"):
+        safety = material.endurance_limit / amplitude
+    largest = float(np.max(amplitude))
+    known = 0 < largest < np.inf
+    return Fatigue(
+        method="rainflow, Goodman, Basquin and Miner",
+        error=float(np.max(worse)) / largest - 1.0 if known else np.inf,
+        error_norm="least safety, relative",
+        checks=dict(stress.checks),
+        provenance=dict(stress.provenance),
+        speed=stress.speed,
+        links=stress.links,
+        places=stress.places,
+        amplitude=amplitude,
+        safety=safety,
+        damage=damage,
+    )
+
+
+def _cycles(history: Array) -> tuple[Array, Array, Array]:
+    """Return ranges, means and counts of the cycles of a periodic history."""
+    try:
+        import rainflow
+    except ImportError:
+        raise ElastolinkError(
+            "fatigue: rainflow is not installed; pip install 'elastolink[fatigue]'"
+        ) from None
+    start = int(np.argmax(history))
+    closed = np.concatenate([history[start:], history[: start + 1]])
+    cycles = [(size, mean, count) for size, mean, count, _, _ in rainflow.extract_cycles(closed)]
+    if not cycles:
+        return np.zeros(0), np.zeros(0), np.zeros(0)
+    size, mean, count = np.array(cycles).T
+    return size, mean, count
+
+
+def _equivalent(size: Array, mean: Array, material: Material) -> Array:
+    """Return amplitudes at no mean stress of cycles of some range and mean."""
+    room = 1.0 - np.maximum(mean, 0.0) / material.tensile_strength
+    amplitude = np.where(room > 0, size / 2.0 / np.where(room > 0, room, 1.0), np.inf)
+    return np.where(size > 0, amplitude, 0.0)
+
+
+def _damage(amplitude: Array, counts: Array, material: Material) -> float:
+    beyond = amplitude > material.endurance_limit
+    if not np.any(beyond):
+        return 0.0
+    ratio = amplitude[beyond] / material.endurance_limit
+    with np.errstate(over="ignore"):
+        return float(np.sum(counts[beyond] * ratio**material.exponent) / material.knee)

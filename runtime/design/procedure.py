@@ -1,0 +1,252 @@
+"""The design method: a quiet speed, damping that helps, and a length for the run-up (7.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..beams.element_forms import required_structure
+from ..errors import BadInput, bad
+from ..families import LinearPeriodic
+from ..floquet.first_order import numbers
+from ..floquet.monodromy_matrix import floquet_multipliers
+from ..reduction import reduced_system
+from ..results import Check, Result
+from .effects import StressEffect, damping_effect, length_effect
+from .quiet import Band, QuietSpeeds, quiet_speeds
+from .speed_profile import Array
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from matplotlib.axes import Axes
+
+# Damping ratios that are tried, over the system's own, and lengths over the design's.
+_DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
+_LENGTHS = tuple(1.0 + 0.01 * k for k in range(23))
+# Modes whose multipliers decide on stability, at the most.
+_SLOW = 5
+# Speeds of a run-up at which the stresses are looked at.
+_RUN_UP_SPEEDS = 400
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunningSpeed(Result):
+    """A running speed, and how to get there.
+
+    Attributes
+    ----------
+    quiet : QuietSpeeds
+        Critical, limiting and quiet speeds at the design's own damping and length.
+    band : Band
+        The band that was chosen.
+    speed : float
+        The running speed [rad/s].
+    damping : StressEffect or None
+        Stresses at the running speed for several damping ratios; None without modal damping.
+    best_damping : float or None
+        The ratio with the least largest stress there.
+    length : StressEffect or None
+        Stresses on the way up, for several values of the length; None where nothing has to be
+        passed.
+    run_up_length : float or None
+        The value nearest the design's at which every steady speed of the way is within the limits;
+        None where no value that was tried is.
+    links : tuple of str
+        Links with a limit.
+    """
+
+    quiet: QuietSpeeds
+    band: Band
+    speed: float
+    damping: StressEffect | None
+    best_damping: float | None
+    length: StressEffect | None
+    run_up_length: float | None
+    links: tuple[str, ...] = field(default=())
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the stresses over their limits with the quiet bands and the running speed."""
+        ax = self.quiet.plot(ax)
+        ax.axvline(self.speed, color="tab:red", linewidth=1.0)
+        return ax
+
+
+def running_speed(
+    system: LinearPeriodic,
+    speeds: tuple[float, float],
+    limits: float | Mapping[str, float],
+    *,
+    length: str = "frame",
+    values: Sequence[float] | None = None,
+    highest: bool = True,
+    rtol: float = 1e-3,
+    executor: Executor | None = None,
+) -> RunningSpeed:
+    """Return a running speed above a limiting critical speed, and how to get there.
+
+    The steps of section 7.5: the stresses over the range (1), the first limiting critical speed
+    and the quiet bands above it (2), damping at the chosen speed (3, 4), and the change of a length
+    that brings the machine there within the limits (5).
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams, with damping and geometry to vary.
+    speeds : pair of float
+        Lowest and highest crank speed [rad/s].
+    limits : float or mapping of str to float
+        Allowed stress [Pa], of all links or by link.
+    length : str
+        The length that is changed for the run-up.
+    values : sequence of float, optional
+        Values of it that are tried [m]; by default from the design's own to 22 % more, as far as
+        the crank can turn.
+    highest : bool
+        Whether the highest quiet band is chosen, or the one with the least stress.
+    rtol : float
+        Wanted error of the stresses, relative.
+    executor : concurrent.futures.Executor, optional
+        As :func:`stress_curve` takes it.
+
+    Returns
+    -------
+    RunningSpeed
+        Its checks: those of the quiet speeds; ``within limits``, the largest stress at the running
+        speed with its error over its limit; ``stable``, the largest modulus of the multipliers of
+        the lowest modes there.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, the system has no such length, or no speed of the range is
+        within the limits.
+    """
+    required_structure(system)
+    tried = _tried(system, length, values)
+    quiet = quiet_speeds(system, speeds, limits, rtol=rtol, executor=executor)
+    if not quiet.bands:
+        least = int(np.argmin(quiet.worst))
+        raise bad(
+            "running_speed",
+            f"stresses beyond their limits everywhere, least {quiet.worst[least]:.3g} of them at "
+            f"{quiet.speed[least]:.4g} rad/s",
+            "a speed within the limits",
+            "lower the range, raise the limits or stiffen the links",
+        )
+    offered = quiet.quiet or quiet.bands
+    band = offered[-1] if highest else min(offered, key=lambda one: one.ratio)
+    allowed = np.array([_limit(limits, link) for link in quiet.links])
+    damping = best = None
+    if "damping_ratio" in system.parameters:
+        own = system.parameters["damping_ratio"]
+        ratios = [own * factor for factor in _DAMPING]
+        damping = damping_effect(system, [band.best], ratios, rtol=rtol, executor=executor)
+        best = float(ratios[int(np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2))))])
+    way, chosen = None, None
+    if band.above is not None:
+        way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, executor)
+    return RunningSpeed(
+        method="stress curves over speed, damping and length",
+        error=float(np.max(quiet.error)),
+        error_norm="largest stress over its limit, relative, the worst speed",
+        checks={
+            **quiet.checks,
+            "within limits": Check(band.ratio * (1.0 + _doubt(quiet, band)), 1.0),
+            "stable": Check(_largest_multiplier(system, band.best), 1.0),
+        },
+        provenance=dict(quiet.provenance),
+        quiet=quiet,
+        band=band,
+        speed=band.best,
+        damping=damping,
+        best_damping=best,
+        length=way,
+        run_up_length=chosen,
+        links=quiet.links,
+    )
+
+
+def _doubt(quiet: QuietSpeeds, band: Band) -> float:
+    """Return the relative error of the stresses at the running speed."""
+    return float(np.asarray(quiet.error)[int(np.argmin(np.abs(quiet.speed - band.best)))])
+
+
+def _limit(limits: float | Mapping[str, float], link: str) -> float:
+    return float(limits[link] if isinstance(limits, Mapping) else limits)
+
+
+def _ratios(effect: StressEffect, quiet: QuietSpeeds, allowed: Array) -> Array:
+    chosen = [effect.links.index(link) for link in quiet.links]
+    return np.asarray(effect.maximum[:, :, chosen] / allowed)
+
+
+def _way_up(
+    system: LinearPeriodic,
+    quiet: QuietSpeeds,
+    band: Band,
+    allowed: Array,
+    length: str,
+    tried: Sequence[float],
+    rtol: float,
+    executor: Executor | None,
+) -> tuple[StressEffect, float | None]:
+    """Return stresses on the way to the band for several lengths, and the least change that does.
+
+    A value passes where the steady stresses at all speeds of the way are within the limits.
+    """
+    own = system.geometry.get(length, np.nan)
+    way = np.linspace(quiet.speed[0], band.best, _RUN_UP_SPEEDS)
+    effect = length_effect(system, length, tried, way, rtol=rtol, executor=executor)
+    worst = np.max(_ratios(effect, quiet, allowed), axis=(1, 2))
+    passing = np.flatnonzero(worst < 1.0)
+    if not passing.size:
+        return effect, None
+    nearest = passing[int(np.argmin(np.abs(effect.values[passing] - own)))]
+    return effect, float(effect.values[nearest])
+
+
+def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) -> list[float]:
+    """Return lengths to try: those given, or from the design's own on while the crank turns.
+
+    Raises
+    ------
+    BadInput
+        If the system has no such length, or one that is given is unusable.
+    """
+    own = system.geometry.get(name)
+    if own is None:
+        raise bad("length", repr(name), f"one of {sorted(system.geometry)}", "correct the name")
+    if values is not None:
+        given = np.atleast_1d(numbers("values", values))
+        if given.ndim != 1 or not given.size:
+            raise bad("values", str(values), "one row of lengths [m]", "give some")
+        for value in given:
+            system.with_geometry(**{name: float(value)})
+        return [float(value) for value in given]
+    found = []
+    for factor in _LENGTHS:
+        try:
+            system.with_geometry(**{name: own * factor})
+        except BadInput:
+            break
+        found.append(float(own * factor))
+    return found
+
+
+def _largest_multiplier(system: LinearPeriodic, speed: float) -> float:
+    """Return the largest modulus of the multipliers of the lowest modes at a speed."""
+    for modes in (*range(min(_SLOW, system.size), 0, -1), system.size):
+        try:
+            slow = system if modes == system.size else reduced_system(system, modes)
+        except BadInput:
+            # No smooth subspace of that many.
+            continue
+        found = floquet_multipliers(slow, speed, rtol=1e-6).multipliers
+        return float(np.max(np.abs(found)))
+    return float("nan")

@@ -1,0 +1,240 @@
+"""Quiet speeds above limiting critical speeds, from the stresses over a range (Aannaque 7.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from numbers import Real
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..beams.element_forms import required_structure
+from ..errors import BadInput, Problem
+from ..families import LinearPeriodic
+from ..floquet.first_order import numbers
+from ..reduction.stress_curve import StressCurve, stress_curve
+from ..results import Check, Result
+from .speed_profile import Array
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from matplotlib.axes import Axes
+
+# Speeds at which the stresses are found, unless the caller gives them.
+_SPEEDS = 1000
+
+
+@dataclass(frozen=True)
+class Band:
+    """A range of speeds in which every link stays within its limit.
+
+    Attributes
+    ----------
+    low, high : float
+        Ends [rad/s]: of the range that was looked at, or where a limit is met.
+    best : float
+        Speed at which the largest stress over its limit is least [rad/s].
+    ratio : float
+        That ratio.
+    above : float or None
+        The limiting critical speed that the machine must pass to get there [rad/s]; None where
+        there is none below.
+    """
+
+    low: float
+    high: float
+    best: float
+    ratio: float
+    above: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuietSpeeds(Result):
+    """Critical, limiting and quiet speeds of a linkage of beams.
+
+    ``error`` is that of the ratio at each speed, relative.
+
+    Attributes
+    ----------
+    speed : ndarray, shape (ns,)
+        Crank speeds [rad/s], increasing.
+    links : tuple of str
+        Links with a limit.
+    ratio : ndarray, shape (ns, links)
+        Largest stress over its limit.
+    critical : ndarray
+        Speeds at which the largest ratio of all links has a local maximum [rad/s].
+    limiting : ndarray
+        Those of them at which a limit is passed [rad/s].
+    bands : tuple of Band
+        Ranges within all limits, by rising speed.
+    curve : StressCurve
+        What they come from.
+    """
+
+    speed: Array
+    links: tuple[str, ...]
+    ratio: Array
+    critical: Array
+    limiting: Array
+    bands: tuple[Band, ...]
+    curve: StressCurve = field(repr=False)
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "speed": ("speed",),
+        "ratio": ("speed", "link"),
+        "error": ("speed",),
+        "critical": ("critical",),
+        "limiting": ("limiting",),
+    }
+
+    @property
+    def worst(self) -> Array:
+        """Largest ratio of all links, ``(ns,)``."""
+        return np.asarray(np.max(self.ratio, axis=1))
+
+    @property
+    def quiet(self) -> tuple[Band, ...]:
+        """The bands beyond a limiting critical speed."""
+        return tuple(band for band in self.bands if band.above is not None)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the ratios over the speed, the limit, and the quiet bands."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for link, values in zip(self.links, self.ratio.T, strict=True):
+            ax.semilogy(self.speed, values, label=link, linewidth=0.9)
+        ax.axhline(1.0, color="0.3", linewidth=0.8)
+        for band in self.bands:
+            ax.axvspan(band.low, band.high, color="tab:green", alpha=0.12, linewidth=0.0)
+        ax.set_xlabel("crank speed [rad/s]")
+        ax.set_ylabel("largest stress over its limit")
+        ax.legend()
+        return ax
+
+
+def quiet_speeds(
+    system: LinearPeriodic,
+    speeds: tuple[float, float] | Array,
+    limits: float | Mapping[str, float],
+    *,
+    rtol: float = 1e-3,
+    executor: Executor | None = None,
+) -> QuietSpeeds:
+    """Return the speeds at which a linkage may run, and those that it must pass quickly.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams whose sections have a thickness, with damping.
+    speeds : pair of float, or array_like
+        Lowest and highest crank speed [rad/s], of which 1000 are taken; or all of them.
+    limits : float or mapping of str to float
+        Allowed stress [Pa], of all links or by link; links that are not named are not watched.
+    rtol : float
+        Wanted error of the stresses, relative.
+    executor : concurrent.futures.Executor, optional
+        As :func:`stress_curve` takes it.
+
+    Returns
+    -------
+    QuietSpeeds
+        Its check ``resolved``: the change of the largest ratio between neighbouring speeds, at
+        the worst place, against 0.5: beyond it peaks may hide between the speeds.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    links = [beam.name for beam in required_structure(system).beams]
+    named = _limits(limits, links)
+    given = numbers("speeds", speeds)
+    if given.shape == (2,):
+        given = np.linspace(given[0], given[1], _SPEEDS)
+    if given.ndim != 1 or len(given) < 3 or not _rising(given):
+        fix = "give the lowest and the highest, or increasing ones"
+        raise BadInput(Problem("speeds", str(speeds), "increasing crank speeds above 0", fix))
+    curve = stress_curve(system, given, rtol=rtol, executor=executor)
+    chosen = [curve.links.index(link) for link in named]
+    ratio = curve.maximum[:, chosen] / np.array(list(named.values()))
+    worst = np.max(ratio, axis=1)
+    critical = _maxima(given, worst)
+    limiting = np.array([w for w, height in critical if height > 1.0])
+    jump = float(np.max(np.abs(np.diff(np.log(np.maximum(worst, np.finfo(float).tiny))))))
+    return QuietSpeeds(
+        method=f"local maxima and level crossings of {len(given)} speeds",
+        error=np.max(curve.error[:, chosen], axis=1),
+        error_norm="largest stress over its limit at each speed, relative",
+        checks={**curve.checks, "resolved": Check(jump, 0.5)},
+        provenance=dict(curve.provenance),
+        speed=given,
+        links=tuple(named),
+        ratio=ratio,
+        critical=np.array([w for w, _ in critical]),
+        limiting=limiting,
+        bands=_bands(given, worst, limiting),
+        curve=curve,
+    )
+
+
+def _rising(speeds: Array) -> bool:
+    return bool(speeds[0] > 0 and np.all(np.diff(speeds) > 0))
+
+
+def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, float]:
+    named = dict(limits) if isinstance(limits, Mapping) else dict.fromkeys(links, limits)
+    problems = []
+    strange = sorted(set(named) - set(links))
+    if strange or not named:
+        found = ", ".join(strange) or "no link"
+        problems.append(Problem("limits", found, f"some of {links}", "correct the name"))
+    for link, value in named.items():
+        if not (isinstance(value, Real) and np.isfinite(value) and value > 0):
+            fix = "give a stress in Pa"
+            problems.append(Problem(f"limits of {link}", repr(value), "a positive stress", fix))
+    if problems:
+        raise BadInput(*problems)
+    return {link: float(value) for link, value in named.items()}
+
+
+def _maxima(speed: Array, values: Array) -> list[tuple[float, float]]:
+    """Return local maxima with their heights, each refined by a parabola in the logarithm."""
+    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    found = []
+    for k in inner:
+        a, b, c = np.log(values[k - 1 : k + 2])
+        left, right = speed[k] - speed[k - 1], speed[k + 1] - speed[k]
+        first, second = (b - a) / left, (c - b) / right
+        bend = (second - first) / (left + right)
+        slope = (first * right + second * left) / (left + right)
+        shift = float(np.clip(-slope / (2.0 * bend), -left, right)) if bend < 0 else 0.0
+        found.append((float(speed[k]) + shift, float(np.exp(b + slope * shift + bend * shift**2))))
+    return found
+
+
+def _bands(speed: Array, worst: Array, limiting: Array) -> tuple[Band, ...]:
+    """Return the ranges where the worst ratio is below 1, their ends interpolated."""
+    within = worst < 1.0
+    edges = np.flatnonzero(within[1:] != within[:-1])
+    crossings = []
+    for k in edges:
+        a, b = np.log(worst[k]), np.log(worst[k + 1])
+        crossings.append(float(speed[k] + (speed[k + 1] - speed[k]) * a / (a - b)))
+    ends = [float(speed[0]), *crossings, float(speed[-1])]
+    bands = []
+    for i, (low, high) in enumerate(pairwise(ends)):
+        if within[0] != (i % 2 == 0):
+            continue
+        inside = np.flatnonzero((speed >= low) & (speed <= high))
+        if not inside.size:
+            continue
+        best = inside[int(np.argmin(worst[inside]))]
+        below = limiting[limiting < low]
+        passed = float(below[-1]) if below.size else (low if i > 0 else None)
+        bands.append(Band(low, high, float(speed[best]), float(worst[best]), passed))
+    return tuple(bands)

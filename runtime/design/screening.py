@@ -1,0 +1,173 @@
+"""A quick screen of the stresses: quasi-static ones, harmonic by harmonic, times a factor (9.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..beams.element_forms import required_structure
+from ..beams.stress import stress_operator
+from ..errors import BadInput, Problem
+from ..families import LinearPeriodic
+from ..floquet.first_order import numbers
+from ..frequencies import natural_frequencies
+from ..results import Result, provenance
+from .speed_profile import Array
+
+_ANGLES = 256
+_STATIONS = 7
+
+
+@dataclass(frozen=True, kw_only=True)
+class Screening(Result):
+    """Estimated largest stresses over the crank speed.
+
+    ``error`` is NaN: a screen knows no bound of what it leaves out.  Its error against the full
+    answer is measured by :func:`screening_error`.
+
+    Attributes
+    ----------
+    speed : ndarray, shape (ns,)
+        Crank speeds [rad/s].
+    links : tuple of str
+        Links.
+    maximum : ndarray, shape (ns, links)
+        Estimated largest stress [Pa].
+    quasi_static : ndarray, shape (ns, links)
+        Largest quasi-static stress [Pa].
+    mean_frequency : ndarray, shape (modes,)
+        Mean natural frequencies over the cycle [rad/s].
+    """
+
+    speed: Array
+    links: tuple[str, ...]
+    maximum: Array
+    quasi_static: Array
+    mean_frequency: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "speed": ("speed",),
+        "mean_frequency": ("mode",),
+        "maximum": ("speed", "link"),
+        "quasi_static": ("speed", "link"),
+    }
+
+
+def screen(
+    system: LinearPeriodic, speeds: ArrayLike, *, damping: float, modes: int = 1
+) -> Screening:
+    """Return estimated largest stresses without solving the equations of motion.
+
+    The quasi-static stress is a function of the crank angle times the squared speed, found once,
+    and another of the constant loads.  Its n-th
+    harmonic is taken to be carried by the lowest mode alone, as a single mass of the mean natural
+    frequency W: it grows by ``1 / (1 - (n w/W)^2 + 2 i z n w/W)``.  Resonances at W/n are in it,
+    infinite without damping; parametric terms and the other modes are not.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams whose sections have a thickness.
+    speeds : array_like
+        Crank speeds [rad/s], positive.
+    damping : float
+        Damping ratio z.
+    modes : int
+        Modes whose mean frequencies are told; the first is used.
+
+    Returns
+    -------
+    Screening
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    given = np.atleast_1d(numbers("speeds", speeds))
+    problems = []
+    if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):
+        problems.append(Problem("speeds", str(speeds), "positive crank speeds", "correct them"))
+    if not (isinstance(damping, Real) and np.isfinite(damping) and damping >= 0):
+        problems.append(Problem("damping", repr(damping), "a ratio, 0 or more", "correct it"))
+    if problems:
+        raise BadInput(*problems)
+    structure = required_structure(system)
+    mean = np.asarray(natural_frequencies(system, count=modes).mean)
+    theta = system.period * np.arange(_ANGLES) / _ANGLES
+    form, stations = stress_operator(system, theta, _STATIONS, method="shape")
+    stiffness = system.array("K", theta)
+    unit, constant = (
+        form.values(1.0, still, np.zeros_like(still))
+        for still in (
+            np.asarray(np.linalg.solve(stiffness, system.array(name, theta)[..., None])[..., 0])
+            for name in ("f", "p")
+        )
+    )
+    spectra = np.fft.rfft(unit, axis=0), np.fft.rfft(constant, axis=0)
+    links = tuple(beam.name for beam in structure.beams)
+    named = np.array([station.beam for station in stations] * 2)
+    n = np.arange(len(spectra[0]))
+    maximum, static = np.empty((2, len(given), len(links)))
+    for i, speed in enumerate(given):
+        ratio = n * speed / mean[0]
+        below = 1.0 - ratio**2 + 2j * damping * ratio
+        still = speed**2 * unit + constant
+        static[i] = [np.max(np.abs(still[:, named == link])) for link in links]
+        if not np.all(below):
+            maximum[i] = np.inf
+            continue
+        series = (speed**2 * spectra[0] + spectra[1]) / below[:, None]
+        history = np.fft.irfft(series, n=_ANGLES, axis=0)
+        maximum[i] = [np.max(np.abs(history[:, named == link])) for link in links]
+    return Screening(
+        method="quasi-static stress times the factor of one mode, by harmonics",
+        error=np.nan,
+        error_norm="none: see screening_error",
+        provenance=provenance(dict(system.provenance)),
+        speed=given,
+        links=links,
+        maximum=maximum,
+        quasi_static=static,
+        mean_frequency=mean,
+    )
+
+
+def screening_error(found: Screening, speed: Array, maximum: Array) -> dict[str, Array]:
+    """Return how far a screen is from the full answer.
+
+    Parameters
+    ----------
+    found : Screening
+        At the same speeds and links as the full answer.
+    speed : ndarray, shape (ns,)
+        Crank speeds of the full answer [rad/s].
+    maximum : ndarray, shape (ns, links)
+        Its largest stresses [Pa], of a ``StressCurve``.
+
+    Returns
+    -------
+    dict of str to ndarray
+        ``ratio (ns, links)``: screen over full; by link ``median``, ``least`` and ``most``.
+
+    Raises
+    ------
+    BadInput
+        If the speeds differ.
+    """
+    if found.speed.shape != np.shape(speed) or not np.array_equal(found.speed, speed):
+        fix = "screen the speeds of the curve"
+        problem = Problem("screening_error", "other speeds", "the screen's own", fix)
+        raise BadInput(problem)
+    ratio = found.maximum / maximum
+    return {
+        "ratio": ratio,
+        "median": np.median(ratio, axis=0),
+        "least": np.min(ratio, axis=0),
+        "most": np.max(ratio, axis=0),
+    }

@@ -1,0 +1,448 @@
+"""A linkage of beams that is run up, or down, through its critical speeds (Aannaque 7.5)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..beams.element_forms import required_structure
+from ..errors import BadInput, LinearRangeWarning, Problem, bad
+from ..families import LinearPeriodic
+from ..reduction import ReducedSystem, reduced_system
+from ..response import steady_state
+from ..results import Check, Result, provenance
+from ..simulation.trajectory import LINEAR_RANGE
+from .changing_length import ChangingLength
+from .shape_stress import largest_by_shape
+from .speed_profile import Array, SpeedProfile
+from .unsteady import Drive, arrays_of, march
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_STAGES = 3
+_ORDER = 2 * _STAGES
+# Steps whose motion and stresses are recovered together.
+_CHUNK = 512
+# Modes that are added to see what the others would change.
+_MORE = 3
+_ROUNDS = 4
+# Steps of the first try: of a revolution, and of a period of the fastest mode that is followed.
+_PER_TURN, _PER_PERIOD = 48, 2.0
+_MOST_STEPS = 200_000
+# Coordinates that are followed without a reduction; their steps leave the axial modes unresolved.
+_FOLLOWED = 5
+# Levels of a changing length at first, at which the structure is made anew.
+_LEVELS = 9
+# Samples that are kept, and a margin for the largest stress between the steps.
+_MOST_SAMPLES = 20_000
+_BETWEEN = 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transient(Result):
+    """Motion of a linkage of beams while its crank speed changes.
+
+    ``error`` is that of the largest stress of each link over the whole run, relative: halved
+    steps, what may lie between them, more modes of a reduced system, and more levels of a length
+    that changes tell it.  Mesh and choice of stations are not in it.
+
+    Attributes
+    ----------
+    time, angle, speed : ndarray, shape (nt,)
+        Time [s], crank angle [rad] and speed [rad/s].
+    q, qd : ndarray, shape (nt, n)
+        Coordinates of the structure and their time derivatives [1/s].
+    links : tuple of str
+        Links.
+    stress : ndarray, shape (nt, links)
+        Largest size of the stress over each link's stations and fibres [Pa], of the steps from a
+        sample up to the next.
+    profile : SpeedProfile
+        The drive.
+    """
+
+    time: Array
+    angle: Array
+    speed: Array
+    q: Array
+    qd: Array
+    links: tuple[str, ...]
+    stress: Array
+    profile: SpeedProfile = field(repr=False)
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("time", "angle", "speed"), ("sample",)),
+        "q": ("sample", "coordinate"),
+        "qd": ("sample", "coordinate"),
+        "stress": ("sample", "link"),
+    }
+
+    @property
+    def largest(self) -> dict[str, float]:
+        """Largest stress of each link [Pa]."""
+        return dict(zip(self.links, np.max(self.stress, axis=0).tolist(), strict=True))
+
+    def envelope(self) -> tuple[Array, Array]:
+        """Return the largest stress of each link in each revolution.
+
+        Returns
+        -------
+        speed : ndarray, shape (turns,)
+            Mean crank speed of the revolution [rad/s].
+        stress : ndarray, shape (turns, links)
+            Largest stress in it [Pa].
+        """
+        turn = np.floor((self.angle - self.angle[0]) / (2.0 * np.pi)).astype(int)
+        kinds = np.unique(turn)
+        mean = np.array([np.mean(self.speed[turn == k]) for k in kinds])
+        return mean, np.array([np.max(self.stress[turn == k], axis=0) for k in kinds])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the largest stress of each link over the time, and the crank speed."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for link, values in zip(self.links, self.stress.T, strict=True):
+            ax.plot(self.time, values / 1e6, linewidth=0.7, label=link)
+        beside = ax.twinx()
+        beside.plot(self.time, self.speed, color="0.4", linestyle="--", linewidth=0.9)
+        beside.set_ylabel("crank speed [rad/s]")
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel("largest stress [MPa]")
+        ax.legend(loc="upper left")
+        return ax
+
+
+def run_through(
+    system: LinearPeriodic,
+    profile: SpeedProfile,
+    *,
+    modes: int | None = _FOLLOWED,
+    stations: int = 9,
+    rtol: float = 1e-2,
+    start: str = "steady",
+) -> Transient:
+    """Return the motion of a linkage of beams while its crank speed changes in time.
+
+    A true transient: crank speed and acceleration enter the equations as they are at each time.
+    A length that changes (``profile.geometry``) is quasi-static: the equations are those of the
+    length at the time, without its rate.  It is one of the ground: no beam may change its own.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams whose sections have a thickness.
+    profile : SpeedProfile
+        The drive.
+    modes : int or None
+        Number of natural modes that are followed, the others in equilibrium; None for all
+        coordinates, which a changing length needs.
+    stations : int
+        Places on each element at which stresses are taken, its ends included; 2 or more.
+    rtol : float
+        Wanted error of the largest stresses, relative, 1e-6 to 0.1.
+    start : str
+        ``"steady"``: in the steady state of the first speed; ``"rest"``: undeformed.
+
+    Returns
+    -------
+    Transient
+        Its checks: ``converged``, the error over what was asked; ``linear range``.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If a deflection passes 5 % of the length of its link.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, a length that changes is asked for with ``modes``, or the run
+        would take too many steps.
+    """
+    _check(system, profile, modes, rtol, start)
+    _check_stations(stations)
+    chosen = modes if modes is None or modes < system.size else None
+    name = next(iter(profile.geometry), None)
+    if name is not None and min(profile.geometry[name]) == max(profile.geometry[name]):
+        system, name = system.with_geometry(**{name: profile.geometry[name][0]}), None
+    run = _Run(system, profile, chosen, stations, start, name, _LEVELS)
+    steps = run.first_steps()
+    found, before = run.solve(steps), None
+    while True:
+        finer = run.solve(2 * steps)
+        stepping, before = _stepping(_difference(finer, found), before)
+        found, steps = finer, 2 * steps
+        if np.max(stepping + found.between) <= 0.5 * rtol or 2 * steps > _MOST_STEPS:
+            break
+    truncation = np.zeros(len(run.links))
+    for _ in range(_ROUNDS if chosen is not None or name is not None else 0):
+        richer = run.richer()
+        more = richer.solve(steps)
+        # Cubics between twice as many levels are better by far more than the half of the change.
+        truncation = _difference(more, found) * (1.0 if name is None else 0.5)
+        run, found = richer, more
+        if np.max(truncation) <= 0.5 * rtol or run.followed is system:
+            break
+    error = np.maximum(stepping + truncation + found.between, 1e-14)
+    return _result(run, found, error, rtol)
+
+
+def _stepping(change: Array, before: Array | None) -> tuple[Array, Array]:
+    """Return the error left by a number of steps, from the change that halving them made.
+
+    It shrinks on as it has been seen to, at most as the order promises; unseen, as one halving of
+    an order of two does.
+    """
+    shrunk = 4.0 * np.ones_like(change)
+    if before is not None:
+        seen = float(np.max(before)) / max(float(np.max(change)), np.finfo(float).tiny)
+        shrunk[:] = np.clip(seen, 1.5, 2.0**_ORDER)
+    return change / (shrunk - 1.0), change
+
+
+@dataclass(frozen=True)
+class _Found:
+    """One run: times, motion of the structure, and the links' largest stresses over time.
+
+    ``between``: what the largest stress is beyond that at the steps, over it, by links.
+    """
+
+    time: Array
+    q: Array
+    qd: Array
+    stress: Array
+    between: Array
+
+
+class _Run:
+    """What one number of modes needs."""
+
+    def __init__(
+        self,
+        system: LinearPeriodic,
+        profile: SpeedProfile,
+        modes: int | None,
+        stations: int,
+        start: str,
+        length: str | None,
+        levels: int,
+    ) -> None:
+        self.full, self.profile, self.stations, self.start = system, profile, stations, start
+        self.modes, self.length, self.levels = modes, length, levels
+        self.links = tuple(beam.name for beam in required_structure(system).beams)
+        self.turns = float(profile.angle(np.array(profile.times[-1]))) / (2.0 * np.pi)
+        self.followed: LinearPeriodic = system if modes is None else reduced_system(system, modes)
+        self.changing = None if length is None else ChangingLength(system, profile, length, levels)
+
+    def richer(self) -> _Run:
+        """Return a run with more modes, or with more levels of a length that changes."""
+        modes: int | None = None
+        if self.modes is not None and self.modes + _MORE < self.full.size:
+            modes = self.modes + _MORE
+        levels = 2 * self.levels - 1
+        return _Run(self.full, self.profile, modes, self.stations, self.start, self.length, levels)
+
+    def first_steps(self) -> int:
+        """Return the number of steps of the first try."""
+        theta = np.linspace(0.0, self.followed.period, 16, endpoint=False)
+        mass, stiffness = self.followed.array("M", theta), self.followed.array("K", theta)
+        squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
+        ranked = np.sqrt(np.maximum(np.sort(squares, axis=-1), 0.0))
+        fastest = float(np.max(ranked[:, min(_FOLLOWED, ranked.shape[1]) - 1]))
+        periods = fastest * self.profile.duration / (2.0 * np.pi)
+        steps = int(np.ceil(max(_PER_TURN * self.turns, _PER_PERIOD * periods, 16)))
+        if 4 * steps > _MOST_STEPS:
+            raise bad(
+                "profile",
+                f"{self.profile.duration:g} s, {periods:.0f} periods of the modes followed",
+                f"at most {_MOST_STEPS // 4} steps",
+                "shorten it, or follow fewer modes",
+            )
+        return steps
+
+    def arrays(self, drive: Drive, time: Array) -> Mapping[str, Array]:
+        """Return the arrays at points of time, between the levels of a length that changes."""
+        if self.changing is None:
+            return arrays_of(self.followed, drive)
+        return self.changing.arrays(drive, time)
+
+    def solve(self, steps: int) -> _Found:
+        """Return the run with a number of steps."""
+        size = self.followed.size
+        time, states = march(self.arrays, self.profile, size, self._first, steps, _STAGES)
+        every = -(-len(time) // _MOST_SAMPLES)
+        q = np.empty((-(-len(time) // every), self.full.size))
+        qd = np.empty_like(q)
+        stress = np.empty((len(time), len(self.links)))
+        chunk = every * max(1, _CHUNK // every)
+        for begin in range(0, len(time), chunk):
+            part = slice(begin, begin + chunk)
+            own_q, own_qd, stress[part] = self._recovered(time[part], states[part])
+            kept = slice(begin // every, begin // every + -(-len(own_q) // every))
+            q[kept], qd[kept] = own_q[::every], own_qd[::every]
+        highest = np.maximum.reduceat(stress, np.arange(0, len(time), every), axis=0)
+        return _Found(time[::every], q, qd, highest, _between(stress))
+
+    def _recovered(self, time: Array, states: Array) -> tuple[Array, Array, Array]:
+        """Return coordinates, their rates and the largest stresses at points of time."""
+        size = self.followed.size
+        drive = Drive.of(self.profile, time)
+        arrays = self.arrays(drive, time)
+        drift = np.zeros_like(states[:, :size])
+        if "A" in arrays:
+            drift = drive.speed[:, None] * np.einsum("tij,tj->ti", arrays["A"], states[:, :size])
+        momentum = states[:, size:] - drift
+        rates = np.asarray(np.linalg.solve(arrays["M"], momentum[..., None])[..., 0])
+        q, qd = self._lifted(drive, states[:, :size], rates)
+        turned = None if self.changing is None else self.changing.directions(drive.angle, time)
+        return q, qd, largest_by_shape(self.full, drive.angle, q, self.stations, turned)
+
+    @cached_property
+    def _first(self) -> Array:
+        """The state at the first time."""
+        speed = float(self.profile.speeds[0])
+        size = self.followed.size
+        if self.start == "rest" or speed == 0.0:
+            return np.zeros(2 * size)
+        own = self.followed
+        for name, values in self.profile.geometry.items():
+            own = own.with_geometry(**{name: values[0]})
+        steady = steady_state(own, speed, method="cyclic", rtol=1e-8, stability=False)
+        q, qd = steady.q.reshape(-1, size)[0], steady.qd.reshape(-1, size)[0]
+        zero = np.zeros(1)
+        mass = own.array("M", zero, speed)[0]
+        return np.concatenate([q, mass @ qd + speed * own.array("A", zero, speed)[0] @ q])
+
+    def _lifted(self, drive: Drive, q: Array, qd: Array) -> tuple[Array, Array]:
+        """Return the coordinates of the structure, modes left out in equilibrium."""
+        own = self.followed
+        if not isinstance(own, ReducedSystem) or own.basis is None:
+            return q, qd
+        phi, slope = own.basis(drive.angle), own.basis.derivative(drive.angle)
+        full = np.einsum("tnm,tm->tn", phi, q)
+        rates = np.einsum("tnm,tm->tn", phi, qd)
+        rates += drive.speed[:, None] * np.einsum("tnm,tm->tn", slope, q)
+        return full + self._left_out(drive, phi), rates
+
+    def _left_out(self, at: Drive, phi: Array) -> Array:
+        """Return the equilibrium of the modes left out under the inertia of the rigid motion."""
+        arrays = arrays_of(self.full, at, ("K", "f", "g", "p"))
+        force = np.zeros((len(at.angle), self.full.size))
+        for name, power in (("f", 2), ("p", 0)):
+            if name in arrays:
+                force += at.speed[:, None] ** power * arrays[name]
+        if "g" in arrays:
+            force += at.acceleration[:, None] * arrays["g"]
+        stiffness = arrays["K"]
+        whole = np.linalg.solve(stiffness, force[..., None])[..., 0]
+        kept = np.einsum("tnm,tnk,tkj->tmj", phi, stiffness, phi)
+        own = np.linalg.solve(kept, np.einsum("tnm,tn->tm", phi, force)[..., None])[..., 0]
+        return np.asarray(whole - np.einsum("tnm,tm->tn", phi, own))
+
+    def deflection(self, found: _Found) -> float:
+        """Return the largest deflection over the length of a link."""
+        watch = self.full.relative_deflection
+        assert watch is not None
+        largest = 0.0
+        for begin in range(0, len(found.time), _CHUNK):
+            part = slice(begin, begin + _CHUNK)
+            time = found.time[part]
+            angle = self.profile.angle(time)
+            rows = watch(angle)
+            if self.changing is not None:
+                rows = self.changing.deflections(angle, time)
+            values = np.einsum("tkn,tn->tk", rows, found.q[part])
+            largest = max(largest, float(np.max(np.abs(values))))
+        return largest
+
+
+def _between(stress: Array) -> Array:
+    """Return what parabolas through local maxima add to the largest, over it, by links."""
+    low, top, high = stress[:-2], stress[1:-1], stress[2:]
+    bend = 2.0 * top - low - high
+    peaked = (top >= low) & (top >= high) & (bend > 0)
+    added = np.where(peaked, (low - high) ** 2 / (8.0 * np.where(peaked, bend, 1.0)), 0.0)
+    largest = np.maximum(np.max(stress, axis=0), np.finfo(float).tiny)
+    beyond = np.max(top + added, axis=0, initial=0.0) / largest - 1.0
+    return np.asarray(_BETWEEN * np.maximum(beyond, 0.0))
+
+
+def _difference(finer: _Found, coarse: _Found) -> Array:
+    """Return the relative change of each link's largest stress."""
+    new, old = np.max(finer.stress, axis=0), np.max(coarse.stress, axis=0)
+    return np.asarray(np.abs(new - old) / np.maximum(new, np.finfo(float).tiny))
+
+
+def _result(run: _Run, found: _Found, error: Array, rtol: float) -> Transient:
+    system, profile = run.full, run.profile
+    largest = run.deflection(found)
+    if largest > LINEAR_RANGE:
+        warnings.warn(
+            f"deflection reaches {largest:.3g} of the length of its link; the linear equations "
+            "hold to about 0.05: run through faster, or add damping",
+            LinearRangeWarning,
+            stacklevel=3,
+        )
+    followed = "all coordinates" if run.followed is system else f"{run.followed.size} modes or more"
+    return Transient(
+        method=f"Gauss-Legendre collocation of order {_ORDER}, {followed}",
+        error=error,
+        error_norm="largest stress of each link over the run, relative",
+        checks={
+            "converged": Check(float(np.max(error)) / rtol, 1.0),
+            "linear range": Check(largest, LINEAR_RANGE),
+        },
+        provenance=provenance(dict(system.provenance)),
+        time=found.time,
+        angle=profile.angle(found.time),
+        speed=profile.speed(found.time),
+        q=found.q,
+        qd=found.qd,
+        links=run.links,
+        stress=found.stress,
+        profile=profile,
+    )
+
+
+def _check_stations(stations: int) -> None:
+    whole = isinstance(stations, Integral) and not isinstance(stations, bool)
+    if not whole or not 2 <= stations <= 1000:
+        raise bad("stations", repr(stations), "a whole number from 2 to 1000", "choose 9")
+
+
+def _check(
+    system: LinearPeriodic, profile: SpeedProfile, modes: int | None, rtol: float, start: str
+) -> None:
+    problems = []
+    if not isinstance(profile, SpeedProfile):
+        raise bad("profile", repr(profile), "a SpeedProfile", "make one: SpeedProfile.ramp")
+    if system.structure is None or not system.structure.moving:
+        fix = "make it with linkage_system, or load a scene of beams"
+        problems.append(Problem("system", "no linkage of beams", "one", fix))
+    whole = isinstance(modes, Integral) and not isinstance(modes, bool) and modes >= 1
+    if modes is not None and not whole:
+        problems.append(Problem("modes", repr(modes), "a number from 1, or None", "choose 8"))
+    if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 0.1):
+        problems.append(Problem("rtol", repr(rtol), "a number from 1e-6 to 0.1", "choose 0.01"))
+    if start not in ("steady", "rest"):
+        problems.append(Problem("start", repr(start), "'steady' or 'rest'", "choose one"))
+    strange = sorted(set(profile.geometry) - set(system.geometry))
+    if strange:
+        known = f"some of {sorted(system.geometry)}"
+        problems.append(Problem("profile.geometry", str(strange), known, "correct the name"))
+    if len(profile.geometry) > 1:
+        fix = "change one after the other"
+        problems.append(Problem("profile.geometry", "several lengths", "one at a time", fix))
+    if profile.geometry and modes is not None:
+        fix = "set modes=None: the modes of one length are not those of another"
+        problems.append(Problem("modes", str(modes), "None where a length changes", fix))
+    if problems:
+        raise BadInput(*problems)

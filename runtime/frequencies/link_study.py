@@ -1,0 +1,328 @@
+"""Mean natural frequencies against the lengths and sections of the links (Aannaque 9.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..beams.linear import linear_system
+from ..beams.section import Section
+from ..beams.structure import Beam, Structure
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..floquet.first_order import numbers
+from ..progress import bar
+from ..results import Check, Result, provenance
+from .eigenproblem import held_frequencies
+from .means import cycle_mean
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+# Powers of thickness and width in area and second moment of a flat bar.
+_POWERS: Mapping[str, tuple[int, int]] = {"thickness": (1, 3), "width": (1, 1)}
+QUANTITIES = ("length", *_POWERS)
+# Relative steps of the differences.
+_STEPS = (0.02, 0.01)
+# Relative error of a mean.
+_ENOUGH = 1e-8
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkFrequencies(Result):
+    """Mean natural frequencies of a mechanism against one number of one link.
+
+    Attributes
+    ----------
+    link, quantity : str
+        What varies: ``length`` [m], or ``thickness`` or ``width`` over the link's own.
+    value : ndarray
+        Its values, ``(nv,)``.
+    mean : ndarray
+        Mean natural frequencies over the period, crank held, rank by rank [rad/s],
+        ``(nv, count)``.
+    least, largest : ndarray
+        Their range over the period [rad/s], ``(nv, count)``, from 64 angles.
+    pinned : ndarray
+        First natural frequency of each link by itself, pinned at both ends [rad/s],
+        ``(nv, links)``.
+    links : tuple of str
+        Names of the links.
+    error : ndarray
+        Error of ``mean`` [rad/s], ``(nv, count)``: of the integral and of round-off.
+    """
+
+    link: str
+    quantity: str
+    value: Array
+    mean: Array
+    least: Array
+    largest: Array
+    pinned: Array
+    links: tuple[str, ...]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "value": ("value",),
+        **dict.fromkeys(("mean", "least", "largest", "error"), ("value", "mode")),
+        "pinned": ("value", "link"),
+    }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the means with their ranges, and the pinned links dashed (Fig. 9.1)."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for k in range(self.mean.shape[1]):
+            colour = f"C{k}"
+            ax.plot(self.value, self.mean[:, k], color=colour, label=f"mean of mode {k + 1}")
+            ax.fill_between(
+                self.value, self.least[:, k], self.largest[:, k], color=colour, alpha=0.15, lw=0
+            )
+        for name, values, style in zip(self.links, self.pinned.T, ("-.", "--", ":"), strict=False):
+            ax.plot(self.value, values, style, color="0.3", lw=1.0, label=f"{name}, pinned")
+        unit = "[m]" if self.quantity == "length" else "over its own"
+        ax.set_xlabel(f"{self.quantity} of the {self.link} {unit}")
+        ax.set_ylabel("natural frequency [rad/s]")
+        ax.set_ylim(0.0, 1.15 * float(np.max(self.largest)))
+        ax.legend(fontsize=8)
+        return ax
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrequencyExponents(Result):
+    """How the mean natural frequencies depend on each number of each link.
+
+    Attributes
+    ----------
+    rows : tuple of str
+        What varies, ``"coupler length"`` and so on, and lumped masses as ``"mass at B"``.
+    exponent : ndarray
+        ``d ln(mean)/d ln(quantity)``, ``(rows, count)``: -2 where a frequency is all that of one
+        pinned link and the quantity its length.
+    mean : ndarray
+        The means [rad/s], ``(count,)``.
+    error : ndarray
+        Error of each exponent, ``(rows, count)``: of the differences, and of the means.
+    """
+
+    rows: tuple[str, ...]
+    exponent: Array
+    mean: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("exponent", "error"), ("row", "mode")),
+        "mean": ("mode",),
+    }
+
+    def table(self) -> str:
+        """Return the exponents as a Markdown table."""
+        modes = range(1, self.exponent.shape[1] + 1)
+        lines = ["| | " + " | ".join(f"mode {k}" for k in modes) + " |"]
+        lines.append("|---" * (len(modes) + 1) + "|")
+        for row, values in zip(self.rows, self.exponent, strict=True):
+            lines.append(f"| {row} | " + " | ".join(f"{v:+.3f}" for v in values) + " |")
+        return "\n".join(lines)
+
+
+def pinned_frequency(section: Section, length: float) -> float:
+    """Return the first natural frequency [rad/s] of a beam pinned at both ends."""
+    return float(
+        (np.pi / length) ** 2 * np.sqrt(section.bending_stiffness / section.mass_per_length)
+    )
+
+
+def link_frequencies(
+    system: LinearPeriodic,
+    link: str,
+    quantity: str,
+    value: ArrayLike,
+    *,
+    count: int = 1,
+    progress: bool = False,
+) -> LinkFrequencies:
+    """Return the mean natural frequencies against the length or section of a link.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        A linkage of beams, from ``linkage_system`` or a scene.
+    link : str
+        Its link; of ``length`` also ``frame``.
+    quantity : str
+        ``length`` [m]; ``thickness`` or ``width``, over the link's own, of a flat bar: the area
+        goes with both, the second moment with the cube of the thickness.
+    value : array_like
+        Its values, ``(nv,)``.
+    count : int
+        Number of modes.
+    progress : bool
+        Whether to show a progress bar (extra ``progress``).
+
+    Returns
+    -------
+    LinkFrequencies
+
+    Raises
+    ------
+    BadInput
+        If the system has no such link, a value is not positive, or the crank cannot turn fully
+        with it.
+    """
+    structure, names = _structure(system)
+    _check(system, names, link, quantity)
+    values = np.atleast_1d(numbers("value", value))
+    if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values) & (values > 0)):
+        raise bad("value", value, "positive numbers, one row", "correct them")
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= system.size:
+        raise bad("count", repr(count), f"a whole number from 1 to {system.size}", "correct it")
+    rows, pinned = [], []
+    with bar(progress, len(values)) as tick:
+        for k, number in enumerate(values):
+            changed = _changed(system, link, quantity, float(number))
+            beams = _structure(changed)[0].beams
+            pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
+            rows.append(_means(changed, count))
+            if tick is not None:
+                tick(k + 1)
+    mean, error, least, largest = (np.stack([row[i] for row in rows]) for i in range(4))
+    return LinkFrequencies(
+        method="means over the period of the frequencies with the crank held",
+        error=error,
+        error_norm="absolute, of each mean [rad/s], as that of the finite elements",
+        checks={"mean": Check(float(np.max(error / mean)), 1e-8)},
+        provenance=provenance(structure.provenance),
+        link=link,
+        quantity=quantity,
+        value=values,
+        mean=mean,
+        least=least,
+        largest=largest,
+        pinned=np.array(pinned),
+        links=names,
+    )
+
+
+def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyExponents:
+    """Return how the mean natural frequencies depend on every length, section and lumped mass.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        A linkage of beams, from ``linkage_system`` or a scene.
+    count : int
+        Number of modes.
+
+    Returns
+    -------
+    FrequencyExponents
+
+    Raises
+    ------
+    BadInput
+        If the system is not a linkage of beams.
+    """
+    structure, names = _structure(system)
+    mean, own_error, _, _ = _means(system, count)
+    rows, exponent, error = [], [], []
+    lengths = [name for name in (*names, "frame") if name in system.geometry]
+    wanted = [(name, "length") for name in lengths]
+    wanted += [(name, quantity) for name in names for quantity in _POWERS]
+    changes = {
+        f"{name} {quantity}": partial(_scaled, system, name, quantity) for name, quantity in wanted
+    }
+    changes |= {
+        f"mass at {node.name}": partial(_with_mass, system, node.name)
+        for node in structure.nodes
+        if node.mass and not {"x", "y"} <= set(node.held)
+    }
+    for row, change in changes.items():
+        # Symmetric differences of the logarithms at two steps, extrapolated.
+        slopes = []
+        for step in _STEPS:
+            ends = [np.log(_means(change(np.exp(sign * step)), count)[0]) for sign in (1, -1)]
+            slopes.append((ends[0] - ends[1]) / (2.0 * step))
+        coarse, fine = slopes
+        best = fine + (fine - coarse) / 3.0
+        rows.append(row)
+        exponent.append(best)
+        error.append(np.abs(best - fine) + 2.0 * own_error / mean / _STEPS[1])
+    return FrequencyExponents(
+        method="symmetric differences of the means, extrapolated",
+        error=np.stack(error),
+        error_norm="absolute, of each exponent",
+        provenance=provenance(structure.provenance),
+        rows=tuple(rows),
+        exponent=np.stack(exponent),
+        mean=mean,
+    )
+
+
+def _structure(system: LinearPeriodic) -> tuple[Structure, tuple[str, ...]]:
+    if system.structure is None:
+        raise bad("system", "one without beams", "a linkage of beams", "use linkage_system")
+    return system.structure, tuple(beam.name for beam in system.structure.beams)
+
+
+def _check(system: LinearPeriodic, names: tuple[str, ...], link: str, quantity: str) -> None:
+    if quantity not in QUANTITIES:
+        raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "choose one")
+    known = tuple(system.geometry) if quantity == "length" else names
+    if link not in known:
+        raise bad("link", repr(link), f"one of {known}", "correct the name")
+
+
+def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Array]:
+    """Return means, their errors, and least and largest values over the period."""
+
+    def values(theta: Array) -> tuple[Array, Array]:
+        frequency, error = held_frequencies(system, theta, {})
+        return frequency[:, :count], error[:, :count]
+
+    mean, error = cycle_mean(values, system.period, enough=_ENOUGH)
+    seen = values(system.period * np.arange(64) / 64)[0]
+    return mean, error, seen.min(axis=0), seen.max(axis=0)
+
+
+def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> LinearPeriodic:
+    if quantity == "length":
+        return system.with_geometry(**{link: value})
+    area, second = (value**power for power in _POWERS[quantity])
+    structure, _ = _structure(system)
+    beams = tuple(
+        _with_section(beam, area, second) if beam.name == link else beam for beam in structure.beams
+    )
+    return linear_system(replace(structure, beams=beams), geometric_stiffness=False)
+
+
+def _with_section(beam: Beam, area: float, second: float) -> Beam:
+    section = beam.section
+    shear = section.shear_stiffness
+    made = replace(
+        section,
+        area=section.area * area,
+        second_moment=section.second_moment * second,
+        # k G A goes with the area.
+        shear_stiffness=None if shear is None else shear * area,
+    )
+    return replace(beam, section=made)
+
+
+def _scaled(system: LinearPeriodic, link: str, quantity: str, factor: float) -> LinearPeriodic:
+    own = system.geometry[link] if quantity == "length" else 1.0
+    return _changed(system, link, quantity, own * factor)
+
+
+def _with_mass(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
+    structure, _ = _structure(system)
+    nodes = tuple(
+        replace(node, mass=node.mass * factor) if node.name == name else node
+        for node in structure.nodes
+    )
+    return linear_system(replace(structure, nodes=nodes), geometric_stiffness=False)

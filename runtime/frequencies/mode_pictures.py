@@ -1,0 +1,175 @@
+"""Pictures of mode shapes on the held linkage (Aannaque Figs. 8.9-8.18)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..beams.elements import shape_functions
+from ..beams.structure import Structure
+from ..errors import bad
+from ..families import LinearPeriodic
+from .eigenproblem import crank_angles
+from .natural import NaturalFrequencies, natural_frequencies
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+_POINTS = 17
+# Largest deflection drawn, over the longest link.
+_DRAWN = 0.12
+_POSITIONS = 10
+
+
+def deflected_links(
+    structure: Structure, theta: float, shape: Array
+) -> dict[str, tuple[Array, Array]]:
+    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m].
+
+    Parameters
+    ----------
+    structure : Structure
+        Beams and nodes.
+    theta : float
+        Crank angle [rad].
+    shape : ndarray
+        Free coordinates, ``(n,)``.
+    """
+    full = np.zeros(len(structure.freedoms.all))
+    full[structure.freedoms.free] = shape
+    motion = structure.configuration(np.array([theta]))
+    found: dict[str, tuple[list[Array], list[Array]]] = {}
+    places = np.linspace(0.0, 1.0, _POINTS)
+    for element in structure.elements:
+        beam, section = element.beam, element.beam.section
+        along, across = shape_functions(
+            beam.kind,
+            places,
+            element.length,
+            bending_stiffness=section.bending_stiffness,
+            shear_stiffness=section.shear_stiffness,
+        )
+        own = motion[beam.name]
+        angle = float(own.angle[0])
+        axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        local = full[element.indices].copy()
+        for k in (0, 3):
+            local[k : k + 2] = axes @ local[k : k + 2]
+        moved = np.stack([along @ local, across @ local], axis=-1) @ axes
+        at = element.start + element.length * places
+        rigid, bent = found.setdefault(beam.name, ([], []))
+        rigid.append(own.origin[0] + at[:, None] * axes[0])
+        bent.append(moved)
+    return {name: (np.concatenate(a), np.concatenate(b)) for name, (a, b) in found.items()}
+
+
+def draw_mode(
+    system: LinearPeriodic,
+    theta: float = 0.0,
+    mode: int = 1,
+    ax: Axes | None = None,
+    *,
+    found: NaturalFrequencies | None = None,
+) -> Axes:
+    """Draw a mode of the held linkage over its rigid position and return the axes.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        A linkage or frame of beams.
+    theta : float
+        Crank angle [rad].
+    mode : int
+        Which mode, from 1.
+    ax : Axes, optional
+        Axes to draw into.
+    found : NaturalFrequencies, optional
+        Of this system, with the angle among its angles: the mode is then that curve, and its sign
+        is steady from angle to angle.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    BadInput
+        If the system has no beams, or the mode or the angle is not there.
+    """
+    from ..plotting import axes_or_new
+
+    structure = _structure(system)
+    if isinstance(mode, bool) or not isinstance(mode, int) or not 1 <= mode <= system.size:
+        raise bad("mode", repr(mode), f"a whole number from 1 to {system.size}", "correct it")
+    held = natural_frequencies(system, float(theta), mode) if found is None else found
+    at = int(np.argmin(np.abs(held.theta - theta)))
+    if abs(held.theta[at] - theta) > 1e-9 or mode > held.shape.shape[-1]:
+        raise bad("found", "no such angle or mode", "frequencies that have both", "leave it out")
+    links = deflected_links(structure, float(theta), held.shape[at, :, mode - 1])
+    longest = max(beam.length for beam in structure.beams)
+    largest = max(float(np.max(np.linalg.norm(bent, axis=1))) for _, bent in links.values())
+    factor = _DRAWN * longest / largest
+    ax = axes_or_new(ax)
+    for rigid, bent in links.values():
+        ax.plot(*rigid.T, "--", color="0.6", lw=0.8)
+        ax.plot(*(rigid + factor * bent).T, color="C0", lw=1.5)
+    for place in structure.places(np.array([theta])).values():
+        ax.plot(*place[0], "o", color="0.3", ms=3, mfc="w")
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    ax.set_title(
+        f"{np.degrees(theta):.0f} deg, mode {mode}: {held.tracked[at, mode - 1]:.1f} rad/s",
+        fontsize=7,
+    )
+    return ax
+
+
+def draw_modes(
+    system: LinearPeriodic, theta: Sequence[float] | Array | None = None, modes: int = 3
+) -> Figure:
+    """Return a figure of the first modes, a row to a crank angle.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        A linkage or frame of beams.
+    theta : array_like, optional
+        Crank angles [rad]; ten even ones by default, every 36 degrees.
+    modes : int
+        How many modes.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    BadInput
+        As :func:`draw_mode`.
+    """
+    from ..plotting import new_figure
+
+    _structure(system)
+    if theta is None:
+        angles = np.linspace(0.0, system.period, _POSITIONS, endpoint=False)
+    else:
+        angles = crank_angles(system, theta)
+    found = natural_frequencies(system, angles, modes)
+    figure = new_figure(2.6 * modes, 1.7 * len(angles))
+    axes = figure.subplots(len(angles), modes, squeeze=False)
+    for row, angle in zip(axes, angles, strict=True):
+        for k, ax in enumerate(row):
+            draw_mode(system, float(angle), k + 1, ax, found=found)
+    return figure
+
+
+def _structure(system: LinearPeriodic) -> Structure:
+    if system.structure is None:
+        raise bad("system", "one without beams", "a linkage or frame of beams", "use its arrays")
+    return system.structure

@@ -1,0 +1,291 @@
+"""Natural frequencies and shapes over the crank angle, followed from angle to angle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..results import Check, Result, provenance
+from .curves import Curves, followed_shapes
+from .eigenproblem import (
+    assurance,
+    crank_angles,
+    held_arrays,
+    held_frequencies,
+    held_modes,
+)
+from .encounters import Arrays, Encounter, Modes
+from .means import cycle_mean
+from .tracking import CLEAR, Walk, walk
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+_FEW = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class NaturalFrequencies(Result):
+    """Natural frequencies of a linear periodic system with its crank held, mode by mode.
+
+    Attributes
+    ----------
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    frequency : ndarray
+        Natural frequencies [rad/s], rising, shape ``(nt, count)``.
+    tracked : ndarray
+        The same along the curves that begin at the first angle, in their order there: where two
+        cross each keeps to its own, shape ``(nt, count)`` [rad/s].
+    branch : ndarray of int
+        Number of the curve at each rank, from 1, shape ``(nt, count)``.
+    shape : ndarray
+        Shapes along the curves, of unit modal mass and steady sign, ``(nt, n, count)``.
+    mac : ndarray
+        Mass-weighted modal assurance of each shape and that of its curve at the first angle,
+        ``(nt, count)``: how much of it is left.
+    encounters : tuple of Encounter
+        Crossings and veerings over the period, by angle, of these modes and with the next one.
+    closure : ndarray of int
+        Which curve each becomes after a whole turn, from 1, shape ``(count,)``.
+    sign : ndarray
+        1 or -1: whether its shape comes back as itself or turned over, ``(count,)``; 0 where the
+        curve does not come back.
+    mean : ndarray
+        Means over the period, rank by rank [rad/s], ``(count,)``.
+    mean_error : ndarray
+        Their errors [rad/s], ``(count,)``: of the integral and of round-off.
+    branch_mean, branch_mean_error : ndarray
+        The same of the curves, each over the turns after which it comes back, ``(count,)``.
+    error : ndarray
+        Round-off of ``frequency`` [rad/s], ``(nt, count)``; that of the elements is not in it.
+    speed : float
+        Crank speed [rad/s] of the axial forces.
+    labels : tuple of str
+        Names of the coordinates.
+    """
+
+    theta: Array
+    frequency: Array
+    tracked: Array
+    branch: NDArray[np.int64]
+    shape: Array
+    mac: Array
+    encounters: tuple[Encounter, ...]
+    closure: NDArray[np.int64]
+    sign: Array
+    mean: Array
+    mean_error: Array
+    branch_mean: Array
+    branch_mean_error: Array
+    speed: float
+    labels: tuple[str, ...]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "theta": ("angle",),
+        "shape": ("angle", "coordinate", "curve"),
+        **dict.fromkeys(("frequency", "error", "branch"), ("angle", "rank")),
+        **dict.fromkeys(("tracked", "mac"), ("angle", "curve")),
+        **dict.fromkeys(("mean", "mean_error"), ("rank",)),
+        **dict.fromkeys(("closure", "sign", "branch_mean", "branch_mean_error"), ("curve",)),
+        **dict.fromkeys(("encounter_angle", "encounter_rank", "encounter_gap"), ("encounter",)),
+        "encounter_width": ("encounter",),
+    }
+    exported: ClassVar[tuple[str, ...]] = (
+        "encounter_angle",
+        "encounter_rank",
+        "encounter_gap",
+        "encounter_width",
+    )
+
+    @property
+    def encounter_angle(self) -> Array:
+        """Crank angles of the encounters [rad]."""
+        return np.array([found.angle for found in self.encounters], dtype=float)
+
+    @property
+    def encounter_rank(self) -> NDArray[np.int64]:
+        """Lower rank of each encounter, from 1."""
+        return np.array([found.lower for found in self.encounters], dtype=np.int64)
+
+    @property
+    def encounter_gap(self) -> Array:
+        """Least gap of each encounter [rad/s]."""
+        return np.array([found.gap for found in self.encounters], dtype=float)
+
+    @property
+    def encounter_width(self) -> Array:
+        """Width of each veering [rad]; 0 of a crossing."""
+        return np.array([found.width for found in self.encounters], dtype=float)
+
+    @property
+    def crossings(self) -> tuple[Encounter, ...]:
+        """Where curves cross."""
+        return tuple(found for found in self.encounters if found.kind == "crossing")
+
+    @property
+    def veerings(self) -> tuple[Encounter, ...]:
+        """Where curves veer away from each other."""
+        return tuple(found for found in self.encounters if found.kind == "veering")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the curves over the crank angle, crossings and veerings marked."""
+        from ..plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for k in range(self.tracked.shape[1]):
+            ax.plot(np.degrees(self.theta), self.tracked[:, k], lw=1.2, label=f"mode {k + 1}")
+        low, high = np.min(self.theta), np.max(self.theta)
+        marks = (("x", "k", "crossing", self.crossings), ("o", "0.35", "veering", self.veerings))
+        for marker, colour, name, found in marks:
+            seen = [one for one in found if low <= one.angle <= high]
+            face = "none" if marker == "o" else colour
+            if seen:
+                places = np.degrees([one.angle for one in seen])
+                heights = [one.frequency for one in seen]
+                ax.scatter(
+                    places,
+                    heights,
+                    marker=marker,
+                    s=36,
+                    edgecolors=None if marker == "x" else colour,
+                    facecolors=face,
+                    label=name,
+                    zorder=3,
+                )
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("natural frequency [rad/s]")
+        ax.set_ylim(bottom=0.0)
+        ax.legend(fontsize=8, ncols=2)
+        return ax
+
+
+def natural_frequencies(
+    system: LinearPeriodic,
+    theta: ArrayLike | None = None,
+    count: int | None = None,
+    *,
+    speed: float = 0.0,
+    **parameters: float,
+) -> NaturalFrequencies:
+    """Return natural frequencies and shapes with the crank held at angles (Aannaque 4.40).
+
+    ``(K + Kg) u = omega^2 M u`` at each angle.  The shapes are followed from angle to angle by
+    their mass-weighted modal assurance; angles are added until it is clear which goes on as which.
+    Where two frequencies all but meet, the least gap decides: none beyond round-off is a crossing,
+    each shape going on along its own curve; else it is a veering, and the curves keep apart.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    theta : array_like, optional
+        Crank angles [rad], shape ``(nt,)``; 361 over a period by default.  The curves are numbered
+        by rank at the first; they are followed over a whole period in any case.
+    count : int, optional
+        Number of modes, the lowest; 6, or all of fewer, by default.
+    speed : float
+        Crank speed [rad/s] whose axial forces stiffen or soften; neither Coriolis nor centrifugal
+        terms play a part: see :func:`~.campbell.campbell`.
+    **parameters : float
+        Parameter values that replace the system's own.
+
+    Returns
+    -------
+    NaturalFrequencies
+        Its checks: ``assured``, what is lacking to 1 of the least assurance between neighbouring
+        angles; ``mean``, the largest error of a mean over itself.
+
+    Raises
+    ------
+    BadInput
+        If an angle, the count or the speed is unusable, a parameter is unknown, or mass or
+        stiffness is not positive definite at some angle.
+    """
+    angles = crank_angles(system, theta)
+    if count is None:
+        count = min(system.size, _FEW)
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= system.size:
+        raise bad("count", repr(count), f"a whole number from 1 to {system.size}", "correct it")
+    if not (isinstance(speed, (int, float)) and np.isfinite(speed) and speed >= 0.0):
+        raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")
+    period, start = system.period, float(angles[0])
+    modes = partial(held_modes, system, parameters=parameters, speed=float(speed))
+    arrays = partial(held_arrays, system, parameters=parameters, speed=float(speed))
+    path = _walk(modes, arrays, period, count, start)
+    held = modes(angles)
+    curves = Curves(path, start, system.size, count, period)
+    tracked, branch = curves.follow(angles, held.frequency), curves.labels(angles)[:, :count]
+    shape, sign = followed_shapes(modes, curves, angles)
+    values = partial(_values, system, parameters, float(speed), curves)
+    means, errors = cycle_mean(values, period, [one.angle for one in path.encounters])
+    closure = curves.closure
+    return NaturalFrequencies(
+        method="generalised eigenvalue problem of K + Kg and M, followed by modal assurance",
+        error=held.error[:, :count],
+        error_norm="absolute, of each frequency [rad/s], round-off alone",
+        checks={
+            "assured": Check(1.0 - path.assured, 1.0 - CLEAR),
+            "mean": Check(float(np.max(errors / means)), 1e-9),
+        },
+        provenance=provenance(system.changed_provenance(**parameters)),
+        theta=angles,
+        frequency=held.frequency[:, :count],
+        tracked=tracked,
+        branch=branch + 1,
+        shape=shape,
+        mac=_kept(shape, held.mass),
+        encounters=path.encounters,
+        closure=closure + 1,
+        sign=np.where(closure == np.arange(count), sign, 0.0),
+        mean=means[:count],
+        mean_error=errors[:count],
+        branch_mean=means[count:],
+        branch_mean_error=errors[count:],
+        speed=float(speed),
+        labels=system.labels,
+    )
+
+
+def _walk(modes: Modes, arrays: Arrays, period: float, count: int, start: float) -> Walk:
+    """Return a turn of the crank, of so many modes that no curve asked for leaves them."""
+    size = modes(np.array([start])).frequency.shape[-1]
+    watched = min(count, size)
+    while True:
+        path = walk(modes, arrays, period, watched)
+        if Curves(path, start, size, count, period).highest < watched or watched == size:
+            kept = tuple(one for one in path.encounters if one.lower <= max(count, watched))
+            return Walk(kept, path.theta, path.assured)
+        watched = min(watched + 4, size)
+
+
+def _values(
+    system: LinearPeriodic,
+    parameters: Mapping[str, float],
+    speed: float,
+    curves: Curves,
+    theta: Array,
+) -> tuple[Array, Array]:
+    """Return frequencies by rank and by curve, and their round-off, ``(nt, 2 count)`` each."""
+    frequency, error = held_frequencies(system, theta, parameters, speed)
+    both = []
+    for part in (frequency, error):
+        # A curve that comes back only after several turns has its mean over all of them.
+        turns = [curves.follow(theta + k * curves.period, part) for k in range(curves.turns)]
+        both.append(np.concatenate([part[:, : curves.count], np.mean(turns, axis=0)], axis=1))
+    return both[0], both[1]
+
+
+def _kept(shape: Array, mass: Array) -> Array:
+    """Return the assurance of each shape and that of its curve at the first angle."""
+    found = assurance(np.broadcast_to(shape[:1], shape.shape), shape, 0.5 * (mass[:1] + mass))
+    return np.asarray(np.diagonal(found, axis1=-2, axis2=-1))

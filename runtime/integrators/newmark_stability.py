@@ -1,0 +1,92 @@
+"""Up to which step Newmark's scheme is stable (Aannaque, Fig. 6.1), from the derived margins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import newmark_stability as _emitted
+from ..errors import bad
+
+Array = NDArray[np.float64]
+
+_margins: Callable[..., tuple[Array, ...]] = _emitted.margins
+# Phases omega h between which a loss of stability is looked for, and how finely at first.
+_PHASES = np.geomspace(1e-6, 1e6, 481)
+_HALVINGS = 60
+
+
+def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
+    """Return the largest stable phase ``omega h`` of a step, of one freedom.
+
+    Parameters
+    ----------
+    gamma, beta : array_like
+        Parameters of the scheme; they broadcast.
+    damping : array_like
+        Damping over the critical, not negative.
+
+    Returns
+    -------
+    ndarray
+        The limit [rad]; inf where no step up to 1e6 is too long (stable without condition), 0
+        where none is short enough.
+
+    Raises
+    ------
+    BadInput
+        If a number is not finite, or negative.
+
+    Notes
+    -----
+    A multiplier may be on the unit circle: so it is at ``gamma = 1/2`` without damping.  The limit
+    is where a pair leaves the circle or one multiplier passes -1.
+    """
+    values = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
+    if not all(np.all(np.isfinite(v)) and np.all(v >= 0.0) for v in values):
+        raise bad(
+            "newmark_limit", "a number that is not finite or negative", "0 or more", "correct it"
+        )
+    g, b, z = (v[..., None] for v in values)
+    held = _stable(g, b, z, _PHASES)
+    first = np.argmin(held, axis=-1)
+    low = np.where(first > 0, _PHASES[first - 1], 0.0)
+    high = _PHASES[first]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        kept = _stable(values[0], values[1], values[2], middle)
+        low, high = np.where(kept, middle, low), np.where(kept, high, middle)
+    limit = np.where(first > 0, low, 0.0)
+    return np.where(np.all(held, axis=-1), np.inf, limit)
+
+
+def newmark_regions(
+    gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0
+) -> NDArray[np.int64]:
+    """Return the region of Fig. 6.1 that a scheme lies in.
+
+    Parameters
+    ----------
+    gamma, beta, damping : array_like
+        As :func:`newmark_limit`.
+
+    Returns
+    -------
+    ndarray of int
+        0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
+        multipliers at long steps, 3 stable without condition with a pair at every step.
+    """
+    limit = newmark_limit(gamma, beta, damping)
+    turning = _margins(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)), _PHASES[-1])
+    paired = np.broadcast_to(turning[3] >= 0.0, limit.shape)
+    found = np.where(limit > 0.0, 1, 0)
+    found = np.where(np.isinf(limit), 2, found)
+    return np.where(np.isinf(limit) & paired, 3, found).astype(np.int64)
+
+
+def _stable(gamma: Array, beta: Array, damping: Array, phase: Array) -> NDArray[np.bool_]:
+    growth, flip, static, _ = _margins(gamma, beta, damping, phase)
+    value: NDArray[np.bool_] = (growth >= 0.0) & (flip >= 0.0) & (static >= 0.0)
+    return value

@@ -1,0 +1,218 @@
+"""A linear periodic system on the lowest modes of its own mechanism, as a system of that family."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from ..families import LinearPeriodic, Term
+from ..floquet.first_order import even_angles
+from .subspaces import MovingBasis, moving_basis
+from .trigonometric import Array, interpolated, tail
+
+# Even angles from which the reduced arrays are interpolated.
+_FEWEST, _MOST = 128, 2048
+# Their upper harmonics, over the largest, at which they are taken to be resolved.
+_RESOLVED = 1e-13
+_STALLED = 0.1
+
+
+@dataclass(frozen=True)
+class ReducedSystem(LinearPeriodic):
+    """A linear periodic system on a moving basis: ``q = Phi(theta) eta``.
+
+    It keeps the quadratic Lagrangian, so that its flow is symplectic where the full one is, and
+    all solvers of the family take it.
+
+    Attributes
+    ----------
+    full : LinearPeriodic or None
+        The system that was reduced.
+    basis : MovingBasis or None
+        Phi.
+    """
+
+    full: LinearPeriodic | None = None
+    basis: MovingBasis | None = None
+
+    def lift(self, eta: Array, theta: Array) -> Array:
+        """Return the coordinates ``Phi eta`` of the full system.
+
+        Parameters
+        ----------
+        eta : ndarray, shape (..., nt, m)
+            Reduced coordinates.
+        theta : ndarray, shape (nt,)
+            Crank angles [rad].
+
+        Returns
+        -------
+        ndarray, shape (..., nt, n)
+            What the modes left out would add is missing: see :func:`modal_steady_state`.
+        """
+        assert self.basis is not None
+        return np.asarray(np.einsum("tnm,...tm->...tn", self.basis(theta), eta))
+
+
+def reduced_system(
+    system: LinearPeriodic, modes: int, *, basis: MovingBasis | None = None
+) -> ReducedSystem:
+    """Return a system on its lowest natural modes, which move with the mechanism.
+
+    With ``q = Phi(theta) eta``, ``qd = Phi etad + td Phi' eta``, the Lagrangian of the family
+    keeps its form:
+
+        M -> Phi^T M Phi,   A -> Phi^T (M Phi' + A Phi),
+        B -> Phi'^T M Phi' + Phi'^T A Phi + (Phi'^T A Phi)^T + Phi^T B Phi,
+        C -> Phi^T C Phi,   D -> Phi^T (C Phi' + D Phi),
+
+    all other arrays as stiffnesses and forces.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The full system, damping and all.
+    modes : int
+        Number m of modes.  The best choice leaves a wide gap to the next frequency.
+    basis : MovingBasis, optional
+        Phi where it is known already.
+
+    Returns
+    -------
+    ReducedSystem
+        Of size m, with the parameters of the full system; the basis is that of its present
+        parameter values.  Its arrays are trigonometric series to round-off.
+
+    Raises
+    ------
+    BadInput
+        If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
+    """
+    phi = moving_basis(system, modes) if basis is None else basis
+    terms = _fixed_terms(system, phi) if phi.fixed else _moving_terms(system, phi)
+    more: dict[str, object] = {}
+    if system.shape is not None or system.moving_shape is not None:
+        more["moving_shape"] = partial(_shapes, system, phi)
+    if system.relative_deflection is not None:
+        more["relative_deflection"] = partial(_deflections, system.relative_deflection, phi)
+    rebuild = None
+    if system.rebuild is not None:
+        rebuild = partial(_reduced_anew, system.rebuild, dict(system.parameters), modes)
+    return ReducedSystem(
+        size=phi.values.shape[-1],
+        terms=terms,
+        parameters=system.parameters,
+        scales=system.scales,
+        period=system.period,
+        labels=tuple(f"eta{k + 1}" for k in range(phi.values.shape[-1])),
+        reference_length=system.reference_length,
+        provenance={**system.provenance, "modes kept": str(phi.values.shape[-1])},
+        geometry=system.geometry,
+        rebuild=rebuild,
+        limits=system.limits,
+        full=system,
+        basis=phi,
+        **more,  # type: ignore[arg-type]
+    )
+
+
+def _reduced_anew(
+    rebuild: Callable[[Mapping[str, float]], LinearPeriodic],
+    parameters: Mapping[str, float],
+    modes: int,
+    geometry: Mapping[str, float],
+) -> LinearPeriodic:
+    """Return another geometry's system on its own modes."""
+    return reduced_system(replace(rebuild(geometry), parameters=dict(parameters)), modes)
+
+
+def _shapes(system: LinearPeriodic, phi: MovingBasis, x: Array, theta: Array) -> Array:
+    shapes = system.shapes(x, theta)
+    assert shapes is not None
+    return np.asarray(shapes @ phi(theta))
+
+
+def _deflections(full: Callable[[Array], Array], phi: MovingBasis, theta: Array) -> Array:
+    return np.asarray(full(theta) @ phi(theta))
+
+
+def projections(array: str, values: Array, phi: Array, slope: Array) -> Iterator[tuple[str, Array]]:
+    """Yield the arrays that one array of a system gives on a basis and its derivative.
+
+    Parameters
+    ----------
+    array : str
+        ``M A B S C D K Kg f h g p``.
+    values : ndarray, shape (nt, n, n) or (nt, n)
+        Its samples.
+    phi, slope : ndarray, shape (nt, n, m)
+        Phi and Phi' there.
+    """
+    across = np.swapaxes(phi, -1, -2)
+    if values.ndim == 2:
+        yield array, (across @ values[..., None])[..., 0]
+        return
+    carried = values @ phi
+    yield array, across @ carried
+    turning = np.swapaxes(slope, -1, -2)
+    if array == "M":
+        yield "A", across @ (values @ slope)
+        yield "B", turning @ (values @ slope)
+    elif array == "A":
+        both = turning @ carried
+        yield "B", both + np.swapaxes(both, -1, -2)
+    elif array == "C":
+        yield "D", across @ (values @ slope)
+
+
+def _fixed_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
+    """Return the terms on a basis that does not move."""
+    return tuple(replace(term, function=_on_fixed(term, phi.values)) for term in system.terms)
+
+
+def _on_fixed(term: Term, values: Array) -> Callable[[Array], Array] | Array:
+    if term.constant:
+        return np.asarray(_projected(term.array, values, term(np.zeros(1)))[0])
+    return partial(_projected_at, term, values)
+
+
+def _projected_at(term: Term, values: Array, theta: Array) -> Array:
+    return _projected(term.array, values, term(theta))
+
+
+def _projected(array: str, values: Array, samples: Array) -> Array:
+    found: Array = next(projections(array, samples, values, np.zeros_like(values)))[1]
+    return found
+
+
+def _moving_terms(system: LinearPeriodic, phi: MovingBasis) -> tuple[Term, ...]:
+    """Return the terms on a moving basis, like ones put together, as trigonometric series."""
+    count, before = max(_FEWEST, len(phi.theta)), np.inf
+    while True:
+        found = _sampled_terms(system, phi, even_angles(system.period, count))
+        worst = max(map(tail, found.values()), default=0.0)
+        # What stays as it is by twice as many angles is the round-off of a stiff system.
+        if worst <= _RESOLVED or worst > _STALLED * before or 2 * count > _MOST:
+            break
+        count, before = 2 * count, worst
+    return tuple(
+        Term(array, scale, interpolated(values, system.period, 4.0 * tail(values)), power)
+        for (array, scale, power), values in found.items()
+        if np.any(values)
+    )
+
+
+def _sampled_terms(
+    system: LinearPeriodic, phi: MovingBasis, theta: Array
+) -> dict[tuple[str, str | None, int], Array]:
+    """Return samples of the terms on the basis, by array, scale and power."""
+    values, slope = phi(theta), phi.derivative(theta)
+    sums: dict[tuple[str, str | None, int], Array] = {}
+    for term in system.terms:
+        for array, found in projections(term.array, term(theta), values, slope):
+            key = (array, term.scale, term.power)
+            sums[key] = sums[key] + found if key in sums else found
+    return sums

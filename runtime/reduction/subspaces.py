@@ -1,0 +1,259 @@
+"""A smooth periodic basis of the lowest natural modes of a mechanism held still at each angle.
+
+Single modes cross and veer as the crank turns, and may come back exchanged or with the other sign;
+the subspace that they span does neither where the next frequency keeps its distance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..floquet.first_order import even_angles
+from .trigonometric import Array, PeriodicArray, differentiated, interpolated, tail
+
+_FEWEST, _MOST = 64, 2048
+# Upper harmonics, over the largest, at which the samples are taken to fix the basis.
+_RESOLVED = 1e-13
+_USABLE = 1e-6
+
+
+@dataclass(frozen=True)
+class MovingBasis:
+    """Basis Phi(theta) of the lowest natural modes, M-orthonormal, smooth and periodic.
+
+    Attributes
+    ----------
+    series : PeriodicArray
+        Phi as a trigonometric series, ``(n, m)`` at an angle.
+    theta : ndarray
+        The angles that it was fixed at [rad], even, shape ``(nt,)``.
+    values, slopes : ndarray
+        Phi and dPhi/dtheta there, shape ``(nt, n, m)``.
+    kept, left_out : ndarray
+        Highest frequency that the basis holds and lowest that it does not [rad/s], with the
+        mechanism held still at each of these angles; infinite where all modes are kept.
+    tail : float
+        Upper harmonics of Phi over the largest one: how well the series has converged.
+    """
+
+    series: PeriodicArray
+    theta: Array
+    values: Array
+    slopes: Array
+    kept: Array
+    left_out: Array
+    tail: float
+
+    def __call__(self, theta: Array) -> Array:
+        """Return Phi at angles ``(nt,)`` [rad], shape ``(nt, n, m)``."""
+        return self.series(np.asarray(theta, dtype=float))
+
+    def derivative(self, theta: Array) -> Array:
+        """Return dPhi/dtheta at angles ``(nt,)`` [rad], shape ``(nt, n, m)``."""
+        return self.series.derivative(np.asarray(theta, dtype=float))
+
+    @property
+    def fixed(self) -> bool:
+        """True where the basis does not depend on the angle."""
+        return len(self.theta) == 1
+
+
+@dataclass(frozen=True)
+class StillModes:
+    """All natural modes with the mechanism held still at even angles.
+
+    Attributes
+    ----------
+    theta : ndarray
+        The angles [rad], shape ``(nt,)``.
+    squares : ndarray
+        Squared natural frequencies, rising, shape ``(nt, n)``.
+    shapes : ndarray
+        M-orthonormal modes, shape ``(nt, n, n)``.
+    mass : ndarray
+        M, shape ``(nt, n, n)``.
+    """
+
+    theta: Array
+    squares: Array
+    shapes: Array
+    mass: Array
+
+
+def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = None) -> MovingBasis:
+    """Return a smooth periodic basis of the lowest modes of M and K held still at each angle.
+
+    From angle to angle the basis is carried along with the least rotation within the subspace
+    (the orthogonal factor of ``Phi(theta_k)^T M Phi(theta_k-1)``); the rotation that is left after
+    a period is spread evenly over it.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With M and K positive definite.
+    modes : int
+        Number m of modes, 1 to n.
+    angles : int, optional
+        Even angles to fix it at; by default as many as it needs, 64 to 2048.
+
+    Raises
+    ------
+    BadInput
+        If the number is unusable, or the subspace is not smooth or not periodic: the frequencies
+        of modes m and m + 1 come too close.
+    """
+    n = system.size
+    if isinstance(modes, bool) or not (isinstance(modes, int | np.integer) and 1 <= modes <= n):
+        raise bad("modes", repr(modes), f"a whole number from 1 to {n}", "correct it")
+    if system.is_constant("M") and system.is_constant("K"):
+        return _fixed_basis(system, int(modes))
+    count = _FEWEST if angles is None else int(angles)
+    while True:
+        found = _carried_along(system, int(modes), still_modes(system, count))
+        if angles is not None or found.tail <= _RESOLVED or 2 * count > _MOST:
+            break
+        count *= 2
+    if not found.tail <= _USABLE:
+        gap = float(np.min(found.left_out / found.kept))
+        raise _rough(modes, f"a ratio of {gap:.6g} between the next frequency and its highest")
+    return found
+
+
+def basis_of(system: LinearPeriodic, modes: int, still: StillModes) -> MovingBasis:
+    """Return the smooth periodic basis of the lowest of modes that are known.
+
+    Raises
+    ------
+    BadInput
+        If their subspace is not periodic.
+    """
+    return _carried_along(system, modes, still)
+
+
+def _fixed_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
+    theta = np.zeros(1)
+    squares, shapes = _lowest(system, theta)[:2]
+    values = shapes[:, :, :modes]
+    series = PeriodicArray(values.astype(complex), system.period)
+    kept, left_out = _border(squares, modes)
+    return MovingBasis(series, theta, values, np.zeros_like(values), kept, left_out, 0.0)
+
+
+def _carried_along(system: LinearPeriodic, modes: int, still: StillModes) -> MovingBasis:
+    """Return the basis fixed at even angles."""
+    theta, squares, shapes, mass = still.theta, still.squares, still.shapes, still.mass
+    values = shapes[:, :, :modes]
+    carried = mass @ values
+    turn = np.eye(modes)
+    turns = [turn]
+    for k in range(1, len(theta) + 1):
+        here = k % len(theta)
+        overlap = np.swapaxes(values[here], 0, 1) @ carried[k - 1]
+        turn = _orthogonal(overlap @ turn)
+        turns.append(turn)
+    back = _evenly(turns[-1], len(theta))
+    if back is None:
+        raise _rough(modes, "a basis that comes back mirrored after a period")
+    smooth = values @ (np.stack(turns[:-1]) @ back)
+    kept, left_out = _border(squares, modes)
+    return MovingBasis(
+        interpolated(smooth, system.period),
+        theta,
+        smooth,
+        differentiated(smooth, system.period),
+        kept,
+        left_out,
+        tail(smooth),
+    )
+
+
+def still_modes(system: LinearPeriodic, angles: int) -> StillModes:
+    """Return the natural modes with the mechanism held still at even angles."""
+    theta = even_angles(system.period, angles)
+    return StillModes(theta, *_lowest(system, theta))
+
+
+def _lowest(system: LinearPeriodic, theta: Array) -> tuple[Array, Array, Array]:
+    """Return squared natural frequencies, M-orthonormal modes and the mass at angles."""
+    mass, stiffness = system.array("M", theta), system.array("K", theta)
+    for term in system.terms:
+        if term.array == "Kg" and term.power == 0:
+            factor = 1.0 if term.scale is None else float(system.scale_values()[term.scale])
+            stiffness = stiffness + factor * term(theta)
+    try:
+        np.linalg.cholesky(mass)
+        root = np.linalg.inv(np.linalg.cholesky(stiffness))
+    except np.linalg.LinAlgError as indefinite:
+        raise bad(
+            "system",
+            "a mass or stiffness that is not positive definite at some angle",
+            "both positive definite",
+            "check the parameters; hold the structure",
+        ) from indefinite
+    # The flexible modes are the large eigenvalues of the inverse problem, the accurate ones.
+    flexible = root @ mass @ np.swapaxes(root, -1, -2)
+    values, vectors = np.linalg.eigh(0.5 * (flexible + np.swapaxes(flexible, -1, -2)))
+    values, vectors = values[:, ::-1], vectors[:, :, ::-1]
+    shapes = np.swapaxes(root, -1, -2) @ vectors / np.sqrt(values)[:, None, :]
+    return 1.0 / values, shapes, mass
+
+
+def _border(squares: Array, modes: int) -> tuple[Array, Array]:
+    kept = np.sqrt(squares[:, modes - 1])
+    beyond = squares.shape[1] > modes
+    return kept, np.sqrt(squares[:, modes]) if beyond else np.full_like(kept, np.inf)
+
+
+def _orthogonal(matrix: Array) -> Array:
+    """Return the orthogonal factor of the polar decomposition."""
+    left, _, right = np.linalg.svd(matrix)
+    return np.asarray(left @ right)
+
+
+def _evenly(turn: Array, count: int) -> Array | None:
+    """Return rotations ``(count, m, m)`` that undo ``turn`` little by little; None if mirrored.
+
+    ``turn^(-k/count)`` with the smallest angles; a pair of eigenvalues -1 is half a turn.
+    """
+    from scipy.linalg import schur
+
+    form, vectors = schur(turn, output="real")
+    m = len(turn)
+    flipped = []
+    out = np.tile(np.eye(m), (count, 1, 1))
+    share = -np.arange(count) / count
+    k = 0
+    while k < m:
+        if k + 1 < m and abs(form[k + 1, k]) > 1e-14:
+            angle = np.arctan2(form[k + 1, k], form[k, k])
+            _turn_in(out, k, k + 1, angle * share)
+            k += 2
+            continue
+        if form[k, k] < 0:
+            flipped.append(k)
+        k += 1
+    if len(flipped) % 2:
+        return None
+    for first, second in zip(flipped[::2], flipped[1::2], strict=True):
+        _turn_in(out, first, second, np.pi * share)
+    return np.asarray(vectors @ out @ vectors.T)
+
+
+def _turn_in(rotations: Array, first: int, second: int, angles: Array) -> None:
+    """Put rotations by angles into the plane of two coordinates."""
+    cosine, sine = np.cos(angles), np.sin(angles)
+    rotations[:, first, first] = rotations[:, second, second] = cosine
+    rotations[:, second, first], rotations[:, first, second] = sine, -sine
+
+
+def _rough(modes: int, found: str) -> Exception:
+    return bad(
+        f"modes = {modes}",
+        found,
+        "a subspace that is smooth and periodic in the crank angle",
+        "keep one mode more or less, so that the next frequency keeps its distance at all angles",
+    )

@@ -1,0 +1,94 @@
+"""Periodic arrays of the crank angle as trigonometric series, from even samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_EPS = float(np.finfo(float).eps)
+# Angles evaluated at a time.
+_TOGETHER = 4096
+
+
+@dataclass(frozen=True)
+class PeriodicArray:
+    """An array-valued periodic function, ``Re sum_k c_k exp(2 pi i k theta / period)``.
+
+    Attributes
+    ----------
+    coefficients : ndarray of complex
+        Shape ``(harmonics + 1, *shape)``, those beyond the mean counted twice already.
+    period : float
+        Period [rad].
+    """
+
+    coefficients: ComplexArray
+    period: float
+
+    def __call__(self, theta: Array) -> Array:
+        """Evaluate at angles ``(nt,)`` [rad]; returns ``(nt, *shape)``."""
+        return self._sum(np.asarray(theta, dtype=float), self.coefficients)
+
+    def derivative(self, theta: Array) -> Array:
+        """Evaluate the derivative by the angle at angles ``(nt,)``; returns ``(nt, *shape)``."""
+        waves = 1j * np.arange(len(self.coefficients)) * (2.0 * np.pi / self.period)
+        turned = self.coefficients.reshape(len(waves), -1) * waves[:, None]
+        return self._sum(np.asarray(theta, dtype=float), turned.reshape(self.coefficients.shape))
+
+    def _sum(self, theta: Array, coefficients: ComplexArray) -> Array:
+        shape, count = coefficients.shape[1:], len(coefficients)
+        flat = coefficients.reshape(count, -1)
+        rows = np.concatenate([flat.real, -flat.imag[1:]])
+        out = np.empty((len(theta), flat.shape[1]))
+        waves = np.arange(count) * (2.0 * np.pi / self.period)
+        for begin in range(0, len(theta), _TOGETHER):
+            phase = theta[begin : begin + _TOGETHER, None] * waves
+            table = np.concatenate([np.cos(phase), np.sin(phase[:, 1:])], axis=1)
+            out[begin : begin + _TOGETHER] = table @ rows
+        return out.reshape(len(theta), *shape)
+
+
+def interpolated(values: Array, period: float, noise: float = 0.0) -> PeriodicArray:
+    """Return the series through even samples, less the last harmonics that are round-off.
+
+    Parameters
+    ----------
+    values : ndarray, shape (nt, ...)
+        Samples at angles that divide the period evenly, from 0.
+    period : float
+        Period [rad].
+    noise : float
+        Amplitude over the largest up to which the last harmonics are left out; at least eps.
+    """
+    amplitude = np.fft.rfft(values, axis=0) / len(values)
+    amplitude[1:] *= 2.0
+    if len(values) % 2 == 0:
+        # The highest one cannot tell cosine from sine: its derivative would be one-sided.
+        amplitude = amplitude[:-1]
+    size = np.max(np.abs(amplitude.reshape(len(amplitude), -1)), axis=1, initial=0.0)
+    seen = np.flatnonzero(size > max(_EPS, noise) * np.max(size, initial=0.0))
+    return PeriodicArray(amplitude[: (seen[-1] if len(seen) else 0) + 1], period)
+
+
+def differentiated(values: Array, period: float) -> Array:
+    """Return the derivative by the angle of periodic samples ``(nt, ...)``, spectrally."""
+    count = len(values)
+    waves = 1j * np.arange(count // 2 + 1) * (2.0 * np.pi / period)
+    if count % 2 == 0:
+        waves[-1] = 0.0
+    half = np.fft.rfft(values, axis=0)
+    half *= waves.reshape(-1, *(1,) * (values.ndim - 1))
+    return np.asarray(np.fft.irfft(half, n=count, axis=0))
+
+
+def tail(values: Array) -> float:
+    """Return the largest of the upper quarter of the harmonics over the largest of all."""
+    amplitude = np.abs(np.fft.rfft(values.reshape(len(values), -1), axis=0))
+    largest = float(np.max(amplitude, initial=0.0))
+    upper = amplitude[-max(1, len(amplitude) // 4) :]
+    return float(np.max(upper, initial=0.0)) / largest if largest else 0.0

@@ -1,0 +1,208 @@
+"""Tables of a scene whose links are beams, and what follows from its quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from ..errors import BadInput, Problem
+from .schema import Key, Table
+
+# Terms of the moving beams that a scene may leave out, and names for sets of them.
+DROPPED = ("geometric_stiffness", "turning")
+BEAM_DROPS: Mapping[str, tuple[str, ...]] = {
+    "instantaneous": ("turning",),
+    "as_printed": ("geometric_stiffness", "turning"),
+}
+BEAM_PARAMETERS = {
+    "speed": "frequency",
+    "elasticity": "dimensionless",
+    "distributed_mass": "dimensionless",
+    "lumped_mass": "dimensionless",
+    "damping_ratio": "dimensionless",
+    **dict.fromkeys(("frame", "crank", "coupler", "follower"), "length"),
+}
+MATERIAL = Table(
+    "material",
+    "what the links are made of, where a link does not say otherwise",
+    (
+        Key("modulus", "Young's modulus", dimension="stress", limit="positive"),
+        Key("density", "mass per volume", dimension="density", limit="positive"),
+        Key(
+            "retardation_time",
+            "Kelvin-Voigt damping: stress = E (strain + retardation_time d strain/dt)",
+            dimension="time",
+            default=0.0,
+            limit="non-negative",
+        ),
+        Key("limit_stress", "stress that it bears", dimension="stress", limit="positive"),
+        Key("poisson", "Poisson's ratio, for Timoshenko's beam", limit="non-negative", most=0.5),
+    ),
+)
+MESH = Table(
+    "mesh",
+    "how the links are divided",
+    (
+        Key(
+            "elements",
+            "elements of every link",
+            "count",
+            default=3,
+            limit="positive",
+            most=200,
+        ),
+    ),
+)
+DAMPING = Table(
+    "damping",
+    "damping of the whole structure",
+    (
+        Key("ratio", "of every mode of the structure held still", limit="non-negative"),
+        Key("rayleigh_mass", "a of C = a M + b K", dimension="frequency", limit="non-negative"),
+        Key("rayleigh_stiffness", "b of C = a M + b K", dimension="time", limit="non-negative"),
+    ),
+)
+SECTION_KEYS = (
+    Key("area", "cross-section area", dimension="area", limit="positive"),
+    Key("second_moment", "second moment of area", dimension="second_moment", limit="positive"),
+    Key("width", "width of a bar across the plane", dimension="length", limit="positive"),
+    Key("thickness", "thickness in the plane", dimension="length", limit="positive"),
+    Key("shear_stiffness", "k G A", dimension="force", limit="positive"),
+    *(
+        Key(key.name, key.meaning, dimension=key.dimension, limit=key.limit)
+        for key in MATERIAL.keys
+        if key.name != "poisson"
+    ),
+    Key("elements", "number of elements", "count", limit="positive", most=200),
+)
+_NODE_KEYS = (
+    Key("mass", "lumped mass", dimension="mass", limit="non-negative"),
+    Key("inertia", "lumped moment of inertia", dimension="inertia", limit="non-negative"),
+    Key("carried_by", "link that the inertia turns with", "text"),
+    Key("stiffness_x", "spring along x", dimension="stiffness", limit="non-negative"),
+    Key("stiffness_y", "spring along y", dimension="stiffness", limit="non-negative"),
+    Key(
+        "stiffness_rotation",
+        "torsion spring",
+        dimension="rotational_stiffness",
+        limit="non-negative",
+    ),
+    Key("damping_x", "damper along x", dimension="damping", limit="non-negative"),
+    Key("damping_y", "damper along y", dimension="damping", limit="non-negative"),
+    Key(
+        "damping_rotation",
+        "torsion damper",
+        dimension="rotational_damping",
+        limit="non-negative",
+    ),
+    Key(
+        "held",
+        "what the ground or the shaft holds; left out, what the mechanism says",
+        "texts",
+        choices=("x", "y", "rotation"),
+    ),
+    Key("force", "constant load, x and y component", "quantities", "force", length=2),
+)
+JOINTS = Table("joints", "what is at a joint, under its letter: A, B, C, D", _NODE_KEYS, named=True)
+NODES = Table(
+    "nodes",
+    "points of a frame, each under a name of its own",
+    (
+        Key("place", "x and y", "quantities", "length", length=2, required=True),
+        Key("pinned", "whether members turn by themselves there", "text", choices=("yes", "no")),
+        *_NODE_KEYS,
+    ),
+    required=True,
+    named=True,
+)
+MEMBERS = Table(
+    "members",
+    "beams of a frame, each under a name of its own",
+    (
+        Key("start", "node where it begins", "text", required=True),
+        Key("end", "node where it ends", "text", required=True),
+        *SECTION_KEYS,
+    ),
+    required=True,
+    named=True,
+)
+FRAME = Table(
+    "frame",
+    "assumptions about all members",
+    (
+        Key(
+            "axial",
+            "whether members stretch",
+            "text",
+            default="elastic",
+            choices=("elastic", "rigid"),
+        ),
+    ),
+)
+
+
+def beam_table(link: str) -> Table:
+    """Return the table of a link that is a beam."""
+    return Table(link, f"section of the {link}", SECTION_KEYS, required=True)
+
+
+def complete_beams(values: dict[str, dict[str, Any]], links: Iterable[str]) -> None:
+    """Fill in section and material of every link or member.
+
+    Parameters
+    ----------
+    values : dict of dict
+        Validated tables in SI units; completed in place.
+    links : iterable of str
+        Links with a table each; members of a frame are found by themselves.
+
+    Raises
+    ------
+    BadInput
+        If a section or a material is not complete, or a term to leave out is unknown; every
+        problem is listed.
+    """
+    problems = []
+    strange = sorted(set(values["model"]["drop"]) - set(DROPPED))
+    if strange:
+        known = f"some of {[*DROPPED, *BEAM_DROPS]}"
+        problems.append(Problem("model.drop", str(strange), known, "correct the name"))
+    tables = {link: values[link] for link in links if link in values}
+    tables |= {f"members.{name}": table for name, table in values.get("members", {}).items()}
+    material = values.get("material", {})
+    needs_shear = values["model"]["formulation"] == "timoshenko_beams"
+    for where, table in tables.items():
+        problems += _complete_section(where, table, material, needs_shear)
+    if problems:
+        raise BadInput(*problems)
+
+
+def _complete_section(
+    where: str, table: dict[str, Any], material: Mapping[str, Any], needs_shear: bool
+) -> list[Problem]:
+    for key in ("modulus", "density", "retardation_time", "limit_stress"):
+        if key in material:
+            table.setdefault(key, material[key])
+    if {"width", "thickness"} <= set(table):
+        table.setdefault("area", table["width"] * table["thickness"])
+        table.setdefault("second_moment", table["width"] * table["thickness"] ** 3 / 12.0)
+    problems = []
+    for key, fix in (
+        ("area", "give it, or width and thickness"),
+        ("second_moment", "give it, or width and thickness"),
+        ("modulus", "give it here or in [material]"),
+        ("density", "give it here or in [material]"),
+    ):
+        if key not in table:
+            problems.append(Problem(f"{where}.{key}", "nothing", "a positive value", fix))
+    if needs_shear and "shear_stiffness" not in table and not problems:
+        if "poisson" in material:
+            nu = material["poisson"]
+            factor = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu)
+            modulus = table["modulus"] / (2.0 * (1.0 + nu))
+            table["shear_stiffness"] = factor * modulus * table["area"]
+        else:
+            fix = "give it, or material.poisson for a rectangle's"
+            expected = "k G A for Timoshenko's beam"
+            problems.append(Problem(f"{where}.shear_stiffness", "nothing", expected, fix))
+    return problems

@@ -1,0 +1,92 @@
+"""Periodic motions of beams by dense Fourier collocation, and structures for tests of recovery."""
+
+from __future__ import annotations
+
+import numpy as np
+from elastolink.runtime.beams import Beam, BeamMotion, Node, Section, Structure, linear_system
+from elastolink.runtime.floquet.spring_form import periodic_derivative
+from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.mechanisms.linkage import LinkMotion
+
+STEEL = {"modulus": 210e9, "density": 7850.0}
+FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
+# Aannaque's Table 4.1.
+SECTIONS = {
+    name: Section(area=area, second_moment=inertia, thickness=thickness, **STEEL)
+    for name, area, inertia, thickness in (
+        ("crank", 157.5e-6, 520.47e-12, 6.35e-3),
+        ("coupler", 85.5e-6, 83.34e-12, 3.42e-3),
+        ("follower", 78.75e-6, 65.12e-12, 3.15e-3),
+    )
+}
+JOINT_MASSES = {"B": 0.174, "C": 0.174}
+
+
+def fourier_derivative(count, period=2 * np.pi):
+    """Return the matrix of the derivative of trigonometric interpolation at even angles."""
+    eye = np.fft.fft(np.eye(count), axis=0)
+    waves = np.fft.fftfreq(count, 1.0 / count)
+    waves[count // 2] = 0.0
+    return np.real(np.fft.ifft(2j * np.pi / period * waves[:, None] * eye, axis=0))
+
+
+def periodic_motion(system, speed, count=64):
+    """Return the steady state at one speed by collocation of the second-order equation."""
+    n, theta = system.size, system.period * np.arange(count) / count
+
+    def at(name):
+        return system.array(name, theta, speed=speed)
+
+    def slope(name):
+        if not system.has(name):
+            return 0.0
+        return periodic_derivative(
+            lambda angles: system.array(name, angles, speed=speed)[None], system.period
+        )(theta)[0]
+
+    first = fourier_derivative(count, system.period)
+    gyroscopic = slope("M") + at("A") - np.swapaxes(at("A"), 1, 2)
+    stiffness = at("K") + at("Kg") + speed * at("D") + speed**2 * (slope("A") - at("B"))
+    damping = speed * at("C") + speed**2 * gyroscopic
+    blocks = np.einsum("st,sij->sitj", first @ first, speed**2 * at("M"))
+    blocks += np.einsum("st,sij->sitj", first, damping)
+    places = np.arange(count)
+    blocks[places, :, places, :] += stiffness
+    force = speed**2 * at("f") + speed * at("h") + at("p")
+    q = np.linalg.solve(blocks.reshape(count * n, count * n), force.reshape(-1))
+    q = q.reshape(count, n)
+    return BeamMotion(theta=theta, q=q, qd=speed * (first @ q), speed=speed, period=system.period)
+
+
+def turning_bar(angle, *, pinned=False, modulus=210e9, drag=0.0, **beam):
+    """Return a bar of 1 m whose rigid angle is given with two derivatives by the crank angle.
+
+    Clamped to what turns at its first end and free at the other; or, pinned, held there.  The drag
+    is that of its elastic motion, over the mass [1/s].
+    """
+    section = Section.rectangle(0.02, 0.01, modulus=modulus, density=7850.0, poisson=0.3)
+
+    def configuration(theta):
+        phi, rate, acceleration = angle(theta)
+        still = np.zeros((len(theta), 2))
+        return {"bar": LinkMotion(still, still, still, phi, rate, acceleration)}
+
+    ends = (("x", "y"), ("x", "y")) if pinned else (("x", "y", "rotation"), ())
+    return linear_system(
+        Structure(
+            beams=(Beam(name="bar", start="O", end="P", section=section, length=1.0, **beam),),
+            nodes=(Node(name="O", held=ends[0]), Node(name="P", held=ends[1])),
+            configuration=configuration,
+        ),
+        rayleigh=(drag, 0.0),
+    )
+
+
+def steadily(theta):
+    """Return an angle that grows with the crank angle, and its derivatives."""
+    return theta, np.ones_like(theta), np.zeros_like(theta)
+
+
+def rocking(theta):
+    """Return an angle that swings by 0.4 rad, and its derivatives."""
+    return 0.4 * np.sin(theta), 0.4 * np.cos(theta), -0.4 * np.sin(theta)

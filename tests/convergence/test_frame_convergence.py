@@ -1,0 +1,134 @@
+"""Frames: Table 5.1 number by number, finite elements against the exact frequencies, slopes."""
+
+from __future__ import annotations
+
+import frame_truth
+import numpy as np
+import pytest
+from elastolink.runtime.dynamic_stiffness import (
+    dynamic_stiffness,
+    element_matrices,
+    wittrick_williams,
+)
+from portal_table import ELEMENTS, ERRORS, EXACT, FACTOR, WRONG, portal
+from scipy.linalg import eigh
+
+
+def element_frequencies(structure, first=None, **options):
+    """Return the first frequencies, or all.
+
+    Rayleigh's quotients take out the errors of the eigenvalue solver, which are of the size of the
+    largest eigenvalue times the machine's precision.
+    """
+    mass, stiffness, _ = element_matrices(structure, **options)
+    vectors = eigh(stiffness, mass)[1][:, :first].astype(np.longdouble)
+    forms = [np.sum(vectors * (matrix @ vectors), axis=0) for matrix in (stiffness, mass)]
+    return np.sqrt(forms[0] / forms[1]).astype(float)
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return wittrick_williams(dynamic_stiffness(portal(), inextensible=True), count=21)
+
+
+def table_model(column):
+    if column == "p":
+        return portal(1, "internal_node")
+    return portal(column)
+
+
+def digits(values):
+    """Return what a printed number of three decimals may be off by: its last digit, cut off.
+
+    The thesis' search for the roots adds up to 2.5e-7 of them.
+    """
+    return 1e-3 + 2.5e-7 * np.asarray(values)
+
+
+def test_exact_column_of_table_5_1(exact):
+    """One factor fits 19 numbers; the two wrong ones belong to bars with clamped ends (q = 0)."""
+    assert exact.passed
+    ours, printed = FACTOR * exact.frequencies, np.array(EXACT)
+    off = np.abs(ours - printed) > digits(printed)
+    assert tuple(np.flatnonzero(off) + 1) == WRONG
+    np.testing.assert_allclose((ours - printed)[off], [0.5474, 0.0122], atol=5e-4)
+    # Known to 16 digits: roots of cos z cosh z = 1.
+    roots = np.array([4.730040744862704, 10.995607838001671])
+    np.testing.assert_allclose(exact.frequencies[np.array(WRONG) - 1], roots**2, rtol=1e-13)
+
+
+@pytest.mark.parametrize("column", ELEMENTS)
+def test_element_columns_of_table_5_1(column, exact):
+    """Every printed frequency; the errors below it are off in row 4, where their base is wrong."""
+    ours = FACTOR * element_frequencies(table_model(column), inextensible=True)
+    printed, errors = np.array(ELEMENTS[column]), np.array(ERRORS[column])
+    assert len(ours) == len(printed)  # 21, 15, 9, 3 and 9 degrees of freedom: inextensible bars
+    assert np.all(np.abs(ours - printed) <= digits(printed))
+    true = 100.0 * (ours / (FACTOR * exact.frequencies[: len(ours)]) - 1.0)
+    apart = np.abs(true - errors)
+    two_decimals = np.round(errors, 2) == errors
+    limit = np.where(two_decimals, 1e-2, 2e-3)
+    wrong = tuple(np.flatnonzero(apart > limit) + 1)
+    assert wrong == ((4,) if len(errors) > 3 else ())
+    if len(errors) > 3:
+        assert true[3] - errors[3] == pytest.approx(-0.139, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "order", "counts"), [("cubic", 4, (8, 16, 32)), ("internal_node", 8, (5, 7, 9))]
+)
+def test_finite_elements_converge_with_their_order(kind, order, counts, exact):
+    """The first six frequencies from above, with slopes 4 and 8."""
+    truth = exact.frequencies[:6]
+    errors = []
+    for count in counts:
+        found = element_frequencies(portal(count, kind), 6, inextensible=True)
+        assert np.all(found > truth)  # as Rayleigh's principle has it
+        errors.append(found / truth - 1.0)
+    for coarse, fine, one, two in zip(errors, errors[1:], counts, counts[1:], strict=False):
+        seen = fine > 1e-10  # less is rounding of the elements' matrices
+        slope = (np.log(coarse / fine) / np.log(two / one))[seen]
+        assert np.sum(seen) >= 3
+        assert np.all(np.abs(slope - order) < 0.1 * order)
+
+
+def test_dynamic_stiffness_is_the_limit(exact):
+    """Sixteen quintic elements a bar: the first seven frequencies to 1e-10."""
+    found = element_frequencies(portal(16, "internal_node"), 7, inextensible=True)
+    np.testing.assert_allclose(found, exact.frequencies[:7], rtol=1e-10)
+
+
+def test_inextensible_bars_are_the_limit_of_stiff_ones():
+    """The change goes with 1/EA, as in any penalty."""
+    from dataclasses import replace
+
+    rigid = wittrick_williams(dynamic_stiffness(portal(), inextensible=True), count=6).frequencies
+    gaps = []
+    for area in (1e-2, 1e-1):  # the mass per length stays
+        structure = portal()
+        beams = tuple(
+            replace(beam, section=replace(beam.section, area=area, density=1.0 / area))
+            for beam in structure.beams
+        )
+        found = wittrick_williams(dynamic_stiffness(replace(structure, beams=beams)), count=6)
+        gaps.append(rigid / found.frequencies - 1.0)
+    # The fourth is that of clamped bars: no stretch in it.
+    moved = np.arange(6) != 3
+    assert np.all(np.abs(gaps[1][moved]) < 1e-5)
+    np.testing.assert_allclose(gaps[0][moved] / gaps[1][moved], 10.0, rtol=1e-2)
+
+
+@pytest.mark.slow
+def test_random_frames_against_finite_elements():
+    """15 frames: the lowest frequencies of quintic elements come down on the exact ones."""
+    rng = np.random.default_rng(55)
+    for _ in range(15):
+        state = rng.bit_generator.state
+        structure = frame_truth.random_frame(rng)
+        rng.bit_generator.state = state
+        fine = frame_truth.random_frame(rng, elements=4, kind="internal_node")
+        found = wittrick_williams(dynamic_stiffness(structure), count=6)
+        reference = element_frequencies(fine, 6)
+        assert found.passed
+        np.testing.assert_allclose(found.frequencies, reference, rtol=5e-3)
+        assert np.all(reference >= found.frequencies * (1 - 1e-7))

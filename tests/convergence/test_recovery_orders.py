@@ -1,0 +1,59 @@
+"""Order of the recovered moments in the length of the elements, by slope."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from beam_motions import periodic_motion, rocking, turning_bar
+from elastolink.runtime.beams import recover
+
+# A third of the first frequency, where the elastic inertia matters: some harmonics resonate.
+SPEED, COUNT = 17.0, 32
+PLACES = np.linspace(0.0, 1.0, 97)
+
+
+def moment(elements, kind, method):
+    system = turning_bar(rocking, modulus=210e9, elements=elements, kind=kind)
+    motion = periodic_motion(system, SPEED, COUNT)
+    return recover(system, motion, stations={"bar": PLACES}, method=method).moment
+
+
+@pytest.fixture(scope="module")
+def reference():
+    fine = moment(6, "internal_node", "equilibrium")
+    coarse = moment(4, "internal_node", "equilibrium")
+    assert np.max(np.abs(fine - coarse)) <= 2e-7 * np.max(np.abs(fine))
+    return fine
+
+
+# A cubic's curvature is right to h^2, its nodes to h^4; a quintic's curvature to h^4.
+ORDERS = {("cubic", "equilibrium"): 4.0, ("cubic", "shape"): 2.0, ("internal_node", "shape"): 4.0}
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+@pytest.mark.parametrize(("kind", "method"), ORDERS)
+def test_order_by_slope(kind, method, reference):
+    meshes = np.array([2, 4, 8] if kind == "cubic" else [1, 2, 3])
+    size = np.max(np.abs(reference))
+    errors = [np.max(np.abs(moment(int(n), kind, method) - reference)) / size for n in meshes]
+    slopes = np.diff(np.log(errors)) / np.diff(np.log(1.0 / meshes))
+    expected = ORDERS[kind, method]
+    assert expected - 0.4 <= slopes[-1] <= expected + 0.5
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+@pytest.mark.parametrize("kind", ["internal_node", "curvature"])
+def test_one_quintic_element_is_enough(kind, reference):
+    # What is left on finer meshes is the linear displacement along the beam: some 1e-7.
+    size = np.max(np.abs(reference))
+    assert np.max(np.abs(moment(1, kind, "equilibrium") - reference)) <= 1e-5 * size
+    assert np.max(np.abs(moment(1, kind, "shape") - reference)) >= 1e-4 * size
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+def test_equilibrium_is_ahead_on_a_coarse_mesh(reference):
+    wrong = {
+        method: np.max(np.abs(moment(2, "cubic", method) - reference))
+        for method in ("equilibrium", "shape")
+    }
+    assert wrong["equilibrium"] < 0.1 * wrong["shape"]

@@ -1,0 +1,303 @@
+"""Beam elements: exact matrices, rigid motions, patch tests, d'Alembert by hand."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+import sympy as sp
+from elastolink.derive.models import beam_elements as be
+from elastolink.derive.models import beam_shapes as bs
+from elastolink.derive.spec import ModelSpec
+from elastolink.derive.variational import hamilton
+
+KINDS = bs.KINDS
+EULER = KINDS[:3]
+x, L = bs.x, bs.length
+mass, EA, EI, GA, rotary = be.density, be.axial, bs.bending, bs.shear, be.rotary
+
+
+@cache
+def arrays(kind):
+    form = be.MODEL.discretise(ModelSpec("beam_element", kind), hamilton(be.beam_action(kind)))
+    ratio = bs.shear_steps().mapping()
+    return {name: matrix.subs(ratio) for name, matrix in form.arrays}
+
+
+@cache
+def shapes(kind):
+    """Return u, v and the section's rotation per nodal value, without the shear ratio."""
+    ratio = bs.shear_steps().mapping()
+    found = {
+        f: [sp.sympify(e).subs(ratio) for e in row] for f, row in bs.field_shapes(kind).items()
+    }
+    turn = found.get(bs.psi, [sp.diff(e, x) for e in found[bs.v]])
+    return found[bs.u], found[bs.v], turn
+
+
+def same(one, other):
+    return (sp.Matrix(one) - sp.Matrix(other)).applyfunc(sp.simplify).is_zero_matrix
+
+
+# Exact numbers for what would take long in symbols.
+CHOSEN = dict(
+    zip((L, mass, EA, EI, GA, rotary), map(sp.Rational, (2, 3, 5, 7, 11, 13)), strict=True)
+)
+
+
+def numbered(rows):
+    return [sp.Poly(sp.sympify(row).subs(CHOSEN), x) for row in rows]
+
+
+def along(polynomial):
+    """Integrate a polynomial in x over the length."""
+    moments = polynomial.all_coeffs()[::-1]
+    return sp.Add(*(c * CHOSEN[L] ** (k + 1) / (k + 1) for k, c in enumerate(moments)))
+
+
+def gram(rows, others=None, weight=1):
+    factor = sp.Poly(sp.sympify(weight).subs(CHOSEN), x)
+    others = rows if others is None else others
+    return sp.Matrix([[along(factor * a * b) for b in others] for a in rows])
+
+
+def linear(kind, u, v):
+    """Return the nodal values of displacements u(x), v(x); the section turns with v'."""
+    by_field = {bs.u: u, bs.v: v, bs.psi: sp.diff(v, x)}
+    return sp.Matrix(
+        [
+            sp.diff(by_field[value.field], x, value.order).subs(x, value.place * L)
+            for value in bs.nodal_values(kind)
+        ]
+    )
+
+
+# ---------------------------------------------------------------- shapes and integrals
+
+
+@pytest.mark.parametrize("kind", EULER)
+def test_shapes_are_the_polynomials_that_take_the_nodal_values(kind):
+    u, v, _ = shapes(kind)
+    values = bs.nodal_values(kind)
+    for row, condition in enumerate(values):
+        listed = u if condition.field == bs.u else v
+        for column, shape in enumerate(listed):
+            at = sp.diff(shape, x, condition.order).subs(x, condition.place * L)
+            assert sp.simplify(at - int(row == column)) == 0
+    count = sum(condition.field == bs.v for condition in values)
+    assert max(sp.degree(shape, x) for shape in v if shape != 0) == count - 1
+    assert max(sp.degree(shape, x) for shape in u if shape != 0) == 1
+
+
+def test_shapes_of_timoshenkos_beam_are_static_solutions():
+    _, v, psi = shapes("timoshenko")
+    for one, turn in zip(v, psi, strict=True):
+        shear = GA * (sp.diff(one, x) - turn)
+        assert sp.simplify(sp.diff(shear, x)) == 0
+        assert sp.simplify(EI * sp.diff(turn, x, 2) + shear) == 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_matrices_are_the_integrals_of_the_shapes(kind):
+    """Exact, not to rounding: the same fractions, from integrals written out here."""
+    found = {name: matrix.subs(CHOSEN) for name, matrix in arrays(kind).items()}
+    u, v, turn = (numbered(rows) for rows in shapes(kind))
+    translation = CHOSEN[mass] * (gram(u) + gram(v))
+    assert found["centripetal"] == translation
+    spun = CHOSEN[rotary] * gram(turn) if kind == "timoshenko" else sp.zeros(len(v))
+    assert found["mass"] == translation + spun
+    assert found["coupling"] == CHOSEN[mass] * (gram(v, u) - gram(u, v))
+    stretch, slopes, bend = ([row.diff(x) for row in rows] for rows in (u, v, turn))
+    stiffness = CHOSEN[EA] * gram(stretch) + CHOSEN[EI] * gram(bend)
+    if kind == "timoshenko":
+        stiffness += CHOSEN[GA] * gram([a - b for a, b in zip(slopes, turn, strict=True)])
+    assert found["stiffness"] == stiffness
+    for k in range(3):
+        assert found[f"geometric_{k}"] == gram(slopes, weight=(x / L) ** k)
+    ends = numbered((1 - x / L, x / L))
+    assert found["load"] == sp.Matrix.hstack(gram(u, ends), gram(v, ends))
+
+
+@pytest.mark.parametrize("kind", EULER)
+def test_every_entry_is_a_rational_multiple_of_a_product_of_powers(kind):
+    for matrix in arrays(kind).values():
+        for entry in matrix:
+            coefficient, rest = entry.as_coeff_Mul()
+            assert coefficient.is_Rational
+            assert all(factor.as_base_exp()[0].is_Symbol for factor in sp.Mul.make_args(rest)) or (
+                entry.is_Rational
+            )
+
+
+# ---------------------------------------------------------------- rigid motions and patches
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_rigid_motions(kind):
+    found = arrays(kind)
+    along_x, across, turn = (
+        linear(kind, *pair) for pair in ((1, sp.S.Zero), (0, sp.S.One), (0, x))
+    )
+    for motion in (along_x, across, turn):
+        assert same(found["stiffness"] * motion, sp.zeros(len(motion), 1))
+    for motion in (along_x, across):
+        for k in range(3):
+            assert same(found[f"geometric_{k}"] * motion, sp.zeros(len(motion), 1))
+        assert sp.simplify((motion.T * found["mass"] * motion)[0] - mass * L) == 0
+    inertia = mass * L**3 / 3 + (rotary * L if kind == "timoshenko" else 0)
+    assert sp.simplify((turn.T * found["mass"] * turn)[0] - inertia) == 0
+    assert sp.simplify((across.T * found["coupling"] * along_x)[0] - mass * L) == 0
+    assert sp.simplify((turn.T * found["coupling"] * along_x)[0] - mass * L**2 / 2) == 0
+    force = along_x.T * found["load"], across.T * found["load"], turn.T * found["load"]
+    assert same(force[0], [[L / 2, L / 2, 0, 0]])
+    assert same(force[1], [[0, 0, L / 2, L / 2]])
+    assert same(force[2], [[0, 0, L**2 / 6, L**2 / 3]])
+    # The axial force on the rotated element: work P (L alpha^2)/2.
+    rotated = [(turn.T * found[f"geometric_{k}"] * turn)[0] for k in range(3)]
+    assert same([rotated], [[L, L / 2, L / 3]])
+
+
+@pytest.mark.parametrize("kind", EULER)
+@pytest.mark.parametrize("power", [2, 3])
+def test_patches_of_constant_and_of_linear_bending_moment(kind, power):
+    """Only the ends carry force: shear -EI v''' and moment EI v'' at the ends, nothing inside."""
+    v = x**power
+    forces = arrays(kind)["stiffness"] * linear(kind, sp.S.Zero, v)
+    moment, shear = EI * sp.diff(v, x, 2), -EI * sp.diff(v, x, 3)
+    ends = [0, -shear.subs(x, 0), -moment.subs(x, 0), 0, shear.subs(x, L), moment.subs(x, L)]
+    assert same(forces, sp.Matrix(ends + [0] * (len(forces) - 6)))
+
+
+def test_patch_of_stretch():
+    forces = arrays("cubic")["stiffness"] * linear("cubic", x, sp.S.Zero)
+    assert same(forces, sp.Matrix([-EA, 0, 0, EA, 0, 0]))
+
+
+def test_cantilever_of_timoshenko_is_exact_and_free_of_locking():
+    """One element: tip deflection ``P L^3/(3 EI) + P L/(k G A)``, whatever the slenderness."""
+    stiffness = arrays("timoshenko")["stiffness"][4:6, 4:6]
+    tip = stiffness.LUsolve(sp.Matrix([1, 0]))
+    assert sp.simplify(tip[0] - L**3 / (3 * EI) - L / GA) == 0
+    assert sp.simplify(tip[1] - L**2 / (2 * EI)) == 0
+    # A distributed load is nodally exact too: p L^4/(8 EI) + p L^2/(2 k G A).
+    load = arrays("timoshenko")["load"][4:6, 2:4] * sp.ones(2, 1)
+    assert sp.simplify(stiffness.LUsolve(load)[0] - L**4 / (8 * EI) - L**2 / (2 * GA)) == 0
+
+
+def test_timoshenkos_element_without_shear_is_the_cubic_one():
+    stiff, cubic = arrays("timoshenko"), arrays("cubic")
+    for name, matrix in stiff.items():
+        limit = matrix.subs(rotary, 0).applyfunc(lambda e: sp.limit(e, GA, sp.oo))
+        assert same(limit, cubic[name]), name
+
+
+def test_internal_node_and_curvatures_span_the_same_polynomials():
+    """One is the other in new coordinates: T^T (..) T with T the nodal values of the other."""
+    _, v, _ = shapes("curvature")
+    u = shapes("curvature")[0]
+    columns = [linear("internal_node", one, two) for one, two in zip(u, v, strict=True)]
+    change = sp.Matrix.hstack(*columns)
+    inner, curved = arrays("internal_node"), arrays("curvature")
+    for name, matrix in inner.items():
+        moved = change.T * matrix if name == "load" else change.T * matrix * change
+        assert same(moved, curved[name]), name
+
+
+# ---------------------------------------------------------------- d'Alembert by hand
+
+
+@pytest.mark.parametrize("kind", ["cubic", "timoshenko"])
+def test_dalemberts_principle_of_a_beam_on_a_moving_frame(kind):
+    """Origin and angle move in any way; positions, as complex numbers, are differentiated twice.
+
+    Expected: M qdd + 2 w W qd + (wd W - w^2 B) q = -M a, a the nodal values of the rigid
+    acceleration in local axes, with the angular acceleration at the rotations.
+    """
+    t = sp.Symbol("t", real=True)
+    origin, angle = sp.Function("origin")(t), sp.Function("angle")(t)
+    u, v, turn = ([sp.sympify(e).subs(CHOSEN) for e in row] for row in shapes(kind))
+    q = sp.Matrix([sp.Function(f"q{i}")(t) for i in range(len(v))])
+    local = x + sum((a + sp.I * b) * c for a, b, c in zip(u, v, q, strict=True))
+    place = origin + sp.exp(sp.I * angle) * local
+    w, wd, ax, ay = sp.symbols("w wd ax ay", real=True)
+    states = [sp.symbols(f"{name}0:{len(v)}", real=True) for name in ("q", "qd", "qdd")]
+    plain = {angle.diff(t, 2): wd, angle.diff(t): w}
+    plain |= {c.diff(t, k): s for k in (2, 1) for c, s in zip(q, states[k], strict=True)}
+    plain |= dict(zip(q, states[0], strict=True))
+    turned = sp.expand(place.diff(t, 2).subs(origin.diff(t, 2), 0) * sp.exp(-sp.I * angle))
+    acceleration = sp.expand(turned.subs(plain)) + ax + sp.I * ay
+    real, imaginary = (sp.expand(part) for part in acceleration.as_real_imag())
+    spinning = wd + sum(a * b for a, b in zip(turn, states[2], strict=True))
+    found = {name: matrix.subs(CHOSEN) for name, matrix in arrays(kind).items()}
+    # The slope of the acceleration across is the angular acceleration.
+    rigid = linear(kind, ax - w**2 * x, ay + wd * x).subs(CHOSEN)
+    q, qd, qdd = (sp.Matrix(state) for state in states)
+    expected = found["mass"] * (qdd + rigid) + 2 * w * found["coupling"] * qd
+    expected += (wd * found["coupling"] - w**2 * found["centripetal"]) * q
+    for i in range(len(v)):
+        work = CHOSEN[mass] * (u[i] * real + v[i] * imaginary)
+        if kind == "timoshenko":
+            work += CHOSEN[rotary] * turn[i] * spinning
+        assert sp.expand(expected[i] - along(sp.Poly(sp.expand(work), x))) == 0, i
+
+
+# ---------------------------------------------------------------- metamorphic
+
+
+def system(**changes):
+    return be.element_system(be.beam_action("cubic").with_(**changes), "cubic")
+
+
+def density_without(*symbols):
+    return be.beam_action("cubic").density.subs(dict.fromkeys(symbols, 0))
+
+
+def test_a_tip_mass_in_the_action_moves_the_mass_matrix():
+    from elastolink.derive.records import PointTerm
+
+    tip = sp.Symbol("tip")
+    spin = be.turn.diff(bs.t)
+    speed2 = (bs.u.diff(bs.t) - spin * bs.v) ** 2 + (bs.v.diff(bs.t) + spin * (x + bs.u)) ** 2
+    loaded = system(point_terms=(PointTerm(L, tip * speed2 / 2),))
+    plain = arrays("cubic")
+    added = loaded.matrix("M") - plain["mass"]
+    assert same(added, sp.diag(0, 0, 0, tip, tip, 0))
+    turning = sp.zeros(6)
+    turning[3, 4], turning[4, 3] = -tip, tip
+    assert same(loaded.matrix("A") - plain["coupling"], turning)
+    assert same(loaded.matrix("K"), plain["stiffness"])
+
+
+def test_a_mass_that_varies_along_the_beam_moves_the_mass_matrix():
+    action = be.beam_action("cubic")
+    tapered = action.with_(density=action.density.subs(mass, mass * (2 - x / L)))
+    found = be.element_system(tapered, "cubic").matrix("M")
+    # By hand: int (2 - s) (1 - s)^2 ds = 2/3 - 1/12, int (2 - s) s^2 ds = 2/3 - 1/4.
+    assert found[0, 0] == mass * L * sp.Rational(7, 12)
+    assert found[3, 3] == mass * L * sp.Rational(5, 12)
+    across = linear("cubic", 0, sp.S.One)
+    assert sp.simplify((across.T * found * across)[0] - mass * L * sp.Rational(3, 2)) == 0
+
+
+def test_without_foreshortening_there_is_no_geometric_stiffness():
+    found = system(density=density_without(*be.forces))
+    assert not found.has("Kg")
+    assert same(found.matrix("K"), arrays("cubic")["stiffness"])
+
+
+def test_an_elastic_foundation_adds_its_own_stiffness():
+    k = sp.Symbol("k")
+    action = be.beam_action("cubic")
+    held = action.with_(density=action.density - k * bs.v**2 / 2)
+    added = be.element_system(held, "cubic").matrix("K") - arrays("cubic")["stiffness"]
+    across = sp.diag(0, 1, 1, 0, 1, 1)
+    expected = across * arrays("cubic")["mass"] * across * k / mass
+    assert same(added, expected)
+
+
+def test_a_frame_that_does_not_turn_has_no_coupling():
+    action = be.beam_action("cubic")
+    still = action.with_(density=action.density.subs(be.turn.diff(bs.t), 0))
+    found = be.element_system(still, "cubic")
+    assert not found.has("A") and not found.has("B")
+    assert same(found.matrix("M"), arrays("cubic")["mass"])

@@ -1,0 +1,94 @@
+"""The derivation of the dynamic stiffness: it follows the Lagrangian, and proves what it emits."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from elastolink.derive.models import beam_frequency_functions as ff
+from elastolink.derive.models import beam_frequency_problem as problem
+from elastolink.derive.models import beam_frequency_shapes as shapes
+from elastolink.derive.safe import UnsafeRewriting
+from elastolink.derive.variational import hamilton
+from elastolink.generated import beam_dynamic_stiffness as emitted
+from frequency_truth import MODULE, clamped_root, plain
+
+v, x, t = problem.DEFLECTION, problem.X, problem.TIME
+
+
+def test_another_lagrangian_gives_other_waves_and_forces():
+    """A foundation shifts the squared frequency; tension adds a force and splits the waves."""
+    k, n = sp.symbols("k n", positive=True)
+    action = problem.bending()
+    sprung = hamilton(action.with_(density=action.density - k * v**2 / 2))
+    found = problem.wave_numbers(sprung, sp.sqrt(problem.Z**4 + k))
+    assert set(found) == set(problem.wave_numbers(hamilton(action), problem.Z**2))
+    pulled = hamilton(action.with_(density=action.density - n * v.diff(x) ** 2 / 2))
+    shape = problem.MIDDLE**3
+    bare = problem.end_forces(hamilton(action), sp.S.Zero, shape)
+    taut = problem.end_forces(pulled, sp.S.Zero, shape)
+    assert bare == [-6, 3]
+    assert sp.expand(taut[0] - bare[0]) == n * sp.Rational(3, 4) and taut[1] == bare[1]
+    waves = [sp.simplify(w**2) for w in problem.wave_numbers(pulled, sp.S.Zero)]
+    assert n in waves
+
+
+def test_rotary_inertia_changes_the_shear_at_an_end():
+    r = sp.Symbol("r", positive=True)
+    action = problem.bending()
+    density = action.density + r * v.diff(x, t) ** 2 / 2
+    bare = problem.end_forces(hamilton(action), sp.Integer(2), problem.MIDDLE)
+    heavy = problem.end_forces(
+        hamilton(action.with_(density=density)), sp.Integer(2), problem.MIDDLE
+    )
+    assert heavy[0] - bare[0] == -4 * r
+
+
+def test_a_wrong_form_is_refused():
+    functions = ff.functions()
+    above, divisor = ff.numerators()
+    with pytest.raises(UnsafeRewriting, match="is not"):
+        ff._prove(2 * functions["F2"], above["F2"] / divisor)
+    with pytest.raises(UnsafeRewriting, match="no combination"):
+        ff._shortest({(1, 0, 0, 0): sp.S.One}, {ff.FUNCTIONS["F1"]: {(0, 1, 0, 0): sp.S.One}})
+
+
+def test_stiffness_is_symmetric_and_positive_at_rest():
+    even, odd = (problem.half_problem(False, parity) for parity in (1, -1))
+    for half in (even, odd):
+        assert sp.expand(half.forces[0, 1] - half.forces[1, 0]) == 0
+    assert shapes.end_derivative(0, 1, 2) == ff.FUNCTIONS["F4"]
+    assert shapes.end_derivative(1, -1, 3) == ff.FUNCTIONS["F3"]
+
+
+def test_series_and_closed_forms_meet_at_their_switches():
+    """On either side of each switch, against linear algebra in 260 digits."""
+    with mpmath.workdps(60):
+        for at in (1.5, 3.0, 4.0):
+            for z in (np.nextafter(at, 0.0), at, np.nextafter(at, 9.0)):
+                exact = plain(mpmath.mpf(float(z)))
+                for name, value in zip(emitted.RETURNS["bending"], emitted.bending(z), strict=True):
+                    assert abs(float(exact[name] - float(value))) <= 1e-14 * abs(float(value))
+
+
+def test_poles_at_three_thousand_roots():
+    """The count jumps at every root of the clamped beam, and nowhere else."""
+    with mpmath.workdps(30):
+        roots = np.array([float(clamped_root(k)) for k in range(1, 200)])
+    later = (np.arange(200, 3184) + 0.5) * np.pi
+    roots = np.concatenate([roots, later])
+    count = np.arange(1, len(roots) + 1)
+    for nudge, expected in ((-1e-13, count - 1), (1e-13, count)):
+        np.testing.assert_array_equal(emitted.bending_poles(roots * (1 + nudge)), expected)
+    between = (np.arange(1, 3184)) * np.pi
+    for nudge in (-2e-16, 0.0, 2e-16):
+        below = emitted.bending_poles(between * (1 + nudge))
+        np.testing.assert_array_equal(below, np.arange(0, 3183))
+        axial = emitted.axial_poles(between * (1 + 1e3 * nudge))
+        steps = axial - np.arange(1, 3184)
+        assert np.all((steps == -1) | (steps == 0))
+
+
+def test_module_is_that_of_the_truth():
+    assert emitted.__name__.endswith(MODULE)

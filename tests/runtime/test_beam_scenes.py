@@ -1,0 +1,94 @@
+"""Scenes whose links are beams: what they hold, refuse and become."""
+
+import numpy as np
+import pytest
+from elastolink import BadInput, load_scene
+from elastolink.derive.spec import ModelSpec
+
+TABLE = "aannaque_1996_table_4_1"
+LONG = "aannaque_1996_long_coupler"
+
+
+@pytest.mark.parametrize("name", [TABLE, LONG])
+def test_three_elements_a_link_have_27_freedoms(name):
+    system = load_scene(name).system()
+    assert system.size == 27
+    assert system.structure.size == 27
+    assert system.parameters["damping_ratio"] == 0.02
+
+
+@pytest.mark.parametrize(("kind", "freedoms"), [("cubic", 9), ("curvature", 10)])
+def test_one_element_a_link_has_the_freedoms_of_the_document(kind, freedoms):
+    # Aannaque section 4.3: 27 degrees of freedom against 10 of p-version 2.
+    changes = {"model.formulation": f"{kind}_beams", "mesh.elements": 1}
+    assert load_scene(TABLE, overrides=changes).system().size == freedoms
+
+
+def test_the_model_is_served_by_the_element():
+    scene = load_scene(TABLE, overrides={"model.formulation": "internal_node_beams"})
+    assert scene.model_spec() == ModelSpec("beam_element", "internal_node")
+
+
+def test_lengths_are_geometry_and_damping_follows():
+    system = load_scene(TABLE).system()
+    wider = system.with_geometry(frame=0.632)
+    assert wider.geometry["frame"] == 0.632
+    made = load_scene(TABLE, overrides={"links.frame": 0.632}).system()
+    theta = np.array([0.3, 2.0, 4.4])
+    for name in ("M", "A", "B", "C", "K", "Kg", "f"):
+        np.testing.assert_allclose(wider.array(name, theta), made.array(name, theta), rtol=1e-12)
+
+
+def test_terms_are_left_out_by_name():
+    full = load_scene(TABLE).system()
+    assert full.has("A") and full.has("Kg")
+    printed = load_scene(TABLE, overrides={"model.drop": ["as_printed"]}).system()
+    assert not printed.has("A") and not printed.has("B") and not printed.has("Kg")
+    instantaneous = load_scene(TABLE, overrides={"model.drop": ["instantaneous"]}).system()
+    assert not instantaneous.has("A") and instantaneous.has("Kg")
+
+
+def test_joints_take_springs_and_masses():
+    changes = {"joints.D": {"held": ["y"], "stiffness_x": "2e6 N/m", "mass": 0.2}}
+    system = load_scene(TABLE, overrides=changes).system()
+    assert "D.x" in system.labels
+    place = system.labels.index("D.x")
+    theta = np.zeros(1)
+    spring = system.array("K", theta)[0] - _of_beams(system, theta)
+    assert spring[place, place] == 2e6
+
+
+def _of_beams(system, theta):
+    """Return the stiffness of the beams alone."""
+    return next(t for t in system.terms if t.array == "K" and t.scale == "elasticity")(theta)[0]
+
+
+def test_a_timoshenko_linkage_needs_its_shear_stiffness():
+    changes = {"model.formulation": "timoshenko_beams"}
+    with pytest.raises(BadInput, match=r"crank.shear_stiffness: found nothing"):
+        load_scene(TABLE, overrides=changes)
+    system = load_scene(TABLE, overrides={**changes, "material.poisson": 0.3}).system()
+    assert system.size == 27
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("model.drop", ["tension"], "model.drop: found"),
+        ("model.flexible", ["coupler"], "model.flexible"),
+        ("crank.area", -1.0, "crank.area: found -1.0; expected a positive value"),
+        ("mesh.elements", 0, "mesh.elements"),
+        ("damping.ratio", -0.01, "damping.ratio"),
+        ("joints.C.mass", -0.1, "joints.C.mass"),
+        ("links.crank", "0.6 m", "crank cannot turn fully"),
+        ("material.modulus", "210 m", "material.modulus"),
+    ],
+)
+def test_what_cannot_be_is_refused(key, value, words):
+    with pytest.raises(BadInput, match=words):
+        load_scene(TABLE, overrides={key: value}).system()
+
+
+def test_an_unknown_joint_is_refused():
+    with pytest.raises(BadInput, match="nodes: found E; expected some of"):
+        load_scene(TABLE, overrides={"joints.E": {"mass": 0.1}}).system()

@@ -1,0 +1,288 @@
+"""Motion while the crank speed changes: profiles, and marching against an independent equation."""
+
+import numpy as np
+import pytest
+from elastolink import BadInput, LinearPeriodic, Term, load_scene, steady_state
+from elastolink.runtime.design import SpeedProfile, run_through
+from elastolink.runtime.design.changing_length import ChangingLength
+from elastolink.runtime.design.transient import _between, _stepping
+from elastolink.runtime.design.unsteady import Drive, arrays_of, first_order, march
+from scipy.integrate import solve_ivp
+
+
+def scales(values):
+    return {}
+
+
+def matrix(constant, cosine, sine):
+    """Return a function of the angle and its derivative: c0 + c1 cos + c2 sin."""
+    c0, c1, c2 = (np.asarray(part, dtype=float) for part in (constant, cosine, sine))
+
+    def value(theta):
+        shape = (-1, *(1,) * c0.ndim)
+        return c0 + c1 * np.cos(theta).reshape(shape) + c2 * np.sin(theta).reshape(shape)
+
+    def slope(theta):
+        shape = (-1, *(1,) * c0.ndim)
+        return -c1 * np.sin(theta).reshape(shape) + c2 * np.cos(theta).reshape(shape)
+
+    return value, slope
+
+
+MASS, MASS_SLOPE = matrix([[2, 0.3], [0.3, 1]], [[0.3, 0.1], [0.1, 0]], [[0, 0.2], [0.2, 0.1]])
+DRIFT, DRIFT_SLOPE = matrix([[0.1, 0.4], [-0.2, 0.0]], [[0, 0.3], [0.1, 0]], np.zeros((2, 2)))
+CENTRIPETAL, _ = matrix([[0.5, 0.1], [0.1, 0.3]], [[0.1, 0], [0, 0.2]], np.zeros((2, 2)))
+EULER, _ = matrix([[0.2, 0.05], [0.05, 0.1]], np.zeros((2, 2)), [[0.1, 0], [0, 0]])
+FORCE, _ = matrix([1.0, 0.2], [0.3, -0.4], [0.1, 0.6])
+IMPULSE, _ = matrix([0.3, -0.2], [0.2, 0.1], [0.0, 0.5])
+STIFFNESS = np.array([[30.0, -8.0], [-8.0, 50.0]])
+DAMPING = np.array([[0.3, 0.1], [0.1, 0.2]])
+CARRIED = np.array([[0.05, 0.0], [0.02, 0.04]])
+SYSTEM = LinearPeriodic(
+    size=2,
+    terms=(
+        Term("M", None, MASS),
+        Term("A", None, DRIFT),
+        Term("B", None, CENTRIPETAL),
+        Term("S", None, EULER),
+        Term("K", None, STIFFNESS),
+        Term("C", None, DAMPING),
+        Term("D", None, CARRIED),
+        Term("Kg", None, 0.1 * STIFFNESS, power=2),
+        Term("f", None, FORCE),
+        Term("g", None, IMPULSE),
+    ),
+    parameters={},
+    scales=scales,
+)
+PROFILE = SpeedProfile(times=(0.0, 1.0, 2.5, 4.0), speeds=(0.5, 3.0, 2.0, 4.0))
+
+
+def by_second_order(time):
+    """Integrate the family's second-order equation by SciPy, written from its documentation."""
+
+    def slope(t, y):
+        at = np.array([t])
+        theta, w, a = PROFILE.angle(at), PROFILE.speed(at)[0], PROFILE.acceleration(at)[0]
+        q, qd = y[:2], y[2:]
+        drift = DRIFT(theta)[0]
+        g = MASS_SLOPE(theta)[0] + drift - drift.T
+        h = DRIFT_SLOPE(theta)[0] - CENTRIPETAL(theta)[0]
+        e = drift - EULER(theta)[0]
+        stiff = STIFFNESS * (1 + 0.1 * w**2) + w * CARRIED + w**2 * h + a * e
+        right = w**2 * FORCE(theta)[0] + a * IMPULSE(theta)[0]
+        rest = right - (DAMPING + w * g) @ qd - stiff @ q
+        return np.concatenate([qd, np.linalg.solve(MASS(theta)[0], rest)])
+
+    start = np.array([0.05, -0.02, 0.1, 0.03])
+    found = solve_ivp(slope, (0, 4), start, "DOP853", rtol=1e-12, atol=1e-14, t_eval=time)
+    return start, found.y.T
+
+
+def marched(steps, stages):
+    start, _ = by_second_order([0.0])
+    drive = Drive.of(PROFILE, np.zeros(1))
+    arrays = arrays_of(SYSTEM, drive)
+    momentum = arrays["M"][0] @ start[2:] + drive.speed[0] * arrays["A"][0] @ start[:2]
+    first = np.concatenate([start[:2], momentum])
+
+    def find(drive, time):
+        return arrays_of(SYSTEM, drive)
+
+    return march(find, PROFILE, 2, first, steps, stages)
+
+
+def test_canonical_marching_solves_the_second_order_equation():
+    time, states = marched(256, 3)
+    _, truth = by_second_order(time)
+    # DOP853 at 1e-12; collocation of order 6 with steps of 1/64 s.
+    np.testing.assert_allclose(states[:, :2], truth[:, :2], atol=2e-9 * np.max(np.abs(truth)))
+
+
+def test_the_order_of_marching_is_six():
+    # Steps end where the profile's cubics meet, as 4, 2.5 and 1 s are multiples of 1/2.
+    _, truth = by_second_order([0.0, 4.0])
+    errors = []
+    for steps in (32, 64, 128):
+        _, states = marched(steps, 3)
+        errors.append(np.max(np.abs(states[-1, :2] - truth[-1, :2])))
+    slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert np.all(slopes > 5.5), (slopes, errors)
+
+
+def test_the_generator_is_hamiltonian_without_damping():
+    drive = Drive(np.array([0.7]), np.array([2.0]), np.array([1.5]))
+    generator, _ = first_order(arrays_of(SYSTEM.without("C", "D"), drive), drive, 2)
+    skew = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
+    product = skew @ generator[0]
+    np.testing.assert_allclose(product, product.T, atol=1e-12 * np.max(np.abs(product)))
+
+
+def test_profiles_integrate_their_speed():
+    time = np.linspace(0.0, 4.0, 4001)
+    speed = PROFILE.speed(time)
+    np.testing.assert_allclose(PROFILE.speed(np.array(PROFILE.times)), PROFILE.speeds, rtol=1e-14)
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
+    # The trapezoidal rule errs by h^2/12 times the change of the slope: below 1e-6 rad here.
+    np.testing.assert_allclose(np.cumsum(steps), PROFILE.angle(time)[1:], atol=2e-6)
+    h = 1e-6
+    central = (PROFILE.speed(time[5:-5] + h) - PROFILE.speed(time[5:-5] - h)) / (2 * h)
+    np.testing.assert_allclose(central, PROFILE.acceleration(time[5:-5]), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"times": (0.0, 0.0), "speeds": (1.0, 2.0)}, "increasing times"),
+        ({"times": (0.0, 1.0), "speeds": (1.0, -2.0)}, "speeds from 0"),
+        ({"times": (0.0, 1.0), "speeds": (1.0,)}, "2 finite numbers or more"),
+        ({"times": (0.0, 1.0), "speeds": (1.0, np.nan)}, "finite numbers"),
+        ({"times": (0.0, 1.0, 2.0), "speeds": (1.0, 2.0)}, "as many as times"),
+        ({"times": None, "speeds": (1.0, 2.0)}, "2 finite numbers or more"),
+        ({"times": ("a", "b"), "speeds": (1.0, 2.0)}, "2 finite numbers or more"),
+    ],
+)
+def test_impossible_profiles_are_refused(values, words):
+    with pytest.raises(BadInput, match=words):
+        SpeedProfile(**values)
+
+
+SCENE = {"mesh.elements": 1}
+
+
+def at_angles(steady, theta):
+    """Return a steady motion at any crank angles, by its Fourier series."""
+    series = steady.coefficients
+    n = np.arange(len(series))
+    weights = np.where((n == 0) | (n == len(n) - 1), 1.0, 2.0)
+    return np.real((np.exp(1j * np.outer(theta, n)) * weights) @ series)
+
+
+def test_at_constant_speed_the_steady_motion_stays():
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    profile = SpeedProfile(times=(0.0, 0.5), speeds=(20.0, 20.0))
+    found = run_through(system, profile, modes=None, rtol=1e-3)
+    steady = steady_state(system, 20.0, method="harmonic_balance", stability=False)
+    expected = at_angles(steady, found.angle)
+    peak = np.max(np.abs(expected), axis=0)
+    assert np.max(np.abs(found.q - expected) / peak) < 1e-3
+    assert found.passed
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
+def test_fast_run_ups_stress_less_than_steady_running_at_a_critical_speed():
+    # The fifth part of the first mean frequency, 36.8 rad/s, with one element per link.
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    slow = run_through(system, SpeedProfile.ramp(34.0, 39.0, 4.0))
+    fast = run_through(system, SpeedProfile.ramp(34.0, 39.0, 0.4))
+    assert slow.checks["converged"].passed and fast.checks["converged"].passed
+    assert fast.largest["follower"] < slow.largest["follower"]
+
+
+def test_a_length_that_changes_needs_all_coordinates():
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    profile = SpeedProfile(
+        times=(0.0, 0.2, 0.4), speeds=(20.0, 22.0, 22.0), geometry={"frame": (0.58, 0.58, 0.547)}
+    )
+    with pytest.raises(BadInput, match="None where a length changes"):
+        run_through(system, profile)
+    found = run_through(system, profile, modes=None, rtol=0.02)
+    assert found.passed
+    with pytest.raises(BadInput, match="no linkage of beams"):
+        run_through(load_scene("smith_1972_5152_sixteenth_inch").system(), profile)
+
+
+@pytest.mark.slow
+def test_the_length_at_the_end_is_the_one_that_acts():
+    # After the length has come to rest the motion tends to the steady one of that length.
+    system = load_scene(
+        "aannaque_1996_table_4_1", overrides={**SCENE, "damping.ratio": 0.3}
+    ).system()
+    profile = SpeedProfile(
+        times=(0.0, 0.3, 1.2), speeds=(20.0, 20.0, 20.0), geometry={"frame": (0.6, 0.547, 0.547)}
+    )
+    found = run_through(system, profile, modes=None, rtol=0.02)
+    steady = steady_state(system, 20.0, method="harmonic_balance", stability=False)
+    late = found.time > 0.9
+    expected = at_angles(steady, found.angle[late])
+    peak = np.max(np.abs(steady.q), axis=0)
+    # With 30 % of damping what the change left has gone down by exp(-0.3 * 184 * 0.6).
+    assert np.max(np.abs(found.q[late] - expected) / peak) < 5e-3
+
+
+def test_a_changing_length_is_that_of_its_time():
+    # Between the levels, against the structure made there: arrays, directions and deflections.
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    profile = SpeedProfile(times=(0.0, 0.4), speeds=(20.0, 20.0), geometry={"frame": (0.62, 0.547)})
+    changing = ChangingLength(system, profile, "frame", 17)
+    for when in (0.013, 0.2, 0.311):
+        time = np.array([when])
+        there = system.with_geometry(frame=float(profile.lengths("frame", time)[0]))
+        drive = Drive.of(profile, time)
+        found, expected = changing.arrays(drive, time), arrays_of(there, drive)
+        assert set(found) == set(expected)
+        for name, value in expected.items():
+            # The stiffness along a link is 1e5 of that across: 1e-8 of it is 0.1 %.
+            share = 2e-8 if name == "K" else 2e-6
+            np.testing.assert_allclose(found[name], value, atol=share * np.max(np.abs(value)))
+        squares = [
+            np.sort(np.linalg.eigvals(np.linalg.solve(a["M"][0], a["K"][0])).real)[:4]
+            for a in (found, expected)
+        ]
+        np.testing.assert_allclose(squares[0], squares[1], rtol=1e-3)
+        rows = changing.deflections(drive.angle, time)
+        np.testing.assert_allclose(rows, there.relative_deflection(drive.angle), atol=1e-6)
+
+
+@pytest.mark.slow
+def test_a_length_that_stays_gives_the_stresses_of_that_length():
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    times, speeds = (0.0, 0.2), (20.0, 22.0)
+    held = SpeedProfile(times=times, speeds=speeds, geometry={"frame": (0.62, 0.62)})
+    hardly = SpeedProfile(times=times, speeds=speeds, geometry={"frame": (0.62, 0.6201)})
+    expected = run_through(
+        system.with_geometry(frame=0.62), SpeedProfile(times=times, speeds=speeds), modes=None
+    )
+    for profile, rtol in ((held, 1e-12), (hardly, 2e-3)):
+        found = run_through(system, profile, modes=None)
+        np.testing.assert_allclose(
+            list(found.largest.values()), list(expected.largest.values()), rtol=rtol
+        )
+
+
+def test_a_length_of_a_beam_is_refused_and_so_are_other_profiles():
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    profile = SpeedProfile(times=(0.0, 0.1), speeds=(20.0, 20.0), geometry={"crank": (0.17, 0.16)})
+    with pytest.raises(BadInput, match="the length of a beam"):
+        run_through(system, profile, modes=None)
+    with pytest.raises(BadInput, match="a SpeedProfile"):
+        run_through(system, "fast")
+    with pytest.raises(BadInput, match="stations"):
+        run_through(system, SpeedProfile(times=(0.0, 0.1), speeds=(1.0, 2.0)), stations=0)
+
+
+@pytest.mark.slow
+def test_the_figure_of_a_run_covers_a_far_finer_one():
+    system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
+    profile = SpeedProfile(times=(0.0, 0.1, 0.4), speeds=(25.0, 33.0, 40.0))
+    fine = np.array(list(run_through(system, profile, modes=None, rtol=1e-5).largest.values()))
+    for modes, rtol in ((None, 0.1), (5, 0.05)):
+        found = run_through(system, profile, modes=modes, rtol=rtol)
+        actual = np.abs(np.array(list(found.largest.values())) / fine - 1.0)
+        assert np.all(actual <= found.error), (actual, found.error)
+
+
+def test_what_lies_between_steps_is_told():
+    # A wave whose top falls halfway between two steps, 0.3 rad apart: 1 - cos 0.15 is missed.
+    stress = np.cos(0.3 * (np.arange(40) - 19.5))[:, None]
+    missed = 1.0 / np.max(stress) - 1.0
+    assert missed <= _between(stress)[0] <= 4.0 * missed
+
+
+def test_halved_steps_are_believed_as_far_as_they_have_been_seen_to_help():
+    change = np.array([1e-3])
+    np.testing.assert_allclose(_stepping(change, None)[0], change / 3.0)
+    np.testing.assert_allclose(_stepping(change, 10.0 * change)[0], change / 9.0)
+    np.testing.assert_allclose(_stepping(change, 1e4 * change)[0], change / 63.0)
+    np.testing.assert_allclose(_stepping(change, 0.5 * change)[0], 2.0 * change)

@@ -20,9 +20,9 @@ from .balance import Balance
 from .trigonometric import Array
 
 # Vectors of each node's Taylor series.
-_ORDERS = 10
+_ORDERS = 16
 # Speeds over the lowest of two nodes apart to begin with.
-_FIRST_STEP = 0.1
+_FIRST_STEP = 0.07
 _MOST_NODES = 2000
 # Beyond it a Taylor vector is taken for a combination of others.
 _DEPENDENT = 1e-9

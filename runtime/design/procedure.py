@@ -13,7 +13,7 @@ from ..errors import BadInput, bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
 from ..floquet.monodromy_matrix import floquet_multipliers
-from ..reduction import reduced_system
+from ..reduction import reduced_system, stress_curve
 from ..results import Check, Result
 from .effects import StressEffect, damping_effect, length_effect
 from .quiet import Band, QuietSpeeds, quiet_speeds
@@ -157,6 +157,8 @@ def running_speed(
         error_norm="largest stress over its limit, relative, the worst speed",
         checks={
             **quiet.checks,
+            # Of the speed that was chosen: at the critical speeds it is left in any case.
+            "linear range": _linear_range(system, band.best, rtol),
             "within limits": Check(band.ratio * (1.0 + _doubt(quiet, band)), 1.0),
             "stable": Check(_largest_multiplier(system, band.best), 1.0),
         },
@@ -175,6 +177,10 @@ def running_speed(
 def _doubt(quiet: QuietSpeeds, band: Band) -> float:
     """Return the relative error of the stresses at the running speed."""
     return float(np.asarray(quiet.error)[int(np.argmin(np.abs(quiet.speed - band.best)))])
+
+
+def _linear_range(system: LinearPeriodic, speed: float, rtol: float) -> Check:
+    return stress_curve(system, [speed], rtol=rtol).checks["linear range"]
 
 
 def _limit(limits: float | Mapping[str, float], link: str) -> float:

@@ -11,8 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..families import LinearPeriodic
-from ..frequencies.eigenproblem import crank_angles, held_frequencies
-from ..frequencies.means import cycle_mean
 from ..results import Check, Result, provenance
 
 if TYPE_CHECKING:
@@ -93,6 +91,10 @@ def frozen_frequencies(
         If an angle is not finite, a parameter is unknown, or a stiffness is not positive definite
         or a mass is not at some angle.
     """
+    # The package of frequencies holds beams, too, which no other response needs.
+    from ..frequencies.eigenproblem import crank_angles, held_frequencies
+    from ..frequencies.means import cycle_mean
+
     angles = crank_angles(system, theta)
     frequency, error = held_frequencies(system, angles, parameters)
     values = partial(held_frequencies, system, parameters=parameters)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+# Characters of what was given that a message shows.
+_LONGEST = 200
+
 
 class ElastolinkError(Exception):
     """Base of every error that elastolink raises on purpose."""
@@ -32,7 +35,11 @@ class Problem:
 
     def __str__(self) -> str:
         """Return the one-line form shown to the user."""
-        return f"{self.where}: found {self.found}; expected {self.expected}; {self.fix}"
+        # Arrays and records print on many lines.
+        found = " ".join(self.found.split())
+        if len(found) > _LONGEST:
+            found = f"{found[:_LONGEST]} ..."
+        return f"{self.where}: found {found}; expected {self.expected}; {self.fix}"
 
 
 class BadInput(ElastolinkError, ValueError):  # noqa: N818 - reads as what it is

@@ -41,11 +41,22 @@ def check_picture_path(path: str | Path) -> Path:
     BadInput
         If the ending is unknown or the folder does not exist or is read-only.
     """
-    import os
-
     target = Path(path)
     if target.suffix not in FORMATS:
         raise bad(str(target), repr(target.suffix), f"an ending of {FORMATS}", "rename the file")
+    return require_writable(target)
+
+
+def require_writable(target: Path) -> Path:
+    """Return the path of a file that can be written.
+
+    Raises
+    ------
+    BadInput
+        If the folder does not exist or is read-only, or the path is that of a folder.
+    """
+    import os
+
     if not target.parent.is_dir() or not os.access(target.parent, os.W_OK) or target.is_dir():
         raise bad(
             str(target), "a place that cannot be written", "a writable folder", "choose another"

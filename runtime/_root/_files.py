@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 
 def write_whole(path: Path, content: bytes) -> Path:
@@ -22,10 +25,29 @@ def write_whole(path: Path, content: bytes) -> Path:
     OSError
         If the folder does not exist or cannot be written; nothing is left behind.
     """
+    with whole_file(path) as stream:
+        stream.write(content)
+    return path
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a file beside its final place; what was written moves there when the block ends well.
+
+    Parameters
+    ----------
+    path : Path
+        Final place; an older file there is replaced.
+
+    Raises
+    ------
+    OSError
+        If the folder does not exist or cannot be written; nothing is left behind.
+    """
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
+            yield stream
         mask = os.umask(0)
         os.umask(mask)
         Path(temporary).chmod(0o666 & ~mask)
@@ -33,4 +55,3 @@ def write_whole(path: Path, content: bytes) -> Path:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
-    return path

@@ -1,9 +1,14 @@
-"""Planar linkages and frames of beams: elements, sections, structures and their equations."""
+"""Planar linkages and frames of beams: elements, sections, structures and their equations.
+
+What a linkage does not need of it, such as layered sections, loads on first use.
+"""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from ..lazy import on_first_use
 from .beam_motion import BeamMotion
-from .elastic_curve import ElasticCurve, elastic_coupler_curve
 from .elements import (
     KINDS,
     NODAL_VALUES,
@@ -15,23 +20,39 @@ from .elements import (
 )
 from .frames import frame
 from .inextensible import without_stretching
-from .layered import (
-    ElasticLayer,
-    SandwichSection,
-    SandwichStudy,
-    ViscoelasticLayer,
-    sandwich_section,
-    sandwich_study,
-)
 from .linear import FORMS, linear_system
 from .linkages import beam_linkage, linkage_system
 from .pin_reactions import PinReactions, pin_reactions
 from .recovered import BeamForces, recover
 from .recovery_forms import LinearForm
 from .section import Section
-from .strain_energy import BeamEnergies, beam_energies
 from .stress import StressPeak, StressResult, stress, stress_operator
 from .structure import Beam, Node, Structure
+
+if TYPE_CHECKING:
+    from .elastic_curve import ElasticCurve, elastic_coupler_curve
+    from .layered import (
+        ElasticLayer,
+        SandwichSection,
+        SandwichStudy,
+        ViscoelasticLayer,
+        sandwich_section,
+        sandwich_study,
+    )
+    from .strain_energy import BeamEnergies, beam_energies
+
+_PUBLIC = {
+    "BeamEnergies": "strain_energy",
+    "ElasticCurve": "elastic_curve",
+    "ElasticLayer": "layered",
+    "SandwichSection": "layered",
+    "SandwichStudy": "layered",
+    "ViscoelasticLayer": "layered",
+    "beam_energies": "strain_energy",
+    "elastic_coupler_curve": "elastic_curve",
+    "sandwich_section": "layered",
+    "sandwich_study": "layered",
+}
 
 __all__ = [
     "FORMS",
@@ -72,3 +93,5 @@ __all__ = [
     "stress_operator",
     "without_stretching",
 ]
+
+__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from numbers import Real
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from ..errors import BadInput, Problem
+from ..errors import BadInput, Problem, bad
 
 
 def is_finite(value: object) -> bool:
@@ -63,3 +65,56 @@ def positive(where: str, **values: float) -> None:
     ]
     if problems:
         raise BadInput(*problems)
+
+
+def require_kind(where: str, value: object, kind: type, fix: str) -> None:
+    """Refuse what is not an instance of a class.
+
+    Raises
+    ------
+    BadInput
+        If it is not.
+    """
+    if not isinstance(value, kind):
+        raise bad(where, type(value).__name__, f"a {kind.__name__}", fix)
+
+
+def require_mapping(where: str, value: object, fix: str) -> None:
+    """Refuse what is no mapping from names.
+
+    Raises
+    ------
+    BadInput
+        If it is none.
+    """
+    if not (isinstance(value, Mapping) and all(isinstance(name, str) for name in value)):
+        raise bad(where, repr(value), "a mapping from names", fix)
+
+
+def whole(where: str, value: Any, most: int) -> int:
+    """Return a whole number from 1 to some other.
+
+    Raises
+    ------
+    BadInput
+        If it is no such number.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+        raise bad(where, repr(value), f"a whole number from 1 to {most}", "correct it")
+    return value
+
+
+def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np.float64]:
+    """Return finite numbers as a row that is not empty; one alone stands for a row of one.
+
+    Raises
+    ------
+    BadInput
+        If they are anything else.
+    """
+    from ..floquet.first_order import numbers
+
+    row = np.atleast_1d(numbers(where, value))
+    if row.ndim != 1 or not row.size or not np.all(np.isfinite(row)):
+        raise bad(where, repr(value), f"finite numbers in a row{unit}", "correct them")
+    return row

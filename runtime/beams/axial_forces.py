@@ -12,7 +12,7 @@ import numpy as np
 
 from .assembly import AngleArrays, Array
 from .sliding import Slide
-from .turning import rotation, turned
+from .turning import in_own_axes, rotation, turned
 
 # Masses that load the beams, each by itself: the beams' own, and the lumped ones.
 SOURCES = ("distributed", "lumped", "static")
@@ -102,7 +102,7 @@ class AxialForces:
             for x, y in ((0, 1), (3, 4)):
                 pair = field[:, placed.indices[[x, y]]]
                 ends.append(mass * (c * pair[:, 0] + s * pair[:, 1]))
-            local = _in_own_axes(q[:, placed.indices], c, s)
+            local = in_own_axes(q[:, placed.indices], c, s)
             # The element is held at its first end by minus its axial force there.
             consistent = ends[0] / 3.0 + ends[1] / 6.0
             found[:, e, 0] = -(local @ own.stiffness[0] + consistent)
@@ -156,15 +156,6 @@ class AxialForces:
             r = rotation(len(own.mass))
             found.append(np.stack([turned(r, part, r) for part in own.geometric]))
         return found
-
-
-def _in_own_axes(values: Array, c: Array, s: Array) -> Array:
-    """Return coordinates of an element ``(nt, n)`` in its own axes."""
-    found = values.copy()
-    for x, y in ((0, 1), (3, 4)):
-        found[:, x] = c * values[:, x] + s * values[:, y]
-        found[:, y] = c * values[:, y] - s * values[:, x]
-    return found
 
 
 def _node_forces(arrays: AngleArrays) -> Array:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
 
 # Mesh and equations err far more than this.
-_RTOL = 1e-6
+_RTOL = 1e-7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,8 +104,8 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
     system : LinearPeriodic
         Of a structure of beams.
     motion : SteadyState, Trajectory, BeamMotion, float or None
-        A computed motion at one speed; a crank speed [rad/s], for the steady state there by
-        harmonic balance; or None, for the equilibrium of a structure that stands still.
+        A computed motion at one speed; a crank speed [rad/s], for the steady state there; or
+        None, for the equilibrium of a structure that stands still.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
 
     structure = required_structure(system)
     if motion is None or not structure.moving:
-        return _standing(system, motion)
+        return standing(system, motion)
     if isinstance(motion, (int, float, np.floating, np.integer)) and not isinstance(motion, bool):
         motion = quiet_steady_state(system, float(motion))
     if isinstance(motion, SteadyState):
@@ -145,10 +145,8 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
     return made
 
 
-def quiet_steady_state(
-    system: LinearPeriodic, speed: float, *, softer: float | None = None
-) -> SteadyState:
-    """Return the steady state by harmonic balance; the caller looks at the linear range.
+def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
+    """Return the steady state by the cyclic system; the caller looks at the linear range.
 
     Parameters
     ----------
@@ -156,15 +154,12 @@ def quiet_steady_state(
         Of a structure of beams.
     speed : float
         Crank speed [rad/s].
-    softer : float, optional
-        Factor of every modulus, in place of the system's own.
     """
     from ..response.steady_state import steady_state
 
-    made = system if softer is None else system.with_parameters(elasticity=softer)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(made, speed, method="harmonic_balance", rtol=_RTOL, stability=False)
+        return steady_state(system, speed, method="cyclic", rtol=_RTOL, stability=False)
 
 
 def _steady(motion: SteadyState) -> BeamMotion:
@@ -194,8 +189,21 @@ def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
     return found
 
 
-def _standing(system: LinearPeriodic, motion: object) -> BeamMotion:
-    """Return the equilibrium of a structure that stands still under constant loads."""
+def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
+    """Return the equilibrium of a structure that stands still under constant loads.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : object
+        None: a structure that stands still has no other.
+
+    Raises
+    ------
+    BadInput
+        If the structure moves, or a motion is given.
+    """
     structure = required_structure(system)
     if structure.moving or motion is not None:
         raise bad(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .assembly import AngleArrays, Array
-from .elements import shape_functions
+from .placed_shapes import placed_shapes
 
 
 def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
@@ -27,14 +27,7 @@ def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
     motion = arrays.motion(theta)
     found = []
     for placed, own in arrays.local:
-        section = placed.beam.section
-        _, across = shape_functions(
-            placed.beam.kind,
-            np.array([0.5, 1.0]),
-            placed.length,
-            bending_stiffness=section.bending_stiffness,
-            shear_stiffness=section.shear_stiffness,
-        )
+        _, across = placed_shapes(placed, np.array([0.5, 1.0]))
         c, s = motion.products[placed.beam.name][:, 1:3].T
         local = np.zeros((len(theta), 2, len(own.mass)))
         for x, y in ((0, 1), (3, 4)):

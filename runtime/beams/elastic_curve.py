@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..deferred import DeferredField, DeferredGroup
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..results import Result, provenance
 from ._checks import is_finite
 from .assembly import Array
-from .beam_motion import beam_motion
+from .beam_motion import BeamMotion, beam_motion
 from .element_forms import required_structure
+from .finer_mesh import CAUTION, on_finer_mesh
 from .recovered import chunks, linear_range
 from .recovery import recovery
-from .structure import Beam, Structure
+from .structure import Beam
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .beam_motion import Motion
+
+# Fields that are worked out when they are first looked at.
+_LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +47,8 @@ class ElasticCurve(Result):
     rigid, elastic : ndarray
         Places of the point in the fixed axes [m], shape ``(nt, 2)``.
     error : float
-        Largest error of a place [m]: by the error of the motion.
+        Largest error of a place [m]: by the error of the motion and, where it was found on a finer
+        mesh too, by that of the mesh.
     """
 
     link: str
@@ -51,6 +58,8 @@ class ElasticCurve(Result):
     theta: Array
     rigid: Array
     elastic: Array
+    error: Any = _LATER["error"]
+    error_norm: Any = _LATER["error_norm"]  # str
 
     dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
         "theta": ("sample",),
@@ -91,6 +100,7 @@ def elastic_coupler_curve(
     across: float = 0.0,
     *,
     link: str = "coupler",
+    finer_mesh: bool = True,
 ) -> ElasticCurve:
     """Return the curve of a point of an elastic link, beside that of the rigid linkage.
 
@@ -107,6 +117,8 @@ def elastic_coupler_curve(
         Place of the point in the link's own axes [m]; by default the middle of the axis.
     link : str
         Which link.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -126,16 +138,14 @@ def elastic_coupler_curve(
     moving = beam_motion(system, motion)
     if not structure.moving:
         raise bad("system", "a structure that stands still", "a linkage", "use recover()")
-    shift, doubt = [], 0.0
-    for chunk in chunks(len(moving.theta)):
-        rows = _rows(system, structure, beam, moving.theta[chunk], float(foot), float(across))
-        shift.append(np.einsum("txn,tn->tx", rows, moving.q[chunk]))
-        doubt = max(doubt, float(np.max(np.abs(rows) @ moving.doubt)))
+    place = (float(foot), float(across))
+    shift, doubt = _shift(system, beam, moving, place)
+    later = DeferredGroup(partial(_doubt, system, moving, link, place, (shift, doubt), finer_mesh))
     rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
     return ElasticCurve(
         method="shape functions",
-        error=float(np.sqrt(2.0)) * doubt,
-        error_norm="largest error of a place by that of the coordinates [m]; the mesh apart",
+        error=later.later("error"),
+        error_norm=later.later("error_norm"),
         checks={**moving.checks, **linear_range(system, moving)},
         provenance=provenance({**system.provenance, **moving.provenance}),
         link=link,
@@ -144,24 +154,49 @@ def elastic_coupler_curve(
         speed=moving.speed,
         theta=moving.theta,
         rigid=rigid,
-        elastic=rigid + np.concatenate(shift),
+        elastic=rigid + shift,
     )
 
 
-def _rows(
+def _doubt(
     system: LinearPeriodic,
-    structure: Structure,
-    beam: Beam,
-    theta: Array,
-    along: float,
-    across: float,
-) -> Array:
+    moving: BeamMotion,
+    link: str,
+    place: tuple[float, float],
+    own: tuple[Array, float],
+    finer_mesh: bool,
+) -> dict[str, float | str]:
+    """Return the error figure and its norm."""
+    shift, doubt = own
+    error, norm = float(np.sqrt(2.0)) * doubt, "largest error of a place [m]"
+    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    if finer is None:
+        norm = f"{norm}, by that of the coordinates; the mesh apart"
+    else:
+        better, _ = _shift(finer[0], required_structure(system).beam(link), finer[1], place)
+        error += CAUTION * float(np.max(np.hypot(*(better - shift).T)))
+    return {"error": error, "error_norm": norm}
+
+
+def _shift(
+    system: LinearPeriodic, beam: Beam, motion: BeamMotion, place: tuple[float, float]
+) -> tuple[Array, float]:
+    """Return the displacement of the point ``(nt, 2)``, and what the motion's error does to it."""
+    found, doubt = [], 0.0
+    for chunk in chunks(len(motion.theta)):
+        rows = _rows(system, beam, motion.theta[chunk], *place)
+        found.append(np.einsum("txn,tn->tx", rows, motion.q[chunk]))
+        doubt = max(doubt, float(np.max(np.abs(rows) @ motion.doubt)))
+    return np.concatenate(found), doubt
+
+
+def _rows(system: LinearPeriodic, beam: Beam, theta: Array, along: float, across: float) -> Array:
     """Return what turns coordinates into the displacement of the point: ``(nt, 2, n)``."""
     nearest = min(max(along, 0.0), beam.length)
     made = recovery(system, theta, {beam.name: nearest / beam.length}, "shape")
     u, v, turn = (made.forms[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
     along_beam, across_beam = u - across * turn, v + (along - nearest) * turn
-    angle = structure.configuration(theta)[beam.name].angle[:, None]
+    angle = required_structure(system).configuration(theta)[beam.name].angle[:, None]
     x = np.cos(angle) * along_beam - np.sin(angle) * across_beam
     y = np.sin(angle) * along_beam + np.cos(angle) * across_beam
     return np.stack([x, y], axis=1)

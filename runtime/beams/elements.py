@@ -9,24 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from types import MappingProxyType, ModuleType
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...generated import (
-    beam_element_cubic,
-    beam_element_curvature,
-    beam_element_internal_node,
-    beam_element_timoshenko,
-    beam_shapes_cubic,
-    beam_shapes_curvature,
-    beam_shapes_internal_node,
-    beam_shapes_timoshenko,
-)
 from ..errors import bad
 from ..families.emitted import array_function
+from ._checks import is_finite, numbers_in_a_row
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -39,22 +31,6 @@ NODAL_VALUES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "internal_node": (*_END_VALUES, "v3", "r3"),
         "curvature": (*_END_VALUES, "k1", "k2"),
         "timoshenko": _END_VALUES,
-    }
-)
-_ELEMENTS: Mapping[str, ModuleType] = MappingProxyType(
-    {
-        "cubic": beam_element_cubic,
-        "internal_node": beam_element_internal_node,
-        "curvature": beam_element_curvature,
-        "timoshenko": beam_element_timoshenko,
-    }
-)
-_SHAPES: Mapping[str, ModuleType] = MappingProxyType(
-    {
-        "cubic": beam_shapes_cubic,
-        "internal_node": beam_shapes_internal_node,
-        "curvature": beam_shapes_curvature,
-        "timoshenko": beam_shapes_timoshenko,
     }
 )
 _ALONG = ("u", "strain")
@@ -267,14 +243,14 @@ def rigid_field(kind: str, start: ArrayLike, end: ArrayLike, turning: ArrayLike)
     Raises
     ------
     BadInput
-        If the kind is unknown or a component is missing.
+        If the kind is unknown, a component is missing, or a number is not finite.
     """
     _check_kind(kind)
-    first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    given = {"start": start, "end": end, "turning": turning}
+    first, last, angle = (_finite(name, value) for name, value in given.items())
     for name, value in (("start", first), ("end", last)):
         if value.shape[-1:] != (2,):
             raise bad(name, f"shape {value.shape}", "shape (..., 2)", "give both components")
-    angle = np.asarray(turning, dtype=float)
     values = [first[..., 0], first[..., 1], angle, last[..., 0], last[..., 1], angle]
     if kind == "internal_node":
         values += [(first[..., 1] + last[..., 1]) / 2.0, angle]
@@ -283,8 +259,13 @@ def rigid_field(kind: str, start: ArrayLike, end: ArrayLike, turning: ArrayLike)
     return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
+def _emitted(what: str, kind: str) -> ModuleType:
+    """Return the emitted module of a kind; those of the other kinds are not loaded."""
+    return import_module(f"...generated.beam_{what}_{kind}", __package__)
+
+
 def _element(kind: str) -> Callable[..., dict[str, Array]]:
-    return array_function(_ELEMENTS[kind], "element")
+    return array_function(_emitted("element", kind), "element")
 
 
 def _shape_rows(
@@ -295,14 +276,14 @@ def _shape_rows(
     shear_stiffness: float | None,
 ) -> dict[str, Array]:
     _check_kind(kind)
-    place = np.atleast_1d(np.asarray(xi, dtype=float))
+    place = numbers_in_a_row("xi", xi)
     if not np.all((place >= 0.0) & (place <= 1.0)):
         raise bad("xi", xi, "places from 0 to 1", "divide by the element's length")
     numbers = {"length": _positive("length", length)}
     if kind == "timoshenko":
         numbers["bending_stiffness"] = _positive("bending_stiffness", bending_stiffness)
         numbers["shear_stiffness"] = _positive("shear_stiffness", shear_stiffness)
-    found = _in_range(array_function(_SHAPES[kind], "shapes"), place, **numbers)
+    found = _in_range(array_function(_emitted("shapes", kind), "shapes"), place, **numbers)
     return {name: value[..., 0, :] for name, value in found.items()}
 
 
@@ -323,20 +304,29 @@ def _in_range(
 
 
 def _check_kind(kind: str) -> None:
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise bad("kind", repr(kind), f"one of {KINDS}", "correct it")
 
 
 def _positive(name: str, value: float | None) -> float:
-    if value is None or not (np.isfinite(value) and value > 0.0):
-        raise bad(name, value, "a positive finite number", "give one")
+    if value is None or not (is_finite(value) and value > 0.0):
+        raise bad(name, repr(value), "a positive finite number", "give one")
     return float(value)
 
 
 def _not_negative(name: str, value: float) -> float:
-    if not (np.isfinite(value) and value >= 0.0):
-        raise bad(name, value, "a finite number, not negative", "give one")
+    if not (is_finite(value) and value >= 0.0):
+        raise bad(name, repr(value), "a finite number, not negative", "give one")
     return float(value)
+
+
+def _finite(name: str, value: ArrayLike) -> Array:
+    from ..floquet.first_order import numbers
+
+    array = numbers(name, value)
+    if not array.size or not np.all(np.isfinite(array)):
+        raise bad(name, repr(value), "finite numbers", "correct them")
+    return array
 
 
 def _fixed(array: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import BadInput, Problem
 from ..mechanisms.linkage import LinkMotion
-from ._checks import are_finite, names_problems
+from ._checks import are_finite, names_problems, require_mapping
 from .assembly import Array
 from .section import Section
 from .structure import Beam, Node, Structure, node_value_problems
@@ -72,6 +72,8 @@ def frame(
     >>> portal.size
     24
     """
+    for where, given in (("places", places), ("members", members), ("supports", supports)):
+        require_mapping(where, given, "see the example of frame")
     _check_form(places, members, elements, nodes)
     _check(places, members, sections, [*supports, *pins, *(nodes or {})])
     ends = {name: (_complex(places[a]), _complex(places[b])) for name, (a, b) in members.items()}

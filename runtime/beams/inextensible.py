@@ -38,7 +38,7 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
     BadInput
         If the system is not of such a frame, or nothing is left that moves.
     """
-    structure = system.structure
+    structure = system.structure if isinstance(system, LinearPeriodic) else None
     if structure is None or structure.moving:
         raise bad(
             "without_stretching",

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import beam_section_sandwich
 from ..errors import BadInput, Problem, bad
 from ..results import Result, provenance
-from ._checks import is_finite, sign_problems
+from ._checks import is_finite, numbers_in_a_row, require_kind, sign_problems
 from .section import Section
 
 if TYPE_CHECKING:
@@ -185,6 +185,7 @@ def sandwich_section(
     Aannaque 9.2.  The outer layers do not shear and the core is not stretched: the model holds for
     a core that is soft beside the outer layers, and wave lengths long beside the thickness.
     """
+    _require_layers(base, core, cover)
     given = {"width": width, "wave_number": wave_number, "frequency": frequency}
     numbers = {name: value for name, value in given.items() if value is not None or name == "width"}
     _refuse(
@@ -313,6 +314,7 @@ def sandwich_study(
     BadInput
         If a number is not positive or a list of thicknesses is empty.
     """
+    _require_layers(base, core, cover)
     cores, covers = _thicknesses("core", core_thickness), _thicknesses("cover", cover_thickness)
     for name, value in (("width", width), ("wave_number", wave_number)):
         if not (is_finite(value) and value > 0):
@@ -355,10 +357,16 @@ def _refuse(problems: list[Problem]) -> None:
 
 
 def _thicknesses(name: str, values: ArrayLike) -> Array:
-    found = np.atleast_1d(np.asarray(values, dtype=float))
-    if found.ndim != 1 or not found.size or not np.all(np.isfinite(found) & (found > 0)):
+    found = numbers_in_a_row(f"{name}_thickness", values, " [m]")
+    if not np.all(found > 0):
         raise bad(f"{name}_thickness", values, "positive numbers in a list", "give it in metres")
     return found
+
+
+def _require_layers(base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer) -> None:
+    for where, layer in (("base", base), ("cover", cover)):
+        require_kind(where, layer, ElasticLayer, "make one with ElasticLayer")
+    require_kind("core", core, ViscoelasticLayer, "make one with ViscoelasticLayer")
 
 
 def _arguments(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -95,6 +96,12 @@ def linear_system(
     if any(beam.section.retardation for beam in structure.beams):
         parameters["retardation"] = 1.0
     options = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
+    told = {
+        "form": form,
+        "geometric_stiffness": geometric_stiffness,
+        "rayleigh": rayleigh,
+        "gravity": gravity,
+    }
     return LinearPeriodic(
         size=structure.size,
         terms=tuple(terms),
@@ -106,7 +113,17 @@ def linear_system(
         limits={name: "non-negative" for name in parameters} | dict.fromkeys(FACTORS, "positive"),
         relative_deflection=partial(_relative_deflection, arrays, slide),
         structure=structure if slide is None else None,
+        remesh=partial(_remeshed, structure, told),
     )
+
+
+def _remeshed(
+    structure: Structure,
+    options: Mapping[str, Any],
+    change: Callable[[Structure], Structure],
+) -> LinearPeriodic:
+    """Return the system of a changed structure, made with the same options."""
+    return linear_system(change(structure), **options)
 
 
 def _scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:

@@ -12,6 +12,7 @@ from ..errors import BadInput, Problem, bad
 from ..families import LinearPeriodic
 from ..mechanisms import FourBar, Linkage, QuickReturn, SliderCrank
 from ..mechanisms.linkage import LinkMotion
+from ._checks import require_kind, require_mapping
 from .assembly import Array
 from .linear import linear_system
 from .section import Section
@@ -146,6 +147,8 @@ def linkage_system(
         "rayleigh": rayleigh,
         "gravity": gravity,
     }
+    require_mapping("sections", sections, "give each link one by name")
+    require_kind("linkage", linkage, Linkage, "make a FourBar, SliderCrank or QuickReturn")
     return _made(linkage, dict(sections), dict(structure), options, linkage.lengths)
 
 
@@ -197,6 +200,8 @@ def _check_names(
     if not isinstance(sections, Mapping):
         found, fix = type(sections).__name__, 'say {"crank": Section(...), ...}'
         raise bad("sections", found, "a Section by link", fix)
+    if masses is not None:
+        require_mapping("joint_masses", masses, 'say {"B": 0.2}, for example')
     problems = node_value_problems(nodes)
     if problems:
         raise BadInput(*problems)

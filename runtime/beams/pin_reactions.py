@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..deferred import DeferredField, DeferredGroup
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..results import Check, Result, provenance
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion
 from .element_forms import ElementForms, required_structure
-from .recovered import chunks, evaluated, linear_range, propagated
-from .recovery import FORCES, METHODS
+from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
+from .recovered import chunks, linear_range, propagated
 from .recovery_forms import LinearForm
-from .stress_errors import CAUTION, energy_gap, softened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 # Round-off of the balance of forces, over the largest end force of an element.
 _ROUNDING = 1e-9
 _PARTS = ("x", "y", "moment")
+# Fields that are worked out when they are first looked at.
+_LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +56,8 @@ class PinReactions(Result):
         ground and the drag bring it about.
     error : float
         Largest error of a force [N], moments over the longest beam's length: by the error of the
-        motion and, where :func:`steady_state` found it, by the mesh and its frequencies.
+        motion and, where it was found on a finer mesh too, by that of the mesh.  Worked out when
+        it is first looked at.
     """
 
     speed: float
@@ -62,6 +66,8 @@ class PinReactions(Result):
     of_ground: Mapping[str, Array]
     drag: Array
     momentum_rate: Array
+    error: Any = _LATER["error"]
+    error_norm: Any = _LATER["error_norm"]  # str
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "theta": ("sample",),
@@ -123,7 +129,9 @@ class PinReactions(Result):
         return ax
 
 
-def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) -> PinReactions:
+def pin_reactions(
+    system: LinearPeriodic, motion: Motion | float | None = None, *, finer_mesh: bool = True
+) -> PinReactions:
     """Return the forces at the nodes of a structure of beams, and of its ground.
 
     They come from the end forces of the elements: stiffness, inertia of the rigid and the elastic
@@ -136,6 +144,9 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
         Of a structure of beams.
     motion : SteadyState, Trajectory, BeamMotion, float or None
         A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does; of a motion
+        that is given, or marched, it cannot be, and ``error_norm`` says so.
 
     Returns
     -------
@@ -156,10 +167,11 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
     largest = max(float(np.max(np.abs(v[:, :2]))) for v in on_beams.values())
     gap = float(np.max(np.abs(total + drag - rate)))
     checks = {"balance": Check(gap / largest if largest else gap, _ROUNDING)}
+    doubt = DeferredGroup(partial(_doubt, system, moving, on_beams, finer_mesh))
     return PinReactions(
         method="end forces of the elements",
-        error=_figure(system, moving, np.stack(list(on_beams.values()))),
-        error_norm="largest error of a force [N]; of a moment, over the longest beam's length",
+        error=doubt.later("error"),
+        error_norm=doubt.later("error_norm"),
         checks={**moving.checks, **checks, **linear_range(system, moving)},
         provenance=provenance({**system.provenance, **moving.provenance}),
         speed=moving.speed,
@@ -260,20 +272,35 @@ def _outside_forces(forms: ElementForms, values: _Values) -> Array:
     return total
 
 
-def _figure(system: LinearPeriodic, motion: BeamMotion, forces: Array) -> float:
-    """Return the error of forces by that of the motion, by the mesh and by its frequencies."""
+def _doubt(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    on_beams: Mapping[tuple[str, str], Array],
+    finer_mesh: bool,
+) -> dict[str, float | str]:
+    """Return the error figure and its norm."""
+    finer = on_finer_mesh(system, motion) if finer_mesh else None
+    norm = "largest error of a force [N]; of a moment, over the longest beam's length"
+    return {
+        "error": _figure(system, motion, on_beams, finer),
+        "error_norm": norm if finer else f"{norm}; that of the mesh apart",
+    }
+
+
+def _figure(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    on_beams: Mapping[tuple[str, str], Array],
+    finer: tuple[LinearPeriodic, BeamMotion] | None,
+) -> float:
+    """Return the error of forces by that of the motion and by the mesh."""
     doubt = propagated(system, motion, 2)
     longest = max(beam.length for beam in required_structure(system).beams)
     by_motion = float(np.hypot(doubt[0], doubt[1]) + doubt[2] / longest)
-    stiffer = energy_gap(system, motion)
-    softer = softened(system, motion, stiffer)
-    if softer is None:
-        return by_motion
-    # As of stresses: what both recoveries differ by, at the ends of the beams.
-    first, second = (evaluated(system, motion, 2, method, FORCES) for method in METHODS)
-    gaps = [np.max(np.abs(first[name] - second[name])) for name in FORCES]
-    by_mesh = float(np.sqrt(stiffer) * np.linalg.norm([gaps[0], gaps[1], gaps[2] / longest]))
     scale = np.array([1.0, 1.0, 1.0 / longest])
-    changed = np.stack(list(_forces(system, softer)[0].values()))
-    by_frequency = float(np.max(np.linalg.norm((changed - forces) * scale, axis=-1)))
-    return by_motion + CAUTION * (by_mesh + by_frequency)
+    own = np.stack(list(on_beams.values())) * scale
+    figure = by_motion + ROUNDING * float(np.max(np.abs(own)))
+    if finer is None:
+        return figure
+    better = np.stack(list(_forces(*finer)[0].values())) * scale
+    return figure + CAUTION * float(np.max(np.linalg.norm(better - own, axis=-1)))

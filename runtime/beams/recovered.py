@@ -5,11 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..deferred import DeferredField, DeferredGroup
 from ..errors import LinearRangeWarning, bad
 from ..families import LinearPeriodic
 from ..results import Check, Result, provenance
@@ -17,6 +19,7 @@ from ..simulation.trajectory import LINEAR_RANGE
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion
 from .element_forms import required_structure
+from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 from .recovery import FORCES, METHODS, Recovery, recovery, stations_of
 
 if TYPE_CHECKING:
@@ -27,6 +30,8 @@ if TYPE_CHECKING:
 _CHUNK = 256
 QUANTITIES = ("along", "across", "slope", *FORCES)
 _UNITS = {"along": "m", "across": "m", "slope": "rad", "axial": "N", "shear": "N", "moment": "N m"}
+# Fields that are worked out when they are first looked at.
+_LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +60,8 @@ class BeamForces(Result):
         Bending moment [N m], positive where the beam is hollow on its positive side: E I v''.
     error : ndarray
         Largest error of axial force [N], shear force [N] and moment [N m] over angles and
-        stations: by the error of the motion, and by the difference of the two ways to recover them.
+        stations: by the error of the motion, and by the difference to a finer mesh or, where that
+        is not to be had, of the two ways to recover them.  Worked out when it is first looked at.
     """
 
     speed: float
@@ -68,6 +74,8 @@ class BeamForces(Result):
     axial: Array
     shear: Array
     moment: Array
+    error: Any = _LATER["error"]
+    error_norm: Any = _LATER["error_norm"]  # str
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "theta": ("sample",),
@@ -125,6 +133,7 @@ def recover(
     *,
     stations: int | Mapping[str, ArrayLike] | None = None,
     method: str = "equilibrium",
+    finer_mesh: bool = True,
 ) -> BeamForces:
     """Return displacements and forces along the beams of a system in a motion.
 
@@ -139,6 +148,8 @@ def recover(
     method : str
         ``"equilibrium"``: end forces of the elements, and between nodes what balances inertia,
         weight and axial force.  ``"shape"``: E I v'' of the shape functions, Aannaque's way.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -152,26 +163,46 @@ def recover(
     _require_method(method)
     moving = beam_motion(system, motion)
     chosen = stations_of(required_structure(system), stations)
-    found: dict[str, Array] = {}
-    for name in METHODS:
-        for quantity, values in evaluated(system, moving, stations, name).items():
-            found[f"{name} {quantity}"] = values
-    gaps = [float(np.max(np.abs(found[f"equilibrium {n}"] - found[f"shape {n}"]))) for n in FORCES]
-    figure = np.array(gaps) + propagated(system, moving, stations)
-    more: dict[str, Any] = {name: found[f"{method} {name}"] for name in QUANTITIES}
+    own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
+    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own, finer_mesh))
     return BeamForces(
         method=method,
-        error=figure,
-        error_norm="largest error of axial force [N], shear force [N], moment [N m]; that of the "
-        "mesh's frequencies apart",
+        error=doubt.later("error"),
+        error_norm=doubt.later("error_norm"),
         speed=moving.speed,
         theta=moving.theta,
         links=tuple(station.beam for station in chosen),
         places=np.array([station.place for station in chosen]),
         checks={**moving.checks, **linear_range(system, moving)},
         provenance=provenance({**system.provenance, **moving.provenance}),
-        **more,
+        **own,
     )
+
+
+def _doubt(
+    system: LinearPeriodic,
+    moving: BeamMotion,
+    stations: int | Mapping[str, ArrayLike] | None,
+    method: str,
+    own: Mapping[str, Array],
+    finer_mesh: bool,
+) -> dict[str, Any]:
+    """Return the error figure and its norm."""
+    norm = "largest error of axial force [N], shear force [N], moment [N m]"
+    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    if finer is None:
+        other = next(name for name in METHODS if name != method)
+        better = evaluated(system, moving, stations, other, FORCES)
+        norm = f"{norm}; that of the mesh's frequencies apart"
+    else:
+        better = evaluated(*finer, stations, "equilibrium", FORCES)
+    gaps = np.array([np.max(np.abs(own[name] - better[name])) for name in FORCES])
+    sizes = np.array([np.max(np.abs(own[name])) for name in FORCES])
+    share = 1.0 if finer is None else CAUTION
+    return {
+        "error": share * gaps + propagated(system, moving, stations) + ROUNDING * sizes,
+        "error_norm": norm,
+    }
 
 
 def _require_method(method: str) -> None:

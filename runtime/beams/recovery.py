@@ -19,8 +19,8 @@ from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
 from .assembly import Array
 from .element_forms import ElementForms, required_structure
-from .elements import section_rotation, shape_functions
 from .freedoms import PlacedElement
+from .placed_shapes import placed_rotation, placed_shapes
 from .recovery_forms import LinearForm, stacked
 from .structure import Beam, Structure
 
@@ -229,35 +229,11 @@ def recovery(
 _FIELDS = ("along", "across", "slope")
 
 
-def _shapes(placed: PlacedElement, xi: Array, derivative: int = 0) -> tuple[Array, Array]:
-    section = placed.beam.section
-    return shape_functions(
-        placed.beam.kind,
-        xi,
-        placed.length,
-        derivative,
-        bending_stiffness=section.bending_stiffness,
-        shear_stiffness=section.shear_stiffness,
-    )
-
-
-def _rotation(placed: PlacedElement, xi: Array, derivative: int = 0) -> Array:
-    section = placed.beam.section
-    return section_rotation(
-        placed.beam.kind,
-        xi,
-        placed.length,
-        derivative,
-        bending_stiffness=section.bending_stiffness,
-        shear_stiffness=section.shear_stiffness,
-    )
-
-
 def _displacements(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
     placed = forms.elements[e][0]
-    along, across = _shapes(placed, xi)
+    along, across = placed_shapes(placed, xi)
     local = forms.local(e)
-    matrices = {"along": along, "across": across, "slope": _rotation(placed, xi)}
+    matrices = {"along": along, "across": across, "slope": placed_rotation(placed, xi)}
     return {name: local.turned(matrix) for name, matrix in matrices.items()}
 
 
@@ -265,11 +241,11 @@ def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
     """Return forces by derivatives of the shape functions: E A u', E I v'', -E I v'''."""
     placed = forms.elements[e][0]
     section, strain = placed.beam.section, forms.strain(e)
-    stretch, _ = _shapes(placed, xi, 1)
+    stretch, _ = placed_shapes(placed, xi, 1)
     return {
         "axial": strain.turned(section.axial_stiffness * stretch),
-        "shear": strain.turned(-section.bending_stiffness * _rotation(placed, xi, 2)),
-        "moment": strain.turned(section.bending_stiffness * _rotation(placed, xi, 1)),
+        "shear": strain.turned(-section.bending_stiffness * placed_rotation(placed, xi, 2)),
+        "moment": strain.turned(section.bending_stiffness * placed_rotation(placed, xi, 1)),
     }
 
 
@@ -315,9 +291,9 @@ def _integrals(placed: PlacedElement, xi: Array) -> dict[str, Array]:
     weights = 0.5 * placed.length * xi[:, None] * _GAUSS_WEIGHTS
     lever = placed.length * (xi[:, None] - places)
     flat = np.clip(places.ravel(), 0.0, 1.0)
-    u, v = (value.reshape(*places.shape, -1) for value in _shapes(placed, flat))
-    slope = _shapes(placed, flat, 1)[1].reshape(*places.shape, -1)
-    rotation = _rotation(placed, flat).reshape(*places.shape, -1)
+    u, v = (value.reshape(*places.shape, -1) for value in placed_shapes(placed, flat))
+    slope = placed_shapes(placed, flat, 1)[1].reshape(*places.shape, -1)
+    rotation = placed_rotation(placed, flat).reshape(*places.shape, -1)
     powers = np.stack([places**k for k in range(3)])
     return {
         "u": np.einsum("xg,xgn->xn", weights, u),

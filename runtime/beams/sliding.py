@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..families import Term
-from .elements import shape_functions
+from .placed_shapes import placed_shapes
 
 if TYPE_CHECKING:
     from .assembly import AngleArrays, Array
@@ -92,20 +92,11 @@ class Slide:
         ends = np.array([placed.start for placed, _ in self.elements])
         number = np.clip(np.searchsorted(ends, place, side="right") - 1, 0, len(ends) - 1)
         found = np.zeros((2, len(theta), len(self.arrays.free) + 1))
-        section = self.carried.section
         for k in np.unique(number):
             placed, indices = self.elements[k]
             here = np.flatnonzero(number == k)
             xi = np.clip((place[here] - placed.start) / placed.length, 0.0, 1.0)
-            shapes = shape_functions(
-                self.carried.kind,
-                xi,
-                placed.length,
-                derivative,
-                bending_stiffness=section.bending_stiffness,
-                shear_stiffness=section.shear_stiffness,
-            )
-            for part, shape in zip(found, shapes, strict=True):
+            for part, shape in zip(found, placed_shapes(placed, xi, derivative), strict=True):
                 part[here[:, None], indices] += shape
         # Held coordinates have met in the last column.
         return found[0, :, :-1], found[1, :, :-1]

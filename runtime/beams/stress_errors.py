@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..errors import BadInput, Problem
 from ..families import LinearPeriodic
 from .assembly import Array
-from .beam_motion import BeamMotion, quiet_steady_state
+from .beam_motion import BeamMotion
 from .element_forms import ElementForms, required_structure
 from .recovered import chunks, evaluated, propagated
 from .recovery import METHODS, Station
@@ -19,8 +19,6 @@ from .recovery import METHODS, Station
 Stations = int | Mapping[str, ArrayLike] | None
 # Places over each element for its energy: exact for the recovered polynomials' squares.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-# High modes have larger errors of frequency than the energy, where low ones weigh most, tells.
-CAUTION = 3.0
 # Angles at which the energy is looked at.
 _ANGLES = 64
 
@@ -122,34 +120,3 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
         wrong += float(np.sum((first[name] - second[name]) ** 2 @ np.array(flat)))
         total += float(np.sum(first[name] ** 2 @ np.array(flat)))
     return min(wrong / total, 0.5) if total else 0.0
-
-
-def softened(system: LinearPeriodic, motion: BeamMotion, share: float) -> BeamMotion | None:
-    """Return the steady state of a structure whose modulus is less by a share.
-
-    None where the motion is not a computed steady state.
-    """
-    if motion.solved is None or "elasticity" not in system.parameters:
-        return None
-    softer = (1.0 - share) * float(system.parameters["elasticity"])
-    found = quiet_steady_state(system, motion.speed, softer=softer)
-    count = len(motion.theta)
-    return replace(
-        motion,
-        q=resampled(found.q.reshape(-1, system.size), count),
-        qd=resampled(found.qd.reshape(-1, system.size), count),
-    )
-
-
-def resampled(values: Array, count: int) -> Array:
-    """Return samples ``(nt, n)`` of a periodic function at another number of angles."""
-    own = len(values)
-    if own == count:
-        return values
-    spectrum = np.fft.rfft(values, axis=0)
-    if own % 2 == 0:
-        spectrum[-1] *= 0.5
-    kept = np.zeros((count // 2 + 1, values.shape[1]), dtype=complex)
-    most = min(len(kept), len(spectrum))
-    kept[:most] = spectrum[:most]
-    return np.asarray(np.fft.irfft(kept, n=count, axis=0) * (count / own))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from .section import Section
 
 Array = NDArray[np.float64]
 Configuration = Callable[[Array], Mapping[str, LinkMotion]]
+_Item = TypeVar("_Item", "Beam", "Node")
 
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 DIRECTIONS = ("x", "y", "rotation")
@@ -249,11 +250,7 @@ class Structure:
         BadInput
             If there is none of that name.
         """
-        for beam in self.beams:
-            if beam.name == name:
-                return beam
-        known = ", ".join(beam.name for beam in self.beams)
-        raise bad("beam", repr(name), f"one of {known}", "correct the name")
+        return _named("beam", self.beams, name)
 
     def node(self, name: str) -> Node:
         """Return a node by name.
@@ -263,11 +260,7 @@ class Structure:
         BadInput
             If there is none of that name.
         """
-        for node in self.nodes:
-            if node.name == name:
-                return node
-        known = ", ".join(node.name for node in self.nodes)
-        raise bad("node", repr(name), f"one of {known}", "correct the name")
+        return _named("node", self.nodes, name)
 
     def index(self, label: str) -> int:
         """Return the place of a free coordinate in q.
@@ -368,6 +361,15 @@ class Structure:
                 found = f"{widest:.3g} m away from beam {beam.name}, on which it slides"
                 fix = "let places and configuration agree"
                 raise bad(f"node {name}", found, "a node on the beam", fix)
+
+
+def _named(what: str, items: tuple[_Item, ...], name: str) -> _Item:
+    """Return the one of that name, or refuse the name."""
+    for item in items:
+        if item.name == name:
+            return item
+    known = ", ".join(item.name for item in items)
+    raise bad(what, repr(name), f"one of {known}", "correct the name")
 
 
 def node_value_problems(nodes: object) -> list[Problem]:

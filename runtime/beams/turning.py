@@ -48,6 +48,23 @@ def rotation_slope(size: int) -> dict[str, Array]:
     return {"c": parts["s"], "s": -parts["c"]}
 
 
+def in_own_axes(values: Array, c: Array, s: Array) -> Array:
+    """Return coordinates of an element ``(nt, n)`` in its own axes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (nt, n)
+        In the fixed axes.
+    c, s : ndarray, shape (nt,)
+        Cosine and sine of the beam's angle.
+    """
+    found = values.copy()
+    for x, y in ((0, 1), (3, 4)):
+        found[:, x] = c * values[:, x] + s * values[:, y]
+        found[:, y] = c * values[:, y] - s * values[:, x]
+    return found
+
+
 def turned(left: Mapping[str, Array], matrix: Array, right: Mapping[str, Array]) -> Array:
     """Return ``left^T matrix right`` as factors of the six products, shape ``(6, n, n)``.
 

@@ -6,6 +6,7 @@ from .mathieu import benchmark_mathieu
 from .perturbation import benchmark_perturbation
 from .records import Benchmark, Row
 from .rod import benchmark_rod
+from .scaling import benchmark_scaling
 from .slices import benchmark_slices
 from .stress_curve import benchmark_stress_curve
 
@@ -17,6 +18,7 @@ __all__ = [
     "benchmark_mathieu",
     "benchmark_perturbation",
     "benchmark_rod",
+    "benchmark_scaling",
     "benchmark_slices",
     "benchmark_stress_curve",
 ]

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from ..series.periodic import PeriodicFunction
 Array = NDArray[np.float64]
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 _SHORT = 0.1
+Measured = TypeVar("Measured")
 _PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 
 
@@ -80,12 +81,7 @@ class Benchmark(Result):
             )
             for row in self.rows
         ]
-        widths = [max(len(line[i]) for line in (head, *lines)) for i in range(len(head))]
-        text = [self.title]
-        text += [
-            "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
-            for line in (head, *lines)
-        ]
+        text = [self.title, *padded(head, lines)]
         text.append("* a sample, scaled to the whole; medians of interleaved rounds, one thread")
         return "\n".join(text)
 
@@ -126,6 +122,15 @@ class Contender:
     share: float = 1.0
     note: str = ""
 
+    def processor_time(self, rounds: int) -> float:
+        """Return the least processor time of some runs [s], of what ``run`` does."""
+        least = float("inf")
+        for _ in range(rounds):
+            begin = time.process_time()
+            self.run()
+            least = min(least, time.process_time() - begin)
+        return least
+
 
 def compare(problem: str, contenders: Sequence[Contender], rounds: int) -> list[Row]:
     """Time the contenders in turn, ``rounds`` times; the first is ours.
@@ -162,12 +167,22 @@ def compare(problem: str, contenders: Sequence[Contender], rounds: int) -> list[
     ]
 
 
+def padded(head: Sequence[str], lines: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table of cells, each column as wide as its widest."""
+    every = (head, *lines)
+    widths = [max(len(line[i]) for line in every) for i in range(len(head))]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in every
+    ]
+
+
 def missing(problem: str, name: str, why: str) -> Row:
     """Return the row of a contender that could not run."""
     return Row(problem, name, float("nan"), float("nan"), float("nan"), note=why)
 
 
-def one_thread(work: Callable[..., Benchmark], *arguments: Any) -> Benchmark:
+def one_thread(work: Callable[..., Measured], *arguments: Any) -> Measured:
     """Call ``work`` with numerical libraries on one thread, in a new process where needed.
 
     The libraries read their number of threads when they load, so an environment that does not

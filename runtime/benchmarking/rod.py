@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -137,12 +136,8 @@ def _measure(points: tuple[int, int], rounds: int, problems: tuple[str, ...]) ->
 
 
 def _per_point(row: Row, contender: Contender, rounds: int, total: int) -> Row:
-    """Tell the processor time of a point, the least of some runs, which others disturb less."""
-    least = np.inf
-    for _ in range(rounds):
-        begin = time.process_time()
-        contender.run()
-        least = min(least, time.process_time() - begin)
+    """Tell the processor time of a point, which others disturb less."""
+    least = contender.processor_time(rounds)
     each = f"{1e6 * least / (contender.share * total):.3g} us a point"
     return replace(row, note=f"{each}; {row.note}")
 

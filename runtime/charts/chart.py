@@ -16,13 +16,14 @@ from ..hill.perturbation.boundaries import check_order
 from ..results import Check, Result
 from .boundaries import BoundaryCurves, boundary_curves
 from .edge_rows import EdgeCurves, edge_curves
-from .invariants import instability_kind
 from .line_series import series_by_lines
 from .sampling import Sampler, invariants, relative_error
-from .structure import at_speed, natural_frequency
-from .verdict import spot_check, undecided, verdict
+from .structure import natural_frequency
+from .verdict import judged, spot_check
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from matplotlib.axes import Axes
 
 Axis = tuple[str, ArrayLike]
@@ -131,6 +132,7 @@ def stability_chart(
     marks: Mapping[str, Sequence[float]] | None = None,
     speed: float | None = None,
     rtol: float = 1e-11,
+    executor: Executor | None = None,
     progress: bool = False,
     frequency_name: str = "natural frequency",
 ) -> StabilityChart:
@@ -163,6 +165,9 @@ def stability_chart(
         modes that a turning crank drives, want it.  No boundaries are traced beside another one.
     rtol : float
         Wanted error of the invariants, relative to their size where that exceeds 1.
+    executor : concurrent.futures.Executor, optional
+        Threads, processes or Dask's ``client.get_executor()``, for the lines of the chart and for
+        the verdicts of several modes.  The answer does not depend on it.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
     frequency_name : str
@@ -184,7 +189,7 @@ def stability_chart(
     names, axes = _axes(system, x, y)
     options = _options(system, rtol, order, edges, names)
     named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
-    sampler = Sampler(at_speed(system, names, speed), names, axes, options.rtol)
+    sampler = Sampler.of_chart(system, names, axes, speed, options.rtol, executor)
     found = _chart(sampler, options, boundaries=boundaries, progress=progress)
     fixed = float("nan") if "speed" in names else float(1.0 if speed is None else speed)
     return replace(found, marks=named, frequency_name=frequency_name, speed=fixed)
@@ -222,15 +227,14 @@ def _chart(
     system, names, axes = sampler.system, sampler.names, sampler.axes
     sampled = invariants if sampler.hill else series_by_lines
     series = sampled(sampler, progress=progress)
-    found = verdict(sampler, series)
-    largest, stable, slack = found
+    found = judged(sampler, series)
     exact, near, rows = None, None, None
     shaped = any(name in system.geometry for name in names)
     if boundaries and is_hill(system) and not shaped:
         exact, near = boundary_curves(system, names, axes, options.order)
     checks = {
         "error of samples": Check(series.sample_error, max(1e-8, 1e3 * options.rtol)),
-        "spot check": spot_check(sampler, series, found),
+        "spot check": spot_check(sampler, series, (found.largest, found.stable, found.slack)),
     }
     if options.edges:
         rows = edge_curves(system, names, axes)
@@ -247,11 +251,11 @@ def _chart(
         x=axes[0],
         y=axes[1],
         invariants=series.values,
-        stable=stable,
-        largest=largest,
-        slack=slack,
-        undecided=undecided(sampler, series, found),
-        kind=instability_kind(series.values, stable, hill=sampler.hill, reduced=sampler.reduced),
+        stable=found.stable,
+        largest=found.largest,
+        slack=found.slack,
+        undecided=found.undecided,
+        kind=found.kind,
         exact=exact,
         perturbation=near,
         order=options.order,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -22,6 +22,8 @@ _REAL = 1e-6
 _FAR = 1e8
 # Most modes whose reduced polynomial has a slope with roots in closed form.
 _CLOSED = 4
+# Values of the outer axis whose half traces are worked out together.
+_TOGETHER = 8
 
 Moduli = tuple[Array, NDArray[np.bool_], Array]
 
@@ -275,41 +277,83 @@ def _roots(monic: Array) -> NDArray[np.complex128]:
 
 
 def half_traces(
-    form: HillForm,
-    names: tuple[str, str],
+    outer: int,
     x: Array,
     y: Array,
-    tick: Callable[[int], None] | None = None,
+    tick: Callable[[int], None] | None,
+    run: Callable[[Iterable[tuple[int, Array, Array]]], Iterable[tuple[int, tuple[Array, Array]]]],
 ) -> tuple[Array, Array]:
     """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny).
 
-    A row of the grid shares one function f where the other axis is the speed or acts on the
-    constant stiffness alone.
+    Parameters
+    ----------
+    outer : int
+        Which axis is the outer loop.
+    x, y : ndarray, shapes (nx,), (ny,)
+        Values along the axes.
+    tick : callable or None
+        Told how many points are done.
+    run : callable
+        From groups of values of the outer axis, as :func:`half_trace_rows` takes them, to the
+        number of a group and what that returns, in any order.
     """
-    # The axis that changes f is the outer loop; along the inner one only lam2 and K change.
-    inner = 0 if leaves_function_alone(form, names[0]) else 1
-    outer = 1 - inner
     axes = (x, y)
-    values = np.empty((len(x), len(y)))
-    errors = np.empty((len(x), len(y)))
-    for j, fixed in enumerate(axes[outer]):
-        points = [{names[outer]: float(fixed), names[inner]: float(v)} for v in axes[inner]]
+    starts = range(0, len(axes[outer]), _TOGETHER)
+    values = np.empty((len(axes[outer]), len(axes[1 - outer])))
+    errors = np.empty_like(values)
+    done = 0
+    for number, found in run(
+        (outer, axes[outer][start : start + _TOGETHER], axes[1 - outer]) for start in starts
+    ):
+        part = slice(starts[number], starts[number] + len(found[0]))
+        values[part], errors[part] = found
+        done += found[0].size
+        if tick is not None:
+            tick(done)
+    if outer == 1:
+        values, errors = values.T, errors.T
+    return values[None], errors
+
+
+def half_trace_rows(
+    form: HillForm, names: tuple[str, str], outer: int, fixed: Array, along: Array
+) -> tuple[Array, Array]:
+    """Return half traces at values of the outer axis and all of the inner one, and their errors.
+
+    A row shares one function f where the inner axis is the speed or acts on the constant stiffness
+    alone.
+
+    Parameters
+    ----------
+    form : HillForm
+        The mode.
+    names : tuple of str
+        The axes.
+    outer : int
+        Which of them ``fixed`` belongs to.
+    fixed, along : ndarray, shapes (no,), (ni,)
+        Values along both.
+
+    Returns
+    -------
+    values, errors : ndarray, shape (no, ni)
+    """
+    inner = 1 - outer
+    rows = []
+    for value in fixed:
+        points = [{names[outer]: float(value), names[inner]: float(v)} for v in along]
         speeds = np.array([p.pop("speed", 1.0) for p in points])
         lam2 = np.array([form.stiffness(**p) for p in points]) / speeds**2
         damping = np.array([form.damping(**p) for p in points]) / (2 * speeds)
         if leaves_function_alone(form, names[inner]):
             f = form.function(float(speeds[0]), **points[0])
             result = discriminant(f, lam2, 1.0, damping)
-            row, error = result.value, result.error
-        else:
-            results = [
-                discriminant(form.function(float(w), **p), float(v), 1.0, float(k))
-                for w, p, v, k in zip(speeds, points, lam2, damping, strict=True)
-            ]
-            row = np.array([float(r.value) for r in results])
-            error = np.array([float(r.error) for r in results])
-        place = (slice(None), j) if inner == 0 else (j, slice(None))
-        values[place], errors[place] = row, error
-        if tick is not None:
-            tick((j + 1) * len(axes[inner]))
-    return values[None], errors
+            rows.append((result.value, np.broadcast_to(result.error, result.value.shape)))
+            continue
+        results = [
+            discriminant(form.function(float(w), **p), float(v), 1.0, float(k))
+            for w, p, v, k in zip(speeds, points, lam2, damping, strict=True)
+        ]
+        each = [(float(r.value), float(r.error)) for r in results]
+        rows.append((np.array([v for v, _ in each]), np.array([e for _, e in each])))
+    return np.stack([row for row, _ in rows]), np.stack([error for _, error in rows])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,9 @@ from .sampling import Sampler
 
 # Another number of stretches gives another solution; the difference, over-estimated, is the error.
 _OTHER, _MARGIN = 1.37, 4.0
+
+
+State = tuple[int | None, tuple[Array, Array] | None]
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,21 @@ class Lines:
         self.degree = self._degree()
         self.leaves: int | None = None
         self.modes: tuple[Array, Array] | None = None
+
+    @property
+    def state(self) -> State:
+        """What one line leaves for the next: its modal coordinates and number of nodes."""
+        return self.leaves, self.modes
+
+    @state.setter
+    def state(self, state: State) -> None:
+        self.leaves, self.modes = state
+
+    def begun(self, state: State) -> Lines:
+        """Return the same lines with what another one has left."""
+        found = copy(self)
+        found.state = state
+        return found
 
     @property
     def inner_is_geometry(self) -> bool:

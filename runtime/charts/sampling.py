@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import bad
 from ..families import Array, LinearPeriodic
 from ..floquet.first_order import canonical_form
-from ..hill.form import hill_form, is_hill, plain_axes
+from ..hill.form import hill_form, is_hill, leaves_function_alone, plain_axes
 from ..hill.half_trace import discriminant_grid
 from ..progress import bar
 from ..series import chebyshev
-from .invariants import half_traces
-from .structure import Axes, Names, is_damped, is_symplectic
+from ..sweeps.workers import Workers, check_executor
+from .invariants import half_trace_rows, half_traces
+from .structure import Axes, Names, at_speed, is_damped, is_symplectic
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 _FIRST, _MOST = 16, 512
 # Flops, roughly, that one chart may cost: an hour or so.
@@ -44,6 +50,11 @@ class Series:
     method: str
     errors: Array | None = None
 
+    def rows(self, part: slice) -> Series:
+        """Return the same of some rows of the chart."""
+        errors = None if self.errors is None else self.errors[part]
+        return replace(self, values=self.values[part], error=self.error[part], errors=errors)
+
 
 class Sampler:
     """Evaluates the invariants at given points of the transformed axes."""
@@ -56,6 +67,54 @@ class Sampler:
         self.hill = is_hill(system) and not shaped and not (system.has("Kg") and "speed" in names)
         self.form = hill_form(system) if self.hill else None
         self.plain = None if self.form is None or self.damped else plain_axes(self.form, names)
+        self._executor: Executor | None = None
+        self._asked: tuple[LinearPeriodic, float | None] = (system, None)
+
+    @classmethod
+    def of_chart(
+        cls,
+        system: LinearPeriodic,
+        names: Names,
+        axes: Axes,
+        speed: float | None,
+        rtol: float,
+        executor: Executor | None = None,
+    ) -> Sampler:
+        """Return the sampler of a chart at a fixed speed, or with the speed as an axis.
+
+        Parameters
+        ----------
+        system : LinearPeriodic
+            As it was given.
+        names, axes : tuple
+            The axes.
+        speed : float, optional
+            Crank speed [rad/s] of all points.
+        rtol : float
+            Wanted error of the invariants.
+        executor : concurrent.futures.Executor, optional
+            Does independent pieces.
+        """
+        check_executor(executor)
+        made = cls(at_speed(system, names, speed), names, axes, rtol)
+        made._executor, made._asked = executor, (system, speed)
+        return made
+
+    @cached_property
+    def workers(self) -> Workers:
+        """What does independent pieces, each with a sampler of its own where it is elsewhere."""
+        if self._executor is None:
+            return Workers(None, _itself, self)
+        # The system as it was given: one slowed down does not bear pickling.
+        system, speed = self._asked
+        made = (Sampler.of_chart, system, self.names, self.axes, speed, self.rtol)
+        return Workers(self._executor, *made)
+
+    def rows(self, part: slice) -> Sampler:
+        """Return the sampler of some rows of the chart."""
+        found = copy(self)
+        found.axes = (self.axes[0], self.axes[1][part])
+        return found
 
     def transform(self, name: str, values: Array) -> Array:
         """Return the variable in which the invariants are entire."""
@@ -74,8 +133,10 @@ class Sampler:
         if self.form is None:
             raise ValueError("several modes are solved line by line")
         ax, ay = (self.back(n, v) for n, v in zip(self.names, (x, y), strict=True))
-        # For each y a function f, and all x at once where x leaves f alone.
-        return half_traces(self.form, self.names, ax, ay, tick)
+        # For each y a function f, and all x at once where x leaves f alone: the axis that changes
+        # f is the outer loop.
+        outer = 1 if leaves_function_alone(self.form, self.names[0]) else 0
+        return half_traces(outer, ax, ay, tick, partial(self.workers.run, _half_trace_rows))
 
     def allowed(self, lines: int, nodes: int) -> None:
         """Refuse a chart whose lines, and nodes on each, would take too long.
@@ -109,6 +170,18 @@ class Sampler:
             )
 
 
+def _itself(sampler: Sampler) -> Sampler:
+    return sampler
+
+
+def _half_trace_rows(sampler: Sampler, rows: tuple[int, Array, Array]) -> tuple[Array, Array]:
+    """Return the half traces of one mode at some values of the outer axis."""
+    if sampler.form is None:
+        raise ValueError("several modes are solved line by line")
+    outer, fixed, along = rows
+    return half_trace_rows(sampler.form, sampler.names, outer, fixed, along)
+
+
 def invariants(sampler: Sampler, *, progress: bool) -> Series:
     """Return the half traces of a chart in the way that suits it."""
     return _plain_hill(sampler) or _sampled(sampler, progress)
@@ -135,7 +208,9 @@ def relative_error(error: Array, values: Array) -> float:
 
     Invariants that overflowed have none; one that is NaN, or an error that is, counts as infinite.
     """
-    size = np.maximum(1.0, np.max(np.abs(values), axis=-1))
+    # A maximum over one entry is dear.
+    largest = np.abs(values[..., 0]) if values.shape[-1] == 1 else np.max(np.abs(values), axis=-1)
+    size = np.maximum(1.0, largest)
     if np.any(np.isnan(size) | (np.isnan(error) & np.isfinite(size))):
         return float("inf")
     finite = np.isfinite(size)

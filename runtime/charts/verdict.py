@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,14 @@ from numpy.typing import NDArray
 from ..families import Array, LinearPeriodic
 from ..floquet.monodromy_matrix import floquet_multipliers
 from ..results import Check
-from .invariants import known_to, largest_modulus, root_uncertainty
+from ..sweeps.workers import Workers
+from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 from .sampling import Sampler, Series
 from .structure import damping_rate, on_grid
 
 _SPOTS = 5
+# Points that are judged together.
+_BLOCK = 250_000
 Verdict = tuple[Array, NDArray[np.bool_], Array]
 
 
@@ -30,6 +34,49 @@ def verdict(sampler: Sampler, series: Series) -> Verdict:
     edge = 0.5 * (1.0 + level)
     slack = _larger_root(edge + series.error, level) - 1.0
     return largest, half <= edge + series.error, slack
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is told of each point, ``(ny, nx)``; see :class:`~.chart.StabilityChart`."""
+
+    largest: Array
+    stable: NDArray[np.bool_]
+    slack: Array
+    undecided: NDArray[np.bool_]
+    kind: NDArray[np.int8]
+
+
+def judged(sampler: Sampler, series: Series) -> Judged:
+    """Return what is told of each point, some rows at a time, which bounds the memory."""
+    rows, points = series.values.shape[:2]
+    together = max(1, _BLOCK // max(1, points))
+    parts = [slice(start, start + together) for start in range(0, rows, together)]
+    shape = (rows, points)
+    found = Judged(
+        np.empty(shape),
+        np.empty(shape, dtype=bool),
+        np.empty(shape),
+        np.empty(shape, dtype=bool),
+        np.empty(shape, dtype=np.int8),
+    )
+    # Of one mode the verdict is quicker than the way to another process and back.
+    workers = Workers(None, lambda: sampler) if sampler.hill else sampler.workers
+    items = ((part, series.rows(part)) for part in parts)
+    for number, block in workers.run(_judge, items):
+        for name, value in vars(block).items():
+            getattr(found, name)[parts[number]] = value
+    return found
+
+
+def _judge(sampler: Sampler, item: tuple[slice, Series]) -> Judged:
+    """Return what is told of the points of some rows."""
+    part, series = item
+    rows = sampler.rows(part)
+    found = verdict(rows, series)
+    largest, stable, slack = found
+    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
+    return Judged(largest, stable, slack, undecided(rows, series, found), kind)
 
 
 def undecided(sampler: Sampler, series: Series, found: Verdict) -> NDArray[np.bool_]:
@@ -122,12 +169,9 @@ def _direct(
         values: dict[str, Any] = {**rest}
         found = floquet_multipliers(system, speed, **values)
         return found.multipliers, found.error
-    each = [
-        floquet_multipliers(
-            system.with_geometry(**{k: float(v[i]) for k, v in shapes.items()}),
-            speed[i],
-            **{k: float(v[i]) for k, v in rest.items()},
-        )
-        for i in range(_SPOTS)
-    ]
+    each = []
+    for i in range(_SPOTS):
+        here = system.with_geometry(**{k: float(v[i]) for k, v in shapes.items()})
+        numbers: dict[str, Any] = {k: float(v[i]) for k, v in rest.items()}
+        each.append(floquet_multipliers(here, speed[i], **numbers))
     return np.stack([e.multipliers for e in each]), np.stack([e.error for e in each])

@@ -25,6 +25,7 @@ from . import (
     clearance,
     curves,
     driving,
+    explain,
     forces,
     linkages,
     proofs,
@@ -38,6 +39,7 @@ from .options import HelpFormatter
 # In the order of the help.
 _GROUPS = (
     scenes,
+    explain,
     linkages,
     classification,
     curves,

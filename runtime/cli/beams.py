@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
@@ -18,65 +19,67 @@ if TYPE_CHECKING:
     from ..scenes import Scene
 
 _EXAMPLE = "aannaque_1996_table_4_1"
-_SPEEDS = 1000
 _ROWS = 25
 _METHODS = ("mean_frequency", "running_mean", "response", "multipliers", "meissner")
 
 
 def add(commands: Any) -> None:
     """Add the subcommands."""
-    frequencies = opt.command(
+    _add_frequencies(commands)
+    _add_stresses(commands)
+
+
+def _add_frequencies(commands: Any) -> None:
+    frequencies = _added(
         commands,
         "frequencies",
         _frequencies,
         summary="Natural frequencies over the crank angle: means, ranges, crossings, veerings.",
         example=f"elastolink frequencies {_EXAMPLE} --count 4 --plot frequencies.png",
     )
-    opt.scene_options(frequencies)
     frequencies.add_argument("--count", type=int, default=None, help="modes; default 6")
-    critical = opt.command(
+    critical = _added(
         commands,
         "critical-speeds",
         _critical,
         summary="Critical speeds within a range: means over n, multipliers, J_N, the response.",
         example=f"elastolink critical-speeds {_EXAMPLE} --range 20:70 --method mean_frequency",
+        ranged=True,
     )
-    opt.scene_options(critical)
-    _range_option(critical)
     critical.add_argument("--method", choices=_METHODS, default="mean_frequency")
-    campbell = opt.command(
+    _added(
         commands,
         "campbell",
         _campbell,
         summary="Campbell diagram: frequencies against the crank speed, and the orders that meet.",
         example=f"elastolink campbell {_EXAMPLE} --range 5:70 --plot campbell.png",
+        ranged=True,
     )
-    opt.scene_options(campbell)
-    _range_option(campbell)
-    stress = opt.command(
+
+
+def _add_stresses(commands: Any) -> None:
+    stress = _added(
         commands,
         "stress",
         _stress,
         summary="Stresses of a linkage of beams: over the cycle at one speed, or over the speed.",
         example=(
             f"elastolink stress {_EXAMPLE} --speed '30 rad/s' --limit '250 MPa'\n"
-            f"  elastolink stress {_EXAMPLE} --speed 5:70:1000 --plot stress.png"
+            f"  elastolink stress {_EXAMPLE} --speed 5:30:1000 --plot stress.png"
         ),
     )
-    opt.scene_options(stress)
     stress.add_argument("--speed", help="'30 rad/s', or START:STOP:COUNT[UNIT]")
     stress.add_argument("--limit", help="allowed stress, such as '250 MPa'")
-    running = opt.command(
+    running = _added(
         commands,
         "running-speed",
         _running,
         summary="A quiet running speed above limiting critical speeds, and how to get there.",
         example=f"elastolink running-speed {_EXAMPLE} --range 5:45 --limit '250 MPa'",
+        ranged=True,
     )
-    opt.scene_options(running)
-    _range_option(running)
     running.add_argument("--limit", required=True, help="allowed stress, such as '250 MPa'")
-    through = opt.command(
+    through = _added(
         commands,
         "run-through",
         _through,
@@ -86,16 +89,28 @@ def add(commands: Any) -> None:
             "      --plot run.png"
         ),
     )
-    opt.scene_options(through)
     through.add_argument("--from", dest="start", required=True, help="first crank speed")
     through.add_argument("--to", dest="stop", required=True, help="last crank speed")
     through.add_argument("--time", required=True, help="duration of the change, such as '2 s'")
 
 
-def _range_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
-    )
+def _added(
+    commands: Any,
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    *,
+    summary: str,
+    example: str,
+    ranged: bool = False,
+) -> argparse.ArgumentParser:
+    """Add a subcommand on a scene, with a range of speeds where it asks for one."""
+    parser = opt.command(commands, name, run, summary=summary, example=example)
+    opt.scene_options(parser)
+    if ranged:
+        parser.add_argument(
+            "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
+        )
+    return parser
 
 
 def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
@@ -221,7 +236,9 @@ def _stress(options: argparse.Namespace) -> int:
         from ..reduction.stress_curve import stress_curve
 
         curve = stress_curve(system, speeds)
-        return opt.finish(options, curve, _curve_lines(curve))
+        return opt.finish(
+            options, curve, [*_curve_lines(curve), *_unstable_lines(curve.unstable_ranges)]
+        )
     from ..design import quiet_speeds
 
     found = quiet_speeds(system, speeds, limit)
@@ -237,7 +254,13 @@ def _stress(options: argparse.Namespace) -> int:
     ]
     header = ("from [rad/s]", "to", "quietest", "stress/limit", "beyond the critical speed")
     more = {"bands": [[b.low, b.high, b.best, b.ratio, b.above] for b in found.bands]}
-    return opt.finish(options, found, opt.table(header, rows), more=more)
+    lines = [*opt.table(header, rows), *_unstable_lines(found.unstable)]
+    return opt.finish(options, found, lines, more=more)
+
+
+def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
+    """Return a line per range of speeds that is not known to be stable."""
+    return [f"unstable from {low:.5g} to {high:.5g} rad/s" for low, high in ranges]
 
 
 def _peaks(found: StressResult, limit: float | None) -> list[str]:
@@ -270,6 +293,8 @@ def _curve_lines(curve: StressCurve) -> list[str]:
         for i in chosen
     ]
     title = f"{len(curve.speed)} speeds; largest stress [MPa] where it is higher than beside:"
+    if not rows:
+        return [f"{len(curve.speed)} speeds; the largest stress is nowhere higher than beside"]
     return [title, "", *opt.table(("speed [rad/s]", *curve.links), rows)]
 
 

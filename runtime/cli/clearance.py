@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -112,25 +111,12 @@ def _by_joint(texts: Sequence[str]) -> dict[str, float]:
 
 def _finish_all(options: argparse.Namespace, found: Sequence[ClearanceRange], draw: Any) -> int:
     """Write several results: one table each, or a JSON list, and one picture."""
-    path = opt.picture(options)
-    if path is not None:
-        from ..plotting import new_figure
-
-        figure = new_figure()
-        draw(figure.add_subplot())
-        opt.save(figure, path)
+    opt.draw_into(options, draw)
     if options.json:
         opt.print_json({"ranges": [result.to_dict() for result in found]})
     else:
         print("\n\n".join("\n".join(_lines(result)) for result in found))
-    failed = 0
-    for result in found:
-        for name, check in result.checks.items():
-            if not check.passed:
-                failed = 1
-                text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
-                print(f"elastolink {options.command}: {text}", file=sys.stderr)
-    return failed
+    return opt.exit_status(options, [result.checks for result in found])
 
 
 def _lines(found: ClearanceRange) -> list[str]:
@@ -160,8 +146,7 @@ def _table(found: ClearanceRange) -> list[str]:
 
     unit = "m" if found.unit == "m" else "deg"
     shown = np.asarray if found.unit == "m" else np.degrees
-    count = found.theta2.size
-    chosen = np.unique(np.linspace(0, count - 1, min(_ROWS, count)).round().astype(int))
+    chosen = opt.even_rows(found.theta2.size, _ROWS)
     names = {"nominal": "nominal", "lower": "lower", "upper": "upper", "width": "width"}
     names["small"] = "first order"
     columns = [[format(float(angle), "z.4f") for angle in np.degrees(found.theta2[chosen])]]

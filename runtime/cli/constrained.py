@@ -87,7 +87,7 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
         if getattr(options, name) is not None:
             fix = "leave it out: the motion starts from the undeformed rod"
             raise bad(f"--{name}", "a value", "none for constrained equations", fix)
-    method = options.method or "projection"
+    method = options.method or "collocation"
     if method not in METHODS:
         raise bad("--method", repr(method), f"one of {sorted(METHODS)}", "choose one")
     rod = at_speed(options, scene)

@@ -65,7 +65,10 @@ def add(commands: Any) -> None:
     simulate.add_argument(
         "--method",
         metavar="NAME",
-        help="gauss_legendre, magnus4, rk4, de_vogelaere, kutta_merson, or one of SciPy's",
+        help="auto (default: power_series, gauss_legendre where coefficients are not smooth or "
+        "--steps is given), power_series, gauss_legendre[4 to 16 by 2], magnus4/6/8, cf4, cf6, "
+        "srkn4, srkn6, rk4, kutta_merson, de_vogelaere, newmark, generalized_alpha, or SciPy's "
+        "RK45, DOP853, Radau, BDF, LSODA",
     )
     simulate.add_argument(
         "--initial",
@@ -115,7 +118,7 @@ def _table(motion: Motion) -> list[str]:
     import numpy as np
 
     count = motion.theta2.size
-    chosen = np.unique(np.linspace(0, count - 1, min(_ROWS, count)).round().astype(int))
+    chosen = opt.even_rows(count, _ROWS)
     header, columns = [], []
     for name in ("theta2", *motion.places, *motion.rates):
         unit = "rad" if name == "theta2" else motion.unit(name)

@@ -8,7 +8,7 @@ import math
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
@@ -16,8 +16,10 @@ from ..errors import bad
 if TYPE_CHECKING:
     from pathlib import Path
 
+    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from ..results import Check, Result
     from ..scenes import Scene
@@ -213,25 +215,36 @@ def finish(
     beside : sequence of Result
         Other results whose self-checks count too.
     """
-    path = picture(options)
-    if path is not None:
-        from ..plotting import new_figure
-
-        figure = new_figure()
-        (draw or result.plot)(figure.add_subplot())
-        save(figure, path)
+    draw_into(options, draw or result.plot)
     checks = dict(result.checks)
     for other in beside:
         for name, check in other.checks.items():
             # Where two have a check of one name, the one that failed is told.
             if name not in checks or (checks[name].passed and not check.passed):
                 checks[name] = check
-    failed = {name: check for name, check in checks.items() if not check.passed}
     if options.json:
-        print_json({**result.to_dict(), **(more or {}), "passed": not failed})
+        passed = all(check.passed for check in checks.values())
+        print_json({**result.to_dict(), **(more or {}), "passed": passed})
     else:
         print("\n".join([*lines, *_verdict(result, checks)]))
-    for name, check in failed.items():
+    return exit_status(options, [checks])
+
+
+def draw_into(options: argparse.Namespace, draw: Callable[[Axes], Any]) -> None:
+    """Write the picture that was asked for, if any."""
+    path = picture(options)
+    if path is not None:
+        from ..plotting import new_figure
+
+        figure = new_figure()
+        draw(figure.add_subplot())
+        save(figure, path)
+
+
+def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]]) -> int:
+    """Tell each self-check that failed and return the exit status: 1 where one did."""
+    failed = [pair for checks in found for pair in checks.items() if not pair[1].passed]
+    for name, check in failed:
         text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
         print(f"elastolink {options.command}: {text}", file=sys.stderr)
     return _SELF_CHECK_FAILED if failed else 0
@@ -247,6 +260,21 @@ def save(figure: Figure, path: Path) -> None:
 def print_json(content: Any) -> None:
     """Print JSON with sorted keys; what is not finite becomes null, for JSON has no word for it."""
     print(json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False))
+
+
+def even_rows(count: int, most: int) -> NDArray[np.intp]:
+    """Return places among ``count``, evenly spread, the ends included, not more than ``most``."""
+    import numpy as np
+
+    return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
+
+
+def crank_speeds(text: str) -> list[float]:
+    """Return a range of positive crank speeds [rad/s] as ``--speed`` takes it."""
+    speeds = values(text, "frequency", "--speed")
+    if speeds[0] <= 0:
+        raise bad("--speed", repr(text), "positive speeds", "raise the lower end")
+    return speeds
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

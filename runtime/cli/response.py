@@ -63,9 +63,7 @@ def _steady_state(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     refuse_frame(scene)
     if options.speed is not None and ":" in options.speed:
-        speeds = opt.values(options.speed, "frequency", "--speed")
-        if speeds[0] <= 0:
-            raise bad("--speed", repr(options.speed), "positive speeds", "raise the lower end")
+        speeds = opt.crank_speeds(options.speed)
     else:
         speeds = [speed_of(options, scene)]
     system = scene.linear_system()

@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from ..errors import bad
-from . import constrained
+from . import constrained, stored_chart
 from . import options as opt
 from .linkages import speed_of
 
@@ -45,7 +45,8 @@ def add(commands: Any) -> None:
         summary="Stability chart over two parameters, with exact and perturbation boundaries.",
         example=(
             "elastolink chart smith_1972_5152_sixteenth_inch --plot chart.png\n"
-            "  elastolink chart mathieu --x lam2=-0.5:10:400 --y mu=0:4:300 --plot mathieu.svg"
+            "  elastolink chart mathieu --x lam2=-0.5:10:400 --y mu=0:4:300 --plot mathieu.svg\n"
+            "  elastolink chart mathieu --x lam2=-0.5:30:4000 --y mu=0:4:2500 --store fine.npz"
         ),
     )
     opt.scene_options(chart)
@@ -67,6 +68,7 @@ def add(commands: Any) -> None:
         help="crank speed where that is no axis, e.g. '500 rpm', rad/s without a unit; default "
         "operation.speed, 1 without crank",
     )
+    stored_chart.add_options(chart)
     for axis in ("x", "y"):
         chart.add_argument(
             f"--{axis}",
@@ -92,10 +94,7 @@ def _speeds(options: argparse.Namespace, scene: Scene) -> list[float]:
     if scene.model["mechanism"] == "hill" and options.speed is None:
         return [1.0]
     if options.speed is not None and ":" in options.speed:
-        speeds = opt.values(options.speed, "frequency", "--speed")
-        if speeds[0] <= 0:
-            raise bad("--speed", repr(options.speed), "positive speeds", "raise the lower end")
-        return speeds
+        return opt.crank_speeds(options.speed)
     return [speed_of(options, scene)]
 
 
@@ -132,24 +131,30 @@ def _crank(speed: float, scene: Scene) -> str:
 
 def _chart(options: argparse.Namespace) -> int:
     opt.picture(options)
+    stored_chart.check(options)
     scene = opt.load(options)
     system = scene.linear_system()
     x, y = (_axis(getattr(options, axis), axis, scene) for axis in ("x", "y"))
     if x[0] == y[0]:
         raise bad("--y", repr(y[0]), "another parameter than along x", "choose one")
+    speed = _fixed_speed(options, scene, (x[0], y[0]))
+    if options.store is not None:
+        return stored_chart.run(options, system, x, y, speed)
     from ..charts.chart import stability_chart
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
-    chart = stability_chart(
-        system,
-        x=x,
-        y=y,
-        order=options.order,
-        edges=options.edges,
-        speed=_fixed_speed(options, scene, (x[0], y[0])),
-        marks=_marks(scene, y),
-        frequency_name=name or "natural frequency",
-    )
+    with stored_chart.workers(options) as pool:
+        chart = stability_chart(
+            system,
+            x=x,
+            y=y,
+            order=options.order,
+            edges=options.edges,
+            speed=speed,
+            marks=_marks(scene, y),
+            executor=pool,
+            frequency_name=name or "natural frequency",
+        )
     return opt.finish(options, chart, _chart_lines(chart, scene))
 
 

@@ -64,8 +64,8 @@ class Equations:
         self.n, self.k = system.size, system.constraints
         a = system.dynamics(q, qd, t)
         self.columns, self.rows = scaling(a["mass"], a["jacobian"])
-        self._scale = np.concatenate([self.columns, self.rows])
-        self._outer = self._scale[:, None] * self._scale
+        self.scale = np.concatenate([self.columns, self.rows])
+        self.outer = self.scale[:, None] * self.scale
         self.evaluations = 0
 
     def terms(self, t: float, q: Array, qd: Array) -> Mapping[str, Array]:
@@ -81,7 +81,7 @@ class Equations:
         matrix[:n, :n] = a["mass"]
         matrix[:n, n:] = -jacobian.T
         matrix[n:, :n] = jacobian
-        matrix *= self._outer
+        matrix *= self.outer
         return matrix
 
     def solve(self, matrix: Array, right: Array) -> Array:
@@ -93,7 +93,7 @@ class Equations:
             If the matrix is singular or the answer not finite.
         """
         try:
-            found: Array = self._scale * np.linalg.solve(matrix, self._scale * right)
+            found: Array = self.scale * np.linalg.solve(matrix, self.scale * right)
         except np.linalg.LinAlgError as singular:
             raise NoConvergence("the constraints' Jacobian lost its rank") from singular
         if not np.isfinite(found).all():
@@ -123,15 +123,15 @@ class Equations:
         """
         self.evaluations += len(t)
         a = self.system.dynamics(q, qd, t)
-        matrix = self._outer * kkt_matrix(a["mass"], a["jacobian"])
+        matrix = self.outer * kkt_matrix(a["mass"], a["jacobian"])
         right = np.concatenate([a["forces"] - a["rest"], a["gamma"]], axis=-2)[..., 0]
         try:
-            found = np.linalg.solve(matrix, (self._scale * right)[..., None])[..., 0]
+            found = np.linalg.solve(matrix, (self.scale * right)[..., None])[..., 0]
         except np.linalg.LinAlgError as singular:
             raise NoConvergence("the constraints' Jacobian lost its rank") from singular
         if not np.isfinite(found).all():
             raise NoConvergence("the accelerations are not finite")
-        found *= self._scale
+        found *= self.scale
         return found[:, : self.n], found[:, self.n :]
 
     def positions(self, t: float, q: Array, mass: Array) -> Array:
@@ -164,6 +164,24 @@ class Equations:
             last = size
         raise NoConvergence("the positions do not reach the constraints")
 
+    def nearest(self, t: float, q: Array, qd: Array) -> tuple[Array, Array]:
+        """Return the coordinates and velocities nearest to predicted ones, by the masses.
+
+        Raises
+        ------
+        NoConvergence
+            If the constraints are out of reach.
+        """
+        if not self.k:
+            return q, qd
+        predicted = self.terms(t, q, qd)
+        q = self.positions(t, q, predicted["mass"])
+        a = self.terms(t, q, qd)
+        matrix = self.matrix(a)
+        right = np.zeros(self.n + self.k)
+        right[self.n :] = a["velocity_rhs"][:, 0] - a["jacobian"] @ qd
+        return q, qd + self.solve(matrix, right)[: self.n]
+
     def state(self, t: float, q: Array, qd: Array) -> State:
         """Return the state nearest to a predicted one, in the metric of the masses.
 
@@ -172,14 +190,7 @@ class Equations:
         NoConvergence
             If the constraints are out of reach.
         """
-        predicted = self.terms(t, q, qd)
-        q = self.positions(t, q, predicted["mass"])
-        a = self.terms(t, q, qd)
-        matrix = self.matrix(a)
-        right = np.zeros(self.n + self.k)
-        right[self.n :] = a["velocity_rhs"][:, 0] - a["jacobian"] @ qd
-        qd = qd + self.solve(matrix, right)[: self.n]
-        return self.at(t, q, qd)
+        return self.at(t, *self.nearest(t, q, qd))
 
     def at(self, t: float, q: Array, qd: Array) -> State:
         """Return the state of positions and velocities that meet the constraints."""

@@ -108,10 +108,9 @@ class ConstrainedMultipliers(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw physical and constraint multipliers and the unit circle; return the axes."""
-        if ax is None:
-            from matplotlib.figure import Figure
+        from ..plotting import axes_or_new
 
-            ax = Figure().add_subplot()
+        ax = axes_or_new(ax)
         circle = np.exp(1j * np.linspace(0.0, 2 * np.pi, 361))
         ax.plot(circle.real, circle.imag, color="0.6", linewidth=0.8)
         ax.plot(self.physical.real, self.physical.imag, "o", markersize=4, label="physical")

@@ -134,10 +134,9 @@ class PeriodicOrbit(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over one period, each less its mean, and return the axes."""
-        if ax is None:
-            from matplotlib.figure import Figure
+        from ..plotting import axes_or_new
 
-            ax = Figure().add_subplot()
+        ax = axes_or_new(ax)
         t = np.linspace(0.0, self.period, 1001)
         q = self.at(t)[0] - np.multiply.outer(t / self.period, self.advance)
         names = self.labels or tuple(f"q{i + 1}" for i in range(q.shape[1]))

@@ -77,10 +77,9 @@ class ConstrainedMotion(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over time and return the axes."""
-        if ax is None:
-            from matplotlib.figure import Figure
+        from ..plotting import axes_or_new
 
-            ax = Figure().add_subplot()
+        ax = axes_or_new(ax)
         names = self.labels or tuple(f"q{i + 1}" for i in range(self.q.shape[1]))
         for label, values in zip(names, self.q.T, strict=True):
             ax.plot(self.time, values, label=label, linewidth=0.9)

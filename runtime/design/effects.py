@@ -212,7 +212,9 @@ def _curves(
     executor: Executor | None,
     angles: Array | None,
 ) -> StressEffect:
-    curves = [stress_curve(one, speeds, rtol=rtol, executor=executor) for one in systems]
+    curves = [
+        stress_curve(one, speeds, rtol=rtol, stability=False, executor=executor) for one in systems
+    ]
     errors = np.array([curve.error for curve in curves])
     return StressEffect(
         method=curves[0].method,

@@ -12,8 +12,7 @@ from ..beams.element_forms import required_structure
 from ..errors import BadInput, bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
-from ..floquet.monodromy_matrix import floquet_multipliers
-from ..reduction import reduced_system, stress_curve
+from ..reduction import stress_curve
 from ..results import Check, Result
 from .effects import StressEffect, damping_effect, length_effect
 from .quiet import Band, QuietSpeeds, quiet_speeds
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
 _LENGTHS = tuple(1.0 + 0.01 * k for k in range(23))
-# Modes whose multipliers decide on stability, at the most.
-_SLOW = 5
 # Speeds of a run-up at which the stresses are looked at.
 _RUN_UP_SPEEDS = 400
 
@@ -111,21 +108,21 @@ def running_speed(
         Whether the highest quiet band is chosen, or the one with the least stress.
     rtol : float
         Wanted error of the stresses, relative.
-    executor : concurrent.futures.Executor, optional
-        As :func:`stress_curve` takes it.
+    executor : Executor, optional
+        As :func:`quiet_speeds` takes it.
 
     Returns
     -------
     RunningSpeed
         Its checks: those of the quiet speeds; ``within limits``, the largest stress at the running
-        speed with its error over its limit; ``stable``, the largest modulus of the multipliers of
-        the lowest modes there.
+        speed with its error over its limit; ``stable``, the largest multiplier's modulus there
+        with its error.
 
     Raises
     ------
     BadInput
         If an argument is unusable, the system has no such length, or no speed of the range is
-        within the limits.
+        within the limits and stable.
     """
     required_structure(system)
     tried = _tried(system, length, values)
@@ -135,8 +132,8 @@ def running_speed(
         raise bad(
             "running_speed",
             f"stresses beyond their limits everywhere, least {quiet.worst[least]:.3g} of them at "
-            f"{quiet.speed[least]:.4g} rad/s",
-            "a speed within the limits",
+            f"{quiet.speed[least]:.4g} rad/s, or motions that are not stable",
+            "a stable speed within the limits",
             "lower the range, raise the limits or stiffen the links",
         )
     offered = quiet.quiet or quiet.bands
@@ -160,7 +157,7 @@ def running_speed(
             # Of the speed that was chosen: at the critical speeds it is left in any case.
             "linear range": _linear_range(system, band.best, rtol),
             "within limits": Check(band.ratio * (1.0 + _doubt(quiet, band)), 1.0),
-            "stable": Check(_largest_multiplier(system, band.best), 1.0),
+            "stable": Check(_largest_multiplier(quiet, band), 1.0),
         },
         provenance=dict(quiet.provenance),
         quiet=quiet,
@@ -179,8 +176,16 @@ def _doubt(quiet: QuietSpeeds, band: Band) -> float:
     return float(np.asarray(quiet.error)[int(np.argmin(np.abs(quiet.speed - band.best)))])
 
 
+def _largest_multiplier(quiet: QuietSpeeds, band: Band) -> float:
+    """Return the largest multiplier's modulus at the running speed, with its error."""
+    size, error = quiet.curve.multiplier, quiet.curve.multiplier_error
+    assert size is not None and error is not None
+    place = int(np.argmin(np.abs(quiet.speed - band.best)))
+    return float(size[place] + error[place])
+
+
 def _linear_range(system: LinearPeriodic, speed: float, rtol: float) -> Check:
-    return stress_curve(system, [speed], rtol=rtol).checks["linear range"]
+    return stress_curve(system, [speed], rtol=rtol, stability=False).checks["linear range"]
 
 
 def _limit(limits: float | Mapping[str, float], link: str) -> float:
@@ -243,16 +248,3 @@ def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) ->
             break
         found.append(float(own * factor))
     return found
-
-
-def _largest_multiplier(system: LinearPeriodic, speed: float) -> float:
-    """Return the largest modulus of the multipliers of the lowest modes at a speed."""
-    for modes in (*range(min(_SLOW, system.size), 0, -1), system.size):
-        try:
-            slow = system if modes == system.size else reduced_system(system, modes)
-        except BadInput:
-            # No smooth subspace of that many.
-            continue
-        found = floquet_multipliers(slow, speed, rtol=1e-6).multipliers
-        return float(np.max(np.abs(found)))
-    return float("nan")

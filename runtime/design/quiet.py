@@ -14,7 +14,7 @@ from ..beams.element_forms import required_structure
 from ..errors import BadInput, Problem
 from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
-from ..reduction.stress_curve import StressCurve, stress_curve
+from ..reduction.stress_curve import StressCurve, shade_unstable, stress_curve
 from ..results import Check, Result
 from .speed_profile import Array
 
@@ -29,19 +29,20 @@ _SPEEDS = 1000
 
 @dataclass(frozen=True)
 class Band:
-    """A range of speeds in which every link stays within its limit.
+    """A range of speeds in which every link stays within its limit and the motion is stable.
 
     Attributes
     ----------
     low, high : float
-        Ends [rad/s]: of the range that was looked at, or where a limit is met.
+        Ends [rad/s]: of the range that was looked at, where a limit is met, or the last speed
+        known to be stable.
     best : float
         Speed at which the largest stress over its limit is least [rad/s].
     ratio : float
         That ratio.
     above : float or None
-        The limiting critical speed that the machine must pass to get there [rad/s]; None where
-        there is none below.
+        The limiting critical speed that the machine must pass to get there [rad/s], or where
+        there is none the end of what it must pass; None where there is nothing below.
     """
 
     low: float
@@ -70,7 +71,7 @@ class QuietSpeeds(Result):
     limiting : ndarray
         Those of them at which a limit is passed [rad/s].
     bands : tuple of Band
-        Ranges within all limits, by rising speed.
+        Ranges within all limits, less those not known to be stable, by rising speed.
     curve : StressCurve
         What they come from.
     """
@@ -97,12 +98,17 @@ class QuietSpeeds(Result):
         return np.asarray(np.max(self.ratio, axis=1))
 
     @property
+    def unstable(self) -> tuple[tuple[float, float], ...]:
+        """Ranges of speeds not known to be stable [rad/s]: no band is there."""
+        return self.curve.unstable_ranges
+
+    @property
     def quiet(self) -> tuple[Band, ...]:
         """The bands beyond a limiting critical speed."""
         return tuple(band for band in self.bands if band.above is not None)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the ratios over the speed, the limit, and the quiet bands."""
+        """Draw the ratios over the speed, the limit, the bands, and what is unstable."""
         from ..plotting import axes_or_new
 
         ax = axes_or_new(ax)
@@ -111,6 +117,7 @@ class QuietSpeeds(Result):
         ax.axhline(1.0, color="0.3", linewidth=0.8)
         for band in self.bands:
             ax.axvspan(band.low, band.high, color="tab:green", alpha=0.12, linewidth=0.0)
+        shade_unstable(ax, self.unstable)
         ax.set_xlabel("crank speed [rad/s]")
         ax.set_ylabel("largest stress over its limit")
         ax.legend()
@@ -177,7 +184,7 @@ def quiet_speeds(
         ratio=ratio,
         critical=np.array([w for w, _ in critical]),
         limiting=limiting,
-        bands=_bands(given, worst, limiting),
+        bands=_bands(given, worst, limiting, curve.unstable_ranges),
         curve=curve,
     )
 
@@ -217,8 +224,10 @@ def _maxima(speed: Array, values: Array) -> list[tuple[float, float]]:
     return found
 
 
-def _bands(speed: Array, worst: Array, limiting: Array) -> tuple[Band, ...]:
-    """Return the ranges where the worst ratio is below 1, their ends interpolated."""
+def _bands(
+    speed: Array, worst: Array, limiting: Array, unstable: tuple[tuple[float, float], ...] = ()
+) -> tuple[Band, ...]:
+    """Return the stable ranges where the worst ratio is below 1, their ends interpolated."""
     within = worst < 1.0
     edges = np.flatnonzero(within[1:] != within[:-1])
     crossings = []
@@ -226,15 +235,24 @@ def _bands(speed: Array, worst: Array, limiting: Array) -> tuple[Band, ...]:
         a, b = np.log(worst[k]), np.log(worst[k + 1])
         crossings.append(float(speed[k] + (speed[k + 1] - speed[k]) * a / (a - b)))
     ends = [float(speed[0]), *crossings, float(speed[-1])]
+    allowed = [pair for i, pair in enumerate(pairwise(ends)) if within[0] == (i % 2 == 0)]
     bands = []
-    for i, (low, high) in enumerate(pairwise(ends)):
-        if within[0] != (i % 2 == 0):
-            continue
+    for low, high in _without(allowed, unstable):
         inside = np.flatnonzero((speed >= low) & (speed <= high))
         if not inside.size:
             continue
         best = inside[int(np.argmin(worst[inside]))]
         below = limiting[limiting < low]
-        passed = float(below[-1]) if below.size else (low if i > 0 else None)
+        passed = float(below[-1]) if below.size else (low if low > speed[0] else None)
         bands.append(Band(low, high, float(speed[best]), float(worst[best]), passed))
     return tuple(bands)
+
+
+def _without(
+    ranges: list[tuple[float, float]], taken: tuple[tuple[float, float], ...]
+) -> list[tuple[float, float]]:
+    """Return what is left of ranges; one that begins or ends among the taken is cut there."""
+    for begin, end in taken:
+        pieces = [((a, min(b, begin)), (max(a, end), b)) for a, b in ranges]
+        ranges = [(a, b) for pair in pieces for a, b in pair if a < b]
+    return ranges

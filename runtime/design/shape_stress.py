@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..beams.elements import section_rotation, shape_functions
-from ..beams.turning import products
+from ..beams.placed_shapes import placed_rotation, placed_shapes
+from ..beams.turning import in_own_axes, products
 from ..errors import bad
 from ..families import LinearPeriodic
 from .speed_profile import Array
@@ -60,18 +60,9 @@ def largest_by_shape(
         if section.thickness is None:
             fix = "give Section.thickness"
             raise bad(f"beam {placed.beam.name}", "no thickness", "one, for its stresses", fix)
-        stiffness = {
-            "bending_stiffness": section.bending_stiffness,
-            "shear_stiffness": section.shear_stiffness,
-        }
-        kind, length = placed.beam.kind, placed.length
-        stretch, _ = shape_functions(kind, xi, length, 1, **stiffness)
-        bend = section_rotation(kind, xi, length, 1, **stiffness)
-        c, s = directions[placed.beam.name].T
-        local = full[:, placed.indices]
-        for x, y in ((0, 1), (3, 4)):
-            along, across = local[:, x].copy(), local[:, y].copy()
-            local[:, x], local[:, y] = c * along + s * across, c * across - s * along
+        stretch, _ = placed_shapes(placed, xi, 1)
+        bend = placed_rotation(placed, xi, 1)
+        local = in_own_axes(full[:, placed.indices], *directions[placed.beam.name].T)
         half = section.thickness / 2.0
         value = np.abs(local @ stretch.T) + half * np.abs(local @ bend.T)
         k = links.index(placed.beam.name)

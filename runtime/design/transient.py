@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from numbers import Integral, Real
+from numbers import Real
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from ..beams.element_forms import required_structure
 from ..errors import BadInput, LinearRangeWarning, Problem, bad
 from ..families import LinearPeriodic
+from ..inputs import is_whole
 from ..reduction import ReducedSystem, reduced_system
 from ..response import steady_state
 from ..results import Check, Result, provenance
@@ -413,8 +414,7 @@ def _result(run: _Run, found: _Found, error: Array, rtol: float) -> Transient:
 
 
 def _check_stations(stations: int) -> None:
-    whole = isinstance(stations, Integral) and not isinstance(stations, bool)
-    if not whole or not 2 <= stations <= 1000:
+    if not is_whole(stations, 2, 1000):
         raise bad("stations", repr(stations), "a whole number from 2 to 1000", "choose 9")
 
 
@@ -427,8 +427,7 @@ def _check(
     if system.structure is None or not system.structure.moving:
         fix = "make it with linkage_system, or load a scene of beams"
         problems.append(Problem("system", "no linkage of beams", "one", fix))
-    whole = isinstance(modes, Integral) and not isinstance(modes, bool) and modes >= 1
-    if modes is not None and not whole:
+    if modes is not None and not is_whole(modes, 1):
         problems.append(Problem("modes", repr(modes), "a number from 1, or None", "choose 8"))
     if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 0.1):
         problems.append(Problem("rtol", repr(rtol), "a number from 1e-6 to 0.1", "choose 0.01"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..beams._checks import require_kind
 from ..errors import bad
 from ..families import Transcendental
 from ..floquet.first_order import numbers
@@ -36,10 +37,11 @@ def log_determinant(problem: Transcendental, omega: ArrayLike) -> tuple[Array, A
     Raises
     ------
     BadInput
-        If a frequency is not positive.
+        If a frequency is not positive, or there is none.
     """
+    require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
     rates = numbers("omega", omega)
-    if not np.all(rates > 0.0):
+    if not rates.size or not np.all((rates > 0.0) & np.isfinite(rates)):
         raise bad("omega", repr(omega), "positive frequencies [rad/s]", "leave out the others")
     sign, logarithm = np.linalg.slogdet(problem.stiffness(rates))
     return np.asarray(logarithm / np.log(10.0)), np.asarray(sign)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..beams.assembly import AngleArrays
 from ..beams.linear import lumped_values
 from ..beams.structure import Structure
-from .frames import turning_matrix, without_stretch
+from .frames import rigid_beams, turning_matrix, without_stretch
 
 Array = NDArray[np.float64]
 
@@ -40,16 +40,14 @@ def element_matrices(
     Raises
     ------
     BadInput
-        If nothing is left that moves.
+        If an argument is unusable, or nothing is left that moves.
     """
-    structure.require_pinned("element_matrices")
+    rigid = rigid_beams("element_matrices", structure, theta, inextensible)
     arrays, angle = AngleArrays(structure), np.array([float(theta)])
     lumped, springs, _ = lumped_values(structure)
     free = structure.freedoms.free
     mass = arrays.mass(angle)[0] + np.diag(lumped[free])
     stiffness = arrays.stiffness(angle)[0] + np.diag(springs[free])
-    names = tuple(beam.name for beam in structure.beams)
-    rigid = names if inextensible is True else tuple(inextensible or ())
     place = np.full(len(structure.freedoms.all), -1)
     place[free] = np.arange(len(free))
     motion = structure.configuration(angle)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import is_finite
+from ..beams._checks import is_finite, names_problems, require_kind, require_mapping
 from ..beams.freedoms import Freedoms, PlacedElement, number_freedoms
 from ..beams.linear import lumped_values
 from ..beams.structure import Structure
@@ -177,15 +177,11 @@ def dynamic_stiffness(
     ----------
     Aannaque (5.12)-(5.20).
     """
-    if not isinstance(structure, Structure):
-        found, fix = type(structure).__name__, "make one with beam_linkage or frame"
-        raise bad("structure", found, "a Structure", fix)
-    if not is_finite(theta):
-        raise bad("theta", repr(theta), "one number", "hold the linkage at one angle")
-    structure.require_pinned("dynamic_stiffness")
+    rigid = rigid_beams("dynamic_stiffness", structure, theta, inextensible)
+    if pieces is not None:
+        require_mapping("pieces", pieces, 'say {"crank": (0.5, 0.5)}')
     names = tuple(beam.name for beam in structure.beams)
-    rigid = names if inextensible is True else tuple(inextensible or ())
-    for name in {*rigid, *(pieces or {})} - set(names):
+    for name in sorted(set(pieces or {}) - set(names)):
         raise bad("beam", repr(name), f"one of {', '.join(names)}", "correct the name")
     freedoms = _numbered(structure, pieces or {})
     assembly = _assembly(structure, float(theta), freedoms, rigid)
@@ -203,6 +199,31 @@ def dynamic_stiffness(
         assembly=assembly,
         inextensible=rigid,
     )
+
+
+def rigid_beams(
+    what: str, structure: Structure, theta: float, inextensible: bool | tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the names of the beams that cannot stretch, all arguments checked.
+
+    Raises
+    ------
+    BadInput
+        If one is unusable, or the structure has a sliding pin.
+    """
+    require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
+    if not is_finite(theta):
+        raise bad("theta", repr(theta), "one number", "hold the linkage at one angle")
+    structure.require_pinned(what)
+    names = tuple(beam.name for beam in structure.beams)
+    if isinstance(inextensible, bool):
+        return names if inextensible else ()
+    if names_problems("", inextensible):
+        fix = "say True for all"
+        raise bad("inextensible", repr(inextensible), "True, False or names of beams", fix)
+    for name in sorted(set(inextensible) - set(names)):
+        raise bad("beam", repr(name), f"one of {', '.join(names)}", "correct the name")
+    return tuple(inextensible)
 
 
 def _numbered(structure: Structure, pieces: Pieces) -> Freedoms:

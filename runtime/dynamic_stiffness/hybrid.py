@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import is_finite
+from ..beams._checks import is_finite, numbers_in_a_row, require_kind
 from ..beams.structure import Structure
 from ..errors import bad
-from ..floquet.first_order import numbers
 from ..plotting import axes_or_new
 from ..results import Check, Result, provenance
 from .frames import dynamic_stiffness
@@ -109,9 +108,8 @@ def hybrid_matrices(
     ----------
     Aannaque 7.4.1.
     """
-    angles = np.atleast_1d(numbers("theta", theta))
-    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
-        raise bad("theta", repr(theta), "angles in a row [rad]", "correct them")
+    require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
+    angles = numbers_in_a_row("theta", theta, " [rad]")
     structure.require_pinned("hybrid_matrices")
     if not (is_finite(rtol) and 1e-14 <= rtol < 1.0):
         raise bad("rtol", repr(rtol), "between 1e-14 and 1", "choose 1e-3")

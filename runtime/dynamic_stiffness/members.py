@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import beam_dynamic_stiffness
-from ..errors import BadInput, Problem
+from ..errors import BadInput, Problem, bad
 
 Array: TypeAlias = NDArray[Any]
 
@@ -95,8 +95,11 @@ def member_matrices(
     Raises
     ------
     BadInput
-        If a length, stiffness or mass is not positive.
+        If a frequency is not finite, or a length, stiffness or mass not positive.
     """
+    rates = np.asarray(omega)
+    if rates.dtype.kind not in "fciu" or not rates.size or not np.all(np.isfinite(rates)):
+        raise bad("omega", repr(omega), "finite frequencies [rad/s]", "correct them")
     names = ("length", "bending_stiffness", "axial_stiffness", "mass_per_length")
     given = (length, bending_stiffness, axial_stiffness, mass_per_length)
     _require_positive(dict(zip(names, given, strict=True)))
@@ -168,7 +171,8 @@ def _require_positive(values: dict[str, ArrayLike]) -> None:
     problems = []
     for name, value in values.items():
         array = np.asarray(value)
-        if array.dtype.kind not in "fciu" or not bool(np.all(array.real > 0)):
+        usable = array.dtype.kind in "fciu" and array.size
+        if not usable or not bool(np.all(array.real > 0)):
             fix = "give SI units; a beam of no length joins its nodes"
             problems.append(Problem(name, repr(value), "positive numbers", fix))
     if problems:

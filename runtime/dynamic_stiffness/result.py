@@ -99,8 +99,9 @@ class FrameFrequencies(Result):
             If there are no shapes, no such mode or beam, or a place lies outside.
         """
         self._members()
-        if not 0 <= mode < len(self.modes):
-            raise bad("mode", str(mode), f"0 to {len(self.modes) - 1}", "ask for more frequencies")
+        known = isinstance(mode, (int, np.integer)) and not isinstance(mode, bool)
+        if not known or not 0 <= mode < len(self.modes):
+            raise bad("mode", repr(mode), f"0 to {len(self.modes) - 1}", "ask for more frequencies")
         chosen = self.modes[mode]
         return member_shape(chosen.problem.assembly, chosen.omega, chosen.vector, beam, eta)
 

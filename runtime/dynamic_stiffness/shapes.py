@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..beams._checks import numbers_in_a_row
 from ..errors import bad
 from .frames import Assembly
 from .members import functions, phases
@@ -65,8 +66,8 @@ def member_shape(
     BadInput
         If there is no such beam, or a place lies outside.
     """
-    places = np.atleast_1d(np.asarray(eta, dtype=float))
-    if places.ndim != 1 or not np.all((places >= 0.0) & (places <= 1.0)):
+    places = numbers_in_a_row("eta", eta)
+    if not np.all((places >= 0.0) & (places <= 1.0)):
         raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
     own = [k for k, piece in enumerate(assembly.pieces) if piece.beam.name == beam]
     if not own:

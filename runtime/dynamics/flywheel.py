@@ -228,7 +228,8 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     inertia = balance.inertia_for(fluctuation, first_order)
     reached, speeds, motor, moved = balance.motion(inertia)
     slope = (steady.error + 64.0 * _EPS * balance.size) / (fluctuation * speed**2)
-    error = slope + 1e-10 * inertia
+    # The coefficient is known to some last digits and to what the speeds still move.
+    error = slope + (16.0 * _EPS + 8.0 * moved) / fluctuation * inertia
     # The fluctuation goes with the inverse of the whole inertia; it is off by its error's share.
     share = error / (inertia + float(np.mean(balance.reduced)))
     return Flywheel(

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..deferred import DeferredField
 from ..errors import bad
 from ..results import BROADCAST, Result
 from .blocks import Array
-from .deferred import DeferredField
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from numbers import Integral, Real
+from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ..errors import BadInput, Problem, bad
+from ..inputs import is_whole
 from ..results import Check, DeferredChecks, Result, provenance
 from .blocks import Array
 from .force_result import RigidForces
@@ -315,8 +316,6 @@ def _positive(value: Any, most: float = np.inf) -> bool:
 
 def _require_whole(samples: object, max_steps: object) -> None:
     for name, value, least in (("samples", samples, 2), ("max_steps", max_steps, 1)):
-        whole = isinstance(value, Integral) and not isinstance(value, bool)
-        number: Any = value
-        if not (whole and number >= least):
+        if not is_whole(value, least):
             found = repr(value)[:60]
             raise bad(name, found, f"a whole number, {least} or more", "correct it")

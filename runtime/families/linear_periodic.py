@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
+from .spectrum import term_spectrum
 
 if TYPE_CHECKING:
     from ..beams.structure import Structure
@@ -21,8 +22,6 @@ VECTORS = ("f", "h", "g", "p")
 # Those through which forces without a potential act: drag on the rates, and on what a moving
 # basis carries along.
 DAMPING = ("C", "D")
-# Even angles at which every term is sampled once, to know how fast it varies.
-_PROBES = 4096
 # What a limit of a parameter's values allows.
 _LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
     "positive": lambda values: values > 0.0,
@@ -121,6 +120,8 @@ class LinearPeriodic:
         their link, ``(nt, k, n)``, at k watched places; None where the shapes tell.
     structure : object or None
         Beams and nodes that the system was made from.
+    remesh : callable or None
+        From a change of the structure to its system, further terms made anew, parameters aside.
     """
 
     size: int
@@ -138,6 +139,7 @@ class LinearPeriodic:
     limits: Mapping[str, str] = field(default_factory=dict)
     relative_deflection: Callable[[Array], Array] | None = None
     structure: Structure | None = None
+    remesh: Callable[[Callable[[Structure], Structure]], LinearPeriodic] | None = None
 
     def __post_init__(self) -> None:
         """Check that every term names a known array and has the system's size."""
@@ -188,41 +190,33 @@ class LinearPeriodic:
     def spectra(self) -> tuple[Array, ...]:
         """Largest Fourier amplitude of an entry of each term, per harmonic of the period.
 
-        One array per term: of length 1 where it is constant, else 2049, from 4096 samples.
+        One array per term: of length 1 where it is constant, else as long as it takes.
 
         Raises
         ------
         BadInput
             If a term is not finite at a sample, or returns a wrong shape for many angles.
         """
-        theta = np.linspace(0.0, self.period, _PROBES, endpoint=False)
-        return tuple(self._spectrum(term, theta) for term in self.terms)
+        return tuple(self.spectrum(row) for row in range(len(self.terms)))
 
-    def _spectrum(self, term: Term, theta: Array) -> Array:
-        values = np.asarray(term(theta[:1] if term.constant else theta), dtype=float)
-        where = f"term {term.array} ({term.scale})"
-        expected = (self.size,) * (2 if term.array in MATRICES else 1)
-        if values.shape[1:] != expected or len(values) != (1 if term.constant else len(theta)):
-            raise bad(
-                where,
-                f"shape {values.shape} for {len(theta)} angles",
-                f"{(len(theta), *expected)}",
-                "make the function return one array per angle",
-            )
-        finite = np.all(np.isfinite(values.reshape(len(values), -1)), axis=1)
-        if not np.all(finite):
-            raise bad(
-                where,
-                f"a value that is not finite at crank angle {theta[int(np.argmin(finite))]:.6g}",
-                "finite numbers at every angle",
-                "check the function, its domain and the geometry",
-            )
-        flat = values.reshape(len(values), -1)
-        if term.constant:
-            largest: Array = np.max(np.abs(flat), axis=1)
-            return largest
-        amplitude: Array = np.max(np.abs(np.fft.rfft(flat, axis=0)), axis=1) / len(flat)
-        return amplitude
+    def spectrum(self, row: int) -> Array:
+        """Return one of the :attr:`spectra`; a term that nobody asks about is never sampled.
+
+        Parameters
+        ----------
+        row : int
+            Place of the term among :attr:`terms`.
+        """
+        known = self._spectrum_of.get(row)
+        if known is None:
+            term = self.terms[row]
+            shape = (self.size,) * (2 if term.array in MATRICES else 1)
+            known = self._spectrum_of[row] = term_spectrum(term, shape, self.period)
+        return known
+
+    @cached_property
+    def _spectrum_of(self) -> dict[int, Array]:
+        return {}
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: not the samples, which are made again where they are needed."""
@@ -249,9 +243,9 @@ class LinearPeriodic:
         scales = self.scale_values(**axes)
         return any(
             term.array in DAMPING
-            and bool(np.any(amplitude))
             and (term.scale is None or bool(np.any(scales[term.scale])))
-            for term, amplitude in zip(self.terms, self.spectra, strict=True)
+            and bool(np.any(self.spectrum(row)))
+            for row, term in enumerate(self.terms)
         )
 
     def changed_provenance(self, **changes: ArrayLike) -> dict[str, str]:
@@ -365,7 +359,8 @@ class LinearPeriodic:
             terms=self.terms + terms,
             parameters={**self.parameters, **extra},
             scales=merged if extra else self.scales,
-            rebuild=self._rebuild_then(partial(_with_terms, terms, extra)),
+            rebuild=_then(self.rebuild, partial(_with_terms, terms, extra)),
+            remesh=_then(self.remesh, partial(_with_terms, terms, extra)),
         )
 
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
@@ -383,7 +378,8 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(change(term) for term in self.terms),
-            rebuild=self._rebuild_then(partial(_with_changed_terms, change)),
+            rebuild=_then(self.rebuild, partial(_with_changed_terms, change)),
+            remesh=_then(self.remesh, partial(_with_changed_terms, change)),
         )
 
     def without(self, *arrays: str) -> LinearPeriodic:
@@ -391,14 +387,9 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(term for term in self.terms if term.array not in arrays),
-            rebuild=self._rebuild_then(partial(_without, arrays)),
+            rebuild=_then(self.rebuild, partial(_without, arrays)),
+            remesh=_then(self.remesh, partial(_without, arrays)),
         )
-
-    def _rebuild_then(
-        self, change: Callable[[LinearPeriodic], LinearPeriodic]
-    ) -> Callable[[Mapping[str, float]], LinearPeriodic] | None:
-        """Return what makes the system anew and changes it as this one is changed."""
-        return None if self.rebuild is None else partial(_rebuilt, self.rebuild, change)
 
     @cached_property
     def _rebuilds_itself(self) -> bool:
@@ -459,12 +450,20 @@ def _merged(
     return {**scales({name: values[name] for name in own}), **new}
 
 
-def _rebuilt(
-    rebuild: Callable[[Mapping[str, float]], LinearPeriodic],
+def _then(
+    make: Callable[[Any], LinearPeriodic] | None,
     change: Callable[[LinearPeriodic], LinearPeriodic],
-    geometry: Mapping[str, float],
+) -> Callable[[Any], LinearPeriodic] | None:
+    """Return what makes a system anew and changes it as this one is changed."""
+    return None if make is None else partial(_made_then, make, change)
+
+
+def _made_then(
+    make: Callable[[Any], LinearPeriodic],
+    change: Callable[[LinearPeriodic], LinearPeriodic],
+    given: object,
 ) -> LinearPeriodic:
-    return change(rebuild(geometry))
+    return change(make(given))
 
 
 def _with_terms(

@@ -1,36 +1,78 @@
-"""Floquet analysis of linear periodic systems: monodromy, multipliers, critical speeds."""
+"""Floquet analysis of linear periodic systems: monodromy, multipliers, critical speeds.
+
+The names load on first use: one needs little of what the others need.
+"""
 
 from __future__ import annotations
 
-from .boundary_speeds import SpeedBoundaries, speed_boundaries
-from .critical import (
-    MarkedSpeeds,
-    mean_frequency_speeds,
-    meissner_function,
-    meissner_speeds,
-    multiplier_maxima,
-)
-from .decoupled import (
-    SlowMultipliers,
-    SlowSystem,
-    characteristic_exponents,
-    slow_system,
-    unstable_bands,
-)
-from .edges.over_geometry import TongueCurves, tongue_curves
-from .edges.over_parameter import TongueTrace, trace_tongue
-from .edges.tracing import StabilityEdges, stability_edges
-from .krein import KreinSignatures, krein_signatures
-from .monodromy_matrix import (
-    FloquetMultipliers,
-    Monodromy,
-    floquet_multipliers,
-    monodromy,
-    relative_multipliers,
-)
-from .slow_driving import SlowTongues, slow_tongues
-from .tongues.resonances import Resonance, resonances
-from .tongues.series import Tongue, tongue
+from typing import TYPE_CHECKING
+
+from ..lazy import on_first_use
+
+if TYPE_CHECKING:
+    from .boundary_speeds import SpeedBoundaries, speed_boundaries
+    from .critical import (
+        MarkedSpeeds,
+        mean_frequency_speeds,
+        meissner_function,
+        meissner_speeds,
+        multiplier_maxima,
+    )
+    from .decoupled import (
+        SlowMultipliers,
+        SlowSystem,
+        characteristic_exponents,
+        slow_system,
+        unstable_bands,
+    )
+    from .edges.over_geometry import TongueCurves, tongue_curves
+    from .edges.over_parameter import TongueTrace, trace_tongue
+    from .edges.tracing import StabilityEdges, stability_edges
+    from .krein import KreinSignatures, krein_signatures
+    from .monodromy_matrix import (
+        FloquetMultipliers,
+        Monodromy,
+        floquet_multipliers,
+        monodromy,
+        relative_multipliers,
+    )
+    from .slow_driving import SlowTongues, slow_tongues
+    from .tongues.resonances import Resonance, resonances
+    from .tongues.series import Tongue, tongue
+
+_PUBLIC = {
+    "FloquetMultipliers": "monodromy_matrix",
+    "KreinSignatures": "krein",
+    "MarkedSpeeds": "critical",
+    "Monodromy": "monodromy_matrix",
+    "Resonance": "tongues.resonances",
+    "SlowMultipliers": "decoupled",
+    "SlowSystem": "decoupled",
+    "SlowTongues": "slow_driving",
+    "SpeedBoundaries": "boundary_speeds",
+    "StabilityEdges": "edges.tracing",
+    "Tongue": "tongues.series",
+    "TongueCurves": "edges.over_geometry",
+    "TongueTrace": "edges.over_parameter",
+    "characteristic_exponents": "decoupled",
+    "floquet_multipliers": "monodromy_matrix",
+    "krein_signatures": "krein",
+    "mean_frequency_speeds": "critical",
+    "meissner_function": "critical",
+    "meissner_speeds": "critical",
+    "monodromy": "monodromy_matrix",
+    "multiplier_maxima": "critical",
+    "relative_multipliers": "monodromy_matrix",
+    "resonances": "tongues.resonances",
+    "slow_system": "decoupled",
+    "slow_tongues": "slow_driving",
+    "speed_boundaries": "boundary_speeds",
+    "stability_edges": "edges.tracing",
+    "tongue": "tongues.series",
+    "tongue_curves": "edges.over_geometry",
+    "trace_tongue": "edges.over_parameter",
+    "unstable_bands": "decoupled",
+}
 
 __all__ = [
     "FloquetMultipliers",
@@ -65,3 +107,5 @@ __all__ = [
     "trace_tongue",
     "unstable_bands",
 ]
+
+__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

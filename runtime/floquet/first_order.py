@@ -70,12 +70,8 @@ class CanonicalForm:
     @property
     def damped(self) -> bool:
         """True where some damping term is not zero."""
-        return any(
-            term.array in DAMPING and bool(np.any(factor)) and bool(np.any(amplitude))
-            for term, factor, amplitude in zip(
-                self.system.terms, self.factors, self.system.spectra, strict=True
-            )
-        )
+        rows = [row for row, term in enumerate(self.system.terms) if term.array in DAMPING]
+        return any(np.any(self.factors[i]) and np.any(self.system.spectrum(i)) for i in rows)
 
     @cached_property
     def reach(self) -> int:
@@ -83,15 +79,16 @@ class CanonicalForm:
 
         An amplitude counts from 1e-6 of the largest of its array, or of the mass; at most 2048.
         """
-        size = max(len(amplitude) for amplitude in self.system.spectra)
+        used = [
+            (_KIND[term.array], factor, self.system.spectrum(row))
+            for row, (term, factor) in enumerate(zip(self.system.terms, self.factors, strict=True))
+            if _used(term, self.forced)
+        ]
+        size = max((len(amplitude) for *_, amplitude in used), default=1)
         total: dict[str, Array] = {}
-        for term, factor, amplitude in zip(
-            self.system.terms, self.factors, self.system.spectra, strict=True
-        ):
-            if term.array in SPEED_POWER and (self.forced or term.array not in ("f", "h", "p")):
-                kind = _KIND[term.array]
-                row = total.setdefault(kind, np.zeros(size))
-                row[: len(amplitude)] += np.max(np.abs(factor), initial=0.0) * amplitude
+        for kind, factor, amplitude in used:
+            row = total.setdefault(kind, np.zeros(size))
+            row[: len(amplitude)] += np.max(np.abs(factor), initial=0.0) * amplitude
         mass = float(np.max(total["M"])) if "M" in total else 0.0
         highest = 0
         for kind, row in total.items():
@@ -328,6 +325,8 @@ class CanonicalForm:
 
     def _spectral(self, name: str) -> Array:
         """Return the spectral norm of a mean matrix in coordinates of unit mass."""
+        if not np.any(self.mean[name]):
+            return np.zeros(len(self.speed))
         cholesky = np.linalg.cholesky(self.mean["M"])
         half = np.linalg.solve(cholesky, self.mean[name])
         reduced = np.linalg.solve(cholesky, np.swapaxes(half, -1, -2))
@@ -402,8 +401,11 @@ def canonical_form(
             "speed and parameters", shapes, "shapes that broadcast", "add axes of length 1"
         ) from mismatch
     scales = system.scale_values(**changes)
+    forced = forcing and any(term.array in ("f", "h", "p") for term in system.terms)
     if probed:
-        _ = system.spectra  # refuses terms that are not finite
+        for place, term in enumerate(system.terms):
+            if _used(term, forced):
+                system.spectrum(place)  # refuses terms that are not finite
     flat_speed = np.broadcast_to(speeds, batch).reshape(-1)
     factors = np.zeros((len(system.terms), len(flat_speed)))
     for row, term in zip(factors, system.terms, strict=True):
@@ -411,7 +413,6 @@ def canonical_form(
             scale = 1.0 if term.scale is None else scales[term.scale]
             power = SPEED_POWER[term.array] + term.power
             row[:] = np.broadcast_to(scale, batch).reshape(-1) * flat_speed**power
-    forced = forcing and any(term.array in ("f", "h", "p") for term in system.terms)
     form = CanonicalForm(system, flat_speed, factors, batch, forced)
     if probed:
         _check_mass(form)
@@ -487,6 +488,11 @@ def numbers(name: str, value: object) -> Array:
     if given.size and given.dtype.kind not in "iuf":
         raise bad(name, repr(value), "real numbers", "give numbers")
     return given.astype(np.float64)
+
+
+def _used(term: Term, forced: bool) -> bool:
+    """Return True where a term acts at constant speed, with forcing or without."""
+    return term.array in SPEED_POWER and (forced or term.array not in ("f", "h", "p"))
 
 
 def _sample(term: Term, theta: Array) -> Array:

@@ -186,6 +186,16 @@ class SignatureSource:
         self._matrices, self._error = matrices, error
         self._made: Signs | None = None
 
+    @property
+    def matrices(self) -> Array | None:
+        """The scaled monodromy matrices."""
+        return self._matrices
+
+    @property
+    def error(self) -> Array:
+        """Relative error of each."""
+        return self._error
+
     def signs(self, multipliers: ComplexArray) -> Signs:
         """Return the signature of each multiplier, shape ``(*batch, 2n)``; 0 where undefined."""
         if self._made is None:

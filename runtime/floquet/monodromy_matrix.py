@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -269,7 +269,12 @@ class FloquetMultipliers(Result):
 
 
 def floquet_multipliers(
-    system: LinearPeriodic, speed: ArrayLike, *, rtol: float = 1e-11, **parameters: ArrayLike
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    *,
+    rtol: float = 1e-11,
+    executor: Any = None,
+    **parameters: ArrayLike,
 ) -> FloquetMultipliers:
     """Return the Floquet multipliers over one period, each with its error.
 
@@ -287,6 +292,9 @@ def floquet_multipliers(
         Crank speeds [rad/s], positive.
     rtol : float
         Wanted error of the monodromy matrix, see :func:`monodromy`.
+    executor : concurrent.futures.Executor, optional
+        Threads, processes or Dask's ``client.get_executor()``, for fixed pieces of the batch: the
+        answer does not depend on which, nor on the number of workers.
     **parameters : array_like
         Parameter values that replace the system's own; they broadcast with ``speed``.  Geometry
         too, one number each, where the system can be made anew for it.
@@ -302,6 +310,10 @@ def floquet_multipliers(
     BadInput
         As :func:`monodromy`.
     """
+    if executor is not None:
+        from ..sweeps.batches import multipliers_in_pieces
+
+        return multipliers_in_pieces(system, speed, parameters, {"rtol": rtol}, executor)
     return _multipliers(system, speed, rtol, False, parameters)
 
 

@@ -16,6 +16,8 @@ _EPS = float(np.finfo(float).eps)
 PHASE = 3.0
 _MOST_SEGMENTS = 2**20
 _FEWEST = 16
+# Segments from which on a difference that does not shrink is believed to stay.
+_FAR = 2**14
 
 Refined = tuple[Array, NDArray[np.int64], Array, NDArray[np.int64]]
 
@@ -85,6 +87,9 @@ def _refined(form: CanonicalForm, first: int, rtol: float) -> Refined:
         value[open_], exponent[open_], used[open_] = new, power, number
         # Round-off, not truncation, where halving the segments no longer helps.
         stuck = (difference > 0.25 * before[open_]) & (difference < 1e-3)
+        if number >= max(_FAR, 64 * first):
+            # Nothing is gained any more, and much is left: a mass that is hardly definite.
+            stuck |= difference > 0.5 * before[open_]
         error[open_[stuck]] += 2 * difference[stuck]
         done = (error[open_] <= rtol) | stuck
         before[open_] = difference

@@ -27,8 +27,9 @@ _MOST_KEPT = 2**24
 def even_count(system: LinearPeriodic, least: int = _FEWEST) -> int:
     """Return how many even angles see every harmonic that the terms have, a power of two."""
     reach = 0
-    for term, amplitude in zip(system.terms, system.spectra, strict=True):
-        if term.array in SPEED_POWER and len(amplitude) > 1:
+    for row, term in enumerate(system.terms):
+        amplitude = system.spectrum(row) if term.array in SPEED_POWER else np.zeros(1)
+        if len(amplitude) > 1:
             top = float(np.max(amplitude, initial=0.0))
             # Where the upper harmonics are noise, it is theirs.
             floor = 10 * float(np.median(amplitude[len(amplitude) // 2 :]))
@@ -45,22 +46,34 @@ def term_samples(
 ) -> tuple[Array, ...]:
     """Return the values of all terms at angles, kept with the system under a key.
 
-    One value where a term is constant; shape ``(nt, n, n)`` or ``(nt, n)``.
+    Shapes as :func:`_values` has them.
     """
     known = system.kept.get(key)
     if known is None:
         theta = angles()
-        known = tuple(
-            np.asarray(term(theta[:1] if term.constant else theta), dtype=float)
-            for term in system.terms
-        )
-        _keep(system, key, known)
+        known = _values(system, theta)
+        keep(system, key, known)
     return known
 
 
-def _keep(system: LinearPeriodic, key: tuple[object, ...], values: tuple[Array, ...]) -> None:
+def _values(system: LinearPeriodic, theta: Array) -> tuple[Array, ...]:
+    """Return the values of the terms at angles, ``(nt, n, n)`` or ``(nt, n)``.
+
+    One value where a term is constant, none where it acts only while the crank accelerates.
+    """
+    return tuple(
+        np.asarray(term(theta[:1] if term.constant else theta), dtype=float)
+        if term.array in SPEED_POWER
+        else np.zeros((0, *(system.size,) * (2 if term.array in MATRICES else 1)))
+        for term in system.terms
+    )
+
+
+def keep(system: LinearPeriodic, key: tuple[object, ...], values: tuple[Array, ...]) -> None:
+    """Leave arrays with a system for the next solver; older ones go where they grow too many."""
     size = sum(value.size for value in values)
-    held = sum(value.size for group in system.kept.values() for value in group)
+    # A list: another thread may add to it meanwhile.
+    held = sum(value.size for group in list(system.kept.values()) for value in group)
     if held + size > _MOST_KEPT:
         system.kept.clear()
     if size <= _MOST_KEPT:
@@ -82,7 +95,7 @@ def _slopes(system: LinearPeriodic, count: int) -> tuple[Array, ...]:
             _slope(value, system.period) if term.array in ("M", "A") else value[:0]
             for term, value in zip(system.terms, values, strict=True)
         )
-        _keep(system, key, known)
+        keep(system, key, known)
     return known
 
 
@@ -175,10 +188,7 @@ def _coefficients(
 def second_order_at(form: CanonicalForm, theta: Array) -> SecondOrder:
     """Return the coefficients at any angles ``(nt,)``; the slopes of M and A by their series."""
     system = form.system
-    values = tuple(
-        np.asarray(term(theta[:1] if term.constant else theta), dtype=float)
-        for term in system.terms
-    )
+    values = _values(system, theta)
     count = even_count(system)
     waves = np.exp(1j * np.outer(theta, np.arange(count // 2 + 1)) * (2 * np.pi / system.period))
     # Each harmonic but the mean stands for two.

@@ -70,21 +70,55 @@ class SpeedTable:
         found, powers = [], []
         for begin in range(0, len(speed), together):
             part = speed[begin : begin + together]
-            stretches = self._rows(1.0 / part) @ self.maps.reshape(len(self.nodes), -1)
+            rows = barycentric_rows(self.nodes, self.weights, 1.0 / part)
+            stretches = rows @ self.maps.reshape(len(self.nodes), -1)
             product, power = ordered_product(stretches.reshape(-1, *self.maps.shape[1:]))
             own = _scale(self.size, part)
             found.append(_rescaled(product, own, scale[begin : begin + together]))
             powers.append(power)
         return np.concatenate(found), np.concatenate(powers)
 
-    def _rows(self, inverse: Array) -> Array:
-        """Return what each node counts at inverse speeds, shape ``(k, m)``."""
-        gap = inverse[:, None] - self.nodes
-        met = gap == 0.0
-        parts = self.weights / np.where(met, 1.0, gap)
-        rows = np.where(np.any(met, axis=1, keepdims=True), met, parts)
-        value: Array = rows / np.sum(rows, axis=1, keepdims=True)
-        return value
+
+def chebyshev_places(low: float, high: float, count: int) -> tuple[Array, Array]:
+    """Return places between two ends for polynomials, and the weights of their barycentric form.
+
+    Parameters
+    ----------
+    low, high : float
+        The ends.
+    count : int
+        How many places.
+
+    Returns
+    -------
+    nodes, weights : ndarray, shape (count,)
+        Places from high to low, none of them an end, and weights.
+    """
+    order = np.pi * (np.arange(count) + 0.5) / count
+    nodes = 0.5 * (low + high) + 0.5 * (high - low) * np.cos(order)
+    return nodes, np.where(np.arange(count) % 2, -1.0, 1.0) * np.sin(order)
+
+
+def barycentric_rows(nodes: Array, weights: Array, places: Array) -> Array:
+    """Return what the values at nodes count at places, of the polynomial through them.
+
+    Parameters
+    ----------
+    nodes, weights : ndarray, shape (m,)
+        From :func:`chebyshev_places`.
+    places : ndarray, shape (k,)
+        Where the polynomial is wanted.
+
+    Returns
+    -------
+    ndarray, shape (k, m)
+    """
+    gap = places[:, None] - nodes
+    met = gap == 0.0
+    parts = weights / np.where(met, 1.0, gap)
+    rows = np.where(np.any(met, axis=1, keepdims=True), met, parts)
+    value: Array = rows / np.sum(rows, axis=1, keepdims=True)
+    return value
 
 
 def _scale(size: Array, speed: Array) -> Array:
@@ -187,8 +221,7 @@ def _table(system: LinearPeriodic, low: float, high: float) -> SpeedTable | None
 
 
 def _unchecked(system: LinearPeriodic, low: float, high: float, count: int) -> SpeedTable:
-    order = np.pi * (np.arange(count) + 0.5) / count
-    nodes = 0.5 * (1 / low + 1 / high) + 0.5 * (1 / low - 1 / high) * np.cos(order)
+    nodes, weights = chebyshev_places(1.0 / high, 1.0 / low, count)
     form = canonical_form(system, 1.0 / nodes, {}, probed=False)
     middle = form.take(slice(count // 2, count // 2 + 1))
     half = system.size
@@ -208,5 +241,4 @@ def _unchecked(system: LinearPeriodic, low: float, high: float, count: int) -> S
         while maps.shape[1] > stretches:
             maps = maps[:, 1::2] @ maps[:, 0::2]
         parts.append(_rescaled(maps, form.scale, scale))
-    weights = np.where(np.arange(count) % 2, -1.0, 1.0) * np.sin(order)
     return SpeedTable(low, high, nodes, weights, np.concatenate(parts, axis=1), size, 0.0)

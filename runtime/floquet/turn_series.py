@@ -301,7 +301,7 @@ class Turn:
         found, missed, rough = [], 0.0, 0.0
         # In two steps: the coefficients by Chebyshev polynomials fall, and with them the round-off
         # of those by powers.
-        analysis, powers = chebyshev.analysis(_ANGLES), _by_powers(_ANGLES)
+        analysis, powers = chebyshev.analysis(_ANGLES), by_powers(_ANGLES)
         for start in range(0, count, together):
             middles = (np.arange(start, min(count, start + together)) + 0.5) * width
             angles = middles[:, None] + 0.5 * width * chebyshev.nodes(_ANGLES)
@@ -334,7 +334,7 @@ def _mean(values: Array | None) -> Array | None:
     return None if values is None else np.asarray(values.mean(axis=(0, 1)))
 
 
-def _by_powers(count: int) -> Array:
+def by_powers(count: int) -> Array:
     """Return the matrix from coefficients by Chebyshev polynomials to those by powers."""
     table = np.zeros((count, count))  # T_k by powers, column k
     table[0, 0] = table[1, 1] = 1.0
@@ -351,12 +351,26 @@ def _maps(coefficients: Array) -> tuple[Array | None, float]:
     coefficients ``(nodes, ..., m, m)``.  None where the series has not ended after all
     its terms: the mean rate, zero in a system that only its waves move, says too little there.
     """
+    terms, last = power_terms(coefficients)
+    if not last <= _FAR_OFF:
+        return None, float("inf")
+    even, odd = (np.sum(terms[k::2], axis=0) for k in (0, 1))
+    forward, backward = even + odd, even - odd
+    # X (left end to right end) = forward @ backward^-1.
+    maps = np.linalg.solve(np.swapaxes(backward, -1, -2), np.swapaxes(forward, -1, -2))
+    return np.ascontiguousarray(np.swapaxes(maps, -1, -2)), 2.0 * last
+
+
+def power_terms(coefficients: Array) -> tuple[list[Array], float]:
+    """Return the terms of ``Y = sum_k Y_k tau^k`` with ``Y' = sum_j L_j tau^j Y``, Y(0) = 1.
+
+    Coefficients ``(powers, ..., m, m)``; also returned is the size of the last two terms, which
+    says whether the series has ended at |tau| = 1.
+    """
     m = coefficients.shape[-1]
     sizes = [float(np.max(np.abs(part))) for part in coefficients]
     used = max(1, chebyshev.length(np.array(sizes), _EPS * max(sizes)))
-    terms = [np.broadcast_to(np.eye(m), coefficients.shape[1:])]
-    even = np.array(terms[0])
-    odd = np.zeros_like(even)
+    terms: list[Array] = [np.broadcast_to(np.eye(m), coefficients.shape[1:])]
     last = [1.0, 1.0]
     while max(last) > _CUT and len(terms) < _MOST_TERMS:
         k = len(terms)
@@ -364,12 +378,6 @@ def _maps(coefficients: Array) -> tuple[Array | None, float]:
         for j in range(1, min(k, used)):
             term += coefficients[j] @ terms[k - 1 - j]
         term *= 1.0 / k
-        (odd if k % 2 else even).__iadd__(term)
         terms.append(term)
         last = [last[1], float(np.max(np.abs(term)))]
-    if not max(last) <= _FAR_OFF:
-        return None, float("inf")
-    forward, backward = even + odd, even - odd
-    # X (left end to right end) = forward @ backward^-1.
-    maps = np.linalg.solve(np.swapaxes(backward, -1, -2), np.swapaxes(forward, -1, -2))
-    return np.ascontiguousarray(np.swapaxes(maps, -1, -2)), 2.0 * max(last)
+    return terms, max(last)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..families import LinearPeriodic
 from ..floquet.first_order import even_angles
-from .eigenproblem import held_arrays
+from .eigenproblem import held_arrays, require_system
 
 Array = NDArray[np.float64]
 
@@ -56,6 +56,7 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
     BadInput
         If a parameter is unknown, or mass or stiffness is not positive definite at rest.
     """
+    require_system(system)
     if not system.has("Kg"):
         return Buckling(np.inf, 0.0)
     theta = even_angles(system.period, _ANGLES)

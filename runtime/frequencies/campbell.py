@@ -17,13 +17,12 @@ from ..floquet.first_order import numbers
 from ..progress import bar
 from ..results import Check, Result, provenance
 from .buckling import buckling_speed
-from .eigenproblem import held_frequencies
+from .eigenproblem import held_frequencies, require_system
 from .means import cycle_mean
+from .running import Running, running_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..floquet.decoupled.exponents import SlowMultipliers
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -34,6 +33,10 @@ _SHORT = 0.999
 _ENOUGH = 1e-9
 # A frequency this close to a multiple of the speed, over the speed, is locked to it.
 _LOCKED = 1e-7
+# Rows to either side of a crossing that tell how uneven its curve is.
+_BESIDE = 2
+# Distance between the names of orders in a picture, over its width.
+_ROOM = 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,9 +54,14 @@ class Campbell(Result):
         Frequencies of the running mechanism [rad/s], ``(ns, modes)``: the imaginary parts of the
         characteristic exponents, all terms with them (axial forces, Coriolis, centripetal, Euler),
         each with that multiple of the speed added that brings it to its mode; NaN where they were
-        not asked for.
+        not asked for.  A motion is named by its shape, taken apart along the turn into the modes of
+        the mechanism held still: names do not depend on the other speeds.
     growth : ndarray
         Their real parts [1/s], ``(ns, modes)``: positive where the motion grows.
+    share : ndarray
+        Share of each motion's action that is its own mode's, ``(ns, modes)``.  Where the exponents
+        of two modes meet and their motions mix it drops to about a half, and the names change
+        hands there.
     buckling : float
         Least crank speed [rad/s] at which the held mechanism buckles at some angle; inf if none.
     crossing_speed : ndarray
@@ -62,8 +70,9 @@ class Campbell(Result):
     crossing_mode, crossing_order : ndarray of int
         Mode (from 1) and n of each, ``(nc,)``.
     crossing_error : ndarray
-        Error of each [rad/s], ``(nc,)``: of interpolating between the speeds; half a locked range
-        where the frequency is n times the speed over a range of it.
+        Error of each [rad/s], ``(nc,)``: of interpolating between the speeds, as uneven as the
+        frequencies are there; half a locked range where the frequency is n times the speed over a
+        range of it.
     error : ndarray
         Error of ``held`` [rad/s], ``(ns, modes)``; NaN with it.
     """
@@ -72,6 +81,7 @@ class Campbell(Result):
     held: Array
     running: Array
     growth: Array
+    share: Array
     buckling: float
     crossing_speed: Array
     crossing_mode: Indices
@@ -80,7 +90,7 @@ class Campbell(Result):
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "speed": ("speed",),
-        **dict.fromkeys(("held", "running", "growth", "error"), ("speed", "mode")),
+        **dict.fromkeys(("held", "running", "growth", "share", "error"), ("speed", "mode")),
         **dict.fromkeys(
             ("crossing_speed", "crossing_mode", "crossing_order", "crossing_error"), ("crossing",)
         ),
@@ -94,14 +104,14 @@ class Campbell(Result):
         shown = np.where(np.isfinite(self.running), self.running, self.held)
         top = 1.1 * float(np.nanmax(shown))
         last = int(self.crossing_order.max(initial=1))
+        named, room = np.inf, _ROOM * float(self.speed[-1] - self.speed[0])
         for n in range(1, last + 1):
             ax.plot(self.speed, n * self.speed, color="0.8", lw=0.6, zorder=0)
-            x, y = (self.speed[-1], n * self.speed[-1])
-            if y > top:
-                x, y = top / n, top
+            x = min(float(self.speed[-1]), top / n)
             # Where the lines are close only some are named.
-            if n <= 10 or n % 5 == 0:
-                ax.annotate(f"{n}", (x, y), fontsize=6, color="0.5", ha="right", va="bottom")
+            if x == self.speed[-1] or named - x >= room:
+                named = x
+                ax.annotate(f"{n}", (x, n * x), fontsize=6, color="0.5", ha="right", va="bottom")
         for k in range(self.held.shape[1]):
             colour = f"C{k % 10}"
             ax.plot(self.speed, self.held[:, k], "--", color=colour, lw=0.9)
@@ -158,6 +168,7 @@ def campbell(
     BadInput
         If the speeds or the number of modes are unusable.
     """
+    require_system(system)
     speeds = numbers("speed", speed)
     if speeds.ndim != 1 or len(speeds) < 4 or not np.all(np.diff(speeds) > 0) or speeds[0] <= 0:
         raise bad("speed", speed, "at least four rising speeds [rad/s]", "use numpy.linspace")
@@ -166,23 +177,25 @@ def campbell(
         raise bad("modes", repr(modes), f"a whole number from 1 to {system.size}", "correct it")
     limit = buckling_speed(system).speed
     held, error = _held(system, speeds, count, limit, progress)
-    running = growth = np.full(held.shape, np.nan)
-    near = 0.0
+    nothing = np.full(held.shape, np.nan)
+    found = Running(nothing, nothing, nothing, 0.0)
     if exponents:
-        running, growth, near = _running(system, speeds, held, count)
-    told = running if exponents else held
+        rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
+        found = running_frequencies(system, speeds, held, rest)
+    told = found.frequency if exponents else held
     crossing = [row for k in range(count) for row in _crossings(speeds, told[:, k], k + 1)]
     crossing.sort()
     return Campbell(
         method="means of held frequencies" + "; characteristic exponents" * exponents,
         error=error,
         error_norm="absolute, of each held mean [rad/s]",
-        checks={"near": Check(float(near), 0.8)},
+        checks={"near": Check(found.away, 0.8)},
         provenance=provenance(system.provenance),
         speed=speeds,
         held=held,
-        running=running,
-        growth=growth,
+        running=found.frequency,
+        growth=found.growth,
+        share=found.share,
         buckling=limit,
         crossing_speed=np.array([row[0] for row in crossing]),
         crossing_mode=np.array([row[1] for row in crossing], dtype=np.int64),
@@ -212,62 +225,17 @@ def _lowest(system: LinearPeriodic, speed: float, count: int, theta: Array) -> t
     return frequency[:, :count], error[:, :count]
 
 
-def _running(
-    system: LinearPeriodic, speeds: Array, held: Array, count: int
-) -> tuple[Array, Array, float]:
-    """Return frequencies and growth rates from the exponents, and how far they had to be sought."""
-    from scipy.optimize import linear_sum_assignment
-
-    from ..floquet import characteristic_exponents
-
-    found = characteristic_exponents(system, speeds, count, rtol=1e-8)
-    turn = 2.0 * np.pi / system.period
-    rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
-    running, growth = np.empty((2, len(speeds), count))
-    near, before = 0.0, rest
-    for row, speed in enumerate(speeds):
-        expected = np.where(np.isfinite(held[row]), held[row], before)
-        spacing = speed * turn
-        phase, rate = _phases(found, row, count)
-        # Distance of each motion from each mode, a multiple of the speed aside; either sign of its
-        # phase where the signature leaves it open.
-        away = phase[:, :, None] * speed / system.period - expected
-        away -= spacing * np.round(away / spacing)
-        best = np.argmin(np.abs(away), axis=1)
-        away = np.take_along_axis(away, best[:, None, :], axis=1)[:, 0]
-        motion, mode = linear_sum_assignment(np.abs(away))
-        running[row, mode] = expected[mode] + away[motion, mode]
-        growth[row, mode] = rate[motion] * speed / system.period
-        near = max(near, float(np.max(np.abs(away[motion, mode]))) / (0.5 * spacing))
-        before = running[row]
-    return running, growth, near
-
-
-def _phases(found: SlowMultipliers, row: int, count: int) -> tuple[Array, Array]:
-    """Return the phases of each motion, two where its sign is open, and its growth a period."""
-    exponent, sign = found.exponents[row], found.signatures[row]
-    phase, rate = np.empty((count, 2)), np.empty(count)
-    for k in range(count):
-        own = np.flatnonzero(found.mode[row] == k + 1)
-        positive = own[sign[own] > 0]
-        if len(positive):
-            phase[k] = exponent.imag[positive[0]]
-        else:
-            phase[k] = abs(exponent.imag[own[0]]) * np.array([1.0, -1.0])
-        rate[k] = float(np.max(exponent.real[own]))
-    return phase, rate
-
-
 def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int, int, float]]:
     """Return speed, mode, order and error where a frequency is a whole multiple of the speed."""
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import PchipInterpolator
 
     there = np.isfinite(values)
     w, f = speeds[there], values[there]
     if len(w) < 4:
         return []
     ratio = f / w
-    curves = [CubicSpline(w[::step], ratio[::step]) for step in (1, 2)]
+    # The frequency changes little with the speed; its ratio to the speed does.
+    curves = [PchipInterpolator(w[rows], f[rows]) for rows in (slice(None), _every_other(len(w)))]
     out = []
     for n in range(max(1, int(np.ceil(ratio.min()))), int(np.floor(ratio.max())) + 1):
         side = np.where(np.abs(ratio - n) <= _LOCKED, 0.0, np.sign(ratio - n))
@@ -280,16 +248,32 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
                 continue
             fine = _root(curves[0], n, w[i], w[j])
             coarse = _root(curves[1], n, w[i], w[j])
-            out.append((fine, mode, n, abs(fine - coarse) + 1e-12 * fine))
+            unseen = _unevenness(w, f, int(i)) / abs(n - (f[j] - f[i]) / (w[j] - w[i]))
+            out.append((fine, mode, n, abs(fine - coarse) + unseen + 1e-12 * fine))
     return out
 
 
-def _root(curve: Any, level: int, low: float, high: float) -> float:
-    """Return the place within a bracket at which a curve takes a value; the chord's if none."""
-    roots = np.asarray(curve.solve(level, extrapolate=False))
-    inside = roots[(roots >= low) & (roots <= high)]
-    if len(inside):
-        return float(inside[0])
-    ends = np.asarray(curve(np.array([low, high]))) - level
-    share = ends[0] / (ends[0] - ends[1]) if ends[0] != ends[1] else 0.5
-    return float(low + np.clip(share, 0.0, 1.0) * (high - low))
+def _unevenness(speeds: Array, values: Array, first: int) -> float:
+    """Return how far the rows beside an interval lie off the chord through its ends.
+
+    What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
+    """
+    w, f = speeds[first : first + 2], values[first : first + 2]
+    near = slice(max(0, first - _BESIDE), first + 2 + _BESIDE)
+    chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
+    return float(np.max(np.abs(values[near] - chord)))
+
+
+def _every_other(count: int) -> Indices:
+    """Return every other row, the last one among them."""
+    return np.unique(np.append(np.arange(0, count, 2), count - 1))
+
+
+def _root(curve: Any, order: int, low: float, high: float) -> float:
+    """Return where a curve crosses a multiple of the speed within a bracket, or its nearer end."""
+    from scipy.optimize import brentq
+
+    ends = [float(curve(w)) - order * w for w in (low, high)]
+    if ends[0] * ends[1] >= 0.0:
+        return float(low if abs(ends[0]) <= abs(ends[1]) else high)
+    return float(brentq(lambda w: float(curve(w)) - order * w, low, high, xtol=1e-13 * high))

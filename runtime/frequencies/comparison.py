@@ -14,6 +14,7 @@ from ..families import LinearPeriodic
 from ..results import Result, provenance
 from .critical import METHODS, critical_speeds
 from .critical_result import CriticalSpeeds
+from .eigenproblem import require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,6 +121,9 @@ def compare_critical_speeds(
     BadInput
         If a method is unknown, or as :func:`~.critical.critical_speeds`.
     """
+    require_system(system)
+    if not isinstance(methods, (tuple, list)) or not all(isinstance(m, str) for m in methods):
+        raise bad("methods", repr(methods), f"some of {tuple(METHODS)}", "name them in a row")
     chosen = tuple(methods)
     strange = sorted(set(chosen) - set(METHODS))
     if not chosen or strange:

@@ -15,6 +15,7 @@ from .critical_floquet import by_meissner, by_multipliers
 from .critical_means import by_mean_frequency, by_running_mean
 from .critical_response import by_response
 from .critical_result import CriticalSpeeds, Measure, Request
+from .eigenproblem import require_system
 
 Array = NDArray[np.float64]
 
@@ -77,11 +78,14 @@ def critical_speeds(
     Raises
     ------
     BadInput
-        If the range, the method or a number is unusable; of ``response``, if the system has no
-        damping or its deflections are not known.
+        If the range, the method or a number is unusable, or nothing of the system depends on the
+        crank angle, as of a frame; of ``response``, if the system has no damping or its
+        deflections are not known.
     """
+    require_system(system)
+    _require_moving(system)
     low, high = _range(speed_range)
-    if method not in METHODS:
+    if not isinstance(method, str) or method not in METHODS:
         raise bad("method", repr(method), f"one of {tuple(METHODS)}", "choose one")
     if modes is not None and not (isinstance(modes, int) and 1 <= modes <= system.size):
         raise bad("modes", repr(modes), f"a whole number from 1 to {system.size}", "correct it")
@@ -90,6 +94,13 @@ def critical_speeds(
     count = min(_MODES, system.size) if modes is None else modes
     request = Request(system, low, high, count, speeds, measure, progress)
     return METHODS[method](request)
+
+
+def _require_moving(system: LinearPeriodic) -> None:
+    """Refuse a frame: nothing of it depends on the angle of a crank, so that no speed matters."""
+    if all(term.constant for term in system.terms):
+        found, fix = "a frame: no crank moves it", "take natural_frequencies of it"
+        raise bad("system", found, "a system that depends on a crank angle", fix)
 
 
 def _range(speed_range: Sequence[float]) -> tuple[float, float]:

@@ -12,12 +12,13 @@ from ..families import DAMPING, LinearPeriodic
 from ..progress import bar
 from ..results import Check, provenance
 from .critical_result import CriticalSpeeds, Measure, Request
+from .critical_scan import scanned_deflections
 from .labels import label_speeds
 from .natural import natural_frequencies
 
 Array = NDArray[np.float64]
 
-_RTOL = 1e-6
+_RTOL, _FINE = 1e-6, 1e-9
 # Speeds solved together, and speeds within the bracket of a maximum.
 _TOGETHER = 16
 _WITHIN = 7
@@ -43,7 +44,9 @@ def by_response(request: Request) -> CriticalSpeeds:
     measure = request.measure or _deflection_measure(system)
     speeds = np.linspace(request.low, request.high, request.speeds)
     mean = natural_frequencies(system, 0.0, request.count).mean
-    values = _measured(system, speeds, measure, request.progress)
+    values = scanned_deflections(system, speeds) if request.measure is None else None
+    if values is None:
+        values, _ = _measured(system, speeds, measure, request.progress)
     top = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
     if not len(top):
         found = height = error = np.zeros(0)
@@ -95,18 +98,21 @@ def _deflection_measure(system: LinearPeriodic) -> Measure:
 
 def _measured(
     system: LinearPeriodic, speeds: Array, measure: Measure, progress: bool = False
-) -> Array:
-    """Return the measure at speeds, part by part."""
+) -> tuple[Array, Array]:
+    """Return the measure at speeds and the relative error of the motions, part by part."""
     from ..response import steady_state
 
-    out = np.empty(len(speeds))
+    # Of a structure of beams the slow modes lead the way, whatever the number of freedoms.
+    method, rtol = ("cyclic", _FINE) if system.structure is None else ("harmonic_balance", _RTOL)
+    out, error = np.empty((2, len(speeds)))
     with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
         # At a critical speed the linear range is left as a matter of course.
         warnings.simplefilter("ignore", LinearRangeWarning)
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, min(begin + _TOGETHER, len(speeds)))
-            state = steady_state(system, speeds[part], method="cyclic", rtol=_RTOL, stability=False)
+            state = steady_state(system, speeds[part], method=method, rtol=rtol, stability=False)
             out[part] = measure(state)
+            error[part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
             if tick is not None:
                 tick(part.stop)
     if not np.all(np.isfinite(out)):
@@ -117,7 +123,7 @@ def _measured(
             "speeds with one each",
             "move the range or add damping",
         )
-    return out
+    return out, error
 
 
 def _maxima(
@@ -129,8 +135,10 @@ def _maxima(
     for _ in range(2):
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         inside = middle[:, None] + half[:, None] * node
-        values = _measured(system, inside.ravel(), measure).reshape(inside.shape)
-        fitted = [_least(node, 1.0 / row**2) for row in values]
+        values, error = (
+            part.reshape(inside.shape) for part in _measured(system, inside.ravel(), measure)
+        )
+        fitted = [_least(node, 1.0 / row**2, own) for row, own in zip(values, error, strict=True)]
         found.append(
             (
                 middle + half * np.array([place for place, _, _ in fitted]),
@@ -141,11 +149,15 @@ def _maxima(
         place = found[-1][0]
         low, high = place - _CLOSER * half, place + _CLOSER * half
     (first, _, _), (place, height, doubt) = found
-    return place, height, np.abs(place - first) * _CLOSER + doubt
+    # The first place is off by the fifth power of its bracket and more.
+    return place, height, np.abs(place - first) * _CLOSER**3 + doubt
 
 
-def _least(node: Array, values: Array) -> tuple[float, float, float]:
-    """Return place in [-1, 1], value and doubt of the place of the least value of a polynomial."""
+def _least(node: Array, values: Array, error: Array) -> tuple[float, float, float]:
+    """Return place in [-1, 1], value and doubt of the place of the least value of a polynomial.
+
+    ``error`` is the relative error of the motions that the values come from.
+    """
     curve = np.polynomial.Chebyshev.fit(node, values, len(node) - 1, domain=[-1, 1])
     slope = curve.deriv()
     roots = slope.roots()
@@ -153,9 +165,11 @@ def _least(node: Array, values: Array) -> tuple[float, float, float]:
     places = np.concatenate([inner, [-1.0, 1.0]])
     best = float(places[int(np.argmin(curve(places)))])
     bend = abs(float(slope.deriv()(best)))
-    # What the last terms and the error of the steady state tilt the curve by.
-    tilt = float(np.sum(np.abs(curve.coef[-2:]))) * len(node)
-    tilt += 2.0 * _RTOL * float(np.max(np.abs(values))) * len(node)
+    # What the next terms, as they fall, and the error of the motions tilt the curve by.
+    sizes = [float(np.sum(np.abs(curve.coef[k : k + 2]))) for k in (-4, -2)]
+    fall = min(1.0, (sizes[1] / sizes[0]) ** 0.5) if sizes[0] > 0.0 else 1.0
+    tilt = sizes[1] * fall * len(node)
+    tilt += 2.0 * float(np.max(error * np.abs(values))) * len(node)
     doubt = min(tilt / bend, 1.0) if bend > 0.0 else 1.0
     return best, float(curve(best)), doubt
 

@@ -127,6 +127,19 @@ def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
     return np.asarray(np.linalg.inv(factor))
 
 
+def require_system(system: object) -> None:
+    """Refuse what is no linear periodic system.
+
+    Raises
+    ------
+    BadInput
+        If it is none.
+    """
+    if not isinstance(system, LinearPeriodic):
+        found, fix = type(system).__name__, "take one from linkage_system or a scene"
+        raise bad("system", found, "a LinearPeriodic", fix)
+
+
 def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
     """Return checked crank angles; 361 over a period by default.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams.linear import linear_system
+from ..beams._checks import positive, require_kind, whole
 from ..beams.section import Section
 from ..beams.structure import Beam, Structure
 from ..errors import bad
@@ -18,7 +18,7 @@ from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
 from ..progress import bar
 from ..results import Check, Result, provenance
-from .eigenproblem import held_frequencies
+from .eigenproblem import held_frequencies, require_system
 from .means import cycle_mean
 
 if TYPE_CHECKING:
@@ -132,7 +132,22 @@ class FrequencyExponents(Result):
 
 
 def pinned_frequency(section: Section, length: float) -> float:
-    """Return the first natural frequency [rad/s] of a beam pinned at both ends."""
+    """Return the first natural frequency [rad/s] of a beam pinned at both ends.
+
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    length : float
+        Its length [m].
+
+    Raises
+    ------
+    BadInput
+        If the section is none, or the length not positive.
+    """
+    require_kind("section", section, Section, "make one with Section or Section.rectangle")
+    positive("pinned_frequency", length=length)
     return float(
         (np.pi / length) ** 2 * np.sqrt(section.bending_stiffness / section.mass_per_length)
     )
@@ -148,6 +163,9 @@ def link_frequencies(
     progress: bool = False,
 ) -> LinkFrequencies:
     """Return the mean natural frequencies against the length or section of a link.
+
+    All else stays: parameters, lumped masses, and weight and constant loads with the stiffening
+    by their axial forces.
 
     Parameters
     ----------
@@ -175,19 +193,19 @@ def link_frequencies(
         If the system has no such link, a value is not positive, or the crank cannot turn fully
         with it.
     """
-    structure, names = _structure(system)
+    names = _structure(system)[1]
     _check(system, names, link, quantity)
     values = np.atleast_1d(numbers("value", value))
     if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values) & (values > 0)):
         raise bad("value", value, "positive numbers, one row", "correct them")
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= system.size:
-        raise bad("count", repr(count), f"a whole number from 1 to {system.size}", "correct it")
+    whole("count", count, system.size)
     rows, pinned = [], []
     with bar(progress, len(values)) as tick:
         for k, number in enumerate(values):
             changed = _changed(system, link, quantity, float(number))
             beams = _structure(changed)[0].beams
-            pinned.append([pinned_frequency(beam.section, beam.length) for beam in beams])
+            alone = [pinned_frequency(beam.section, beam.length) for beam in beams]
+            pinned.append([_factor(changed) * frequency for frequency in alone])
             rows.append(_means(changed, count))
             if tick is not None:
                 tick(k + 1)
@@ -197,7 +215,7 @@ def link_frequencies(
         error=error,
         error_norm="absolute, of each mean [rad/s], as that of the finite elements",
         checks={"mean": Check(float(np.max(error / mean)), 1e-8)},
-        provenance=provenance(structure.provenance),
+        provenance=provenance(system.provenance),
         link=link,
         quantity=quantity,
         value=values,
@@ -226,9 +244,10 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
     Raises
     ------
     BadInput
-        If the system is not a linkage of beams.
+        If the system is not a linkage of beams, or the number of modes is unusable.
     """
     structure, names = _structure(system)
+    whole("count", count, system.size)
     mean, own_error, _, _ = _means(system, count)
     rows, exponent, error = [], [], []
     lengths = [name for name in (*names, "frame") if name in system.geometry]
@@ -238,7 +257,7 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
         f"{name} {quantity}": partial(_scaled, system, name, quantity) for name, quantity in wanted
     }
     changes |= {
-        f"mass at {node.name}": partial(_with_mass, system, node.name)
+        f"mass at {node.name}": partial(_heavier, system, node.name)
         for node in structure.nodes
         if node.mass and not {"x", "y"} <= set(node.held)
     }
@@ -257,7 +276,7 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
         method="symmetric differences of the means, extrapolated",
         error=np.stack(error),
         error_norm="absolute, of each exponent",
-        provenance=provenance(structure.provenance),
+        provenance=provenance(system.provenance),
         rows=tuple(rows),
         exponent=np.stack(exponent),
         mean=mean,
@@ -265,16 +284,17 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
 
 
 def _structure(system: LinearPeriodic) -> tuple[Structure, tuple[str, ...]]:
+    require_system(system)
     if system.structure is None:
         raise bad("system", "one without beams", "a linkage of beams", "use linkage_system")
     return system.structure, tuple(beam.name for beam in system.structure.beams)
 
 
 def _check(system: LinearPeriodic, names: tuple[str, ...], link: str, quantity: str) -> None:
-    if quantity not in QUANTITIES:
+    if not isinstance(quantity, str) or quantity not in QUANTITIES:
         raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "choose one")
     known = tuple(system.geometry) if quantity == "length" else names
-    if link not in known:
+    if not isinstance(link, str) or link not in known:
         raise bad("link", repr(link), f"one of {known}", "correct the name")
 
 
@@ -294,11 +314,21 @@ def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> 
     if quantity == "length":
         return system.with_geometry(**{link: value})
     area, second = (value**power for power in _POWERS[quantity])
-    structure, _ = _structure(system)
+    return _remade(system, partial(_with_link, link, area, second))
+
+
+def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) -> LinearPeriodic:
+    """Return the system of a changed structure, its loads, further terms and parameters kept."""
+    if system.remesh is None:
+        raise bad("system", "one made for its own beams alone", "a linkage", "use linkage_system")
+    return replace(system.remesh(change), parameters=dict(system.parameters))
+
+
+def _with_link(link: str, area: float, second: float, structure: Structure) -> Structure:
     beams = tuple(
         _with_section(beam, area, second) if beam.name == link else beam for beam in structure.beams
     )
-    return linear_system(replace(structure, beams=beams), geometric_stiffness=False)
+    return replace(structure, beams=beams)
 
 
 def _with_section(beam: Beam, area: float, second: float) -> Beam:
@@ -314,15 +344,24 @@ def _with_section(beam: Beam, area: float, second: float) -> Beam:
     return replace(beam, section=made)
 
 
+def _factor(system: LinearPeriodic) -> float:
+    """Return what the factors of moduli and densities make of a beam's own frequency."""
+    values = system.parameters
+    return float(np.sqrt(values.get("elasticity", 1.0) / values.get("distributed_mass", 1.0)))
+
+
 def _scaled(system: LinearPeriodic, link: str, quantity: str, factor: float) -> LinearPeriodic:
     own = system.geometry[link] if quantity == "length" else 1.0
     return _changed(system, link, quantity, own * factor)
 
 
-def _with_mass(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
-    structure, _ = _structure(system)
+def _with_mass(name: str, factor: float, structure: Structure) -> Structure:
     nodes = tuple(
         replace(node, mass=node.mass * factor) if node.name == name else node
         for node in structure.nodes
     )
-    return linear_system(replace(structure, nodes=nodes), geometric_stiffness=False)
+    return replace(structure, nodes=nodes)
+
+
+def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
+    return _remade(system, partial(_with_mass, name, factor))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -67,7 +68,8 @@ def cycle_mean(
 
 def _even(values: Values, period: float, count: int) -> tuple[Array, Array]:
     value, error = values(even_angles(period, count))
-    found = value.mean(axis=0)
+    # Row by row a plain sum would add a round-off for every angle.
+    found = np.array([math.fsum(column) for column in value.T]) / count
     return found, error.mean(axis=0) + 4 * _EPS * np.abs(found)
 
 

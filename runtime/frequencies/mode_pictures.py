@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..beams.elements import shape_functions
+from ..beams._checks import is_finite, whole
+from ..beams.placed_shapes import placed_shapes
 from ..beams.structure import Structure
 from ..errors import bad
 from ..families import LinearPeriodic
-from .eigenproblem import crank_angles
+from .eigenproblem import crank_angles, require_system
 from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:
@@ -47,14 +48,8 @@ def deflected_links(
     found: dict[str, tuple[list[Array], list[Array]]] = {}
     places = np.linspace(0.0, 1.0, _POINTS)
     for element in structure.elements:
-        beam, section = element.beam, element.beam.section
-        along, across = shape_functions(
-            beam.kind,
-            places,
-            element.length,
-            bending_stiffness=section.bending_stiffness,
-            shear_stiffness=section.shear_stiffness,
-        )
+        beam = element.beam
+        along, across = placed_shapes(element, places)
         own = motion[beam.name]
         angle = float(own.angle[0])
         axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
@@ -105,8 +100,9 @@ def draw_mode(
     from ..plotting import axes_or_new
 
     structure = _structure(system)
-    if isinstance(mode, bool) or not isinstance(mode, int) or not 1 <= mode <= system.size:
-        raise bad("mode", repr(mode), f"a whole number from 1 to {system.size}", "correct it")
+    whole("mode", mode, system.size)
+    if not is_finite(theta):
+        raise bad("theta", repr(theta), "one number [rad]", "choose a crank angle")
     held = natural_frequencies(system, float(theta), mode) if found is None else found
     at = int(np.argmin(np.abs(held.theta - theta)))
     if abs(held.theta[at] - theta) > 1e-9 or mode > held.shape.shape[-1]:
@@ -160,7 +156,7 @@ def draw_modes(
         angles = np.linspace(0.0, system.period, _POSITIONS, endpoint=False)
     else:
         angles = crank_angles(system, theta)
-    found = natural_frequencies(system, angles, modes)
+    found = natural_frequencies(system, angles, whole("modes", modes, system.size))
     figure = new_figure(2.6 * modes, 1.7 * len(angles))
     axes = figure.subplots(len(angles), modes, squeeze=False)
     for row, angle in zip(axes, angles, strict=True):
@@ -170,6 +166,7 @@ def draw_modes(
 
 
 def _structure(system: LinearPeriodic) -> Structure:
+    require_system(system)
     if system.structure is None:
         raise bad("system", "one without beams", "a linkage or frame of beams", "use its arrays")
     return system.structure

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..beams._checks import numbers_in_a_row, require_kind, require_mapping, whole
 from ..beams.structure import Structure
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import even_angles
 from ..progress import bar
 from ..results import Result, provenance
-from .eigenproblem import crank_angles, held_frequencies
+from .eigenproblem import crank_angles, held_frequencies, require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _ANGLES = 72
+# Exact frequencies at an angle that can be asked for.
+_MOST_EXACT = 1000
 EXACT = "exact"
 
 
@@ -130,13 +133,15 @@ def compare_models(
         If there is no model, one has fewer freedoms than are asked for or, for the exact ones, no
         structure, or an angle is unusable.
     """
+    require_mapping("models", models, "give systems by name")
     if not models:
         raise bad("models", "none", "at least one", "give some by name")
+    for system in models.values():
+        require_system(system)
     first = next(iter(models.values()))
     angles = even_angles(first.period, _ANGLES) if theta is None else crank_angles(first, theta)
     smallest = min(system.size for system in models.values())
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= smallest:
-        raise bad("count", repr(count), f"a whole number from 1 to {smallest}", "correct it")
+    whole("count", count, smallest)
     pairs = [held_frequencies(system, angles, {}) for system in models.values()]
     frequency, error = ([pair[k][:, :count] for pair in pairs] for k in (0, 1))
     names, sizes = list(models), [system.size for system in models.values()]
@@ -159,7 +164,7 @@ def compare_models(
 
 
 def exact_frequencies(
-    structure: Structure, theta: Array, count: int, *, progress: bool = False
+    structure: Structure, theta: ArrayLike, count: int, *, progress: bool = False
 ) -> tuple[Array, Array]:
     """Return the exact natural frequencies of a held linkage and their errors, ``(nt, count)``.
 
@@ -167,18 +172,26 @@ def exact_frequencies(
     ----------
     structure : Structure
         Beams and nodes; numbers and kinds of elements play no part.
-    theta : ndarray
+    theta : array_like
         Crank angles [rad], ``(nt,)``.
     count : int
         Number of frequencies, the lowest.
     progress : bool
         Whether to show a progress bar.
+
+    Raises
+    ------
+    BadInput
+        If the structure is none, an angle is unusable, or the count no whole number from 1 to 1000.
     """
     from ..dynamic_stiffness import dynamic_stiffness, wittrick_williams
 
-    frequency, error = np.empty((2, len(theta), count))
-    with bar(progress, len(theta)) as tick:
-        for k, angle in enumerate(theta):
+    require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
+    angles = numbers_in_a_row("theta", theta, " [rad]")
+    whole("count", count, _MOST_EXACT)
+    frequency, error = np.empty((2, len(angles), count))
+    with bar(progress, len(angles)) as tick:
+        for k, angle in enumerate(angles):
             found = wittrick_williams(dynamic_stiffness(structure, float(angle)), count=count)
             frequency[k], error[k] = found.frequencies[:count], found.error[:count]
             if tick is not None:

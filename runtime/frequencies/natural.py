@@ -20,6 +20,7 @@ from .eigenproblem import (
     held_arrays,
     held_frequencies,
     held_modes,
+    require_system,
 )
 from .encounters import Arrays, Encounter, Modes
 from .means import cycle_mean
@@ -211,6 +212,7 @@ def natural_frequencies(
         If an angle, the count or the speed is unusable, a parameter is unknown, or mass or
         stiffness is not positive definite at some angle.
     """
+    require_system(system)
     angles = crank_angles(system, theta)
     if count is None:
         count = min(system.size, _FEW)

@@ -126,15 +126,16 @@ def maxima(speed: Array, values: Array, prominence: float = 0.02) -> Array:
     from scipy.signal import find_peaks
 
     level = np.log(values)
-    at: NDArray[np.intp] = find_peaks(level, prominence=prominence)[0]
-    before, here, after = level[at - 1], level[at], level[at + 1]
-    shift = 0.5 * (before - after) / (before - 2.0 * here + after)
-    return np.asarray(speed[at] + shift * (speed[1] - speed[0]))
+    return _tops_of_parabolas(speed, level, find_peaks(level, prominence=prominence)[0])
 
 
 def tops(speed: Array, values: Array) -> Array:
     """Return the speeds of all local maxima of a smooth curve, each refined by a parabola."""
     at = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    return _tops_of_parabolas(speed, values, at)
+
+
+def _tops_of_parabolas(speed: Array, values: Array, at: NDArray[np.intp]) -> Array:
     before, here, after = values[at - 1], values[at], values[at + 1]
     shift = 0.5 * (before - after) / (before - 2.0 * here + after)
     return np.asarray(speed[at] + shift * (speed[1] - speed[0]))

@@ -102,6 +102,12 @@ def _curve(elements: int, ratio: float = 0.02, drop: tuple[str, ...] = THESIS) -
     return np.stack([found.of(link) for link in LINKS], axis=1)
 
 
+def _speed_axes(ax: Axes) -> None:
+    ax.set_xlim(_SPEEDS[0], _SPEEDS[-1])
+    ax.set_ylim(bottom=0.3)
+    ax.set_xlabel("crank speed [rad/s]")
+
+
 def damping_figure(ratio: float) -> Callable[[Sequence[Axes]], Drawn]:
     """Return the drawing of the largest stress of each link over the speed, one damping ratio."""
 
@@ -111,9 +117,7 @@ def damping_figure(ratio: float) -> Callable[[Sequence[Axes]], Drawn]:
             for link, colour, values in zip(LINKS, COLOURS, _curve(3, ratio, drop).T, strict=False):
                 label = f"{lead}{link}"
                 ax.semilogy(_SPEEDS, 1e-6 * values, style, color=colour, label=label)
-        ax.set_xlim(_SPEEDS[0], _SPEEDS[-1])
-        ax.set_ylim(bottom=0.3)
-        ax.set_xlabel("crank speed [rad/s]")
+        _speed_axes(ax)
         ax.set_ylabel("largest stress [MPa]")
         legend_below([ax], columns=3)
         note = (
@@ -202,9 +206,7 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
         label = f"{count} element{'s' if count > 1 else ''}"
         ax.semilogy(_SPEEDS, 1e-6 * np.max(_curve(count), axis=1), color=colour, label=label)
     ax.semilogy(_FEWER, 1e-6 * _hybrid_curve(), "--", color="0.2", label='"exact"')
-    ax.set_xlim(_SPEEDS[0], _SPEEDS[-1])
-    ax.set_ylim(bottom=0.3)
-    ax.set_xlabel("crank speed [rad/s]")
+    _speed_axes(ax)
     ax.set_ylabel("largest stress of all links [MPa]")
     legend_below([ax])
     note = (

@@ -121,6 +121,12 @@ class Table:
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
 
+    def markdown(self) -> list[str]:
+        """Return the lines of the table under its title; an empty cell shows a dash."""
+        head = [f"## {self.title}", "", "| " + " | ".join(self.header) + " |"]
+        head.append("|" + " --- |" * len(self.header))
+        return head + ["| " + " | ".join(cell or "–" for cell in row) + " |" for row in self.rows]
+
 
 @dataclass(frozen=True)
 class Drawn:

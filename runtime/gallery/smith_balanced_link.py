@@ -130,23 +130,28 @@ def _equation_rows(delta: Array) -> list[Quoted]:
     ]
 
 
+def _densities(ax: Axes, delta: Array, beside: float) -> None:
+    """Draw the inertia over the offset for the densities, and its minima with their letters."""
+    for (letter, density, number, best), colour in zip(_best(), COLOURS, strict=False):
+        link = balanced_link_inertia(delta, number)
+        ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
+        least = float(balanced_link_inertia(best, number).inertia)
+        ax.plot(best, least, "o", color=colour, ms=4.5)
+        write(ax, (best, least), letter, (beside, -10.0), color=colour)
+    ax.set_xlabel(r"offset $\delta=\ell/L$")
+    ax.set_ylabel(r"$I_G/(M L^2)$")
+    legend_below([ax], columns=6)
+
+
 def figure_23b(axes: Sequence[Axes]) -> Drawn:
     """Draw the inertia over the offset for a range of densities."""
     ax = axes[0]
     delta = np.linspace(0.06, 1.0, 471)
     light = balanced_link_inertia(delta, _number(_LIGHT))
     ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
-    for (letter, density, number, best), colour in zip(_best(), COLOURS, strict=False):
-        link = balanced_link_inertia(delta, number)
-        ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
-        least = float(balanced_link_inertia(best, number).inertia)
-        ax.plot(best, least, "o", color=colour, ms=4.5)
-        write(ax, (best, least), letter, (0.0, -10.0), color=colour)
+    _densities(ax, delta, 0.0)
     ax.set_xlim(0.0, 1.0)
     ax.set_ylim(0.3, 2.0)
-    ax.set_xlabel(r"offset $\delta=\ell/L$")
-    ax.set_ylabel(r"$I_G/(M L^2)$")
-    legend_below([ax], columns=6)
     return Drawn(tuple(_density_rows()), (_DATA_NOTE, _LIGHT_NOTE), (_best_table(),))
 
 
@@ -218,17 +223,9 @@ def figure_23c(axes: Sequence[Axes]) -> Drawn:
     numbers = offset_function(delta)
     line = balanced_link_inertia(delta, numbers)
     ax.plot(delta, line.inertia, "--", color="0.3", lw=1.3, label="minima of all densities")
-    for (letter, density, number, best), colour in zip(_best(), COLOURS, strict=False):
-        link = balanced_link_inertia(delta, number)
-        ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
-        least = float(balanced_link_inertia(best, number).inertia)
-        ax.plot(best, least, "o", color=colour, ms=4.5)
-        write(ax, (best, least), letter, (6.0, -10.0), color=colour)
+    _densities(ax, delta, 6.0)
     ax.set_xlim(0.1, 1.0)
     ax.set_ylim(0.4, 0.85)
-    ax.set_xlabel(r"offset $\delta=\ell/L$")
-    ax.set_ylabel(r"$I_G/(M L^2)$")
-    legend_below([ax], columns=6)
     return Drawn(tuple(_minimum_rows()), (_DATA_NOTE,))
 
 

@@ -410,10 +410,7 @@ def _document(tables: Sequence[Table]) -> str:
     for paragraph in _conclusion():
         lines += [fill(paragraph, 110), ""]
     for table in tables:
-        lines += [f"## {table.title}", "", "| " + " | ".join(table.header) + " |"]
-        lines.append("|" + " --- |" * len(table.header))
-        lines += ["| " + " | ".join(cell or "–" for cell in row) + " |" for row in table.rows]
-        lines.append("")
+        lines += [*table.markdown(), ""]
     return "\n".join(lines)
 
 

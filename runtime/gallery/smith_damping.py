@@ -251,7 +251,4 @@ def damping_document() -> str:
     ]
     for paragraph in _conclusion():
         lines += [fill(paragraph, 110), ""]
-    lines += [f"## {table.title}", "", "| " + " | ".join(table.header) + " |"]
-    lines.append("|" + " --- |" * len(table.header))
-    lines += ["| " + " | ".join(row) + " |" for row in table.rows]
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, *table.markdown(), ""])

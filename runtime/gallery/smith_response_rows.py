@@ -8,7 +8,15 @@ import numpy as np
 
 from .records import Quoted
 from .smith_linkages import RPM, Array
-from .smith_responses import RESPONSE, Response, coupler, decrements, envelope, quiet_state
+from .smith_responses import (
+    RESPONSE,
+    Response,
+    coupler,
+    decrements,
+    envelope,
+    quiet_state,
+    resonance,
+)
 
 _SCALE = 0.05
 _SPEEDS = "5 %: motor scale 1.5 %, frequency 2 %, speeds in tens of rpm"
@@ -28,15 +36,6 @@ def response_rows(one: Response) -> tuple[Quoted, ...]:
     return (*rows, *_SPECIAL.get(one.figure, _none)(one))
 
 
-def maximum(one: Response, speed: float) -> float:
-    """Return the crank speed [rpm] of the maximum that is nearest to a speed."""
-    found = envelope(one.figure, decrements(one.rig)[0])
-    height = found.greatest - found.least
-    inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
-    places = found.speed[1:-1][inner]
-    return float(places[np.argmin(np.abs(places - speed))])
-
-
 def _speed(number: str, printed: float, computed: float, differs: str = "") -> Quoted:
     far = abs(computed - printed) > _SCALE * printed
     return Quoted(
@@ -53,7 +52,7 @@ def _speed(number: str, printed: float, computed: float, differs: str = "") -> Q
 
 def _resonance(one: Response, speed: float, order: int) -> Quoted:
     differs = _SOFTER if one.chart == "85" else ""
-    return _speed(f"resonance at Omega/{order}", speed, maximum(one, speed), differs)
+    return _speed(f"resonance at Omega/{order}", speed, resonance(one.figure, speed), differs)
 
 
 def _none(one: Response) -> list[Quoted]:
@@ -173,7 +172,7 @@ def _calculated(one: Response) -> list[Quoted]:
         Quoted(
             f"resonance at Omega/{order} of the calculated frequency",
             whole / order,
-            maximum(one, whole / order),
+            resonance(one.figure, whole / order),
             0.03 * whole / order,
             "26.5 Hz calculated, 26 Hz seen: 2 %, and 1 % for the follower's load",
             "9.5.3",

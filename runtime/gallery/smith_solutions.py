@@ -202,17 +202,23 @@ def _free_decay(step: float, lam: float) -> float:
     return float(np.max(np.abs(np.linalg.eigvals(step_map))) ** (pi / h))
 
 
-def figure_29(axes: Sequence[Axes]) -> Drawn:
-    """Draw the first and the fourth crank cycle with steps of 1 and 0.5 degrees."""
-    long, short = _march(1.0, 4.0), _march(0.5, 4.0)
+def _cycles(axes: Sequence[Axes]) -> None:
+    """Show the first and the fourth crank cycle."""
     for ax, turn in zip(axes, (1, 4), strict=True):
-        _line(ax, long, COLOURS[1], "h = 1 deg", "--")
-        _line(ax, short, COLOURS[0], "h = 0.5 deg")
         ax.set_xlim(360.0 * (turn - 1), 360.0 * turn)
         ax.set_xticks([360.0 * (turn - 1) + 60.0 * i for i in range(7)])
         panel_title(ax, f"crank cycle {turn}")
     axes[-1].set_xlabel(r"crank angle $\theta_2$ [deg]")
     legend_below(axes[:1])
+
+
+def figure_29(axes: Sequence[Axes]) -> Drawn:
+    """Draw the first and the fourth crank cycle with steps of 1 and 0.5 degrees."""
+    long, short = _march(1.0, 4.0), _march(0.5, 4.0)
+    for ax in axes:
+        _line(ax, long, COLOURS[1], "h = 1 deg", "--")
+        _line(ax, short, COLOURS[0], "h = 0.5 deg")
+    _cycles(axes)
     lag = _lag(long, short, 4)
     row = Quoted(
         "phase between steps of 1 and 0.5 deg in the fourth cycle",
@@ -232,14 +238,10 @@ def figure_30(axes: Sequence[Axes]) -> Drawn:
     ours = _march(0.5, 4.0)
     system = _first_mode()
     other = simulate(system, _speed(system), 4.0, "kutta_merson", rtol=_KUTTA_MERSON_RTOL)
-    for ax, turn in zip(axes, (1, 4), strict=True):
+    for ax in axes:
         _line(ax, ours, COLOURS[0], "de Vogelaere, h = 0.5 deg")
         _line(ax, other, COLOURS[1], "Kutta-Merson, variable step", "--")
-        ax.set_xlim(360.0 * (turn - 1), 360.0 * turn)
-        ax.set_xticks([360.0 * (turn - 1) + 60.0 * i for i in range(7)])
-        panel_title(ax, f"crank cycle {turn}")
-    axes[-1].set_xlabel(r"crank angle $\theta_2$ [deg]")
-    legend_below(axes[:1])
+    _cycles(axes)
     row = Quoted(
         "phase between the two methods in the fourth cycle",
         60.0,

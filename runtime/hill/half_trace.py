@@ -87,10 +87,9 @@ class HalfTrace(Result):
         BadInput
             If the values are neither a grid of lam2 by mu nor a line.
         """
-        import matplotlib.pyplot as plt
+        from ..plotting import axes_or_new
 
-        if ax is None:
-            ax = plt.figure().add_subplot()
+        ax = axes_or_new(ax)
         lam2, mu = np.squeeze(self.lam2), np.squeeze(self.mu)
         if self.value.ndim == 2 and lam2.ndim == mu.ndim == 1:
             shown = self.value if lam2.size == self.value.shape[0] else self.value.T

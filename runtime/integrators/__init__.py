@@ -5,9 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import de_vogelaere, gauss_legendre, kutta_merson, magnus4, rk4
+from . import (
+    commutator_free,
+    de_vogelaere,
+    gauss_legendre,
+    kutta_merson,
+    magnus,
+    nystroem,
+    rk4,
+)
+from .commutators import ExponentialProduct, MagnusExponent
 from .expm import expm
 from .newmark import SECOND_ORDER
+from .nystroem import KickDrift
 from .protocol import Generator, OneStep
 from .tableau import ExplicitTableau, GaussTableau, gauss_tableau, rooted_trees
 
@@ -16,9 +26,11 @@ METHODS: Mapping[str, OneStep] = MappingProxyType(
         method.name: method
         for method in (
             de_vogelaere.METHOD,
-            gauss_legendre.METHOD,
+            *gauss_legendre.METHODS,
             kutta_merson.METHOD,
-            magnus4.METHOD,
+            *magnus.METHODS,
+            *commutator_free.METHODS,
+            *nystroem.METHODS,
             rk4.METHOD,
         )
     }
@@ -30,8 +42,11 @@ __all__ = [
     "SCIPY_METHODS",
     "SECOND_ORDER",
     "ExplicitTableau",
+    "ExponentialProduct",
     "GaussTableau",
     "Generator",
+    "KickDrift",
+    "MagnusExponent",
     "OneStep",
     "expm",
     "gauss_tableau",

@@ -62,13 +62,15 @@ def _condensed(tableau: GaussTableau, upper: Array, lower: Array, step: float) -
     return out + np.eye(2 * n)
 
 
-def gauss_legendre(stages: int = 6) -> OneStep:
+def gauss_legendre(stages: int = 6, name: str = "gauss_legendre") -> OneStep:
     """Return the Gauss-Legendre method with a number of stages.
 
     Parameters
     ----------
     stages : int
         Number s >= 1 of stages; the order is 2s.
+    name : str
+        Name of the method.
 
     Raises
     ------
@@ -81,9 +83,8 @@ def gauss_legendre(stages: int = 6) -> OneStep:
     def maps(generator: Generator, theta: Array, step: float) -> Array:
         return gauss_maps(int(stages), generator, theta, step)
 
-    return OneStep(
-        "gauss_legendre", order=2 * int(stages), maps=maps, explicit=False, symplectic=True
-    )
+    return OneStep(name, order=2 * int(stages), maps=maps, explicit=False, symplectic=True)
 
 
-METHOD = gauss_legendre()
+# Order 12 by the plain name; the others by their order.
+METHODS = (gauss_legendre(), *(gauss_legendre(s, f"gauss_legendre{2 * s}") for s in range(2, 9)))

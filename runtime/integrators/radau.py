@@ -2,62 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..errors import SelfCheckFailed
-
-Array = NDArray[np.float64]
+from .collocation import Array, CollocationTableau
 
 
 @dataclass(frozen=True)
-class RadauTableau:
+class RadauTableau(CollocationTableau):
     """Collocation at the right Radau points of [0, 1]: ``stages`` stages, order ``2 stages - 1``.
 
-    The constructor checks Butcher's simplifying assumptions B(2s - 1), C(s) and D(s - 1), which
-    together give the order, and that the last stage is the step itself.
-
-    Attributes
-    ----------
-    stages : int
-        Number s of stages.
-    c, b : ndarray
-        Nodes and weights, shape ``(s,)``.
-    a : ndarray
-        Stage weights, shape ``(s, s)``.
-
-    Raises
-    ------
-    SelfCheckFailed
-        If one of the conditions does not hold to round-off.
+    The constructor also checks that the last stage is the step itself.
     """
 
-    stages: int
-    c: Array
-    b: Array
-    a: Array
+    method: ClassVar[str] = "radau"
 
     @property
     def order(self) -> int:
         """Order of the method."""
         return 2 * self.stages - 1
 
-    def __post_init__(self) -> None:
-        limit = 64 * self.stages * np.finfo(float).eps
-        a, b, c, s = self.a, self.b, self.c, self.stages
-        gaps = {"last stage": np.abs(a[-1] - b)}
-        for k in range(1, 2 * s):
-            gaps[f"B({k})"] = np.abs(b @ c ** (k - 1) - 1 / k)
-        for k in range(1, s + 1):
-            gaps[f"C({k})"] = np.abs(a @ c ** (k - 1) - c**k / k)
-        for k in range(1, s):
-            gaps[f"D({k})"] = np.abs((b * c ** (k - 1)) @ a - b * (1 - c**k) / k)
-        failed = [name for name, gap in gaps.items() if np.max(gap) > limit]
-        if failed:
-            raise SelfCheckFailed(f"radau with {s} stages: {', '.join(failed)}")
+    def _own_gaps(self) -> Mapping[str, Array]:
+        return {"last stage": np.abs(self.a[-1] - self.b)}
 
 
 @cache

@@ -213,31 +213,47 @@ def four_bar(sizes: Sizes, branch: float, link: str) -> Route:
     return Route(at, triangle, ends, candidates, crank_at)
 
 
+def _together(*values: ArrayLike) -> tuple[Array, ...]:
+    return np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
+
+
 def _triangle(
     diagonal: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, own: float, other: float
 ) -> Play:
     """Return the play of the angle at D between DB and DC; BC is ``other`` give or take."""
-    d, r, _ = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (diagonal, radius, guide)))
+    d, r, _ = _together(diagonal, radius, guide)
     scale = np.maximum(4.0 * d * own, _TINY)
     least, nominal, greatest = (
         _opened(d, own, other, change, scale) for change in (-r, np.zeros_like(r), r)
     )
     rises = r * (2.0 * other - r) / scale, r * (2.0 * other + r) / scale
-    (fall, fall_error), (rise, rise_error), folds, free = _turned(least, nominal, greatest, rises)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = (r / d) * (other / own) / (nominal.sine * nominal.cosine)
+    return _of_angles(
+        (least, nominal, greatest),
+        rises,
+        small=np.where(r == 0.0, 0.0, small),
+        margin=np.minimum((other + own) - d, d - abs(other - own)),
+        blur=4.0 * _EPS * (d + other + own),
+        place=d,
+    )
+
+
+def _of_angles(
+    halves: tuple[_Half, _Half, _Half], rises: tuple[Array, Array], **others: Array
+) -> Play:
+    """Return the play of an angle from its least, nominal and greatest half."""
+    nominal = halves[1]
+    (fall, fall_error), (rise, rise_error), folds, free = _turned(*halves, rises)
     return Play(
         nominal=nominal.angle(),
         below=fall,
         above=rise,
-        small=np.where(r == 0.0, 0.0, small),
         folds=folds,
         free=free,
         error=np.maximum(fall_error, rise_error),
         nominal_error=nominal.error() + 2 * _EPS * nominal.angle(),
-        margin=np.minimum((other + own) - d, d - abs(other - own)),
-        blur=4.0 * _EPS * (d + other + own),
-        place=d,
+        **others,
     )
 
 
@@ -291,7 +307,7 @@ def _across_slider(
     gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float, gap_blur: float
 ) -> Play:
     """Return the play of the slider's distance from B along the guide, B a gap beside it."""
-    g, r, w = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gap, radius, guide)))
+    g, r, w = _together(gap, radius, guide)
     g = np.abs(g)
     shed = np.minimum(w, g)
     near, far = g - shed, g + w
@@ -346,7 +362,7 @@ def _across_coupler(
 
     Along the guide the slider follows; across it, pins and guide add up.
     """
-    g, r, w = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gap, radius, guide)))
+    g, r, w = _together(gap, radius, guide)
     play, scale = r + w, 2.0 * coupler
     error = ((2.0 * _EPS * (coupler + np.abs(g) + play) + gap_blur) / scale,) * 2
     least, nominal, greatest = (
@@ -354,18 +370,12 @@ def _across_coupler(
         for change in (play, 0.0 * play, -play)
     )
     rises = play / scale, play / scale
-    (fall, fall_error), (rise, rise_error), folds, free = _turned(least, nominal, greatest, rises)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = play / (coupler * nominal.sine * nominal.cosine)
-    return Play(
-        nominal=nominal.angle(),
-        below=fall,
-        above=rise,
+    return _of_angles(
+        (least, nominal, greatest),
+        rises,
         small=np.where(play == 0.0, 0.0, small),
-        folds=folds,
-        free=free,
-        error=np.maximum(fall_error, rise_error),
-        nominal_error=nominal.error() + 2 * _EPS * nominal.angle(),
         margin=coupler - np.abs(g),
         blur=_EPS * (coupler + np.abs(g)) + 2.0 * gap_blur,
         place=g,

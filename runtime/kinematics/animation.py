@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Sequence
 from math import pi
@@ -12,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import bad
+from ..inputs import is_whole
 from ..mechanisms.linkage import Linkage
+from ..plotting import require_writable
 from ..results import write_whole
 from ._circuits import Circuit
 from ._drawing import COLOURS, bars, draw_frame, draw_linkage, pins, point_bar
@@ -66,9 +67,9 @@ def animate(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     motion.check()
-    if not (isinstance(frames, (int, np.integer)) and 2 <= frames <= _MOST_FRAMES):
+    if not is_whole(frames, 2, _MOST_FRAMES):
         raise bad("frames", repr(frames), f"a whole number, 2 to {_MOST_FRAMES}", "correct it")
-    if not (isinstance(fps, (int, np.integer)) and 1 <= fps <= _FASTEST):
+    if not is_whole(fps, 1, _FASTEST):
         raise bad("fps", repr(fps), f"a whole number, 1 to {_FASTEST}", "correct it")
     for curve in curves:
         if not isinstance(curve, CouplerCurve):
@@ -89,11 +90,7 @@ def check_animation_path(path: str | Path) -> Path:
     target = Path(path)
     if target.suffix != ".gif":
         raise bad(str(target), repr(target.suffix), "the ending '.gif'", "rename the file")
-    if not target.parent.is_dir() or not os.access(target.parent, os.W_OK) or target.is_dir():
-        raise bad(
-            str(target), "a place that cannot be written", "a writable folder", "choose another"
-        )
-    return target
+    return require_writable(target)
 
 
 def _gif(motion: Circuit, curves: Sequence[CouplerCurve], frames: int, fps: int) -> bytes:

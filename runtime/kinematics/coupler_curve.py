@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..errors import BadInput, bad
+from ..inputs import is_whole
 from ..mechanisms.linkage import Linkage, planar
 from ..results import Check, DeferredChecks, Result, provenance
 from ._arc_length import integrate_turn
@@ -191,7 +192,7 @@ def coupler_curve(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     place = _place(linkage, link, along, across)
-    if not (isinstance(points, (int, np.integer)) and 16 <= points <= _MOST_POINTS):
+    if not is_whole(points, 16, _MOST_POINTS):
         raise bad("points", repr(points), f"a whole number, 16 to {_MOST_POINTS}", "correct it")
     motion.check()
     trace = _Trace(motion, link, place / motion.scale)

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import bad
+from ..inputs import is_whole
 from ..mechanisms.linkage import Linkage, Motion
 from ..results import Check, Result, provenance
 from ..series.periodic import PeriodicFunction
+from ..series.sampling import values_at
 from ._taylor import Array
 
 if TYPE_CHECKING:
@@ -194,7 +196,7 @@ def _doubled(
     """Double the angles until the coefficients stay."""
     count = max(_FEWEST, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
     probes = np.asarray(_TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
-    at_probes = checked(f, probes, name)
+    at_probes = values_at(f, probes, name)
     largest, asked = float(np.max(np.abs(at_probes))), _PROBES
     before: np.ndarray[Any, Any] | None = None
     changes: list[float] = []
@@ -259,7 +261,7 @@ def _coefficients(
     """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
     start = (_GOLDEN * np.log2(count)) % 1.0
     theta = np.asarray(_TURN * (np.arange(count) + start) / count, dtype=np.float64)
-    values = checked(f, theta, name)
+    values = values_at(f, theta, name)
     spectrum = np.fft.rfft(values) / count
     spectrum *= np.exp(-1j * _TURN * start / count * np.arange(len(spectrum)))
     spectrum[1:] *= 2.0
@@ -349,7 +351,7 @@ def source_told(source: Source) -> dict[str, str]:
 
 def check_order(order: int, accuracy: float) -> None:
     """Raise BadInput for an impossible order or accuracy."""
-    if not (isinstance(order, (int, np.integer)) and 1 <= order <= _HIGHEST):
+    if not is_whole(order, 1, _HIGHEST):
         raise bad("order", repr(order), f"a whole number, 1 to {_HIGHEST}", "correct it")
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
@@ -363,7 +365,7 @@ def without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], fl
     BadInput
         If it neither comes back to itself nor differs by whole turns.
     """
-    ends = checked(f, np.array([0.5, 0.5 + _TURN]), name)
+    ends = values_at(f, np.array([0.5, 0.5 + _TURN]), name)
     growth = float(ends[1] - ends[0])
     turns = float(np.rint(growth / _TURN))
     gap = abs(growth - turns * _TURN)
@@ -376,31 +378,8 @@ def without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], fl
         )
 
     def periodic(theta: Array) -> Array:
-        values = checked(f, theta, name)
+        values = values_at(f, theta, name)
         return np.asarray(values - turns * theta) if turns else values
 
     # Round-off of the two angles is no gap.
     return periodic, turns, gap if gap > 1e-11 * float(np.max(np.abs(ends))) else 0.0
-
-
-def checked(f: Function, theta: Array, name: str) -> Array:
-    """Return values of a function, one for each angle, or raise BadInput."""
-    values = np.asarray(f(theta), dtype=float)
-    if values.shape == ():
-        values = np.full(theta.shape, float(values))
-    if values.shape != theta.shape:
-        raise bad(
-            f"function {name!r}",
-            f"values of shape {values.shape} for angles of shape {theta.shape}",
-            "one value per angle",
-            "vectorise the function",
-        )
-    if not np.all(np.isfinite(values)):
-        where = float(theta[~np.isfinite(values)][0])
-        raise bad(
-            f"function {name!r}",
-            f"a value that is not finite at theta = {where:.6g} rad",
-            "finite values over the whole turn",
-            "check the geometry",
-        )
-    return values

@@ -11,12 +11,12 @@ import numpy as np
 
 from ..errors import bad
 from ..results import Check, provenance
+from ..series.sampling import values_at
 from ._taylor import Array
 from .harmonics import (
     Harmonics,
     Source,
     check_order,
-    checked,
     function_of,
     harmonics,
     source_told,
@@ -120,7 +120,7 @@ def _halved(
     m = np.arange(order + 1)
 
     def added(theta: Array) -> tuple[Array, Array]:
-        values = checked(f, theta, name)
+        values = values_at(f, theta, name)
         cosine, sine = np.zeros(order + 1), np.zeros(order + 1)
         # In pieces, so that a long row of angles does not fill the memory.
         for start in range(0, len(theta), 4096):

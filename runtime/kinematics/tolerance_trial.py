@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import bad
+from ..inputs import is_whole
 from ..results import Check, Result
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ _CHANCE = 1e-6
 class ToleranceTrial(Result):
     """Mean and standard deviation of every output over random linkages.
 
-    ``error`` is the standard error of ``standard_deviation``, of its shape.
+    ``error`` holds the statistical error of ``standard_deviation`` in 99 of 100 trials; its shape.
 
     Attributes
     ----------
@@ -79,7 +80,7 @@ def trial(
     if distribution not in _SPREADS:
         raise bad("distribution", repr(distribution), f"one of {sorted(_SPREADS)}", "choose one")
     for name, number, fewest in (("samples", samples, 2), ("seed", seed, 0)):
-        if isinstance(number, bool) or not isinstance(number, int) or number < fewest:
+        if not is_whole(number, fewest):
             raise bad(name, repr(number), f"an integer of at least {fewest}", "correct it")
     random = np.random.default_rng(seed)
     # Deviations over the worst case: their squares neither overflow nor vanish.
@@ -105,7 +106,7 @@ def trial(
     spread = unit * np.sqrt(np.maximum(squares - kept * np.square(mean), 0.0) / (kept - 1))
     shift = unit * mean
     expected = nominal.root_sum_square * _SPREADS[distribution]
-    error = spread / math.sqrt(2.0 * (kept - 1))
+    error = _quantile(kept - 1) * spread
     return ToleranceTrial(
         outputs=nominal.outputs,
         mean_shift=shift,
@@ -122,6 +123,14 @@ def trial(
         checks=_checks(nominal, shift, spread, expected, kept),
         provenance=nominal.provenance,
     )
+
+
+def _quantile(freedom: int) -> float:
+    """Return what holds the error of 99 of 100 standard deviations, relative; chi-square law."""
+    from scipy.special import chdtri
+
+    low, high = (float(chdtri(freedom, share)) for share in (0.995, 0.005))
+    return max(math.sqrt(freedom / low) - 1.0, 1.0 - math.sqrt(freedom / high))
 
 
 def _deviations(

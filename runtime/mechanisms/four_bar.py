@@ -5,14 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import four_bar_kinematics
 from ..errors import BadInput, Problem, bad
-from .inputs import Array, Assembly, assembly_problems, drive_of, length_problems, rates_of, spread
+from .inputs import (
+    Array,
+    Assembly,
+    assembly_problems,
+    by_name,
+    drive_of,
+    length_problems,
+    rates_of,
+    spread,
+)
 from .linkage import (
     Linkage,
     LinkMotion,
@@ -297,8 +306,7 @@ class FourBar(Linkage):
                 assembly=self.branch,
                 winding=float(self.crank > self.frame),
             )
-        found: dict[str, Any] = dict(zip(_OUTPUTS, map(np.asarray, values), strict=True))
-        m: dict[str, Array] = {"theta2": angles, **found}
+        m = by_name(angles, _OUTPUTS, values)
         shortest, longest = self.reach
         self._require_reached(
             m, f"a diagonal BD between {shortest:g} and {longest:g}, {self._reachable()}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from numbers import Real
 from typing import Any, Literal
 
@@ -39,6 +39,11 @@ def drive_of(
         ) from refusal
     first, second = (np.array(np.broadcast_to(item, shape)) for item in given)
     return angles, (first, second)
+
+
+def by_name(angles: Array, names: Iterable[str], values: Iterable[Any]) -> dict[str, Array]:
+    """Return what an emitted motion gives as arrays by name, the crank angle as ``theta2``."""
+    return {"theta2": angles, **dict(zip(names, map(np.asarray, values), strict=True))}
 
 
 def spread(value: Array, drive: tuple[Array, Array]) -> Array:

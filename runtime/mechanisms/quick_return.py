@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import quick_return_kinematics
 from ..errors import BadInput, Problem, bad
-from .inputs import Array, drive_of, length_problems, rates_of, spread
+from .inputs import Array, by_name, drive_of, length_problems, rates_of, spread
 from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
 
 if TYPE_CHECKING:
@@ -286,8 +286,7 @@ class QuickReturn(Linkage):
         frame, crank, rod = self._unit_lengths.values()
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             values = _MOTION(angles, frame, crank, winding=float(crank > frame))
-        found: dict[str, Any] = dict(zip(_OUTPUTS, map(np.asarray, values), strict=True))
-        m: dict[str, Array] = {"theta2": angles, **found}
+        m = by_name(angles, _OUTPUTS, values)
         self._require_reached(m, self._reachable())
         decided = (m["slide"] <= rod * (1.0 + _ROUND)) & (self._blur(m) < _UNDECIDED)
         self._require(decided, angles, self._reachable())

@@ -6,14 +6,23 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...generated import slider_crank_kinematics
 from ..errors import BadInput, Problem, bad
-from .inputs import Array, Assembly, assembly_problems, drive_of, length_problems, rates_of, spread
+from .inputs import (
+    Array,
+    Assembly,
+    assembly_problems,
+    by_name,
+    drive_of,
+    length_problems,
+    rates_of,
+    spread,
+)
 from .linkage import (
     Linkage,
     LinkMotion,
@@ -339,8 +348,7 @@ class SliderCrank(Linkage):
         angles, drive = drive_of(theta, speed, acceleration)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             values = _MOTION(angles, **self._unit_lengths, assembly=self.branch)
-        found: dict[str, Any] = dict(zip(_OUTPUTS, map(np.asarray, values), strict=True))
-        m: dict[str, Array] = {"theta2": angles, **found}
+        m = by_name(angles, _OUTPUTS, values)
         self._require_reached(m, self._reachable())
         self._require(self._blur(m) < _UNDECIDED, angles, self._reachable())
         omega3, alpha3 = rates_of(drive, m["omega3"], m["alpha3"])

@@ -97,22 +97,78 @@ def grid_of(system: LinearPeriodic, modes: int | None, angles: int = _FEWEST) ->
 
 def _bases(system: LinearPeriodic, still: StillModes, modes: int | None) -> dict[int, MovingBasis]:
     """Return bases by number of modes, of those that leave a gap to the next frequency."""
-    n = system.size
     if modes is not None:
+        n = system.size
         if isinstance(modes, bool) or not (isinstance(modes, int) and 1 <= modes <= n):
             raise bad("modes", repr(modes), f"a whole number from 1 to {n}", "correct it")
         return {modes: basis_of(system, modes, still)}
-    ratios = np.sqrt(np.min(still.squares[:, 1:] / still.squares[:, :-1], axis=0))
     found = {}
-    for m in (*(np.flatnonzero(ratios >= _GAP) + 1), n):
+    for m in _numbers(still):
         try:
-            found[int(m)] = basis_of(system, int(m), still)
+            found[m] = basis_of(system, m, still)
         except BadInput:
             # It comes back mirrored; another number of modes does not.
             continue
         if len(found) == 4:
             break
     return found
+
+
+def _numbers(still: StillModes) -> list[int]:
+    """Return the numbers of modes that leave a gap to the next frequency, and all."""
+    ratios = np.sqrt(np.min(still.squares[:, 1:] / still.squares[:, :-1], axis=0))
+    return [*(np.flatnonzero(ratios >= _GAP) + 1).tolist(), still.squares.shape[1]]
+
+
+def limits(grid: Grid) -> Array:
+    """Return the speeds [rad/s] up to which each number of modes with a gap reaches, rising."""
+    lowest = np.sqrt(np.min(grid.still.squares, axis=0))
+    return np.asarray(lowest[_numbers(grid.still)[:-1]] / grid.reach)
+
+
+def wider(
+    system: LinearPeriodic,
+    grid: Grid,
+    speed: float,
+    beyond: int,
+    known: dict[int, Condensed],
+    fastest: float = np.inf,
+) -> Condensed | None:
+    """Return a system condensed to the fewest modes that do for a speed; None where none do.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The full system.
+    grid : Grid
+        Its angles.
+    speed : float
+        Speed [rad/s]: the first mode left out lies beyond ``grid.reach`` times it.
+    beyond : int
+        Number of modes that is not enough.
+    known : dict
+        Condensed systems by number of modes; what is made is put there.
+    fastest : float
+        Frequency beyond which none is kept [rad/s].
+    """
+    lowest = np.sqrt(np.min(grid.still.squares, axis=0))
+    highest = np.sqrt(np.max(grid.still.squares, axis=0))
+    for m in _numbers(grid.still):
+        if m <= beyond or (m < system.size and lowest[m] < grid.reach * speed):
+            continue
+        if highest[m - 1] > fastest:
+            return None
+        if m not in known:
+            try:
+                basis = grid.bases.get(m) or basis_of(system, m, grid.still)
+            except BadInput:
+                # It comes back mirrored; another number of modes does not.
+                continue
+            if basis.tail > _RESOLVED and m < system.size:
+                continue
+            known[m] = condense(system, basis, answers=1, arrays=grid.arrays)
+        return known[m]
+    return None
 
 
 def _reach(arrays: Mapping[str, Mapping[int, Array]]) -> int:

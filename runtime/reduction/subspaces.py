@@ -113,7 +113,7 @@ def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = Non
         return _fixed_basis(system, int(modes))
     count = _FEWEST if angles is None else int(angles)
     while True:
-        found = _carried_along(system, int(modes), still_modes(system, count))
+        found = carried_basis(system.period, int(modes), still_modes(system, count))
         if angles is not None or found.tail <= _RESOLVED or 2 * count > _MOST:
             break
         count *= 2
@@ -131,7 +131,7 @@ def basis_of(system: LinearPeriodic, modes: int, still: StillModes) -> MovingBas
     BadInput
         If their subspace is not periodic.
     """
-    return _carried_along(system, modes, still)
+    return carried_basis(system.period, modes, still)
 
 
 def _fixed_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
@@ -143,8 +143,14 @@ def _fixed_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
     return MovingBasis(series, theta, values, np.zeros_like(values), kept, left_out, 0.0)
 
 
-def _carried_along(system: LinearPeriodic, modes: int, still: StillModes) -> MovingBasis:
-    """Return the basis fixed at even angles."""
+def carried_basis(period: float, modes: int, still: StillModes) -> MovingBasis:
+    """Return the basis of the lowest of modes at even angles of a period.
+
+    Raises
+    ------
+    BadInput
+        If their subspace is not periodic.
+    """
     theta, squares, shapes, mass = still.theta, still.squares, still.shapes, still.mass
     values = shapes[:, :, :modes]
     carried = mass @ values
@@ -161,10 +167,10 @@ def _carried_along(system: LinearPeriodic, modes: int, still: StillModes) -> Mov
     smooth = values @ (np.stack(turns[:-1]) @ back)
     kept, left_out = _border(squares, modes)
     return MovingBasis(
-        interpolated(smooth, system.period),
+        interpolated(smooth, period),
         theta,
         smooth,
-        differentiated(smooth, system.period),
+        differentiated(smooth, period),
         kept,
         left_out,
         tail(smooth),
@@ -185,8 +191,7 @@ def _lowest(system: LinearPeriodic, theta: Array) -> tuple[Array, Array, Array]:
             factor = 1.0 if term.scale is None else float(system.scale_values()[term.scale])
             stiffness = stiffness + factor * term(theta)
     try:
-        np.linalg.cholesky(mass)
-        root = np.linalg.inv(np.linalg.cholesky(stiffness))
+        return (*natural_modes(mass, stiffness), mass)
     except np.linalg.LinAlgError as indefinite:
         raise bad(
             "system",
@@ -194,12 +199,24 @@ def _lowest(system: LinearPeriodic, theta: Array) -> tuple[Array, Array, Array]:
             "both positive definite",
             "check the parameters; hold the structure",
         ) from indefinite
+
+
+def natural_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Return squared natural frequencies, rising, and M-orthonormal modes at angles.
+
+    Raises
+    ------
+    LinAlgError
+        If a matrix is not positive definite.
+    """
+    np.linalg.cholesky(mass)
+    root = np.linalg.inv(np.linalg.cholesky(stiffness))
     # The flexible modes are the large eigenvalues of the inverse problem, the accurate ones.
     flexible = root @ mass @ np.swapaxes(root, -1, -2)
     values, vectors = np.linalg.eigh(0.5 * (flexible + np.swapaxes(flexible, -1, -2)))
     values, vectors = values[:, ::-1], vectors[:, :, ::-1]
     shapes = np.swapaxes(root, -1, -2) @ vectors / np.sqrt(values)[:, None, :]
-    return 1.0 / values, shapes, mass
+    return 1.0 / values, shapes
 
 
 def _border(squares: Array, modes: int) -> tuple[Array, Array]:

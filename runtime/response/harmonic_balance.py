@@ -12,15 +12,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.lib.stride_tricks import as_strided
 from numpy.typing import NDArray
 
 from ..errors import bad
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import Series, even_count, series_of
 from ..results import Check
+from .balance_matrix import real_matrix
 from .checks import check_memory
 from .request import Found, Request, peaks, whole_option
+from .slow_balance import Balanced, balanced_slowly
+from .steering import harmonics_of
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -65,11 +67,19 @@ def by_harmonic_balance(request: Request) -> Found:
     count = even_count(form.system)
     nu = 2 * np.pi / form.system.period
     scale = form.scale[:, :n]
-    together = max(1, _FLOATS // (4 * count * n * n))
+    # Of a given number of harmonics two are compared: what it leaves out may be large.
+    slow = _slowly(request) if fixed is None else [None] * len(form.speed)
+    together = 1 if any(slow) else max(1, _FLOATS // (4 * count * n * n))
     balances: list[Balance] = []
     errors = np.full((len(form.speed), n), np.inf)
     harmonics = _FIRST if fixed is None else fixed
     for begin in range(0, len(form.speed), together):
+        known = slow[begin]
+        if known is not None:
+            waves = harmonics_of(known.motion, len(known.motion) // 2)
+            balances.append(Balance(waves, known.rounding, known.condition))
+            errors[begin] = known.error
+            continue
         part = form.take(slice(begin, begin + together))
         for own, series in enumerate(series_of(part, count)):
             place = begin + own
@@ -79,6 +89,26 @@ def by_harmonic_balance(request: Request) -> Found:
             if request.tick is not None:
                 request.tick(place + 1)
     return _found(request, form, balances, errors, nu)
+
+
+def _slowly(request: Request) -> list[Balanced | None]:
+    """Return the motions that slow modes steer to, one for each of the batch."""
+    form = request.form
+    out: list[Balanced | None] = []
+    first: int | None = None
+    for place in range(len(form.speed)):
+        found = None
+        # Where a system is not stiff at the first speed it is not at the others.
+        if place == 0 or out[0] is not None:
+            one = form.take(slice(place, place + 1))
+            found = balanced_slowly(one, request.rtol, first)
+        if found is not None:
+            first = len(found.motion)
+            first -= first // 5 if np.max(found.error) <= _AMPLE * request.rtol else 0
+            if request.tick is not None:
+                request.tick(place + 1)
+        out.append(found)
+    return out
 
 
 def _check_unknowns(fixed: int | None, n: int) -> None:
@@ -260,56 +290,3 @@ def _complex(values: Array, harmonics: int, n: int) -> ComplexArray:
     out = values[:middle].reshape(harmonics + 1, n).astype(complex)
     out[1:] += 1j * values[middle:].reshape(harmonics, n)
     return out
-
-
-def real_matrix(series: Series, harmonics: int, nu: float, scale: Array) -> Array:
-    """Return the balance in real and imaginary parts of the harmonics, ``(N, N)``.
-
-    Unknowns and equations: real parts of harmonics 0 to H, then imaginary parts of 1 to H, each
-    with the n coordinates; N = (2 H + 1) n.
-    """
-    n, size = len(scale), harmonics + 1
-    weights = scale[:, None] * scale
-    kappa = (nu * np.arange(size))[None, None, :, None]
-    straight = [
-        _window(part * weights, harmonics, -1)
-        for part in (series.stiffness, series.rate, series.mass)
-    ]
-    crossed = [
-        _window(part * weights, harmonics, 1)
-        for part in (series.stiffness, series.rate, series.mass)
-    ]
-    out = np.empty(((2 * harmonics + 1) * n,) * 2)
-    middle = size * n
-    blocks = {}
-    # E(k, l) = H + i kappa G - kappa^2 M at k - l; at -l the sign of kappa turns.
-    for name, (h, g, m), sign in (("+", straight, 1.0), ("-", crossed, -1.0)):
-        real = h.real - (sign * kappa) * g.imag - kappa**2 * m.real
-        imaginary = h.imag + (sign * kappa) * g.real - kappa**2 * m.imag
-        blocks[name] = (real, imaginary)
-    (pr, pi), (mr, mi) = blocks["+"], blocks["-"]
-    rr, ir = pr + mr, pi + mi
-    # The mean has no partner.
-    rr[:, :, 0], ir[:, :, 0] = pr[:, :, 0], pi[:, :, 0]
-    out[:middle, :middle] = rr.reshape(middle, middle)
-    out[middle:, :middle] = ir[1:].reshape(harmonics * n, middle)
-    out[:middle, middle:] = (mi - pi)[:, :, 1:].reshape(middle, harmonics * n)
-    out[middle:, middle:] = (pr - mr)[1:, :, 1:].reshape(harmonics * n, harmonics * n)
-    return out
-
-
-def _window(part: ComplexArray, harmonics: int, direction: int) -> ComplexArray:
-    """Return the view ``(k, i, l, j)`` of the coefficient at k - l (direction -1) or k + l."""
-    n = part.shape[1]
-    padded = np.zeros((4 * harmonics + 1, n, n), dtype=complex)
-    kept = min(len(part), 2 * harmonics + 1)
-    middle = 2 * harmonics
-    padded[middle : middle + kept] = part[:kept]
-    padded[middle - kept + 1 : middle + 1] = part[:kept][::-1].conj()
-    # The mean itself, not its conjugate.
-    padded[middle] = part[0]
-    start = padded[middle:]
-    a, b, c = padded.strides
-    return as_strided(
-        start, (harmonics + 1, n, harmonics + 1, n), (a, b, direction * a, c), writeable=False
-    )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..deferred import DeferredField
 from ..errors import bad
 from ..floquet.first_order import numbers
 from ..results import Result
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+# Fields that may be worked out when they are first looked at.
+_LATER = {name: DeferredField() for name in ("multipliers", "stable", "distance")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,15 +66,20 @@ class SteadyState(Result):
     cycles : ndarray of int or None
         Periods that a march took to settle, shape ``batch``; -1 where it did not.  None of a
         method that does not march.
+
+    Notes
+    -----
+    Multipliers that the method has no need of, and nobody asked for, are computed when one of
+    ``multipliers``, ``stable`` and ``distance`` is first looked at.
     """
 
     speed: Array
     theta: Array
     q: Array
     qd: Array
-    multipliers: ComplexArray | None
-    stable: NDArray[np.bool_] | None
-    distance: Array
+    multipliers: Any = _LATER["multipliers"]  # ComplexArray | None
+    stable: Any = _LATER["stable"]  # NDArray[np.bool_] | None
+    distance: Any = _LATER["distance"]  # Array
     sensitivity: Array
     period: float
     labels: tuple[str, ...]

@@ -62,7 +62,7 @@ def first_segments(form: CanonicalForm) -> NDArray[np.int64]:
     """
     # Eight angles a segment have to see the highest harmonic twice a wave at the least.
     fewest = max(_FEWEST, form.reach / 4)
-    rate = needed_rate(form)
+    rate = form.needed_rate
     wanted = np.maximum(rate * form.system.period / _PHASE, fewest)
     if np.max(wanted, initial=0.0) > _MOST_SEGMENTS / 4:
         worst = int(np.argmax(wanted))
@@ -74,15 +74,6 @@ def first_segments(form: CanonicalForm) -> NDArray[np.int64]:
             "raise the speed or leave out the highest modes",
         )
     return np.asarray(2 ** np.ceil(np.log2(wanted)).astype(int), dtype=np.int64)
-
-
-def needed_rate(form: CanonicalForm) -> Array:
-    """Return the rate [1/rad] that segments have to resolve, ``(nb,)``.
-
-    Strong damping is not in it: an overdamped mode follows its load after a time that is short
-    beside a segment.  Whether that was right is told by halving the segments.
-    """
-    return form.needed_rate
 
 
 def periodic_orbits(

@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..deferred import DeferredGroup
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.decoupled.exponents import SlowMultipliers, characteristic_exponents
@@ -36,6 +37,9 @@ from .result import SteadyState
 from .settling import by_marching
 from .shot import by_shooting, work_of
 from .transition import by_transition_matrix
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 Array = NDArray[np.float64]
 
@@ -68,6 +72,8 @@ _METHODS: Mapping[str, _Method] = {
     "time_marching": _Method(by_marching, 1e-3, (*_STEPS, "tolerance", "most_cycles", "initial")),
 }
 METHODS = tuple(_METHODS)
+# Fields of the result that multipliers tell.
+_STABILITY = ("multipliers", "stable", "distance")
 
 
 def steady_state(
@@ -79,6 +85,7 @@ def steady_state(
     samples: int = _FEWEST_SAMPLES,
     stability: bool | None = None,
     options: Mapping[str, object] | None = None,
+    executor: Executor | None = None,
     progress: bool = False,
     **parameters: ArrayLike,
 ) -> SteadyState:
@@ -101,7 +108,8 @@ def steady_state(
         neither growth nor strong damping spoils it.
         ``"harmonic_balance"``: the Fourier series of motion and coefficients, as many harmonics
         as the motion has (Aannaque 6.13, 6.14, with every coefficient's series); for stiff
-        systems, whose high modes the motion does not excite.
+        systems, whose high modes the motion does not excite.  From six freedoms on the balance of
+        the slow modes steers that of all, where there are such modes: the fastest method then.
         ``"cyclic"``: the cyclic system (Aannaque 6.22) of a one-step scheme, solved by orthogonal
         elimination; as few intervals as the motion needs.
         ``"transition_matrix"``: Aannaque's algorithm 1 (6.15)-(6.19).
@@ -119,9 +127,9 @@ def steady_state(
         where the motion needs more.  With ``intervals`` their ends are given instead.
     stability : bool, optional
         Whether the multipliers are computed; of a stiff system those of its slow modes, and that
-        no fast mode grows (check ``fast modes``).  By default where they cost little or the
-        method needs them (``shooting``); where they are left out unasked the check ``stability
-        not computed`` fails.
+        no fast mode grows (check ``fast modes``).  By default where the method needs them
+        (``shooting``), and where they cost little, once they are looked at; where they are left
+        out unasked the check ``stability not computed`` fails.
     options : mapping, optional
         More for a method.  ``harmonics``: a fixed number of them.  ``intervals``: a fixed number
         of intervals (``modal``: 256).  ``scheme``: of ``cyclic`` ``"radau"`` (order 15, the
@@ -131,6 +139,9 @@ def steady_state(
         of generalized-alpha, 0.9.  ``modes``: how many are kept.  ``tolerance``: change in a
         revolution, over the peak, at which a march has settled, 1e-4.  ``most_cycles``: 1000.
         ``initial``: pair of q and qd to march from.
+    executor : concurrent.futures.Executor, optional
+        Threads, processes or Dask's ``client.get_executor()``, for fixed pieces of the batch: the
+        answer does not depend on which, nor on the number of workers.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
     **parameters : array_like
@@ -167,7 +178,44 @@ def steady_state(
 
     Strong damping costs most in the multipliers, which resolve each decay.
     """
-    told = dict(options or {})
+    asked: dict[str, Any] = {"method": method, "rtol": rtol, "samples": samples}
+    asked |= {"stability": stability, "options": options}
+    if executor is None:
+        found = without_warning(system, speed, asked, parameters, progress=progress)
+    else:
+        from ..sweeps.batches import steady_in_pieces
+
+        found = steady_in_pieces(system, speed, parameters, asked, executor, progress=progress)
+    if "linear range" in found.checks:
+        warn_beyond(found.checks["linear range"].value)
+    return found
+
+
+def without_warning(
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    asked: Mapping[str, Any],
+    parameters: Mapping[str, ArrayLike],
+    *,
+    progress: bool = False,
+) -> SteadyState:
+    """Return what :func:`steady_state` does, which alone warns where the linear range is left.
+
+    Parameters
+    ----------
+    system, speed, parameters, progress
+        Its own.
+    asked : mapping
+        Its ``method``, ``rtol``, ``samples``, ``stability`` and ``options``, all of them.
+
+    Raises
+    ------
+    BadInput
+        As it does.
+    """
+    method, rtol, samples = asked["method"], asked["rtol"], asked["samples"]
+    stability = asked["stability"]
+    told = dict(asked["options"] or {})
     chosen = _chosen(_method_for(system, method), rtol, samples, told)
     if not numbers("speed", speed).size:
         raise bad("speed", "no speed at all", "at least one speed [rad/s]", "give some")
@@ -182,12 +230,13 @@ def steady_state(
     with bar(progress, 2 * count) as tick:
         found = chosen.solve(Request(form, wanted, int(samples), told, find, tick))
         multipliers = found.multipliers
-        if multipliers is None:
+        later = multipliers is None and stability is None and work_of(form, 0) <= _UNASKED_WORK
+        if multipliers is None and not later:
             multipliers = _multipliers(form, stability, find, slow)
         if tick is not None:
             tick(2 * count)
     checks = checks_of(form, found)
-    if multipliers is None:
+    if multipliers is None and not later:
         # A failing check where the stability was left open without being told to.
         checks["stability not computed"] = Check(np.nan if stability is None else 0.0, 0.0)
     elif isinstance(multipliers, SlowMultipliers):
@@ -196,22 +245,40 @@ def steady_state(
     largest = largest_deflection(system, found.theta, found.q)
     if largest is not None:
         checks["linear range"] = Check(largest, LINEAR_RANGE)
-        warn_beyond(largest)
-    return _assembled(found, multipliers, checks, form, parameters)
+    told_by = find if later else partial(_itself, multipliers)
+    group = DeferredGroup(partial(_stability, told_by, form.batch))
+    # Of those at hand nothing is put off.
+    values = {name: group.later(name) if later else group.value(name) for name in _STABILITY}
+    return _assembled(found, values, checks, form, parameters)
+
+
+def _itself(multipliers: FloquetMultipliers | None) -> FloquetMultipliers | None:
+    return multipliers
+
+
+def _stability(
+    find: Callable[[], FloquetMultipliers | None], batch: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return multipliers, stability and distance of a batch of motions."""
+    multipliers = find()
+    if multipliers is None:
+        return {"multipliers": None, "stable": None, "distance": np.full(batch, np.nan)}
+    return {
+        "multipliers": multipliers.multipliers,
+        "stable": np.asarray(multipliers.stable),
+        "distance": nearness(multipliers, int(np.prod(batch)))[0].reshape(batch),
+    }
 
 
 def _assembled(
     found: Found,
-    multipliers: FloquetMultipliers | None,
+    stability: Mapping[str, Any],
     checks: Mapping[str, Check],
     form: CanonicalForm,
     parameters: Mapping[str, ArrayLike],
 ) -> SteadyState:
-    count, nt, n = found.q.shape
+    _, nt, n = found.q.shape
     system, speed, batch = form.system, form.speed, form.batch
-    distance = np.full(count, np.nan)
-    if multipliers is not None:
-        distance = nearness(multipliers, count)[0]
     return SteadyState(
         method=found.method,
         error=found.error.reshape(*batch, n),
@@ -222,9 +289,7 @@ def _assembled(
         theta=found.theta,
         q=found.q.reshape(*batch, nt, n),
         qd=(found.slope * speed[:, None, None]).reshape(*batch, nt, n),
-        multipliers=None if multipliers is None else multipliers.multipliers,
-        stable=None if multipliers is None else np.asarray(multipliers.stable),
-        distance=distance.reshape(batch),
+        **stability,
         sensitivity=found.sensitivity.reshape(batch),
         period=system.period,
         labels=system.labels,

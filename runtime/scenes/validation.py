@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -14,6 +15,8 @@ from .checks import chart_problems, geometry_problems, measured_problems, series
 from .declared import declared_layout
 from .layouts import LAYOUTS
 from .schema import Key, Layout, Table
+
+_Reader = Callable[[object, Key, str, list[Problem]], Any]
 
 Values = dict[str, dict[str, Any]]
 _TOP = ("title", "source", "model")
@@ -289,15 +292,6 @@ def _count(value: object, key: Key, where: str, problems: list[Problem]) -> int 
     return None if _out_of_range(value, value, key, where, problems) else value
 
 
-def _counts(value: object, key: Key, where: str, problems: list[Problem]) -> tuple[int, ...] | None:
-    items = _list(value, key, where, problems)
-    if items is None:
-        return None
-    read = [_count(item, key, f"{where}[{i}]", problems) for i, item in enumerate(items)]
-    numbers = tuple(number for number in read if number is not None)
-    return numbers if len(numbers) == len(items) else None
-
-
 def _text(value: object, key: Key, where: str, problems: list[Problem]) -> str | None:
     if not isinstance(value, str):
         problems.append(Problem(where, show(value), _expectation(key), "put it in quotes"))
@@ -309,22 +303,25 @@ def _text(value: object, key: Key, where: str, problems: list[Problem]) -> str |
     return value
 
 
-def _texts(value: object, key: Key, where: str, problems: list[Problem]) -> tuple[str, ...] | None:
+def _each(
+    reader: _Reader, value: object, key: Key, where: str, problems: list[Problem]
+) -> tuple[Any, ...] | None:
+    """Return what a reader makes of every item of a list, or None where one is wrong."""
     items = _list(value, key, where, problems)
     if items is None:
         return None
-    read = [_text(item, key, f"{where}[{i}]", problems) for i, item in enumerate(items)]
-    texts = tuple(text for text in read if text is not None)
-    return texts if len(texts) == len(items) else None
+    read = [reader(item, key, f"{where}[{i}]", problems) for i, item in enumerate(items)]
+    found = tuple(item for item in read if item is not None)
+    return found if len(found) == len(items) else None
 
 
-_READERS: dict[str, Callable[[object, Key, str, list[Problem]], Any]] = {
+_READERS: dict[str, _Reader] = {
     "quantity": _quantity,
     "quantities": _quantities,
     "count": _count,
-    "counts": _counts,
+    "counts": partial(_each, _count),
     "text": _text,
-    "texts": _texts,
+    "texts": partial(_each, _text),
 }
 
 

@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
+from .sampling import finite_angles, values_at
 
 Array = NDArray[np.float64]
 
@@ -146,7 +146,7 @@ class PeriodicFunction:
             raise bad("tol", tol, "a number between 0 and 1", "leave it out for round-off")
         count, before, settled = _FEWEST, np.inf, False
         while True:
-            values = _checked(f, 2.0 * np.pi * np.arange(count) / count, label)
+            values = values_at(f, 2.0 * np.pi * np.arange(count) / count, label)
             a, b = _analyse(values)
             size = np.hypot(a, b)
             scale = max(float(np.max(size)), _EPS * float(np.max(np.abs(values))), 5e-324)
@@ -190,9 +190,7 @@ class PeriodicFunction:
 
     def __call__(self, theta: ArrayLike) -> Array:
         """Evaluate at angles [rad] of any shape; the result has the same shape."""
-        angles = np.asarray(theta, dtype=float)
-        if not np.all(np.isfinite(angles)):
-            raise bad("theta", "an angle that is not finite", "finite angles", "correct the input")
+        angles = finite_angles(theta)
         # Horner in exp(i theta): one complex exponential per angle, whatever the harmonics.
         z = np.exp(1j * angles)
         coefficients = self.a - 1j * self.b
@@ -351,33 +349,12 @@ def _analyse(samples: Array) -> tuple[Array, Array]:
     return a, b
 
 
-def _checked(f: Callable[[Array], ArrayLike], theta: Array, label: str) -> Array:
-    values: Any = np.asarray(f(theta), dtype=float)
-    if values.shape == ():
-        values = np.full(theta.shape, float(values))
-    if values.shape != theta.shape:
-        raise bad(
-            f"function {label!r}",
-            f"values of shape {values.shape} for angles of shape {theta.shape}",
-            "one value per angle",
-            "vectorise the function",
-        )
-    if not np.all(np.isfinite(values)):
-        raise bad(
-            f"function {label!r}",
-            f"a value that is not finite at theta = {theta[~np.isfinite(values)][0]:.6g} rad",
-            "finite values over the whole turn",
-            "check the geometry",
-        )
-    return np.array(values)
-
-
 def _gap(f: Callable[[Array], ArrayLike], found: PeriodicFunction, label: str) -> float:
     """Compare at angles off every grid: samples alone cannot tell 32 theta from 0 theta."""
     golden = 0.6180339887498949
     places = (golden * np.arange(1, _PROBES + 1)) % 1.0
     theta = np.asarray(2.0 * np.pi * places, dtype=np.float64)
-    return float(np.max(np.abs(_checked(f, theta, label) - found(theta))))
+    return float(np.max(np.abs(values_at(f, theta, label) - found(theta))))
 
 
 def _chopped(

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from ..floquet.first_order import CanonicalForm, even_angles
+from ..floquet.first_order import CanonicalForm
 from ..integrators import kutta_merson
-from .marching import Grid, March, Tick
+from .generator_series import generator_series
+from .marching import Grid, March, Tick, generator_of_one, scaled_state, unscaled
 
 Array = NDArray[np.float64]
-
-# Samples of the generator over a period, and the tail of its series that counts as round-off.
-_MOST_SAMPLES = 2048
-_RESOLVED = 2e-15
 
 
 @dataclass(frozen=True)
@@ -79,8 +77,7 @@ def adaptive_march(
     n = form.system.size
     scale = form.scale[0]
     q, slope = start
-    state = np.ones(form.size)
-    state[: 2 * n] = np.concatenate([q, form.momentum(grid.start, q, slope)]) / scale[: 2 * n]
+    state = scaled_state(form, grid.start, q, slope)
     atol = _tolerance(form, grid, beginning, rtol)
 
     generator = sampled_generator(form)
@@ -110,8 +107,7 @@ def adaptive_march(
             method, generator, grid.theta, state, rtol, atol, bound / scale[:n], tick
         )
     theta = grid.theta[: len(states)]
-    coordinates = states[:, :n] * scale[:n]
-    slopes = form.slope(theta, coordinates, states[:, n : 2 * n] * scale[n : 2 * n])
+    coordinates, slopes = unscaled(form, theta, states)
     return AdaptiveMarch(theta, coordinates, slopes, steps, status, message)
 
 
@@ -129,41 +125,11 @@ def sampled_generator(form: CanonicalForm) -> Callable[[Array], Array]:
     Returns
     -------
     callable
-        From angles ``(nt,)`` to ``(nt, m, m)``; assembled at each call where 2048 samples do not
+        From angles ``(nt,)`` to ``(nt, m, m)``; assembled at each call where samples do not
         resolve the generator to round-off.
     """
-    period, size = form.system.period, form.size
-    count = 64 if form.reach < 16 else min(4 * form.reach, _MOST_SAMPLES)
-    while count <= _MOST_SAMPLES:
-        values = form.generator(even_angles(period, count))[0].reshape(count, size * size)
-        half = np.fft.rfft(values, axis=0) / count
-        kept = count // 3
-        top = np.max(np.abs(half), axis=0)
-        if np.all(np.max(np.abs(half[kept:]), axis=0) <= _RESOLVED * top):
-            return _series(half[:kept], period, size)
-        count *= 2
-
-    def assembled(theta: Array) -> Array:
-        value: Array = form.generator(theta)[0]
-        return value
-
-    return assembled
-
-
-def _series(half: NDArray[np.complex128], period: float, size: int) -> Callable[[Array], Array]:
-    seen = np.max(np.abs(half) > 1e-17 * np.max(np.abs(half), axis=0), axis=1)
-    reach = int(np.flatnonzero(seen)[-1]) + 1 if np.any(seen) else 1
-    rate = 2 * np.pi / period * np.arange(1, reach)
-    mean = half[0].real
-    waves = np.concatenate([2 * half[1:reach].real, -2 * half[1:reach].imag])
-
-    def series(theta: Array) -> Array:
-        # Within one period the phases keep their digits.
-        phase = (theta % period)[:, None] * rate
-        value: Array = mean + np.concatenate([np.cos(phase), np.sin(phase)], axis=1) @ waves
-        return value.reshape(len(theta), size, size)
-
-    return series
+    series = generator_series(form)
+    return partial(generator_of_one, form) if series is None else series
 
 
 def _tolerance(form: CanonicalForm, grid: Grid, beginning: March, rtol: float) -> Array:

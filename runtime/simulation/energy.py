@@ -12,6 +12,7 @@ from ..errors import BadInput
 from ..floquet.first_order import CanonicalForm
 from ..floquet.spring_form import periodic_derivative
 from ..results import Check
+from .marching import cyclic
 
 Array = NDArray[np.float64]
 
@@ -63,9 +64,13 @@ def energy_balance(
 def _balance(
     form: CanonicalForm, theta: Array, q: Array, slope: Array, error: float
 ) -> Check | None:
-    kinetic = 0.5 * _form(form, "M", theta, slope, slope)
-    potential = 0.5 * (_form(form, ("K", "Kg"), theta, q, q) - _form(form, "B", theta, q, q))
-    power = _power(form, theta, q, slope)
+    # Arrays repeat with every revolution of even angles.
+    once = theta
+    if cyclic(form):
+        once = theta[: max(1, round(2 * np.pi / float(theta[1] - theta[0])))]
+    kinetic = 0.5 * _form(form, "M", once, slope, slope)
+    potential = 0.5 * (_form(form, ("K", "Kg"), once, q, q) - _form(form, "B", once, q, q))
+    power = _power(form, once, q, slope)
     largest = float(np.max(np.abs(kinetic)) + np.max(np.abs(potential)))
     if not 0 < largest < np.inf or not np.all(np.isfinite(power)):
         return None
@@ -86,18 +91,26 @@ def _form(
 ) -> Array:
     matrix = form.assemble(names, theta)
     if matrix is None:
-        return np.zeros(len(theta))
-    value: Array = np.einsum("ti,tij,tj->t", left, _spread(matrix[0], len(theta)), right)
+        return np.zeros(len(left))
+    return _double(matrix[0], left, right)
+
+
+def _double(matrix: Array, left: Array, right: Array) -> Array:
+    """Return ``left^T matrix right`` along a motion, the matrices repeating."""
+    ahead = (_repeated(matrix, len(right)) @ right[:, :, None])[:, :, 0]
+    value: Array = np.sum(left * ahead, axis=1)
     return value
 
 
-def _spread(value: Array, count: int) -> Array:
-    return np.broadcast_to(value, (count, *value.shape[1:]))
+def _repeated(value: Array, count: int) -> Array:
+    if len(value) == 1:
+        return np.broadcast_to(value, (count, *value.shape[1:]))
+    return value if len(value) == count else value[np.arange(count) % len(value)]
 
 
 def _power(form: CanonicalForm, theta: Array, q: Array, slope: Array) -> Array:
-    """Return ``-(partial L2/partial theta) + q'^T Q`` at the angles."""
-    total = np.zeros(len(theta))
+    """Return ``-(partial L2/partial theta) + q'^T Q`` along a motion, theta its revolution."""
+    total = np.zeros(len(q))
     for sign, names, left, right in (
         (-0.5, ("M",), slope, slope),
         (-1.0, ("A",), slope, q),
@@ -106,8 +119,7 @@ def _power(form: CanonicalForm, theta: Array, q: Array, slope: Array) -> Array:
     ):
         if all(form.system.is_constant(name) for name in names):
             continue
-        rate = _derivative(form, names)(theta)[0]
-        total += sign * np.einsum("ti,tij,tj->t", left, rate, right)
+        total += sign * _double(_derivative(form, names)(theta)[0], left, right)
     total -= _form(form, "C", theta, slope, slope) + _form(form, "D", theta, slope, q)
     # Only the symmetric part of a stiffness has a potential.
     skew = () if form.conservative else ((0.5, ("B",)), (-0.5, ("K", "Kg")))
@@ -116,7 +128,7 @@ def _power(form: CanonicalForm, theta: Array, q: Array, slope: Array) -> Array:
         total -= sign * _form(form, names, theta, q, slope)
     force = form.assemble(("f", "h", "p"), theta) if form.forced else None
     if force is not None:
-        total += np.einsum("ti,ti->t", _spread(force[0], len(theta)), slope)
+        total += np.einsum("ti,ti->t", _repeated(force[0], len(q)), slope)
     return total
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from math import ceil, pi
 
 import numpy as np
@@ -27,7 +28,7 @@ _STEPS_TOGETHER = 4096
 MOST_STEPS = 2**22
 MOST_INTERVALS = 2**25
 # Growth within a revolution up to which the revolution's flows serve as they are.
-_MODERATE = 1e8
+MODERATE = 1e8
 
 
 @dataclass(frozen=True)
@@ -138,23 +139,57 @@ def march(
     if method.name in RULES:
         return _march_second_order(RULES[method.name], form, grid, (q, slope), bound, tick)
     n = form.system.size
-
-    def generator(theta: Array) -> Array:
-        value: Array = form.generator(theta)[0]
-        return value
+    generator = partial(generator_of_one, form)
 
     def maps(theta: Array) -> Array:
         return method.maps(generator, theta, grid.step)
 
-    scale = form.scale[0]
-    state = np.ones(form.size)
-    state[: 2 * n] = np.concatenate([q, form.momentum(grid.start, q, slope)]) / scale[: 2 * n]
-    runner = _Runner(maps, grid, cyclic(form), bound / scale[:n])
+    state = scaled_state(form, grid.start, q, slope)
+    runner = _Runner(maps, grid, cyclic(form), bound / form.scale[0][:n])
     states = runner.run(state, tick)
-    theta = grid.theta[: len(states)]
-    coordinates = states[:, :n] * scale[:n]
-    slopes = form.slope(theta, coordinates, states[:, n : 2 * n] * scale[n : 2 * n])
+    coordinates, slopes = unscaled(form, grid.theta[: len(states)], states)
     return March(coordinates, slopes, runner.volume(2 * n), runner.defect(n))
+
+
+def generator_of_one(form: CanonicalForm, theta: Array) -> Array:
+    """Return the generator of a batch of one at angles ``(nt,)``: ``(nt, m, m)``."""
+    value: Array = form.generator(theta)[0]
+    return value
+
+
+def scaled_state(form: CanonicalForm, theta: float, q: Array, slope: Array) -> Array:
+    """Return the canonical state of a batch of one, over its scale.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+        A batch of one.
+    theta : float
+        Crank angle [rad].
+    q, slope : ndarray, shape (n,)
+        Coordinates and their derivatives by the crank angle.
+    """
+    n = form.system.size
+    state = np.ones(form.size)
+    state[: 2 * n] = np.concatenate([q, form.momentum(theta, q, slope)]) / form.scale[0][: 2 * n]
+    return state
+
+
+def unscaled(form: CanonicalForm, theta: Array, states: Array) -> tuple[Array, Array]:
+    """Return coordinates and their derivatives by the crank angle, ``(nt, n)`` each.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+        A batch of one.
+    theta : ndarray, shape (nt,)
+        Crank angles [rad].
+    states : ndarray, shape (nt, m)
+        As :func:`scaled_state` gives them.
+    """
+    n, scale = form.system.size, form.scale[0]
+    coordinates = states[:, :n] * scale[:n]
+    return coordinates, form.slope(theta, coordinates, states[:, n : 2 * n] * scale[n : 2 * n])
 
 
 def _march_de_vogelaere(
@@ -258,11 +293,7 @@ class _Runner:
         """Return the largest relative symplectic defect of an interval."""
         if self._block is None:
             return 0.0
-        part = self._block[:, : 2 * n, : 2 * n]
-        unit = np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
-        gap = np.swapaxes(part, -1, -2) @ unit @ part - unit
-        norm = np.linalg.norm(part, axis=(-2, -1))
-        return float(np.max(np.linalg.norm(gap, axis=(-2, -1)) / norm**2))
+        return symplectic_defect(self._block, n)
 
     def _intervals(self, done: int, number: int) -> Array:
         grid = self._grid
@@ -290,6 +321,15 @@ class _Runner:
         return states
 
 
+def symplectic_defect(maps: Array, n: int) -> float:
+    """Return the largest defect of ``X^T J X = J`` over ``|X|^2`` of matrices ``(k, m, m)``."""
+    part = maps[:, : 2 * n, : 2 * n]
+    unit = np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
+    gap = np.swapaxes(part, -1, -2) @ unit @ part - unit
+    norm = np.linalg.norm(part, axis=(-2, -1))
+    return float(np.max(np.linalg.norm(gap, axis=(-2, -1)) / norm**2))
+
+
 def _flows(block: Array) -> Array | None:
     """Return the matrices from the start of a revolution to each angle; None where they grow."""
     flows = np.empty_like(block)
@@ -298,7 +338,7 @@ def _flows(block: Array) -> Array | None:
         for k, matrix in enumerate(block):
             flow = matrix @ flow
             flows[k] = flow
-    return flows if np.max(np.abs(flows)) <= _MODERATE else None
+    return flows if np.max(np.abs(flows)) <= MODERATE else None
 
 
 def steps_for(form: CanonicalForm, phase: float, samples: int) -> int:

@@ -3,39 +3,42 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import LinearRangeWarning, StepTooLongWarning, bad
+from ..errors import StepTooLongWarning, bad
 from ..families import LinearPeriodic
-from ..floquet.first_order import CanonicalForm, canonical_form, even_angles, numbers
+from ..floquet.first_order import CanonicalForm, canonical_form
 from ..floquet.spring_form import spring_generator
 from ..integrators import METHODS, SCIPY_METHODS, SECOND_ORDER, OneStep
-from ..integrators.gauss_legendre import gauss_legendre
-from ..results import Check, Result, provenance
+from ..results import Result, provenance
 from .adaptive import adaptive_march
-from .energy import energy_balance
-from .marching import MOST_INTERVALS, MOST_STEPS, Grid, March, make_grid, march, steps_for
+from .arguments import check_arguments, scalar, start_of
+from .automatic import FALLBACK, POWER_SERIES, default_phase
+from .marching import MOST_STEPS, Grid, March, make_grid, march, steps_for
+from .motion_checks import (
+    FAIR,
+    LINEAR_RANGE,
+    MotionChecks,
+    MotionChecksLater,
+    largest_deflection,
+    warn_of_large_deflection,
+)
+from .reference import Reference
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
-LINEAR_RANGE = 0.05
+__all__ = ["LINEAR_RANGE", "Trajectory", "largest_deflection", "simulate"]
+
 _EPS = float(np.finfo(float).eps)
-_REFERENCE = gauss_legendre(8)
-# Phase of the highest mode that a default step covers [rad]: a quarter of the step limit of
-# Smith's rule in explicit methods, and round-off accuracy in collocation of order 12.
-_PHASE = {"gauss_legendre": 0.5, "magnus4": 0.15}
-_EXPLICIT_PHASE = 0.15
-# Error that a motion may have where none was asked for, and most artificial damping.
-_FAIR = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +56,7 @@ class Trajectory(Result):
     speed : float
         Crank speed [rad/s].
     steps : int
-        Steps per revolution, or steps in all for a method that chooses them.
+        Steps or stretches per revolution, or steps in all for an adaptive method.
     status : int
         0 where the end was reached, 1 where the motion passed the bound, 2 where the method gave
         up.
@@ -95,10 +98,9 @@ class Trajectory(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over the revolutions of the crank and return the axes."""
-        if ax is None:
-            from matplotlib.figure import Figure
+        from ..plotting import axes_or_new
 
-            ax = Figure().add_subplot()
+        ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
             ax.plot(self.theta / (2 * np.pi), values, label=label, linewidth=0.9)
         ax.set_xlabel("revolutions of the crank")
@@ -112,7 +114,7 @@ def simulate(
     system: LinearPeriodic,
     speed: float,
     revolutions: float,
-    method: str = "gauss_legendre",
+    method: str = "auto",
     *,
     initial: tuple[ArrayLike, ArrayLike] | None = None,
     start: float = 0.0,
@@ -134,10 +136,14 @@ def simulate(
     revolutions : float
         Length of the motion in revolutions of the crank.
     method : str
-        ``gauss_legendre`` (order 12), ``magnus4``, ``rk4``, ``de_vogelaere``, ``newmark`` (gamma
-        1/2, beta 1/4), ``generalized_alpha`` (rho_inf 0.9), with fixed steps;
-        ``kutta_merson``, adaptive unless ``steps`` is given; or SciPy's ``RK45``, ``DOP853``,
-        ``Radau``, ``BDF``, ``LSODA``.
+        ``power_series``: stretches as long as the motion allows, found to round-off, for smooth
+        coefficients.  With fixed steps: ``gauss_legendre`` (order 12), ``gauss_legendre4`` to
+        ``gauss_legendre16``, ``magnus4``, ``magnus6``, ``magnus8``, ``cf4``, ``cf6``, ``srkn4``,
+        ``srkn6``, ``rk4``, ``de_vogelaere``, ``newmark`` (gamma 1/2, beta 1/4),
+        ``generalized_alpha`` (rho_inf 0.9).  ``kutta_merson``, adaptive unless ``steps`` is
+        given; or SciPy's ``RK45``, ``DOP853``, ``Radau``, ``BDF``, ``LSODA``.  ``auto``:
+        ``power_series``; ``gauss_legendre`` where the coefficients are not smooth or ``steps``
+        is given.
     initial : pair of array_like, optional
         Coordinates and their time derivatives [1/s] at the start, each broadcasting to ``(n,)``.
         At rest in zero by default, where the system is forced.
@@ -160,7 +166,9 @@ def simulate(
     Returns
     -------
     Trajectory
-        Its ``error`` compares with a solution of order 16 on short steps.  Its checks:
+        Its ``error`` compares with power series on other stretches, or, where the coefficients
+        are not smooth, with a solution of order 16 on short steps; ``method`` tells what ran.  Its
+        checks, made when they are looked at:
         ``accuracy``, the largest error against the ``rtol`` that fixed steps were asked for, else
         0.01; ``energy balance``; ``liouville``, the artificial damping over the whole motion;
         ``symplectic``, for a symplectic method and a conservative system; ``linear range``, the
@@ -177,29 +185,38 @@ def simulate(
     Raises
     ------
     BadInput
-        If an argument is unusable, or ``de_vogelaere`` is asked of a system with first
-        derivatives.
+        If an argument is unusable, ``power_series`` is asked for coefficients that are not smooth,
+        ``rtol`` is beyond what a method reaches, or ``de_vogelaere``, ``srkn4`` or ``srkn6`` is
+        asked of a system with first derivatives.
 
     Notes
     -----
     With theta as variable, ``q' = M^-1 (p - A q)`` and
     ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w - D q/w + f + h/w + p_ext/w^2``.
     """
-    _check_arguments(method, revolutions, steps, rtol, samples, bound, start)
-    form = canonical_form(system, _scalar("speed", speed), forcing=forcing)
-    q, slope = _initial(form, initial)
+    check_arguments(method, revolutions, steps, rtol, samples, bound, start)
+    form = canonical_form(system, scalar("speed", speed), forcing=forcing)
+    q, slope = start_of(form, initial)
     if method == "de_vogelaere":
         spring_generator(form)
     steps_for(form, 1.0, samples)  # refuses speeds too low for the reference solution
-    run = _Request(form, q, slope, start, float(revolutions), samples, bound, progress)
+    reference = Reference(form, (q, slope), bound)
+    run = _Request(form, q, slope, start, float(revolutions), samples, bound, progress, reference)
+    wanted = FAIR if rtol is None else rtol
+    if method == POWER_SERIES or (method == "auto" and steps is None):
+        found = _power_series(run, rtol, required=method == POWER_SERIES)
+        if found is not None:
+            return _finish(run, POWER_SERIES, *found, wanted)
+    if method == "auto":
+        method = FALLBACK
     if method in SCIPY_METHODS or (method == "kutta_merson" and steps is None):
         raw, error = _adaptive(run, method, 1e-8 if rtol is None else rtol)
-        return _finish(run, method, raw, error, _FAIR)
+        return _finish(run, method, raw, error, FAIR)
     one_step = {**METHODS, **SECOND_ORDER}[method]
     if steps is not None:
         _warn_long_step(form, one_step, steps)
     raw, error = _fixed(run, one_step, steps, rtol)
-    return _finish(run, method, raw, error, _FAIR if rtol is None else rtol)
+    return _finish(run, method, raw, error, wanted)
 
 
 @dataclass(frozen=True)
@@ -214,6 +231,7 @@ class _Request:
     samples: int
     bound: float
     progress: bool
+    reference: Reference
 
 
 @dataclass(frozen=True)
@@ -228,13 +246,40 @@ class _Raw:
     symplectic: bool = False
 
 
+def _power_series(
+    run: _Request, rtol: float | None, *, required: bool
+) -> tuple[_Raw, Array] | None:
+    """Return a motion by power series and its error; None where coefficients are not smooth."""
+    from ..progress import bar
+
+    grid = make_grid(run.start, run.revolutions, run.samples, run.samples)
+    for fineness in (1.0, 2.0, 4.0):
+        with bar(run.progress, grid.intervals) as tick:
+            found = run.reference.power_series(grid, fineness, tick)
+        if found is None:
+            break
+        result, count = found
+        error = _error(run, grid, result, beside=count)
+        if rtol is None or np.all(error <= rtol):
+            return _reached(run, grid, result, count, symplectic=True), error
+    else:
+        raise bad("rtol", rtol, "an error within reach of double precision", "raise rtol")
+    if required:
+        raise bad(
+            "method",
+            POWER_SERIES,
+            "one for coefficients that are not smooth, or grow too fast",
+            f"take {FALLBACK}",
+        )
+    return None
+
+
 def _fixed(
     run: _Request, method: OneStep, steps: int | None, rtol: float | None
 ) -> tuple[_Raw, Array]:
     number = steps
     if number is None:
-        phase = _PHASE.get(method.name, _EXPLICIT_PHASE)
-        number = steps_for(run.form, phase, run.samples)
+        number = steps_for(run.form, default_phase(method.name), run.samples)
     while True:
         grid = make_grid(run.start, run.revolutions, run.samples, number)
         raw = _raw(run, method, grid)
@@ -251,13 +296,17 @@ def _raw(run: _Request, method: OneStep, grid: Grid) -> _Raw:
 
     with bar(run.progress, grid.intervals) as tick:
         result = march(method, run.form, grid, run.q, run.slope, run.bound, tick)
+    return _reached(run, grid, result, grid.steps, symplectic=method.symplectic)
+
+
+def _reached(run: _Request, grid: Grid, result: March, steps: int, *, symplectic: bool) -> _Raw:
     reached = len(result.q)
     stopped = reached <= grid.intervals
     if stopped or np.max(np.abs(result.q)) > run.bound:
         status, message = 1, _passed(run, grid.theta[reached - 1])
     else:
         status, message = 0, "the end was reached"
-    return _Raw(grid.theta[:reached], result, grid.steps, status, message, method.symplectic)
+    return _Raw(grid.theta[:reached], result, steps, status, message, symplectic)
 
 
 def _passed(run: _Request, theta: float) -> str:
@@ -272,7 +321,7 @@ def _adaptive(run: _Request, method: str, rtol: float) -> tuple[_Raw, Array]:
     # A quarter of a wave sets the scale of the motion before growth can inflate it.
     wave = max(run.samples, ceil(16 * float(run.form.rate[0])))
     quarter = ceil(wave / (4 * float(run.form.rate[0])))
-    beginning = _reference(run, Grid(run.start, wave, quarter, 1))
+    beginning = run.reference.march(Grid(run.start, wave, quarter, 1), slopes=True)
     with bar(run.progress, grid.intervals) as tick:
         outcome = adaptive_march(
             method, run.form, grid, (run.q, run.slope), beginning, rtol, run.bound, tick
@@ -288,15 +337,9 @@ def _adaptive(run: _Request, method: str, rtol: float) -> tuple[_Raw, Array]:
     return raw, _error(run, grid, raw.march)
 
 
-def _reference(run: _Request, grid: Grid) -> March:
-    steps = steps_for(run.form, 1.0, grid.per_revolution)
-    fine = replace(grid, substeps=steps // grid.per_revolution)
-    return march(_REFERENCE, run.form, fine, run.q, run.slope, run.bound)
-
-
-def _error(run: _Request, grid: Grid, result: March) -> Array:
+def _error(run: _Request, grid: Grid, result: March, beside: int = 0) -> Array:
     """Return the largest error of each coordinate over its peak, with a round-off allowance."""
-    other = _reference(run, grid)
+    other = run.reference.march(grid, beside)
     number = min(len(result.q), len(other.q))
     with np.errstate(over="ignore", invalid="ignore"):
         gap = np.max(np.abs(result.q[:number] - other.q[:number]), axis=0)
@@ -306,19 +349,28 @@ def _error(run: _Request, grid: Grid, result: March) -> Array:
     # A coordinate that stays at zero has no peak of its own.
     size = np.maximum(peak, _EPS * np.max(peak, initial=0.0))
     size[size == 0.0] = 1.0
-    error: Array = gap / size + rounding
+    # Of two alike, either may be as far off on its own side.
+    error: Array = (2.0 if beside else 1.0) * gap / size + rounding
     return error
 
 
 def _finish(run: _Request, method: str, raw: _Raw, error: Array, wanted: float) -> Trajectory:
     form, q = run.form, raw.march.q
     speed = float(form.speed[0])
+    checks = MotionChecks(
+        form,
+        raw.theta,
+        raw.march,
+        float(np.max(error)),
+        wanted,
+        raw.symplectic,
+    )
+    warn_of_large_deflection(form.system, raw.theta, q)
     return Trajectory(
         method=method,
         error=error,
-        error_norm="largest error of a coordinate over its own peak, against Gauss-Legendre "
-        "collocation of order 16",
-        checks=_checks(run, raw, float(np.max(error)), wanted),
+        error_norm=f"largest error of a coordinate over its own peak, against {run.reference.name}",
+        checks=MotionChecksLater(checks),
         provenance=provenance(form.system.provenance),
         theta=raw.theta,
         time=(raw.theta - run.start) / speed,
@@ -330,63 +382,6 @@ def _finish(run: _Request, method: str, raw: _Raw, error: Array, wanted: float) 
         message=raw.message,
         labels=form.system.labels,
     )
-
-
-def _checks(run: _Request, raw: _Raw, error: float, wanted: float) -> Mapping[str, Check]:
-    form, result = run.form, raw.march
-    checks = {"accuracy": Check(error, wanted)}
-    if len(raw.theta) > 1:
-        balance = energy_balance(form, raw.theta, result.q, result.slope, error)
-        if balance is not None:
-            checks["energy balance"] = balance
-    if result.volume is not None:
-        turned = raw.theta[-1] - raw.theta[0]
-        mean = float(np.mean(form.trace(even_angles(form.system.period, 256))))
-        drift = abs(float(result.volume - mean * turned)) / (2 * form.system.size)
-        checks["liouville"] = Check(drift, _FAIR)
-    if raw.symplectic and form.conservative:
-        checks["symplectic"] = Check(result.defect, 1e-12)
-    deflection = _deflection(form.system, raw.theta, result.q)
-    if deflection is not None:
-        checks["linear range"] = Check(deflection, LINEAR_RANGE)
-        if deflection > LINEAR_RANGE:
-            warnings.warn(
-                f"deflection reaches {deflection:.3g} of the reference length; the linear "
-                f"equations hold to about {LINEAR_RANGE}: lower the amplitude",
-                LinearRangeWarning,
-                stacklevel=4,
-            )
-    return checks
-
-
-def _deflection(system: LinearPeriodic, theta: Array, q: Array) -> float | None:
-    """Return the largest deflection over the reference length; None where it has no meaning."""
-    if system.moving_shape is not None:
-        return _moving_deflection(system, theta, q)
-    if system.shape is not None:
-        shapes = np.asarray(system.shape(np.linspace(0.0, 1.0, 101)))
-        parts = (q[k : k + 4096] @ shapes.T for k in range(0, len(q), 4096))
-        return max(float(np.max(np.abs(part))) for part in parts)
-    if system.reference_length != 1.0:
-        return float(np.max(np.abs(q)))
-    return None
-
-
-def _moving_deflection(system: LinearPeriodic, theta: Array, q: Array) -> float:
-    """Return the largest deflection of shapes that move with the crank, at 26 places."""
-    # Even angles repeat with every revolution, and so do the shapes.
-    turn = len(q) if len(q) < 2 else max(1, round(2 * np.pi / float(theta[1] - theta[0])))
-    places, largest = np.linspace(0.0, 1.0, 26), 0.0
-    for first in range(0, min(turn, len(q)), 512):
-        part = np.arange(first, min(first + 512, turn, len(q)))
-        shapes = system.shapes(places, theta[part])
-        if shapes is None:  # not with moving shapes; for the type checker
-            return largest
-        for begin in range(0, len(q), turn):
-            rows = q[begin + first : begin + first + len(part)]
-            values = np.einsum("txn,tn->tx", shapes[: len(rows)], rows)
-            largest = max(largest, float(np.max(np.abs(values), initial=0.0)))
-    return largest
 
 
 def _warn_long_step(form: CanonicalForm, method: OneStep, steps: int) -> None:
@@ -402,74 +397,3 @@ def _warn_long_step(form: CanonicalForm, method: OneStep, steps: int) -> None:
             StepTooLongWarning,
             stacklevel=3,
         )
-
-
-def _scalar(name: str, value: Any) -> float:
-    array = numbers(name, value)
-    if array.ndim != 0:
-        raise bad(name, f"shape {array.shape}", "one number", "simulate one speed at a time")
-    return float(array)
-
-
-def _initial(
-    form: CanonicalForm, initial: tuple[ArrayLike, ArrayLike] | Sequence[ArrayLike] | None
-) -> tuple[Array, Array]:
-    """Return q and dq/dtheta at the start."""
-    n = form.system.size
-    if initial is None:
-        if not form.forced:
-            raise bad(
-                "initial",
-                "nothing, and no forcing acts",
-                "a start away from rest",
-                "give initial=(q, qd)",
-            )
-        return np.zeros(n), np.zeros(n)
-    if not isinstance(initial, (tuple, list)) or len(initial) != 2:
-        raise bad("initial", initial, "a pair (q, qd)", "give coordinates and time derivatives")
-    parts = []
-    for name, part in zip(("q", "qd"), initial, strict=True):
-        values = numbers(f"initial {name}", part)
-        if values.shape not in ((), (1,), (n,)) or not np.all(np.isfinite(values)):
-            fix = f"one per coordinate: {', '.join(form.system.labels)}"
-            raise bad(f"initial {name}", part, f"{n} finite numbers", fix)
-        parts.append(np.broadcast_to(values, (n,)).copy())
-    return parts[0], parts[1] / float(form.speed[0])
-
-
-def _check_arguments(
-    method: str,
-    revolutions: float,
-    steps: int | None,
-    rtol: float | None,
-    samples: int,
-    bound: float,
-    start: float,
-) -> None:
-    names = [*METHODS, *SECOND_ORDER, *SCIPY_METHODS]
-    if method not in names:
-        raise bad("method", repr(method), f"one of {names}", "correct the name")
-    for name, value in (("revolutions", revolutions), ("bound", bound)):
-        if not 0 < _scalar(name, value) < np.inf:
-            raise bad(name, value, "a positive finite number", "correct it")
-    if not np.isfinite(_scalar("start", start)):
-        raise bad("start", start, "a finite crank angle [rad]", "correct it")
-    for name, count in (("steps", steps), ("samples", samples)):
-        if count is None:
-            continue
-        given = _scalar(name, count)
-        if not 1 <= given <= MOST_STEPS or given != int(given):
-            raise bad(name, count, f"a whole number from 1 to {MOST_STEPS}", "correct it")
-    if float(revolutions) * max(samples, 1) > MOST_INTERVALS:
-        raise bad(
-            "revolutions",
-            f"{revolutions:.6g} of {samples} samples each",
-            f"at most {MOST_INTERVALS} given angles in all",
-            "go on from at_end in parts, or lower samples",
-        )
-    if rtol is not None and not 1e-14 <= _scalar("rtol", rtol) < 1:
-        raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")
-    if steps is not None and rtol is not None:
-        raise bad("steps and rtol", "both", "one of them", "leave one out")
-    if steps is not None and method in SCIPY_METHODS:
-        raise bad("steps", steps, f"none, as {method} chooses its steps", "give rtol")

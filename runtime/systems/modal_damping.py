@@ -6,11 +6,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
 from ..errors import bad
 from ..families import Array, LinearPeriodic, Term
+from ..floquet.second_order import keep
+
+# Angles up to which the matrices are kept for the next solver.
+_KEPT = 128
 
 
 def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
@@ -61,19 +66,22 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
     if system.moving_shape is not None and system.has("A"):
         terms.append(Term("D", "damping_ratio", partial(_carried, system)))
     damped = system.with_terms(*terms, scales={"damping_ratio": float(ratio)})
-    if system.rebuild is None:
-        return damped
-    return replace(damped, rebuild=partial(_damped_anew, system.rebuild, system.parameters, ratio))
+    more: dict[str, Any] = {}
+    if system.rebuild is not None:
+        more["rebuild"] = partial(_damped_anew, system.rebuild, system.parameters, ratio)
+    if system.remesh is not None:
+        more["remesh"] = partial(_damped_anew, system.remesh, system.parameters, ratio)
+    return replace(damped, **more)
 
 
 def _damped_anew(
-    rebuild: Callable[[Mapping[str, float]], LinearPeriodic],
+    make: Callable[[Any], LinearPeriodic],
     parameters: Mapping[str, float],
     ratio: float,
-    geometry: Mapping[str, float],
+    changed: object,
 ) -> LinearPeriodic:
-    """Return another geometry's system with its own modes damped."""
-    return with_modal_damping(replace(rebuild(geometry), parameters=dict(parameters)), ratio)
+    """Return the system of another geometry or mesh with its own modes damped."""
+    return with_modal_damping(replace(make(changed), parameters=dict(parameters)), ratio)
 
 
 def _carried(system: LinearPeriodic, theta: Array) -> Array:
@@ -83,7 +91,21 @@ def _carried(system: LinearPeriodic, theta: Array) -> Array:
 
 
 def _damping(system: LinearPeriodic, theta: Array) -> Array:
-    """Return ``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at crank angles, ``(nt, n, n)``."""
+    """Return ``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at crank angles, ``(nt, n, n)``.
+
+    At the few angles that every solver begins with it is kept with the system.
+    """
+    if len(theta) > _KEPT:
+        return _damped_modes(system, theta)
+    key = ("modal damping", np.asarray(theta, dtype=float).tobytes())
+    known = system.kept.get(key)
+    if known is None:
+        known = (_damped_modes(system, theta),)
+        keep(system, key, known)
+    return known[0].copy()
+
+
+def _damped_modes(system: LinearPeriodic, theta: Array) -> Array:
     mass, stiffness = system.array("M", theta), system.array("K", theta)
     factor = np.linalg.cholesky(mass)
     inverse = np.linalg.inv(factor)

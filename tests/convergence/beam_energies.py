@@ -15,8 +15,39 @@ import numpy as np
 from elastolink.runtime.mechanisms import FourBar, QuickReturn
 
 _STEP = 1e-30
+# Central differences of order 8, and how far apart.
+STEP, DIFFERENCES = 0.01, (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(9)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
+
+
+def distance(found, expected):
+    """Return the largest difference over the entries' natural sizes."""
+    return np.max(np.abs(found - expected)) / np.max(np.abs(expected))
+
+
+def scaled(found, expected, mass):
+    """Return the largest difference of a matrix, rows and columns scaled by the mass matrix."""
+    size = 1.0 / np.sqrt(np.diag(mass))
+    return distance(found * np.outer(size, size), expected * np.outer(size, size))
+
+
+def slope(function, theta):
+    """Return the derivative of a function by central differences."""
+    total = sum(
+        weight * (function(theta + k * STEP) - function(theta - k * STEP))
+        for k, weight in enumerate(DIFFERENCES, start=1)
+    )
+    return total / STEP
+
+
+def array_gaps(system, energies, theta):
+    """Return by array how far a system's are from those of the energies."""
+    known = {**energies.kinetic(theta), **energies.elastic(theta)}
+    return {
+        array: scaled(system.array(array, theta)[0], known[array], known["M"])
+        for array in ("M", "A", "B", "K", "C", "D")
+    }
 
 
 def places_of(linkage, theta):

@@ -7,9 +7,11 @@ import random
 from fractions import Fraction
 from functools import cache
 
+import numpy as np
 import pytest
 from elastolink.derive.perturbation.surd import ExactHarmonics, combine
 from elastolink.runtime.benchmarking.records import functions
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
 from omitted_orders import Curve
 
@@ -33,6 +35,27 @@ def trigonometric(seed, harmonics, cosines=True, sines=True, mean=True):
 
     rows = [[some(there) for _ in range(harmonics)] for there in (cosines, sines)]
     return ExactHarmonics.of(some(mean), *rows)
+
+
+def rough(harmonics):
+    """Return a function whose random coefficients fall as slowly as 1/m^1.5."""
+    rng = np.random.default_rng(4)
+    m = np.arange(harmonics + 1)
+    size = 1.0 / (1.0 + m) ** 1.5
+    b = rng.uniform(-1, 1, m.size) * size
+    b[0] = 0.0
+    return PeriodicFunction(rng.uniform(-1, 1, m.size) * size, b)
+
+
+def closing_damping(f, mu, low, high):
+    """Return bounds of the damping at which region 1 closes, by bisection."""
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if np.isnan(hill_boundaries(f, mu, (1,), middle).lower[0]):
+            high = middle
+        else:
+            low = middle
+    return low, high
 
 
 @cache

@@ -17,7 +17,7 @@ SECTIONS = {
 
 
 @cache
-def four_bar(elements=1, damping=0.02, coupler=0.328):
+def four_bar(elements=1, damping=0.02, coupler=0.328, kind="cubic"):
     """Return the linkage's vibration, with the same damping ratio in all modes."""
     sections = {
         link: Section(
@@ -27,6 +27,6 @@ def four_bar(elements=1, damping=0.02, coupler=0.328):
     }
     linkage = el.FourBar(frame=0.547, crank=0.170, coupler=coupler, follower=0.525)
     joints = {"B": 0.174, "C": 0.174}
-    structure = beam_linkage(linkage, sections, elements=elements, joint_masses=joints)
+    structure = beam_linkage(linkage, sections, elements=elements, kind=kind, joint_masses=joints)
     system = linear_system(structure)
     return with_modal_damping(system, damping) if damping else system

@@ -10,6 +10,7 @@ from constrained_truth import Circle
 from elastolink.runtime.constrained.equations import Equations
 from elastolink.runtime.constrained.steppers import (
     METHODS,
+    collocation,
     coordinate_partitioning,
     lobatto,
     motion_with_variations,
@@ -67,6 +68,13 @@ def test_lobatto_steps_are_of_order_twice_the_stages_less_two(stages, counts):
     found, _ = slopes(lobatto, counts, stages)
     np.testing.assert_allclose(found, 2 * stages - 2, atol=0.35)
     assert METHODS["lobatto"].order(stages) == 2 * stages - 2
+
+
+@pytest.mark.parametrize("stages", [6, 7])
+def test_windows_of_collocation_are_of_order_twice_their_nodes(stages):
+    found, _ = slopes(collocation, (6, 8, 10), stages)
+    np.testing.assert_allclose(found, 2 * stages, atol=0.7)
+    assert METHODS["collocation"].order(stages) == 2 * stages
 
 
 def test_lobatto_with_two_stages_is_rattle():

@@ -8,6 +8,7 @@ from elastolink.runtime.errors import LinearRangeWarning
 from elastolink.runtime.response import steady_state
 from elastolink.runtime.response.request import resampled
 from four_bar_beams import four_bar
+from periodic_systems import peak_gap
 
 # Deflections leave the linear range at these speeds; the methods solve the linear equations.
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
@@ -18,13 +19,6 @@ def solved(system, speed, method, **more):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
         return steady_state(system, speed, method=method, stability=False, **more)
-
-
-def difference(found, other):
-    """Return the largest difference of each coordinate over its peak, at common angles."""
-    count = max(len(found.theta), len(other.theta))
-    one, two = resampled(found.q, count), resampled(other.q, count)
-    return np.max(np.abs(one - two), axis=0) / np.max(np.abs(two), axis=0)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +45,7 @@ def test_all_methods_agree_at_the_critical_speed(truth, method, options, expecte
     state = solved(four_bar(), SPEED, method, options=options)
     # Peaks at the angles given are lower than between them by up to a percent or so.
     allowed = 1.02 * state.error + truth.error
-    assert np.all(difference(state, truth) <= allowed)
+    assert np.all(peak_gap(state, truth) <= allowed)
     assert np.max(state.error) <= expected
 
 
@@ -102,7 +96,7 @@ def test_three_elements_in_each_link():
         ("time_marching", {"intervals": 720}, None),
     ):
         state = solved(four_bar(3), SPEED, method, options=options, rtol=rtol)
-        assert np.all(difference(state, truth) <= 1.02 * state.error + truth.error)
+        assert np.all(peak_gap(state, truth) <= 1.02 * state.error + truth.error)
         assert np.max(state.error) <= 0.03
 
 
@@ -131,3 +125,21 @@ def test_steps_in_time_agree_at_a_dozen_speeds():
         two = resampled(two, len(one))
         gap = np.max(np.abs(one - two), axis=0) / np.max(np.abs(two), axis=0)
         assert np.all(gap <= 1.02 * error + 1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [11.0, 62.0, 93.0])
+def test_slow_modes_steer_the_balance_of_27_freedoms(speed):
+    truth = solved(four_bar(3), speed, "cyclic", rtol=1e-8)
+    state = solved(four_bar(3), speed, "harmonic_balance", rtol=1e-6)
+    assert np.max(state.error) <= 1e-6
+    assert state.checks["converged"].passed and state.checks["residual"].passed
+    assert np.all(peak_gap(state, truth) <= 1.02 * state.error + truth.error)
+
+
+def test_a_balance_of_quintic_elements_converges():
+    system = four_bar(1, kind="internal_node")
+    truth = solved(system, SPEED, "cyclic", rtol=1e-8)
+    state = solved(system, SPEED, "harmonic_balance")
+    assert state.checks["converged"].passed and np.max(state.error) <= 1e-9
+    assert np.all(peak_gap(state, truth) <= 1.02 * state.error + truth.error)

@@ -71,7 +71,7 @@ def _slope(method, system, counts):
     return -np.polyfit(x, y, 1)[0]
 
 
-@pytest.mark.parametrize("name", ["rk4", "kutta_merson", "magnus4"])
+@pytest.mark.parametrize("name", ["rk4", "kutta_merson", "magnus4", "cf4"])
 def test_fourth_order_methods(name):
     counts = [128, 256, 512, 1024, 2048]
     assert abs(_slope(METHODS[name], _system(False), counts) - 4.0) < 0.1
@@ -94,3 +94,49 @@ def test_gauss_legendre_is_of_order_twice_its_stages(stages):
         6: [14, 16, 18, 20],
     }[stages]
     assert abs(_slope(gauss_legendre(stages), _system(False), counts) - 2 * stages) < 0.1
+
+
+@pytest.mark.parametrize("name", ["magnus6", "cf6"])
+def test_sixth_order_methods(name):
+    counts = [64, 96, 128, 192, 256]
+    assert abs(_slope(METHODS[name], _system(False), counts) - 6.0) < 0.1
+    assert METHODS[name].order == 6
+
+
+def test_magnus8_is_of_eighth_order():
+    counts = [64, 80, 96, 128, 160]
+    assert abs(_slope(METHODS["magnus8"], _system(False), counts) - 8.0) < 0.15
+
+
+def _split_system(varying_mass: bool) -> LinearPeriodic:
+    """Two forced degrees of freedom without first derivatives in the canonical equations."""
+    cos, sin = np.cos, np.sin
+    mass = np.array([[2.0, 0.3], [0.3, 1.0]])
+    if varying_mass:
+        mass = _matrices(
+            lambda t: 2 + 0.4 * cos(t),
+            lambda t: 0.2 * sin(t),
+            lambda t: 0.2 * sin(t),
+            lambda t: 1 + 0 * t,
+        )
+    return LinearPeriodic(
+        2,
+        (
+            Term("M", None, mass),
+            Term("K", None, np.array([[20.0, 2.0], [2.0, 35.0]])),
+            Term("Kg", None, _matrices(lambda t: 5 * cos(t), sin, sin, lambda t: 4 * cos(2 * t))),
+            Term("f", None, lambda t: np.stack([0.3 * cos(t), 0.1 * sin(t)], axis=-1)),
+            Term("p", None, np.array([0.5, -1.0])),
+        ),
+        {},
+        lambda values: {},
+    )
+
+
+@pytest.mark.parametrize("varying_mass", [False, True])
+@pytest.mark.parametrize(("name", "order"), [("srkn4", 4), ("srkn6", 6)])
+def test_symplectic_nystroem_methods(name, order, varying_mass):
+    counts = {4: [64, 128, 256, 512], 6: [16, 24, 32, 48, 64]}[order]
+    system = _split_system(varying_mass)
+    assert abs(_slope(METHODS[name], system, counts) - order) < 0.15
+    assert METHODS[name].order == order

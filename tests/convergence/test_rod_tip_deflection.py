@@ -13,28 +13,19 @@ from elastolink.runtime.systems.rod import (
     OverhangBasis,
     PolynomialBasis,
     TwoSegmentBasis,
-    rod_system,
 )
+from rod_bases import made
 from rod_reference import CASES, flexible, kinematics, mesh_for, tip_motion
 from rod_series import tabulated
 from rod_tip_deflections import TIPS
 
 # Steps of order 16 in a revolution; twice as many change nothing here.
 STEPS = 384
-PRINTED = ("frame", "tension")
 
 
 def _tip(basis, rod, revolutions=2):
     """Return v(L)/L at eight crank angles a revolution, the start left out."""
-    system = rod_system(
-        basis,
-        crank_ratio=rod.crank / rod.frame,
-        frame=rod.frame,
-        length=rod.length,
-        bending_stiffness=rod.bending_stiffness,
-        mass_per_length=rod.mass_per_length,
-        drop=() if rod.tension else PRINTED,
-    )
+    system = made(rod, basis)
     form = canonical_form(tabulated(system), rod.speed, forcing=True)
     grid = make_grid(0.0, revolutions, 8, STEPS)
     run = march(gauss_legendre(8), form, grid, np.zeros(basis.size), np.zeros(basis.size), np.inf)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import balancing_truth as truth
 import numpy as np
+from elastolink.runtime.balancing import Bounds, balance
 from elastolink.runtime.dynamics import MassDistribution
 from elastolink.runtime.dynamics.machine import Machine
 from elastolink.runtime.errors import BadInput
@@ -34,6 +35,18 @@ def random_machine(rng):
         mass, along, across = rng.uniform([0.1, -0.5, -0.5], [2.0, 0.5, 0.5])
         bodies[link] = MassDistribution.about_centre(mass, along, across, rng.uniform(0.0, 0.2))
     return Machine(linkage, bodies)
+
+
+def with_crank_counterweight(machine, speed):
+    """Return the optimum of a counterweight on the crank, by the root mean square of the force."""
+    return balance(
+        machine,
+        speed,
+        weights={"shaking_force": 1.0},
+        links=("crank",),
+        bounds=Bounds(mass=50.0, offset=1.0),
+        measure="rms",
+    )
 
 
 def nine_equations(machine, theta, speed, acceleration=0.0):

@@ -154,17 +154,19 @@ def coupler_functions(numbers, m):
 @lru_cache(maxsize=1)
 def exact_points() -> tuple[Exact, ...]:
     """Return exact motion and coupler functions at 200 random and all nasty points."""
-    found = []
-    for point in random_points(200, seed=20) + nasty_points():
-        emitted = dict(zip(OUTPUTS, four_bar_kinematics.motion(**point.arguments), strict=True))
-        near = {name: mpmath.mpf(float(emitted[name])) for name in ("theta3", "theta4")}
+    return tuple(exact_near(point) for point in random_points(200, seed=20) + nasty_points())
 
-        def reference(numbers, near=near):
-            m = motion(numbers, near)
-            return {**m, **coupler_functions(numbers, m)}
 
-        found.append(exact_at(reference, point))
-    return tuple(found)
+def exact_near(point) -> Exact:
+    """Return exact motion and coupler functions on the branch of the emitted motion."""
+    emitted = dict(zip(OUTPUTS, four_bar_kinematics.motion(**point.arguments), strict=True))
+    near = {name: mpmath.mpf(float(emitted[name])) for name in ("theta3", "theta4")}
+
+    def reference(numbers):
+        m = motion(numbers, near)
+        return {**m, **coupler_functions(numbers, m)}
+
+    return exact_at(reference, point)
 
 
 @dataclass(frozen=True)

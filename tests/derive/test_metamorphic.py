@@ -7,6 +7,7 @@ import itertools
 import mpmath
 import pytest
 import sympy as sp
+from coupler_action import zero
 from elastolink.derive.lagrange import euler_lagrange, quadratic_form
 from elastolink.derive.projection.galerkin import (
     FiniteBasis,
@@ -48,10 +49,6 @@ PINNED = (Essential(0, y, 0), Essential(L, y, 0))
 def beam(**changes: object) -> ActionDensity:
     density = mu / 2 * y.diff(t) ** 2 - EI / 2 * y.diff(x, 2) ** 2
     return ActionDensity(x, t, L, (y,), density).with_(**changes)
-
-
-def zero(expression: sp.Expr) -> bool:
-    return sp.expand(expression.doit()) == 0
 
 
 def frequencies(system: DiscreteSystem, values: dict[sp.Expr, float], spin: float = 0.0) -> list:

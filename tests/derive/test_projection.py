@@ -7,6 +7,7 @@ import itertools
 import mpmath
 import pytest
 import sympy as sp
+from coupler_action import EI, PINNED, Fx, N, coupler, l2, l3, mu, t, tension, th2, th3, u, x, y
 from elastolink.derive.lagrange import NotRepresentable
 from elastolink.derive.projection.galerkin import (
     FiniteBasis,
@@ -29,47 +30,20 @@ from elastolink.derive.records import (
 )
 from elastolink.derive.variational import (
     hamilton,
-    order_part,
     quadratic_action,
-    solve_end_value,
-    solve_tension,
 )
 
-x, t = sp.symbols("x t")
-l2, l3, mu, EI, c, tip, k, T = sp.symbols("l2 l3 mu EI c tip k T", positive=True)
+c, tip, k, T = sp.symbols("c tip k T", positive=True)
 theta, theta3, omega3, alpha3, td, tdd = sp.symbols("theta theta3 omega3 alpha3 td tdd")
 push, load = sp.symbols("push load")
-y, u, N = (sp.Function(name)(x, t) for name in ("y", "u", "N"))
-th2, th3, Fx = (sp.Function(name)(t) for name in ("th2", "th3", "Fx"))
 CRANK = CrankMotion(theta, td, tdd, {theta3: omega3, omega3: alpha3})
 FOLLOWERS = {th2: theta, th3: theta3, Fx: push * td**2 + load}
-PINNED = (Essential(0, y, 0), Essential(l3, y, 0))
 
 
 def reduced_coupler() -> ActionDensity:
     """Quadratic action of the rotating, translating pinned beam with end load and damping."""
-    w2, w3 = th2.diff(t), th3.diff(t)
-    along = l2 * w2 * sp.sin(th3 - th2) + u.diff(t) - w3 * y
-    across = l2 * w2 * sp.cos(th3 - th2) + y.diff(t) + w3 * (x + u)
-    density = (
-        mu / 2 * (along**2 + across**2)
-        - EI / 2 * y.diff(x, 2) ** 2
-        - N * (u.diff(x) + y.diff(x) ** 2 / 2)
-    )
-    action = ActionDensity(
-        x,
-        t,
-        l3,
-        (u, y, N),
-        density,
-        force_density={y: -c * y.diff(t)},
-        end_forces=(EndForce(l3, u, 0, Fx),),
-        essential=(Essential(0, u, 0), *PINNED),
-        orders={u: 2, y: 1, N: 0},
-    )
-    equations = hamilton(action)
-    end = solve_end_value(equations.condition(l3, u, 0), N)
-    force = solve_tension(order_part(equations.equations[u], action.orders, 0), N, x, l3, end)
+    action = coupler(force_density={y: -c * y.diff(t)})
+    force = tension(hamilton(action))
     return quadratic_action(action, {N: force}, (u,))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
+from coupler_action import EI, Fx, N, coupler, l2, l3, mu, t, tension, th2, th3, u, x, y, zero
 from elastolink.derive.records import (
     ActionDensity,
     CrankMotion,
@@ -22,46 +23,11 @@ from elastolink.derive.variational import (
     solve_tension,
 )
 
-x, t = sp.symbols("x t")
-l2, l3, mu, EI, tip, k, J, r, T = sp.symbols("l2 l3 mu EI tip k J r T", positive=True)
-y, u, N = (sp.Function(name)(x, t) for name in ("y", "u", "N"))
-th2, th3, Fx = (sp.Function(name)(t) for name in ("th2", "th3", "Fx"))
+tip, k, J, r, T = sp.symbols("tip k J r T", positive=True)
 
 
 def d(expression: sp.Expr, *by: sp.Symbol) -> sp.Expr:
     return sp.Derivative(expression, *by) if by else expression
-
-
-def zero(expression: sp.Expr) -> bool:
-    return sp.expand(expression.doit()) == 0
-
-
-def coupler() -> ActionDensity:
-    """Rotating, translating, inextensible pinned beam with the end load Fx."""
-    w2, w3 = th2.diff(t), th3.diff(t)
-    along = l2 * w2 * sp.sin(th3 - th2) + u.diff(t) - w3 * y
-    across = l2 * w2 * sp.cos(th3 - th2) + y.diff(t) + w3 * (x + u)
-    density = (
-        mu / 2 * (along**2 + across**2)
-        - EI / 2 * y.diff(x, 2) ** 2
-        - N * (u.diff(x) + y.diff(x) ** 2 / 2)
-    )
-    return ActionDensity(
-        x,
-        t,
-        l3,
-        (u, y, N),
-        density,
-        end_forces=(EndForce(l3, u, 0, Fx),),
-        essential=(Essential(0, u, 0), Essential(0, y, 0), Essential(l3, y, 0)),
-        orders={u: 2, y: 1, N: 0},
-    )
-
-
-def tension(equations) -> sp.Expr:
-    end = solve_end_value(equations.condition(l3, u, 0), N)
-    leading = order_part(equations.equations[u], equations.action.orders, 0)
-    return solve_tension(leading, N, x, l3, end)
 
 
 def test_string_and_euler_bernoulli_beam():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from constrained_truth import random_circle
 from elastolink.runtime.constrained import consistent_state, constrained_motion
+from elastolink.runtime.families import Constrained
 
 SCENES = 200
 
@@ -30,14 +31,93 @@ def check(found):
     assert 1.0 / np.median(found) <= 1e3
 
 
+def collocation(rng, span):
+    return "collocation"
+
+
+def projection(rng, span):
+    return "projection"
+
+
+def test_collocation_under_a_tolerance():
+    """By default, at any tolerance that is allowed."""
+    check(ratios(SCENES, 1, rtol=lambda rng, span: 10.0 ** rng.uniform(-13, -1.1)))
+
+
+@pytest.mark.slow
+def test_collocation_with_any_number_of_nodes():
+    check(
+        ratios(
+            SCENES,
+            7,
+            method=collocation,
+            rtol=lambda rng, span: 10.0 ** rng.uniform(-9, -3),
+            stages=lambda rng, span: int(rng.integers(6, 29)),
+        )
+    )
+
+
+@pytest.mark.slow
+def test_collocation_with_fixed_windows():
+    check(ratios(SCENES, 8, method=collocation, step=lambda rng, s: s / int(rng.integers(1, 8))))
+
+
+@pytest.mark.slow
+def test_collocation_where_the_force_jumps():
+    """A mass on a spring with a force of constant size towards the middle: arcs of cosines."""
+    rng = np.random.default_rng(9)
+    found = []
+    for _ in range(60):
+        force, span = rng.uniform(0.1, 2.0), rng.uniform(2.0, 12.0)
+        motion = constrained_motion(
+            towards_the_middle(force),
+            [1.0],
+            [0.0],
+            span,
+            samples=5,
+            rtol=10.0 ** rng.uniform(-10, -4),
+        )
+        # To the middle x + force = (1 + force) cos t; from there on mirrored.
+        quarter = np.arccos(force / (1.0 + force))
+        phase = np.mod(motion.time, 4 * quarter)
+        half = np.minimum(phase, 4 * quarter - phase)
+        side = np.where(half > quarter, -1.0, 1.0)
+        part = np.minimum(half, 2 * quarter - half)
+        exact = side * ((1.0 + force) * np.cos(part) - force)
+        found.append(np.max(np.abs(motion.q[:, 0] - exact)) / motion.error[0])
+    check(np.array(found))
+
+
+def towards_the_middle(force):
+    """One free coordinate, x'' = -x - force sign(x)."""
+
+    def dynamics(q, qd, t):
+        q = np.asarray(q)
+        batch = q.shape[:-1]
+        return {
+            "mass": np.ones((*batch, 1, 1)),
+            "rest": np.zeros((*batch, 1, 1)),
+            "forces": (-q - force * np.sign(q))[..., None],
+            "jacobian": np.zeros((*batch, 0, 1)),
+            "velocity_rhs": np.zeros((*batch, 0, 1)),
+            "gamma": np.zeros((*batch, 0, 1)),
+        }
+
+    def violation(q, t):
+        batch = np.shape(q)[:-1]
+        return {"constraints": np.zeros((*batch, 0, 1)), "jacobian": np.zeros((*batch, 0, 1))}
+
+    return Constrained(1, 0, dynamics, violation)
+
+
 @pytest.mark.slow
 def test_projection_under_a_tolerance():
-    check(ratios(SCENES, 1, rtol=lambda rng, span: 10.0 ** rng.uniform(-12, -4)))
+    check(ratios(SCENES, 1, method=projection, rtol=lambda rng, s: 10.0 ** rng.uniform(-12, -4)))
 
 
 @pytest.mark.slow
 def test_projection_with_fixed_steps():
-    check(ratios(SCENES, 4, step=lambda rng, span: span / int(rng.integers(5, 25))))
+    check(ratios(SCENES, 4, method=projection, step=lambda rng, s: s / int(rng.integers(5, 25))))
 
 
 @pytest.mark.slow

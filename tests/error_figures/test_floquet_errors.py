@@ -161,7 +161,7 @@ def test_boundary_figure():
     assert idle <= 1e3
 
 
-@pytest.mark.parametrize("method", ["gauss_legendre", "rk4", "magnus4"])
+@pytest.mark.parametrize("method", ["auto", "gauss_legendre", "rk4", "magnus4"])
 def test_motion_figure(method):
     actual, figure = [], []
     for rng, scene, speed in _population(4, repelling=False):

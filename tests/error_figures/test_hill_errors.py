@@ -4,6 +4,7 @@ from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
 from elastolink.runtime.series.periodic import PeriodicFunction
+from honesty import verdict
 
 pytestmark = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
@@ -18,14 +19,6 @@ def scene(rng):
     b[0] = 0.0
     low = -(10.0 ** rng.uniform(-1, 1.5)) if rng.random() < 0.3 else 0.0
     return PeriodicFunction(a, b), low, 10.0 ** rng.uniform(-1, 2.5), 10.0 ** rng.uniform(-2, 1)
-
-
-def verdict(ratios, least):
-    """Figure over actual error: at least 1 in 99 %, median no larger than 1000."""
-    ratios = np.concatenate(ratios)
-    assert ratios.size >= least
-    assert np.mean(ratios >= 1.0) >= 0.99
-    assert np.median(ratios) <= 1e3
 
 
 def half_trace_ratios(rng, grid):

@@ -59,3 +59,25 @@ def test_worst_cases():
     assert np.mean(off <= figure) >= 0.99
     known = off > 0.0
     assert np.median(figure[known] / off[known]) <= 1e3
+
+
+@pytest.mark.parametrize("distribution", ["normal", "uniform"])
+def test_spreads_of_trials(distribution):
+    """Tolerances so narrow that the first order is all: its spread is the exact one."""
+    random = np.random.default_rng(43)
+    ratios = []
+    for seed in range(200):
+        shape = random_linkage(random, "rocker")
+        linkage = FourBar(**shape.lengths, assembly="open" if shape.assembly > 0 else "crossed")
+        widths = {name: 1e-7 * size for name, size in linkage.lengths.items()}
+        try:
+            found = tolerances(linkage, widths, [float(random.uniform(-np.pi, np.pi))])
+        except BadInput:
+            continue  # it could fold
+        trial = found.monte_carlo(int(random.integers(3, 60)), seed, distribution)
+        off = np.abs(trial.standard_deviation - trial.expected)
+        # All outputs are of one draw.
+        ratios.append(float(np.median(trial.error / np.maximum(off, 1e-300))))
+    assert len(ratios) > 150
+    assert np.mean(np.array(ratios) >= 1.0) >= 0.98
+    assert np.median(ratios) <= 1e3

@@ -3,7 +3,13 @@ from dataclasses import replace
 import balancing_truth as truth
 import numpy as np
 import pytest
-from balancing_machines import nine_equations, random_machine, sampled_peaks, smith
+from balancing_machines import (
+    nine_equations,
+    random_machine,
+    sampled_peaks,
+    smith,
+    with_crank_counterweight,
+)
 from elastolink.runtime.balancing import (
     Bounds,
     Counterweight,
@@ -217,14 +223,7 @@ def test_root_mean_square_of_the_shaking_force_by_least_squares():
     # With the crank's first moments alone, the mean square is a quadratic form: closed form.
     for seed in range(5):
         machine = random_machine(np.random.default_rng(seed))
-        found = balance(
-            machine,
-            SPEED,
-            weights={"shaking_force": 1.0},
-            links=("crank",),
-            bounds=Bounds(mass=50.0, offset=1.0),
-            measure="rms",
-        )
+        found = with_crank_counterweight(machine, SPEED)
         theta = TURN[:-1]
         force = nine_equations(machine, theta, SPEED)["shaking_force"]
         turned = SPEED**2 * np.exp(1j * theta)  # of a unit moment: its centrifugal force

@@ -30,6 +30,7 @@ COMMANDS = (
     "chart",
     "reproduce",
     "benchmark",
+    "explain",
 )
 
 

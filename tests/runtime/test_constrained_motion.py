@@ -19,7 +19,7 @@ from elastolink.runtime.constrained.steppers.protocol import Control, natural_sc
 from elastolink.runtime.errors import BadInput, LinearRangeWarning, RedundantConstraints
 from elastolink.runtime.families import Constrained
 
-OWN = ("projection", "coordinate_partitioning", "lobatto")
+OWN = ("collocation", "projection", "coordinate_partitioning", "lobatto")
 CIRCLE = Circle(oblique=np.array([[1.0, 0.3], [0.0, 0.02]]), pivot=np.array([0.4, -0.2]), row=50.0)
 TURNING = Circle(start=7.5)
 
@@ -254,7 +254,7 @@ def escaping() -> Constrained:
     return Constrained(2, 1, dynamics, repelled().violation)
 
 
-@pytest.mark.parametrize("method", ["projection", "coordinate_partitioning"])
+@pytest.mark.parametrize("method", ["collocation", "projection", "coordinate_partitioning"])
 @pytest.mark.parametrize("bound", [1e3, 1e300])
 def test_an_escape_in_finite_time_ends_with_a_reason(method, bound):
     found = constrained_motion(
@@ -327,6 +327,7 @@ def test_lost_rank_stops_the_motion(method):
         ({"step": 1e-12}, "step: found 1e-12"),
         ({"step": 0.1, "method": "gear_gupta_leimkuhler"}, "chooses its steps"),
         ({"stages": 1, "method": "lobatto"}, "stages: found 1"),
+        ({"stages": 5}, "a whole number from 6 to 32 for collocation"),
         ({"samples": 0}, "samples: found 0"),
         ({"samples": 2.5}, "samples: found 2.5"),
         ({"samples": "all"}, "samples: found 'all'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.errors import BadInput
@@ -144,3 +145,10 @@ def test_a_bad_range_is_refused(ends):
         critical_speeds(_system(), ends)
     with pytest.raises(BadInput, match="methods"):
         compare_critical_speeds(_system(), (1.0, 2.0), methods=("guess",))
+
+
+@pytest.mark.parametrize("method", ["mean_frequency", "response", "multipliers", "meissner"])
+def test_a_frame_has_no_critical_speed(method):
+    frame = el.load_scene("aannaque_1996_portal_frame").linear_system()
+    with pytest.raises(BadInput, match="no crank moves it"):
+        critical_speeds(frame, (5.0, 100.0), method=method)

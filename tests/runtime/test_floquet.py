@@ -12,22 +12,7 @@ from elastolink.runtime.floquet.monodromy_matrix import (
     monodromy,
     symplectic_unit,
 )
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
-
-
-def _mathieu(**values) -> LinearPeriodic:
-    """y'' + 2 K y' + (lam2 + mu cos theta) y = 0 at every speed."""
-    numbers = {"lam2": 1.3, "mu": 0.4, "K2": 0.0, **values}
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "lam2", np.eye(1), power=2),
-        Term("Kg", "mu", lambda theta: np.cos(theta)[:, None, None], power=2),
-        Term("C", "K2", np.eye(1), power=1),
-    )
-    return LinearPeriodic(1, terms, numbers, _named(numbers))
+from periodic_systems import mathieu, named, wave
 
 
 def _whirling(stiffness: float, damping: float = 0.0) -> LinearPeriodic:
@@ -58,9 +43,6 @@ def _pair(coupling: float, sign: float) -> LinearPeriodic:
 def _general() -> LinearPeriodic:
     """Two degrees of freedom with every kind of term, all of them periodic."""
 
-    def wave(matrix, harmonic, phase):
-        return lambda theta: np.cos(harmonic * theta + phase)[:, None, None] * np.array(matrix)
-
     terms = (
         Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
         Term("M", None, wave([[0.5, 0.1], [0.1, 0.2]], 1, 0.3)),
@@ -72,14 +54,14 @@ def _general() -> LinearPeriodic:
         Term("C", "C", np.array([[0.4, 0.1], [0.1, 0.3]])),
         Term("C", "C", wave([[0.1, 0.0], [0.0, 0.2]], 1, 0.0)),
     )
-    return LinearPeriodic(2, terms, {"load": 1.0, "C": 0.0}, _named(("load", "C")))
+    return LinearPeriodic(2, terms, {"load": 1.0, "C": 0.0}, named(("load", "C")))
 
 
 # Hand cases ----------------------------------------------------------------------------------
 
 
 def test_oscillator_by_hand():
-    found = monodromy(_mathieu(mu=0.0, lam2=2.0), 3.0)
+    found = monodromy(mathieu(mu=0.0, lam2=2.0), 3.0)
     w, period = np.sqrt(2.0), 2 * np.pi
     expected = [
         [np.cos(w * period), np.sin(w * period) / w],
@@ -175,7 +157,7 @@ def test_mathieu_against_forty_digits(case):
     mp = pytest.importorskip("mpmath")
     lam2, mu, damping = case
     expected = _taylor_monodromy(mp, lam2, mu, damping)
-    found = monodromy(_mathieu(), 1.7, lam2=lam2, mu=mu, K2=damping)
+    found = monodromy(mathieu(), 1.7, lam2=lam2, mu=mu, K2=damping)
     top = np.max(np.abs(expected))
     assert np.max(np.abs(found.matrix - expected)) < 1e-12 * top
     scaled = expected / found.scale[:, None] * found.scale
@@ -301,9 +283,9 @@ def test_double_multiplier_gets_a_square_root_error():
     low, high = 0.0, 0.1
     for _ in range(60):
         middle = (low + high) / 2
-        trace = np.trace(monodromy(_mathieu(), 1.0, lam2=0.25 - middle, mu=0.1).matrix)
+        trace = np.trace(monodromy(mathieu(), 1.0, lam2=0.25 - middle, mu=0.1).matrix)
         low, high = (middle, high) if trace < -2 else (low, middle)
-    found = floquet_multipliers(_mathieu(), 1.0, lam2=0.25 - low, mu=0.1)
+    found = floquet_multipliers(mathieu(), 1.0, lam2=0.25 - low, mu=0.1)
     assert np.all(np.abs(found.multipliers + 1) <= found.error)
     assert np.all(found.error > 1e-9)
     assert np.all(found.error < 1e-5)
@@ -311,7 +293,7 @@ def test_double_multiplier_gets_a_square_root_error():
 
 
 def test_semisimple_double_multiplier_keeps_a_small_error():
-    found = floquet_multipliers(_mathieu(), 1.0, lam2=4.0, mu=0.0)
+    found = floquet_multipliers(mathieu(), 1.0, lam2=4.0, mu=0.0)
     assert np.all(np.abs(found.multipliers - 1) <= found.error)
     assert np.all(found.error < 1e-12)
 
@@ -354,10 +336,10 @@ def test_growth_of_1e200_keeps_every_multiplier():
 
 
 def test_growth_beyond_double_precision():
-    found = monodromy(_mathieu(), 1.0, lam2=-1e6)
+    found = monodromy(mathieu(), 1.0, lam2=-1e6)
     assert found.exponent > 1024
     assert np.all(np.isfinite(found.matrix))
-    multipliers = floquet_multipliers(_mathieu(), 1.0, lam2=-1e6, mu=0.0)
+    multipliers = floquet_multipliers(mathieu(), 1.0, lam2=-1e6, mu=0.0)
     assert not multipliers.stable
     assert np.isinf(multipliers.multipliers[0])
     assert multipliers.multipliers[1] == 0
@@ -367,7 +349,7 @@ def test_growth_beyond_double_precision():
 
 def test_strong_damping_keeps_the_small_exponent():
     damping = 50.0
-    found = floquet_multipliers(_mathieu(), 1.0, lam2=2.0, mu=0.0, K2=damping)
+    found = floquet_multipliers(mathieu(), 1.0, lam2=2.0, mu=0.0, K2=damping)
     roots = np.roots([1.0, damping, 2.0])
     expected = 2 * np.pi * np.sort(roots)[::-1]
     np.testing.assert_allclose(found.exponents.real, expected, rtol=1e-11)

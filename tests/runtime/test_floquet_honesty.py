@@ -10,22 +10,7 @@ import scipy.integrate
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
-
-
-def _mathieu(**values) -> LinearPeriodic:
-    """y'' + 2 K y' + (lam2 + mu cos theta) y = 0 at every speed."""
-    numbers = {"lam2": 1.3, "mu": 0.4, "K2": 0.0, **values}
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "lam2", np.eye(1), power=2),
-        Term("Kg", "mu", lambda theta: np.cos(theta)[:, None, None], power=2),
-        Term("C", "K2", np.eye(1), power=1),
-    )
-    return LinearPeriodic(1, terms, numbers, _named(numbers))
+from periodic_systems import mathieu
 
 
 def _single(mass=None, spring=None) -> LinearPeriodic:
@@ -118,16 +103,16 @@ def test_a_term_that_is_not_a_number_is_named():
 
 
 def test_provenance_tells_changes_and_versions():
-    system = _mathieu().with_parameters(mu=0.5)
+    system = mathieu().with_parameters(mu=0.5)
     found = monodromy(system, 1.0, K2=np.array([0.0, 0.1]))
     assert found.provenance["changed"] == "mu=0.5, K2=2 values from 0.0 to 0.1"
     assert found.provenance["numpy"] == np.__version__
     assert "elastolink" in found.provenance
-    assert "changed" not in monodromy(_mathieu(), 1.0).provenance
+    assert "changed" not in monodromy(mathieu(), 1.0).provenance
 
 
 def test_damping_counts_only_where_it_is_not_zero():
-    system = _mathieu()
+    system = mathieu()
     assert not system.is_damped()
     assert system.is_damped(K2=0.1)
     assert system.is_damped(K2=np.array([0.0, 0.1]))

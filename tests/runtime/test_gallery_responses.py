@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from elastolink.runtime.gallery import reproduce, smith_response_rows, smith_responses
+from elastolink.runtime.gallery import smith_responses
 from elastolink.runtime.gallery.smith_linkages import RPM
 from elastolink.runtime.response import steady_peaks
+from gallery_rows import require_rows
 
 # Figure, and how many of its numbers are known to differ.
 QUICK = (("54", 0), ("55", 0), ("62", 1), ("79", 0))
@@ -15,22 +16,15 @@ SLOW = (
 )
 
 
-def check(label, differing):
-    gallery = reproduce("smith", label)
-    assert [item.entry.label for item in gallery.shown] == [label]
-    assert [name for name, check in gallery.checks.items() if not check.passed] == []
-    assert sum(bool(row.differs) for _, row in gallery.rows) == differing
-
-
 @pytest.mark.parametrize(("label", "differing"), QUICK)
 def test_every_quoted_number_agrees_or_differs_for_a_known_reason(label, differing):
-    check(label, differing)
+    require_rows("smith", label, differing)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("label", "differing"), SLOW)
 def test_every_other_quoted_number_does_too(label, differing):
-    check(label, differing)
+    require_rows("smith", label, differing, quoted=label != "67")
 
 
 def test_all_figures_have_an_entry_or_a_reason():
@@ -62,6 +56,5 @@ def test_more_damping_lowers_a_resonance():
 
 
 def test_the_nearest_maximum_is_found():
-    one = smith_responses.RESPONSE["79"]
-    assert smith_response_rows.maximum(one, 400.0) == pytest.approx(391.0, abs=2.0)
-    assert smith_response_rows.maximum(one, 530.0) == pytest.approx(520.0, abs=2.0)
+    assert smith_responses.resonance("79", 400.0) == pytest.approx(391.0, abs=2.0)
+    assert smith_responses.resonance("79", 530.0) == pytest.approx(520.0, abs=2.0)

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from boundary_cases import closing_damping
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.hill.exact.certified import CertifiedBoundaries
@@ -239,13 +240,8 @@ def test_damped_intervals_hold_an_eigenvalue_at_40_digits(mu, k):
 
 
 def test_damping_closes_with_proof_and_near_the_tip_says_undecided():
-    mu, low, high = 0.6, 0.2, 0.4
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if np.isnan(hill_boundaries(COSINE, mu, (1,), middle).lower[0]):
-            high = middle
-        else:
-            low = middle
+    mu = 0.6
+    low, high = closing_damping(COSINE, mu, 0.2, 0.4)
     inside = hill_boundaries(COSINE, mu, (1,), low * (1 - 1e-6), certified=True)
     beyond = hill_boundaries(COSINE, mu, (1,), high * (1 + 1e-3), certified=True)
     tip = hill_boundaries(COSINE, mu, (1,), 0.5 * (low + high), certified=True)

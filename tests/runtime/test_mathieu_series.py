@@ -18,32 +18,12 @@ from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
 from elastolink.runtime.hill.perturbation.coefficients import boundary_series
 from elastolink.runtime.series.periodic import PeriodicFunction
+from strained_truth import PUBLISHED, published
 
 ORDER = 8
 # In q: lam2 = a/4, mu f = -(q/2) cos theta.
 FUNCTION = ExactHarmonics.of(0, [Fraction(-1, 2)])
 DOUBLE = PeriodicFunction([0.0, -0.5])
-
-# DLMF 28.6.1-28.6.13: coefficients of q, q^2, ... as far as printed.
-PUBLISHED = {
-    "a0": "0 -1/2 0 7/128 0 -29/2304 0 68687/18874368",
-    "a1": "1 -1/8 -1/64 -1/1536 11/36864 49/589824 55/9437184 -83/35389440",
-    "b1": "-1 -1/8 1/64 -1/1536 -11/36864 49/589824 -55/9437184 -83/35389440",
-    "a2": "0 5/12 0 -763/13824 0 1002401/79626240 0 -1669068401/458647142400",
-    "b2": "0 -1/12 0 5/13824 0 -289/79626240 0 21391/458647142400",
-    "a3": "0 1/16 1/64 13/20480 -5/16384 -1961/23592960 -609/104857600",
-    "b3": "0 1/16 -1/64 13/20480 5/16384 -1961/23592960 609/104857600",
-    "a4": "0 1/30 0 433/864000 0 -5701/2721600000",
-    "b4": "0 1/30 0 -317/864000 0 10049/2721600000",
-    "a5": "0 1/48 0 11/774144 1/147456 37/891813888",
-    "b5": "0 1/48 0 11/774144 -1/147456 37/891813888",
-    "a6": "0 1/70 0 187/43904000 0 6743617/92935987200000",
-    "b6": "0 1/70 0 187/43904000 0 -5861633/92935987200000",
-}
-
-
-def published(name):
-    return [Fraction(x) for x in PUBLISHED[name].split()]
 
 
 def parted(name):

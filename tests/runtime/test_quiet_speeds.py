@@ -50,6 +50,26 @@ def test_bands_end_where_the_limit_is_met():
     np.testing.assert_allclose(bands[1].above, 2.5 * np.pi, atol=1e-4)
 
 
+def test_bands_leave_out_what_is_unstable():
+    speed = np.linspace(0.5, 10.0, 1901)
+    worst, none = np.exp(np.sin(speed)), np.array([])
+    unstable = ((3.0, 3.5), (4.0, 4.5), (6.0, 7.0), (9.9, 10.0))
+    bands = _bands(speed, worst, none, unstable)
+    ends = [(round(band.low, 3), round(band.high, 3)) for band in bands]
+    assert ends == [(3.5, 4.0), (4.5, 6.0), (round(3 * np.pi, 3), 9.9)]
+    assert [band.best for band in bands] == pytest.approx([4.0, 1.5 * np.pi, 9.9], abs=5e-3)
+    assert [band.above for band in bands] == pytest.approx([3.5, 4.5, 3 * np.pi], abs=1e-4)
+
+
+def test_an_unstable_speed_is_never_quiet():
+    """With limits that nothing meets; unstable from 86.92 to 95.64 rad/s by the multipliers."""
+    found = quiet_speeds(system(), np.linspace(84.0, 98.0, 57), 1e15, rtol=1e-2)
+    assert found.unstable == ((86.75, 95.75),)
+    assert [(band.low, band.high) for band in found.bands] == [(84.0, 86.75), (95.75, 98.0)]
+    assert found.quiet == found.bands[1:] and found.quiet[0].above == 95.75
+    assert "unstable" in [text.get_text() for text in found.plot().get_legend().get_texts()]
+
+
 def test_a_range_within_the_limits_is_one_band():
     found = quiet_speeds(system(), np.linspace(5.0, 20.0, 60), 1e12)
     assert len(found.bands) == 1 and found.bands[0].above is None
@@ -168,7 +188,6 @@ def of_history(history, error=0.0):
         static_bending=none,
         motion_error=0.0,
         mesh_error=0.0,
-        resonance_error=0.0,
         period=2 * np.pi,
     )
 

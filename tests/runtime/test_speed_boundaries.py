@@ -11,12 +11,9 @@ from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
+from periodic_systems import named, wave
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
 
 
 def _beam(**changes) -> LinearPeriodic:
@@ -33,15 +30,12 @@ def _beam(**changes) -> LinearPeriodic:
         Term("Kg", "pull", cosine, power=2),
         Term("C", "C", np.eye(1)),
     )
-    return LinearPeriodic(1, terms, values, _named(values))
+    return LinearPeriodic(1, terms, values, named(values))
 
 
 def _coupled(**changes) -> LinearPeriodic:
     """Two modes, periodic mass, Coriolis, centrifugal and axial terms."""
     values = {"C": 0.0, "load": 1.0, **changes}
-
-    def wave(matrix, harmonic, phase):
-        return lambda theta: np.cos(harmonic * theta + phase)[:, None, None] * np.array(matrix)
 
     terms = (
         Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
@@ -53,7 +47,7 @@ def _coupled(**changes) -> LinearPeriodic:
         Term("Kg", "load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
         Term("C", "C", np.array([[0.4, 0.1], [0.1, 0.3]])),
     )
-    return LinearPeriodic(2, terms, values, _named(values))
+    return LinearPeriodic(2, terms, values, named(values))
 
 
 def test_mathieu_characteristic_values():
@@ -192,7 +186,7 @@ def test_another_period_and_another_parameter():
         Term("K", "k", np.eye(1)),
         Term("Kg", None, lambda theta: np.cos(2 * theta)[:, None, None]),
     )
-    double = LinearPeriodic(1, terms, values, _named(values), period=np.pi)
+    double = LinearPeriodic(1, terms, values, named(values), period=np.pi)
     single = _beam(depth=1.0)
     found = speed_boundaries(double, speed_range=(0.5, 4.0), k=3.0)
     # cos 2 theta at speed w is cos theta at speed 2 w.

@@ -16,6 +16,7 @@ from elastolink.runtime.response import (
 from elastolink.runtime.response.cyclic import solve_ring
 from elastolink.runtime.response.request import resampled
 from elastolink.runtime.simulation import simulate
+from periodic_systems import peak_gap
 
 STEPPED = ("transition_matrix", "time_marching")
 
@@ -56,13 +57,6 @@ def stiff(damping=0.02, fast=1600.0):
     )
 
 
-def gap(found, other):
-    """Return the largest difference of each coordinate over its peak, at common angles."""
-    count = max(len(found.theta), len(other.theta))
-    one, two = resampled(found.q, count), resampled(other.q, count)
-    return np.max(np.abs(one - two), axis=0) / np.max(np.abs(two), axis=0)
-
-
 @pytest.fixture(scope="module")
 def truth():
     """Return the motion of the stiff system by shooting, which resolves every mode."""
@@ -73,7 +67,7 @@ def truth():
 def test_spectral_methods_agree_with_shooting(truth, method):
     state = steady_state(stiff(fast=160.0), 1.1, method=method)
     assert state.passed, state.checks
-    assert np.all(gap(state, truth) <= state.error + truth.error)
+    assert np.all(peak_gap(state, truth) <= state.error + truth.error)
     assert np.max(state.error) <= 1e-9
     np.testing.assert_allclose(state.multipliers, truth.multipliers)
     rate = np.max(np.abs(resampled(state.qd, len(truth.theta)) - truth.qd), axis=0)
@@ -100,7 +94,7 @@ def test_stepped_methods_agree_to_their_stated_errors(truth, method, options):
         options=options,
         stability=False,
     )
-    assert np.all(gap(state, truth) <= state.error + truth.error)
+    assert np.all(peak_gap(state, truth) <= state.error + truth.error)
     assert np.max(state.error) <= 1e-2
     assert state.checks["converged"].passed
 
@@ -111,7 +105,7 @@ def test_what_is_stiff_costs_the_spectral_methods_nothing():
         steady_state(stiff(), 1.1, method=method, stability=False)
         for method in ("harmonic_balance", "cyclic")
     ]
-    assert np.all(gap(*states) <= states[0].error + states[1].error)
+    assert np.all(peak_gap(*states) <= states[0].error + states[1].error)
     # The stiff coordinates' peaks are small beside the soft one's round-off.
     assert np.max(states[0].error) <= 1e-6
     assert states[0].multipliers is None and states[0].stable is None
@@ -337,7 +331,7 @@ def test_a_fixed_number_of_harmonics_tells_what_it_leaves_out(truth):
             stability=False,
         )
     assert not state.checks["converged"].passed
-    assert np.all(gap(state, truth) <= state.error + truth.error)
+    assert np.all(peak_gap(state, truth) <= state.error + truth.error)
 
 
 def beams():
@@ -356,7 +350,7 @@ def test_harmonic_balance_is_honest_below_resonances_of_harmonics_ahead(speed):
         found = steady_state(
             beams(), speed, method="harmonic_balance", options=options, stability=False
         )
-        assert np.all(gap(found, exact) <= found.error + exact.error)
+        assert np.all(peak_gap(found, exact) <= found.error + exact.error)
 
 
 def test_beams_have_no_deflection_over_one_link_and_say_so_at_once():

@@ -16,7 +16,6 @@ from elastolink.runtime.response import (
     steady_state,
 )
 from elastolink.runtime.response.cyclic import solve_ring
-from elastolink.runtime.response.shooting import needed_rate
 from elastolink.runtime.simulation import simulate
 
 EPS = float(np.finfo(float).eps)
@@ -131,7 +130,7 @@ def test_growth_within_the_period_costs_no_digits(k):
 def test_strong_damping_asks_for_no_more_segments(c):
     # An angle turns by 1/c a radian: what has died away within a segment needs no steps.
     form = canonical_form(_system(c=c), 1.0, {}, forcing=True)
-    assert needed_rate(form)[0] <= max(6.0, 1.001 * form.rate[0] / 40)
+    assert form.needed_rate[0] <= max(6.0, 1.001 * form.rate[0] / 40)
     state = steady_state(_system(c=c), [0.3, 1.0, 3.0])
     assert state.passed and np.all(state.stable)
     for index, speed in enumerate(state.speed):
@@ -145,7 +144,7 @@ def test_negative_and_gyroscopic_damping_keeps_its_segments():
     for matrix in (-3e3 * np.eye(2), 3e3 * np.array([[0.0, 1.0], [-1.0, 0.0]])):
         terms = (Term("M", None, np.eye(2)), Term("K", None, np.eye(2)), Term("C", None, matrix))
         form = canonical_form(LinearPeriodic(2, terms, {}, lambda values: {}), 1.0)
-        assert needed_rate(form)[0] == form.rate[0] > 3e3
+        assert form.needed_rate[0] == form.rate[0] > 3e3
 
 
 def test_peaks_of_many_speeds_are_those_of_the_motions():

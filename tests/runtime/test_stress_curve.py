@@ -64,10 +64,21 @@ def test_a_single_speed_and_repeated_ones(system, curve):
 
 
 def test_stability_is_that_of_the_multipliers(system):
-    """At 40 rad/s all multipliers lie within the circle with 2 % damping, at 62 as well."""
-    found = stress_curve(system, [40.0, 62.0], stations=5, stability=True)
-    assert found.stable.tolist() == [True, True]
-    assert stress_curve(system, [40.0, 62.0], stations=5).stable is None
+    """Stable below 86.9 rad/s and unstable above, by the full system's own multipliers."""
+    speeds = [80.0, 86.0, 90.0]
+    found = stress_curve(system, speeds, rtol=1e-2, stations=3)
+    whole = el.floquet_multipliers(system, speeds, rtol=1e-6)
+    largest = np.max(np.abs(whole.multipliers), axis=1)
+    assert np.all(np.abs(found.multiplier - largest) <= found.multiplier_error)
+    assert found.stable.tolist() == whole.stable.tolist() == [True, True, False]
+    assert found.unstable_ranges == ((86.0, 90.0),)
+    assert not np.any(found.undecided)
+    assert "unstable" in [text.get_text() for text in found.plot().get_legend().get_texts()]
+
+
+def test_stability_can_be_left_out(system):
+    found = stress_curve(system, [40.0, 62.0], stations=5, stability=False)
+    assert found.stable is None and found.undecided is None and found.unstable_ranges == ()
 
 
 def test_more_modes_change_it_by_less_than_its_error(system, curve):

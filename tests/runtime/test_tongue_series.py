@@ -10,18 +10,11 @@ from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.floquet import floquet_multipliers, resonances, tongue
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.series.periodic import PeriodicFunction
+from periodic_systems import is_growing, named, wave
 
 matplotlib.use("Agg")
 
 W2 = np.sqrt(5.3)
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
-
-
-def _wave(matrix, harmonic=1, phase=0.0):
-    return lambda theta: np.cos(harmonic * theta + phase)[:, None, None] * np.array(matrix)
 
 
 def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **changes):
@@ -30,12 +23,12 @@ def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **cha
     terms = (
         Term("M", None, np.eye(2)),
         Term("K", None, np.diag([1.0, 5.3])),
-        Term("K", "eps", _wave(first)),
-        Term("K", "eps", _wave(second, 2, 0.4)),
+        Term("K", "eps", wave(first)),
+        Term("K", "eps", wave(second, 2, 0.4)),
         Term("C", "d1", np.diag([1.0, 0.0])),
         Term("C", "d2", np.diag([0.0, 1.0])),
     )
-    return LinearPeriodic(2, terms, values, _named(values))
+    return LinearPeriodic(2, terms, values, named(values))
 
 
 FULL = _pair(((0.4, 1.0), (1.0, -0.3)), ((0.2, 0.3), (0.3, 0.1)))
@@ -46,25 +39,20 @@ def _whole(**changes):
     values = {"eps": 0.0, "c": 0.0, **changes}
     terms = (
         Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
-        Term("M", "eps", _wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)),
+        Term("M", "eps", wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)),
         Term("A", None, np.array([[0.1, -0.2], [0.3, 0.0]])),
-        Term("A", "eps", _wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)),
+        Term("A", "eps", wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)),
         Term("B", None, np.array([[0.1, 0.05], [0.05, -0.2]])),
-        Term("B", "eps", _wave([[0.2, 0.1], [0.1, -0.3]])),
+        Term("B", "eps", wave([[0.2, 0.1], [0.1, -0.3]])),
         Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
-        Term("Kg", "eps", _wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        Term("Kg", "eps", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
         Term("C", "c", np.array([[0.4, 0.1], [0.1, 0.3]])),
     )
-    return LinearPeriodic(2, terms, values, _named(values))
+    return LinearPeriodic(2, terms, values, named(values))
 
 
 def _resonance(system, label, span=(0.3, 12.0), **options):
     return next(item for item in resonances(system, span, **options) if item.label == label)
-
-
-def _grows(system, speed, limit, **parameters):
-    values = floquet_multipliers(system, speed, rtol=1e-13, **parameters).multipliers
-    return np.max(np.abs(values), axis=-1) > 1 + limit
 
 
 def _exact(system, found, **parameters):
@@ -76,11 +64,11 @@ def _exact(system, found, **parameters):
     ends = []
     for end, side in ((found.lower, -1), (found.upper, 1)):
         inner, outer = middle.copy(), end + 0.4 * side * found.width
-        assert np.all(_grows(system, inner, limit, **parameters))
-        assert not np.any(_grows(system, outer, limit, **parameters))
+        assert np.all(is_growing(system, inner, limit, **parameters))
+        assert not np.any(is_growing(system, outer, limit, **parameters))
         for _ in range(44):
             trial = (inner + outer) / 2
-            grows = _grows(system, trial, limit, **parameters)
+            grows = is_growing(system, trial, limit, **parameters)
             inner, outer = np.where(grows, trial, inner), np.where(grows, outer, trial)
         ends.append((inner + outer) / 2)
     return np.array(ends)
@@ -195,9 +183,9 @@ def test_unequal_damping_widens_a_combination_tongue():
     assert unequal.width == pytest.approx(1.739 * plain.width, rel=0.03)
     # The multipliers say the same: speeds that are stable without damping are not with it.
     between = np.array([(plain.lower + unequal.lower) / 2, (plain.upper + unequal.upper) / 2])
-    assert not np.any(_grows(system, between, 1e-9, eps=eps))
-    assert np.all(_grows(system, between, 1e-4, eps=eps, d1=0.002, d2=0.02))
-    assert not np.any(_grows(system, between, 0.0, eps=eps, d1=0.02, d2=0.02))
+    assert not np.any(is_growing(system, between, 1e-9, eps=eps))
+    assert np.all(is_growing(system, between, 1e-4, eps=eps, d1=0.002, d2=0.02))
+    assert not np.any(is_growing(system, between, 0.0, eps=eps, d1=0.02, d2=0.02))
 
 
 def test_damping_of_one_mode_alone_leaves_no_end():
@@ -233,7 +221,7 @@ def test_equal_signatures_do_not_open():
     np.testing.assert_array_equal(found.lower, found.upper)
     for eps, speed in zip((0.05, 0.1), found.lower, strict=True):
         near = speed * (1 + np.linspace(-0.05, 0.05, 101))
-        assert not np.any(_grows(FULL, near, 1e-9, eps=eps))
+        assert not np.any(is_growing(FULL, near, 1e-9, eps=eps))
 
 
 def test_opposite_signatures_open_a_difference_tongue():
@@ -242,9 +230,9 @@ def test_opposite_signatures_open_a_difference_tongue():
         Term("M", None, np.eye(2)),
         Term("A", None, np.array([[0.0, -1.5], [1.5, 0.0]]), power=-1),
         Term("K", None, np.diag([-0.5, -0.8])),
-        Term("K", "eps", _wave([[0.4, 0.9], [0.9, -0.3]], 1, 0.2)),
+        Term("K", "eps", wave([[0.4, 0.9], [0.9, -0.3]], 1, 0.2)),
     )
-    system = LinearPeriodic(2, terms, {"eps": 0.0}, _named(["eps"]))
+    system = LinearPeriodic(2, terms, {"eps": 0.0}, named(["eps"]))
     sums = _resonance(system, "w1 + w2 = w")
     assert sums.signatures == (-1, -1)
     assert not tongue(system, sums, parameter=("eps", 0.05), order=3).open
@@ -261,7 +249,7 @@ def test_neither_conservative_nor_reversible_without_damping_has_no_end():
     assert resonance.signatures == (0, 0)
     found = tongue(system, resonance, parameter=("eps", 0.08), order=3)
     assert (found.lower, found.upper) == (0.0, np.inf)
-    assert np.all(_grows(system, np.linspace(1.2, 1.4, 21), 1e-6, eps=0.08))
+    assert np.all(is_growing(system, np.linspace(1.2, 1.4, 21), 1e-6, eps=0.08))
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
@@ -275,7 +263,7 @@ def test_a_single_mode_gives_the_boundaries_of_hill_s_equation(n, damping):
         Term("C", "drag", 2 * np.eye(1), power=1),
     )
     values = {"lam2": 1.0, "mu": 0.0, "drag": 0.0}
-    system = LinearPeriodic(1, terms, values, _named(values))
+    system = LinearPeriodic(1, terms, values, named(values))
     label = f"2 w1 = {n} w" if n > 1 else "2 w1 = w"
     resonance = _resonance(system, label, (0.01, 4.0), detuning="lam2")
     assert resonance.speed == pytest.approx(n * n / 4, rel=1e-13)
@@ -348,7 +336,7 @@ def test_exponents_of_the_operator_approach_the_exact_ones():
 
 
 def test_a_parameter_beside_other_periodic_parts_expands_about_the_mean():
-    more = Term("K", None, _wave([[0.05, 0.0], [0.0, 0.0]]))
+    more = Term("K", None, wave([[0.05, 0.0], [0.0, 0.0]]))
     system = _pair(((0.4, 1.0), (1.0, -0.3))).with_terms(more)
     resonance = _resonance(system, "w1 + w2 = w")
     values = np.array([[0.05], [0.1]])
@@ -416,20 +404,20 @@ def test_four_exponents_that_meet_exactly():
     terms = (
         Term("M", None, np.eye(2)),
         Term("K", None, np.eye(2)),
-        Term("K", "eps", _wave([[0.0, 1.0], [1.0, 0.0]])),
+        Term("K", "eps", wave([[0.0, 1.0], [1.0, 0.0]])),
         Term("C", "d", np.eye(2)),
     )
-    both = LinearPeriodic(2, terms, {"eps": 0.0, "d": 0.0}, _named(["eps", "d"]))
+    both = LinearPeriodic(2, terms, {"eps": 0.0, "d": 0.0}, named(["eps", "d"]))
     one = LinearPeriodic(
         1,
         (
             Term("M", None, np.eye(1)),
             Term("K", None, np.eye(1)),
-            Term("K", "eps", _wave([[1.0]])),
+            Term("K", "eps", wave([[1.0]])),
             Term("C", "d", np.eye(1)),
         ),
         {"eps": 0.0, "d": 0.0},
-        _named(["eps", "d"]),
+        named(["eps", "d"]),
     )
     for drag in (0.0, 0.02):
         given = {"parameter": ("eps", 0.1), "order": 2, "d": drag}

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import floquet_multipliers, resonances, tongue
+from elastolink.runtime.floquet import resonances, tongue
+from periodic_systems import is_growing
 
 
 def _system(squares, wave, damping):
@@ -34,11 +35,6 @@ def _resonance(system, label):
     return next(item for item in resonances(system, (0.3, 12.0)) if item.label == label)
 
 
-def _grows(system, speed, limit, **parameters):
-    values = floquet_multipliers(system, speed, rtol=1e-13, **parameters).multipliers
-    return np.max(np.abs(values), axis=-1) > 1 + limit
-
-
 @pytest.mark.parametrize("damping", [(0.003, 0.013), (0.013, 0.003), (0.001, 0.03)])
 def test_unequal_damping_does_not_hide_a_tongue_beside_others(damping):
     # 2 w1, w1 + w2 and 2 w2 lie side by side; the motion is nearly all of the lightly damped mode.
@@ -54,7 +50,7 @@ def test_unequal_damping_does_not_hide_a_tongue_beside_others(damping):
     assert abs(found.upper - alone.upper) <= found.error + alone.error
     assert found.passed, dict(found.checks)
     ends = np.array([found.lower, found.upper]) + 3 * found.error * np.array([[-1.0], [1.0]])
-    assert _grows(system, ends, 0.0, eps=0.12).tolist() == [[False, True], [True, False]]
+    assert is_growing(system, ends, 0.0, eps=0.12).tolist() == [[False, True], [True, False]]
 
 
 def test_damping_of_one_mode_alone_leaves_no_end_beside_others_either():
@@ -87,5 +83,5 @@ def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
     resonance = _resonance(system, "w1 + w2 = w")
     found = tongue(system, resonance, parameter=("eps", 5.0), order=2)
     assert np.isnan(found.lower)
-    assert _grows(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
+    assert is_growing(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
     assert not found.passed

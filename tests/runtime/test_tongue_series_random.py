@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.floquet import floquet_multipliers, resonances, tongue
+from periodic_systems import named
 from scipy.integrate import solve_ivp
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
 
 
 def _waves(rng, size, symmetric=True):
@@ -47,7 +44,7 @@ def _random(seed: int, size: int = 2) -> LinearPeriodic:
         Term("K", "eps", _waves(rng, size)),
         Term("C", "c", _definite(rng, size)),
     )
-    return LinearPeriodic(size, terms, {"eps": 0.0, "c": 0.0}, _named(["eps", "c"]))
+    return LinearPeriodic(size, terms, {"eps": 0.0, "c": 0.0}, named(["eps", "c"]))
 
 
 def _growing(system, speed, limit, **parameters):

@@ -7,10 +7,7 @@ import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.floquet import floquet_multipliers, resonances, tongue
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
+from periodic_systems import named
 
 
 def _beam(**changes):
@@ -22,7 +19,7 @@ def _beam(**changes):
         Term("K", None, np.diag([9.0, 49.0])),
         Term("Kg", "load", lambda theta: np.cos(theta)[:, None, None] * np.ones((2, 2))),
     )
-    return LinearPeriodic(2, terms, values, _named(values))
+    return LinearPeriodic(2, terms, values, named(values))
 
 
 def test_speeds_of_a_constant_system():
@@ -123,7 +120,7 @@ def test_a_mean_system_at_divergence_is_refused():
         Term("K", None, np.diag([0.0, 49.0])),
         Term("Kg", "load", lambda theta: np.cos(theta)[:, None, None] * np.ones((2, 2))),
     )
-    system = LinearPeriodic(2, terms, {"load": 0.0}, _named(["load"]))
+    system = LinearPeriodic(2, terms, {"load": 0.0}, named(["load"]))
     resonance = resonances(system, (10.0, 20.0), highest=1)[0]
     assert resonance.label == "2 w2 = w"
     with pytest.raises(BadInput, match="multiple exponent"):

@@ -32,8 +32,8 @@ def turning():
     )
 
 
-def beam(count=4):
-    """Return M and K of a pinned beam without stretch, of unit length, mass and stiffness."""
+def pinned(count, *names):
+    """Return arrays of a pinned beam without stretch, of unit length, mass and stiffness."""
     found = element_arrays(
         "cubic",
         length=1.0 / count,
@@ -41,14 +41,14 @@ def beam(count=4):
         axial_stiffness=1.0,
         bending_stiffness=1.0,
     )
-    whole = np.zeros((2, 2 * count + 2, 2 * count + 2))
+    whole = np.zeros((len(names), 2 * count + 2, 2 * count + 2))
     bent = np.ix_([1, 2, 4, 5], [1, 2, 4, 5])
     for e in range(count):
         rows = np.ix_(range(2 * e, 2 * e + 4), range(2 * e, 2 * e + 4))
-        whole[0][rows] += found.mass[bent]
-        whole[1][rows] += found.stiffness[bent]
+        for array, name in zip(whole, names, strict=True):
+            array[rows] += getattr(found, name).reshape(-1, 6, 6)[0][bent]
     kept = [i for i in range(2 * count + 2) if i not in (0, 2 * count)]
-    return whole[0][np.ix_(kept, kept)], whole[1][np.ix_(kept, kept)]
+    return [array[np.ix_(kept, kept)] for array in whole]
 
 
 @establishes(
@@ -69,7 +69,7 @@ def test_terms_on_the_right_side_are_not_known():
     assert rate == pytest.approx(SIZES[1], rel=0.01)
     # M_a = wd W - w^2 M: in a mode, w^2 M over K is (w/omega)^2.
     assert (speed / frequency) ** 2 == pytest.approx(SIZES[2], rel=0.02)
-    mass, stiffness = beam()
+    mass, stiffness = pinned(4, "mass", "stiffness")
     values = scipy.linalg.eigvalsh(stiffness, mass)
     shifted = scipy.linalg.eigvalsh(stiffness - speed**2 / frequency**2 * values[0] * mass, mass)
     assert 1 - shifted[0] / values[0] == pytest.approx(SIZES[2], rel=0.02)
@@ -104,7 +104,7 @@ def test_terms_on_the_right_side_are_not_known():
 def test_modal_coordinates_of_a_structure_that_turns():
     speed, _ = turning()
     assert speed / follower_frequency() == pytest.approx(SIZES[3], rel=0.02)
-    mass, stiffness = beam()
+    mass, stiffness = pinned(4, "mass", "stiffness")
     values, modes = scipy.linalg.eigh(stiffness, mass)
     np.testing.assert_allclose(modes.T @ mass @ modes, np.eye(len(mass)), atol=1e-10)
     np.testing.assert_allclose(modes.T @ stiffness @ modes, np.diag(values), atol=1e-6 * values[-1])
@@ -157,7 +157,7 @@ def turned_springs(w=0.2):
     remark="A demand on C, not a result; alpha_n = 2 zeta_n omega_n with unit modal masses.",
 )
 def test_damping_that_leaves_the_modes_apart():
-    mass, stiffness = beam()
+    mass, stiffness = pinned(4, "mass", "stiffness")
     values, modes = scipy.linalg.eigh(stiffness, mass)
     omega = np.sqrt(values)
     modal = mass @ modes @ np.diag(2 * 0.02 * omega) @ modes.T @ mass
@@ -222,29 +222,10 @@ def test_geometric_stiffness_by_buckling():
     assert same(found[2:, 2:], symmetric(known) / (30 * L))
     assert found[:2, :].is_zero_matrix
     for count, expected, margin in ((1, 12.0, 1e-12), (8, np.pi**2, 1e-4)):
-        stiffness, geometric = column(count)
+        stiffness, geometric = pinned(count, "stiffness", "geometric")
         load = 1 / scipy.linalg.eigvalsh(geometric, stiffness)[-1]
         assert load == pytest.approx(expected, rel=margin)
         assert load >= np.pi**2
-
-
-def column(count):
-    """Return stiffness and geometric stiffness of a pinned column of unit length and EI."""
-    found = element_arrays(
-        "cubic",
-        length=1.0 / count,
-        mass_per_length=1.0,
-        axial_stiffness=1.0,
-        bending_stiffness=1.0,
-    )
-    whole = np.zeros((2, 2 * count + 2, 2 * count + 2))
-    bent = np.ix_([1, 2, 4, 5], [1, 2, 4, 5])
-    for e in range(count):
-        rows = np.ix_(range(2 * e, 2 * e + 4), range(2 * e, 2 * e + 4))
-        whole[0][rows] += found.stiffness[bent]
-        whole[1][rows] += found.geometric[0][bent]
-    kept = [i for i in range(2 * count + 2) if i not in (0, 2 * count)]
-    return whole[0][np.ix_(kept, kept)], whole[1][np.ix_(kept, kept)]
 
 
 # ---------------------------------------------------------------- frequencies
@@ -266,7 +247,7 @@ def column(count):
     remark="The scan has lost it; the sentence before names it the characteristic equation.",
 )
 def test_free_vibration_at_a_standstill():
-    mass, stiffness = beam(6)
+    mass, stiffness = pinned(6, "mass", "stiffness")
     values, modes = scipy.linalg.eigh(stiffness, mass)
     scale = np.linalg.det(stiffness)
     for value, mode in zip(values[:3], modes.T[:3], strict=True):

@@ -19,6 +19,7 @@ from elastolink.runtime.constrained.equations import Equations, State
 from elastolink.runtime.constrained.steppers import lobatto, projection, unprojected
 from elastolink.runtime.constrained.steppers.protocol import Control, natural_scales
 from elastolink.runtime.errors import BadInput, RedundantConstraints
+from elastolink.runtime.families import Constrained
 from elastolink.runtime.systems.rod.constrained import free_free_rod, rigid_state
 
 REVOLUTIONS = 10_000
@@ -123,6 +124,49 @@ def test_the_pendulum_turns_ten_thousand_times_as_its_elliptic_function():
     assert np.max(per_revolution) < 2e-10
 
 
+@pytest.mark.parametrize(("rtol", "start"), [(1e-6, 20.0), (1e-12, 20.0), (1e-9, 1.9), (1e-9, 2.1)])
+def test_windows_of_collocation_over_hundreds_of_turns(rtol, start):
+    """Fast turns, and swings and turns that nearly stop at the top, which double errors often."""
+    circle = Circle(gravity=1.0, start=start)
+    span = 300 * 2 * np.pi / 20 if start == 20.0 else 50.0
+    found = constrained_motion(circle.system, *circle.state, span, rtol=rtol, samples=40)
+    found.require()
+    q, _ = circle.exact(found.time)
+    assert np.all(np.max(np.abs(found.q - q), axis=0) <= found.error)
+    # The phase is off by a part of the tolerance in each window, and by no more.
+    assert np.max(found.error) < 1e3 * found.steps * max(rtol, 1e-13)
+    assert max(np.max(found.position_norm), np.max(found.velocity_norm)) < 2e-15
+
+
+def test_a_stiff_relaxation_takes_few_windows():
+    """Van der Pol's oscillator: explicit steps are bound to its fast decay, windows are not."""
+
+    def dynamics(q, qd, t):
+        batch = np.shape(q)[:-1]
+        push = 50.0 * (1.0 - np.asarray(q) ** 2) * qd - q
+        return {
+            "mass": np.ones((*batch, 1, 1)),
+            "rest": np.zeros((*batch, 1, 1)),
+            "forces": push[..., None],
+            "jacobian": np.zeros((*batch, 0, 1)),
+            "velocity_rhs": np.zeros((*batch, 0, 1)),
+            "gamma": np.zeros((*batch, 0, 1)),
+        }
+
+    def violation(q, t):
+        batch = np.shape(q)[:-1]
+        return {"constraints": np.zeros((*batch, 0, 1)), "jacobian": np.zeros((*batch, 0, 1))}
+
+    system = Constrained(1, 0, dynamics, violation)
+    found = constrained_motion(system, [2.0], [0.0], 30.0, rtol=1e-9, samples=20)
+    other = constrained_motion(
+        system, [2.0], [0.0], 30.0, rtol=1e-9, samples=20, method="projection"
+    )
+    found.require()
+    assert 20 * found.steps < other.steps
+    assert np.max(np.abs(found.q - other.q)) <= found.error[0] + other.error[0]
+
+
 def test_without_projection_the_constraints_drift():
     """The negative control: the same steps, not projected, leave the constraints steadily."""
     system = rod()
@@ -154,7 +198,7 @@ def test_five_modes_are_stiff_and_stay_on_the_constraints():
     start = rigid_state(system, 0.0)
     span = 0.05 * system.period
     ends = {}
-    for method in ("projection", "coordinate_partitioning", "lobatto"):
+    for method in ("collocation", "projection", "coordinate_partitioning", "lobatto"):
         found = constrained_motion(
             system, start.q, start.qd, span, method=method, samples=4, rtol=1e-8
         )

@@ -10,10 +10,7 @@ from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, mon
 from elastolink.runtime.simulation.trajectory import simulate
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-
-def _named(names):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
+from periodic_systems import named
 
 
 def _mathieu(period: float = 2 * np.pi) -> LinearPeriodic:
@@ -25,7 +22,7 @@ def _mathieu(period: float = 2 * np.pi) -> LinearPeriodic:
         Term("Kg", "mu", lambda theta: np.cos(rate * theta)[:, None, None], power=2),
         Term("C", "K2", np.eye(1), power=1),
     )
-    return LinearPeriodic(1, terms, numbers, _named(numbers), period=period)
+    return LinearPeriodic(1, terms, numbers, named(numbers), period=period)
 
 
 @pytest.mark.parametrize("waves", [100.25, 1000.1, 5000.3])
@@ -218,7 +215,7 @@ def test_random_systems_pass_their_own_checks(numbers, speed, damping):
         Term("K", None, 9 * np.eye(2) + 2 * symmetric(spring)),
         Term("C", "C", np.eye(2)),
     )
-    system = LinearPeriodic(2, terms, {"C": damping}, _named(("C",)))
+    system = LinearPeriodic(2, terms, {"C": damping}, named(("C",)))
     found = floquet_multipliers(system, speed)
     assert found.passed, found.checks
     assert np.all(np.isfinite(found.error))

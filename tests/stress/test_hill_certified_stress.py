@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from boundary_cases import rough
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.hill.exact.derivatives import boundary_derivatives
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
@@ -11,15 +12,6 @@ from elastolink.runtime.hill.exact.quasi import bloch_bands
 from elastolink.runtime.series.periodic import PeriodicFunction
 
 COSINE = PeriodicFunction([0.0, 1.0])
-
-
-def rough(harmonics):
-    rng = np.random.default_rng(4)
-    m = np.arange(harmonics + 1)
-    size = 1.0 / (1.0 + m) ** 1.5
-    b = rng.uniform(-1, 1, m.size) * size
-    b[0] = 0.0
-    return PeriodicFunction(rng.uniform(-1, 1, m.size) * size, b)
 
 
 def agree(f, mu, regions, damping=0.0):

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from boundary_cases import rough
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
@@ -21,15 +22,6 @@ def general(harmonics, fall, seed=0):
     b = rng.uniform(-1, 1, harmonics + 1) * size
     b[0] = 0.0
     return PeriodicFunction(rng.uniform(-1, 1, harmonics + 1) * size, b)
-
-
-def rough(harmonics):
-    rng = np.random.default_rng(4)
-    m = np.arange(harmonics + 1)
-    size = 1.0 / (1.0 + m) ** 1.5
-    b = rng.uniform(-1, 1, m.size) * size
-    b[0] = 0.0
-    return PeriodicFunction(rng.uniform(-1, 1, m.size) * size, b)
 
 
 @extended

@@ -14,14 +14,11 @@ from elastolink.runtime.constrained import (
 )
 from elastolink.runtime.constrained.steppers import METHODS
 from elastolink.runtime.families import Constrained
+from pendulum_truth import NUMBERS, STROKE, cartesian, drives
 
-NUMBERS = {"block": 1.7, "bob": 0.6, "rod": 0.8, "spring": 35.0, "damping": 0.4, "gravity": 9.81}
-DRIVE, STROKE = 3.1, 0.15  # rad/s, m
-DRIVES = {
-    "drive": lambda q, t: STROKE * np.sin(DRIVE * t),
-    "drive_d1": lambda q, t: STROKE * DRIVE * np.cos(DRIVE * t),
-    "drive_d2": lambda q, t: -STROKE * DRIVE**2 * np.sin(DRIVE * t),
-}
+DAMPED = NUMBERS | {"damping": 0.4}
+DRIVE = 3.1  # rad/s
+DRIVES = drives(DRIVE)
 
 
 @pytest.fixture(scope="module")
@@ -29,17 +26,9 @@ def system(emit):
     def made(formulation: str, **changes) -> Constrained:
         found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", formulation))
         external = DRIVES if formulation == "driven" else None
-        return Constrained.from_module(found.module, NUMBERS | changes, external=external)
+        return Constrained.from_module(found.module, DAMPED | changes, external=external)
 
     return made
-
-
-def cartesian(place, angle, speed, turning):
-    rod = NUMBERS["rod"]
-    sin, cos = np.sin(angle), np.cos(angle)
-    q = np.stack([place, place + rod * sin, -rod * cos], axis=-1)
-    qd = np.stack([speed, speed + rod * turning * cos, rod * turning * sin], axis=-1)
-    return q, qd
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -68,7 +57,9 @@ def test_multipliers_and_motion_are_those_of_the_minimal_form(system, method):
     )
 
 
-@pytest.mark.parametrize("method", ["projection", "coordinate_partitioning", "lobatto"])
+@pytest.mark.parametrize(
+    "method", ["collocation", "projection", "coordinate_partitioning", "lobatto"]
+)
 def test_the_drive_is_followed(system, method):
     q, qd = cartesian(0.0, 0.7, STROKE * DRIVE, 0.2)
     found = constrained_motion(system("driven"), q, qd, 3.0, method=method, samples=30)
@@ -77,7 +68,7 @@ def test_the_drive_is_followed(system, method):
     np.testing.assert_allclose(found.q[:, 0], exact, atol=1e-15)
     # The multiplier of the drive is its force: block and bob by Newton.
     force = NUMBERS["block"] * found.qdd[:, 0] + NUMBERS["bob"] * found.qdd[:, 1]
-    force += NUMBERS["spring"] * found.q[:, 0] + NUMBERS["damping"] * found.qd[:, 0]
+    force += NUMBERS["spring"] * found.q[:, 0] + DAMPED["damping"] * found.qd[:, 0]
     np.testing.assert_allclose(found.multipliers[:, 1], force, atol=1e-10)
 
 

@@ -8,24 +8,40 @@ from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.errors import BadInput, SelfCheckFailed
 from elastolink.runtime.families import Constrained
+from pendulum_truth import NUMBERS, ROD, STROKE, drives
 from scipy.integrate import solve_ivp
 
-ROD, GRAVITY, STROKE, DRIVE = 0.8, 9.81, 0.15, 6.1
-NUMBERS = {"block": 1.7, "bob": 0.6, "rod": ROD, "spring": 35.0, "damping": 0.0}
+GRAVITY, DRIVE = NUMBERS["gravity"], 6.1
 PERIOD = 2 * np.pi / DRIVE
-DRIVES = {
-    "drive": lambda q, t: STROKE * np.sin(DRIVE * t),
-    "drive_d1": lambda q, t: STROKE * DRIVE * np.cos(DRIVE * t),
-    "drive_d2": lambda q, t: -STROKE * DRIVE**2 * np.sin(DRIVE * t),
-}
+DRIVES = drives(DRIVE)
 
 
 @pytest.fixture(scope="module")
 def pendulum(emit):
     found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "driven"))
     return Constrained.from_module(
-        found.module, {**NUMBERS, "gravity": GRAVITY}, external=DRIVES, provenance=found.provenance
+        found.module, NUMBERS, external=DRIVES, provenance=found.provenance
     )
+
+
+@pytest.fixture(scope="module")
+def free(emit):
+    found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "multiplier"))
+    return Constrained.from_module(found.module, NUMBERS)
+
+
+def beginning(orbit):
+    """Return angle and angular speed of the rod at the start of an orbit."""
+    angle = np.arctan2(orbit.q[0, 1] - orbit.q[0, 0], -orbit.q[0, 2])
+    return angle, (orbit.qd[0, 1] - orbit.qd[0, 0]) / (ROD * np.cos(angle))
+
+
+def squares_at_rest():
+    """Return the squares of the natural frequencies of the pendulum on its spring."""
+    # By hand: total s'' + bob rod a'' + spring s = 0,  s'' + rod a'' + gravity a = 0.
+    bob, total = NUMBERS["bob"], NUMBERS["bob"] + NUMBERS["block"]
+    mass = np.array([[total, bob * ROD], [1.0, ROD]])
+    return np.linalg.eigvals(np.linalg.solve(mass, np.diag([NUMBERS["spring"], GRAVITY])))
 
 
 def one_turn(angle, turning):
@@ -47,8 +63,7 @@ def test_orbit_and_multipliers_are_those_of_the_angle(pendulum):
     start = [0.0, 0.0, -ROD], [STROKE * DRIVE, STROKE * DRIVE, 0.0]
     orbit = periodic_orbit(pendulum, PERIOD, *start)
     orbit.require()
-    angle = np.arctan2(orbit.q[0, 1] - orbit.q[0, 0], -orbit.q[0, 2])
-    turning = (orbit.qd[0, 1] - orbit.qd[0, 0]) / (ROD * np.cos(angle))
+    angle, turning = beginning(orbit)
     end, matrix = one_turn(angle, turning)
     np.testing.assert_allclose(end, [angle, turning], atol=1e-11)
     found = orbit_multipliers(orbit)
@@ -66,8 +81,7 @@ def test_the_rod_upside_down_is_unstable(pendulum):
     q = np.stack([place, place, np.full(32, ROD)], axis=1)
     orbit = periodic_orbit(pendulum, PERIOD, q, np.stack([speed, speed, 0 * t], axis=1))
     orbit.require()
-    angle = np.arctan2(orbit.q[0, 1] - orbit.q[0, 0], -orbit.q[0, 2])
-    turning = (orbit.qd[0, 1] - orbit.qd[0, 0]) / (ROD * np.cos(angle))
+    angle, turning = beginning(orbit)
     exact = np.sort(np.linalg.eigvals(one_turn(angle, turning)[1]).real)
     found = orbit_multipliers(orbit)
     found.require()
@@ -88,18 +102,13 @@ def test_a_period_that_the_drive_has_not_is_refused(pendulum):
     )
 
 
-def test_rest_has_the_multipliers_of_its_vibrations(emit):
-    found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "multiplier"))
-    free = Constrained.from_module(found.module, {**NUMBERS, "gravity": GRAVITY})
+def test_rest_has_the_multipliers_of_its_vibrations(free):
     period = 1.7
     orbit = periodic_orbit(free, period, [0.02, 0.1, -ROD], np.zeros(3))
     np.testing.assert_allclose(orbit.q, np.tile([0.0, 0.0, -ROD], (len(orbit.t), 1)), atol=1e-12)
     multipliers = orbit_multipliers(orbit)
     multipliers.require()
-    # By hand: total s'' + bob rod a'' + spring s = 0,  s'' + rod a'' + gravity a = 0.
-    bob, total = NUMBERS["bob"], NUMBERS["bob"] + NUMBERS["block"]
-    mass = np.array([[total, bob * ROD], [1.0, ROD]])
-    squares = np.linalg.eigvals(np.linalg.solve(mass, np.diag([NUMBERS["spring"], GRAVITY])))
+    squares = squares_at_rest()
     exact = np.exp(1j * np.sqrt(squares) * period)
     gap = np.abs(multipliers.physical[:, None] - np.concatenate([exact, exact.conj()]))
     assert multipliers.physical.shape == (4,)
@@ -107,12 +116,8 @@ def test_rest_has_the_multipliers_of_its_vibrations(emit):
     assert np.max(np.min(gap, axis=0)) < 1e-13
 
 
-def test_where_a_multiplier_of_the_motion_is_one_nothing_is_called_stable(emit):
-    found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "multiplier"))
-    free = Constrained.from_module(found.module, {**NUMBERS, "gravity": GRAVITY})
-    bob, total = NUMBERS["bob"], NUMBERS["bob"] + NUMBERS["block"]
-    mass = np.array([[total, bob * ROD], [1.0, ROD]])
-    squares = np.linalg.eigvals(np.linalg.solve(mass, np.diag([NUMBERS["spring"], GRAVITY])))
+def test_where_a_multiplier_of_the_motion_is_one_nothing_is_called_stable(free):
+    squares = squares_at_rest()
     # Of the rod at rest every small vibration of this period is periodic too.
     period = float(2 * np.pi / np.sqrt(np.min(squares.real)))
     orbit = periodic_orbit(free, period, [0.0, 0.0, -ROD], np.zeros(3))
@@ -128,9 +133,7 @@ def test_where_a_multiplier_of_the_motion_is_one_nothing_is_called_stable(emit):
     assert aside.stable
 
 
-def test_the_distance_from_the_guess_is_told(emit):
-    found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "multiplier"))
-    free = Constrained.from_module(found.module, {**NUMBERS, "gravity": GRAVITY})
+def test_the_distance_from_the_guess_is_told(free):
     near = periodic_orbit(free, 1.7, [0.0, 0.0, -ROD], np.zeros(3))
     assert near.moved < 1e-12
     # Released from 30 degrees it swings; at rest is where the iteration ends.

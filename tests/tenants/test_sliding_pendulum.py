@@ -7,23 +7,11 @@ import pytest
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import Constrained
+from pendulum_truth import NUMBERS, STROKE, cartesian, drives, energy_of
 from scipy.integrate import solve_ivp
 
-NUMBERS = {
-    "block": 1.7,
-    "bob": 0.6,
-    "rod": 0.8,
-    "spring": 35.0,
-    "damping": 0.0,
-    "gravity": 9.81,
-}
 DRIVE = 3.1  # rad/s
-STROKE = 0.15  # m
-DRIVES = {
-    "drive": lambda q, t: STROKE * np.sin(DRIVE * t),
-    "drive_d1": lambda q, t: STROKE * DRIVE * np.cos(DRIVE * t),
-    "drive_d2": lambda q, t: -STROKE * DRIVE**2 * np.sin(DRIVE * t),
-}
+DRIVES = drives(DRIVE)
 
 
 @pytest.fixture(scope="module")
@@ -37,14 +25,6 @@ def systems(emit):
         )
 
     return system
-
-
-def cartesian(place, angle, speed, turning, rod=NUMBERS["rod"]):
-    """Place and speed of block and bob from the minimal coordinates."""
-    sin, cos = np.sin(angle), np.cos(angle)
-    q = np.stack([place, place + rod * sin, -rod * cos], axis=-1)
-    qd = np.stack([speed, speed + rod * turning * cos, rod * turning * sin], axis=-1)
-    return q, qd
 
 
 def march(system: Constrained, q, qd, times):
@@ -114,13 +94,7 @@ def test_motion_keeps_energy_and_length(systems):
     start = (0.05, 1.1, 0.0, 0.4)
     times = np.linspace(0.0, 6.0, 121)
     q, qd = march(system, *cartesian(*start), times)
-    m = NUMBERS
-    energy = (
-        m["block"] / 2 * qd[:, 0] ** 2
-        + m["bob"] / 2 * (qd[:, 1] ** 2 + qd[:, 2] ** 2)
-        + m["spring"] / 2 * q[:, 0] ** 2
-        + m["bob"] * m["gravity"] * q[:, 2]
-    )
+    energy = energy_of(q, qd)
     np.testing.assert_allclose(energy, energy[0], atol=1e-8)
     # Nothing pulls back to the constraint at acceleration level: the drift is the integrator's.
     drift = system.violation(q, times)["constraints"][:, 0, 0]
@@ -150,13 +124,7 @@ def test_prescribed_motion_is_passed_in(systems):
     assert np.max(np.abs(defect)) < 1e-8
     # What the drive gives is what the energy gains.
     _, multipliers = system.accelerations(q, qd, times)
-    m = NUMBERS
-    energy = (
-        m["block"] / 2 * qd[:, 0] ** 2
-        + m["bob"] / 2 * (qd[:, 1] ** 2 + qd[:, 2] ** 2)
-        + m["spring"] / 2 * q[:, 0] ** 2
-        + m["bob"] * m["gravity"] * q[:, 2]
-    )
+    energy = energy_of(q, qd)
     power = multipliers[:, 1] * qd[:, 0]
     work = solve_work(times, power)
     np.testing.assert_allclose(energy - energy[0], work, atol=2e-5)

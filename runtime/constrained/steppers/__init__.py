@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from .collocation import Window, collocation
 from .coordinate_partitioning import coordinate_partitioning
 from .dormand_prince import ORDER as _EXPLICIT_ORDER
 from .gear_gupta_leimkuhler import gear_gupta_leimkuhler
@@ -21,6 +22,8 @@ __all__ = [
     "Stepper",
     "StoppedEarly",
     "VariedMotion",
+    "Window",
+    "collocation",
     "coordinate_partitioning",
     "gear_gupta_leimkuhler",
     "jacobian_rate",
@@ -48,6 +51,10 @@ class Method:
         Whether it keeps to even steps under a tolerance too.
     gridded : bool
         Whether it takes the ends of its steps where given.
+    stages : tuple of int
+        Least and largest number of stages.
+    judged : bool
+        Whether its steps bring their error figure with them, so that no second run is made.
     """
 
     march: Stepper
@@ -55,6 +62,8 @@ class Method:
     fixed: bool = True
     even: bool = False
     gridded: bool = False
+    stages: tuple[int, int] = (2, 20)
+    judged: bool = False
 
 
 def _explicit(stages: int) -> int:
@@ -62,6 +71,7 @@ def _explicit(stages: int) -> int:
 
 
 METHODS: Mapping[str, Method] = {
+    "collocation": Method(collocation, lambda stages: 2 * stages, stages=(6, 32), judged=True),
     "projection": Method(projection, _explicit, gridded=True),
     "coordinate_partitioning": Method(coordinate_partitioning, _explicit, gridded=True),
     "lobatto": Method(lobatto, lambda stages: 2 * stages - 2, even=True),

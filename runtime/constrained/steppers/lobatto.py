@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import bad
 from ..equations import Array, Equations, NoConvergence, State
 from .lobatto_tableau import LobattoPair, lobatto_pair
-from .protocol import Control, Step, StoppedEarly, first_step
+from .protocol import STAGES, Control, Step, StoppedEarly, first_step
 
 _MOST = 30
 _EPS = float(np.finfo(float).eps)
@@ -82,7 +82,7 @@ def lobatto(
     StoppedEarly
         If a step has no solution.
     """
-    pair = lobatto_pair(control.stages)
+    pair = lobatto_pair(control.stages or STAGES)
     longest = control.step or _pilot(equations, start, float(times[-1]), control, pair)
     state = start
     guess: Stages | None = None

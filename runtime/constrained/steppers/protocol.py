@@ -29,8 +29,8 @@ class Control:
         Longest step [s].
     refine : float
         Factor by which fixed steps are shortened, for a second run that tells the error.
-    stages : int
-        Stages of an implicit method.
+    stages : int or None
+        Stages of an implicit method; None for its own choice.
     grid : ndarray or None
         Ends of the steps [s] of an explicit method, instead of a tolerance.
     """
@@ -41,7 +41,7 @@ class Control:
     step: float | None = None
     longest: float = np.inf
     refine: float = 1.0
-    stages: int = STAGES
+    stages: int | None = None
     grid: Array | None = None
 
 

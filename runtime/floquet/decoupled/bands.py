@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,18 +11,22 @@ from ...errors import bad
 from ...families import DAMPING, LinearPeriodic
 from ...results import Check, provenance
 from ..boundary_speeds import speed_span
-from ..edges.checks import edge_checks
+from ..edges.checks import contradictions, edge_checks
 from ..edges.damped_edges import damped_regions
 from ..edges.mended import mended
-from ..edges.mode_labels import averaged_modes, principal_labels
+from ..edges.mode_labels import Modes, principal_labels
 from ..edges.pair_roots import Edges, PairFunction, refined_edges
 from ..edges.phase_events import Events, meetings, sampled_phases
 from ..edges.regions import Regions, joined
 from ..edges.tracing import StabilityEdges, combined_regions
+from ..monodromy_matrix import floquet_multipliers
 from ..speed_tables import tabulated
 from .reduced import SlowSystem, slow_system
+from .shares import held_modes_at, pair_shares
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+_Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
 
 _MARGIN = 1.05
 # Sine of the argument up to which two multipliers meet at +-1.
@@ -33,7 +39,7 @@ def unstable_bands(
     modes: int | None = None,
     *,
     rtol: float = 1e-11,
-    thorough: bool = False,
+    thorough: bool = True,
     **parameters: float,
 ) -> StabilityEdges:
     """Return the unstable bands of the slow modes of a stiff system in a range of speeds.
@@ -56,9 +62,9 @@ def unstable_bands(
     rtol : float
         Wanted error of the monodromy matrices.
     thorough : bool
-        Whether, undamped, each crossing of the circle is looked for where bands that single pairs
-        make contradict the number of multipliers off it (check ``verdicts``), because more than
-        two meet: ten times as dear.
+        Whether, undamped, each crossing of the circle is looked for around the speeds where the
+        bands that single pairs make contradict the number of multipliers off it, because more
+        than two meet.
     **parameters : float
         Parameter values that replace the system's own; geometry too.
 
@@ -98,11 +104,10 @@ def unstable_bands(
     regions = pairs.regions()
     if damped:
         regions = damped_regions(own, regions, span, rtol, {})
+    elif thorough:
+        regions = pairs.mended(regions, (low, high))
     regions = regions.overlapping(low, high)
     checks = edge_checks(own, regions, (low, high), {})
-    if thorough and not damped and not all(check.passed for check in checks.values()):
-        regions = pairs.mended().overlapping(low, high)
-        checks = edge_checks(own, regions, (low, high), {})
     checks["decoupled"] = Check(slow.error, 1e-3)
     return StabilityEdges(
         method="modulus 1 of a multiplier of the slow modes"
@@ -143,36 +148,73 @@ class _Pairs:
         function = PairFunction(system, {}, rtol)
         own = meetings(samples, principal=True)
         edges = refined_edges(function, own)
-        self._principal = _principal(system, own, edges)
+        self._principal = _principal(own, edges, self._described)
         self._events = meetings(samples)
         pairs = refined_edges(function, self._events)
-        self._combined = combined_regions(system, self._events, pairs, {})
+        self._combined = combined_regions(system, self._events, pairs, {}, self._described)
         self._usable = np.abs(np.sin(pairs.phase)) > _REAL
         # Width that each pair was searched down to.
         self.least = float(np.max(np.concatenate([edges.least, pairs.least]), initial=0.0))
+
+    def _described(self, speed: Array, met: ComplexArray) -> tuple[Modes, Array]:
+        modes = held_modes_at(self._system, speed)
+        return modes, pair_shares(self._system, modes, speed, met, self._rtol)
 
     def regions(self) -> Regions:
         """Return the bands as single pairs make them."""
         return joined(self._principal, self._combined.take(np.flatnonzero(self._usable)))
 
-    def mended(self) -> Regions:
-        """Return the bands that agree with the number of multipliers off the circle: dear."""
-        ends = [self._principal.lower, self._principal.upper, self._combined.lower]
-        near = np.concatenate([*ends, self._combined.upper, self._events.inside])
-        where = self._span, near
-        found = mended(self._system, self._combined, self._usable, where, self._rtol, {})
-        return joined(self._principal, found)
+    def mended(self, regions: Regions, span: tuple[float, float]) -> Regions:
+        """Return the bands set right where they contradict the number of multipliers off it.
+
+        Around each such place, if that leaves fewer contradictions there.
+        """
+        wrong = np.concatenate(contradictions(self._system, regions, span, {}))
+        ends = np.concatenate([self._span, regions.begin, regions.end, self._events.inside])
+        ends = np.unique(ends[(ends >= self._span[0]) & (ends <= self._span[1])])
+        best, combined, usable = regions, self._combined, self._usable
+        for low, high in self._stretches(ends, wrong):
+            where = (low, high), ends[(ends > low) & (ends < high)]
+            tried = mended(self._system, combined, usable, where, self._rtol, {})
+            found = joined(self._principal, tried)
+            if self._wrong(found, low, high) < self._wrong(best, low, high):
+                best, combined = found, tried
+                usable = np.ones(len(combined.kind), dtype=bool)
+        return best
+
+    def _wrong(self, regions: Regions, low: float, high: float) -> int:
+        """Return the number of contradictions in a stretch."""
+        own = regions.overlapping(low, high)
+        return sum(len(w) for w in contradictions(self._system, own, (low, high), {}))
+
+    def _stretches(self, ends: Array, wrong: Array) -> list[tuple[float, float]]:
+        """Return stretches around speeds, from one where nothing grows to another, apart."""
+        if not len(wrong):
+            return []
+        middle = 0.5 * (ends[1:] + ends[:-1])
+        calm = middle[floquet_multipliers(self._system, middle, rtol=self._rtol).stable]
+        around = np.concatenate([[self._span[0]], calm, [self._span[1]]])
+        after = np.searchsorted(around, np.clip(wrong, *self._span), side="right")
+        after = np.clip(after, 1, len(around) - 1)
+        found: list[tuple[float, float]] = []
+        for low, high in np.unique(np.stack([around[after - 1], around[after]], axis=1), axis=0):
+            if found and low <= found[-1][1]:
+                found[-1] = found[-1][0], float(high)
+            else:
+                found.append((float(low), float(high)))
+        return found
 
 
-def _principal(system: LinearPeriodic, events: Events, edges: Edges) -> Regions:
+def _principal(events: Events, edges: Edges, described: _Described) -> Regions:
     """Return the bands in which a mode's own multipliers meet, with labels."""
     kept = np.abs(np.sin(edges.phase)) <= np.sqrt(_REAL)
-    index = np.flatnonzero(kept)
+    index = _single(edges, np.flatnonzero(kept))
     lower, upper, phase = edges.lower[index], edges.upper[index], edges.phase[index]
     reach = events.reach[index]
     middle = np.where(np.isfinite(lower + upper), 0.5 * (lower + upper), np.mean(reach, axis=1))
     real = np.where(np.cos(phase) > 0, 1.0, -1.0)
-    mode, number, off = principal_labels(averaged_modes(system, middle, {}), real)
+    modes, shares = described(middle, real.astype(complex))
+    mode, number, off = principal_labels(modes, real, shares)
     return Regions(
         lower,
         upper,
@@ -185,3 +227,19 @@ def _principal(system: LinearPeriodic, events: Events, edges: Edges) -> Regions:
         np.where(np.isfinite(upper), upper, reach[:, 1]),
         ("principal",) * len(index),
     )
+
+
+def _single(edges: Edges, index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the numbers of bands without those open ones that another event has led to too."""
+    found: list[int] = []
+    for row in index.tolist():
+        ends = edges.lower[row], edges.upper[row]
+        slack = 4 * (edges.error[row] + np.finfo(float).eps * edges.upper[row])
+        same = [
+            i
+            for i in found
+            if abs(edges.lower[i] - ends[0]) <= slack and abs(edges.upper[i] - ends[1]) <= slack
+        ]
+        if not same or not ends[1] - ends[0] > 2 * slack:
+            found.append(row)
+    return np.array(found, dtype=np.intp)

@@ -51,6 +51,8 @@ class Slow:
         Largest mean real part of the fast frozen exponents, per radian, ``(nb,)``.
     rounding : ndarray
         Size of the round-off of G's entries, ``(nb,)``.
+    passes : ndarray of int
+        Steps of the Riccati equation's iteration that were worth their while, ``(nb,)``.
     """
 
     generator: Array
@@ -61,6 +63,7 @@ class Slow:
     coupling: Array
     drift: Array
     rounding: Array
+    passes: NDArray[np.int64]
 
     def change(self, period: float) -> float:
         """Return the largest relative change of a monodromy matrix by the residual."""
@@ -116,10 +119,14 @@ def modal_arrays(form: CanonicalForm, frames: Frames) -> Modal:
     return Modal(gyro, inertia, held, None if drag is None else stiffness_in(basis, drag), pulled)
 
 
-def slow_part(form: CanonicalForm, frames: Frames) -> Slow:
-    """Return the slow parts of a batch of speeds, one speed at a time."""
+def slow_part(form: CanonicalForm, frames: Frames, most: int = _PASSES) -> Slow:
+    """Return the slow parts of a batch of speeds, one speed at a time.
+
+    With ``most`` steps of the iteration, the number that the highest speed bears, the result is as
+    smooth in the speed as the steps are; each speed's own best number would make it jump.
+    """
     modal = modal_arrays(form, frames)
-    found = [_one(form, frames, modal, row) for row in range(len(form.speed))]
+    found = [_one(form, frames, modal, row, most) for row in range(len(form.speed))]
     columns = [np.stack(part) for part in zip(*found, strict=True)]
     return Slow(*columns)
 
@@ -129,7 +136,9 @@ def _row(values: Array | None, row: int) -> Array | float:
     return 0.0 if values is None else values[min(row, len(values) - 1)]
 
 
-def _one(form: CanonicalForm, frames: Frames, modal: Modal, row: int) -> tuple[Array | float, ...]:
+def _one(
+    form: CanonicalForm, frames: Frames, modal: Modal, row: int, most: int
+) -> tuple[Array | float, ...]:
     n, k = frames.basis.shape[-1], frames.modes
     count, speed = len(frames.theta), form.speed[row]
     level = np.sqrt(np.abs(frames.level)) / speed
@@ -151,10 +160,10 @@ def _one(form: CanonicalForm, frames: Frames, modal: Modal, row: int) -> tuple[A
     if k == n:
         generator, embedding = parts, np.broadcast_to(np.eye(2 * n), parts.shape)
         before = generator
-        residual, gap, drift = 0.0, np.inf, -np.inf
+        residual, gap, drift, passes = 0.0, np.inf, -np.inf, 0
     else:
         riccati = _Riccati(form, frames, modal, row, parts, scale)
-        w, coarse, residual = riccati.solve()
+        w, coarse, residual, passes = riccati.solve(most)
         generator, embedding = _canonical(parts, w, k, form.system.period)
         before = _canonical(parts, coarse, k, form.system.period)[0]
         gap, drift = riccati.gap, riccati.drift
@@ -176,6 +185,7 @@ def _one(form: CanonicalForm, frames: Frames, modal: Modal, row: int) -> tuple[A
         coupling / max(gap, 1e-300),
         drift,
         rounding,
+        passes,
     )
 
 
@@ -237,21 +247,21 @@ class _Riccati:
         self.drift = float(np.max(-np.mean(self._drag, axis=0) / 2, initial=-np.inf))
         self._kept = len(frames.theta) // _KEPT
 
-    def solve(self) -> tuple[Array, Array, float]:
-        """Return W, ``(nt, 2(n - k), 2k)``, the one before it, and the residual of W."""
+    def solve(self, most: int) -> tuple[Array, Array, float, int]:
+        """Return W, ``(nt, 2(n - k), 2k)``, the one before it, its residual and its passes."""
         w = np.zeros_like(self._fs)
-        best, before, least = w, w, np.inf
-        for _ in range(_PASSES):
+        best, before, least, passes = w, w, np.inf, 0
+        for number in range(most + 1):
             residual = self._residual(w)
             size = float(np.max(np.abs(residual), initial=0.0))
             if not size < least:
                 break
             gain = size / least
-            before, best, least = best, w, size
-            if gain > 0.5 and least < 1e-11:
+            before, best, least, passes = best, w, size, number
+            if number == most or (gain > 0.5 and least < 1e-11):
                 break
             w = w + self._filtered(self._step(residual))
-        return best, before, least
+        return best, before, least, passes
 
     def _residual(self, w: Array) -> Array:
         return (

@@ -165,17 +165,8 @@ class SlowModes:
     ) -> SlowMultipliers:
         """Return what :func:`characteristic_exponents` does."""
         system = self._system
-        if not 1e-12 <= rtol <= 1e-2:
-            raise bad("rtol", rtol, "a number from 1e-12 to 1e-2", "choose 1e-9")
-        form = canonical_form(system, speed, self._changed)
         wanted = self.wanted(count)
-        if self._store is None and len(form.speed):
-            self._store = _FrameStore(form)
-        found = [
-            _best(form, self._store, row, wanted, rtol)
-            for row in range(len(form.speed))
-            if self._store is not None
-        ]
+        form, found = self._found(speed, wanted, rtol)
         shape, m = form.batch, 2 * wanted
         rows = [_lowest(one, form.conservative, wanted) for one in found]
         columns = [np.array([row[i] for row in rows]).reshape(*shape, m) for i in range(5)]
@@ -196,6 +187,32 @@ class SlowModes:
             frequency=level * form.speed.reshape(*shape, 1),
             retained=np.array([one.modes for one in found], dtype=np.int64).reshape(shape),
         )
+
+    def motions(self, speed: float, count: int, *, rtol: float = 1e-9) -> SlowMonodromy:
+        """Return the monodromy matrix of the slow part at one speed, with its ``states``.
+
+        It holds at least ``count`` modes.
+
+        Raises
+        ------
+        BadInput
+            As :func:`characteristic_exponents`.
+        """
+        return self._found(speed, self.wanted(count), rtol, kept=True)[1][0]
+
+    def _found(
+        self, speed: ArrayLike, wanted: int, rtol: float, *, kept: bool = False
+    ) -> tuple[CanonicalForm, list[SlowMonodromy]]:
+        if not 1e-12 <= rtol <= 1e-2:
+            raise bad("rtol", rtol, "a number from 1e-12 to 1e-2", "choose 1e-9")
+        form = canonical_form(self._system, speed, self._changed)
+        if self._store is None and len(form.speed):
+            self._store = _FrameStore(form)
+        return form, [
+            _best(form, self._store, row, wanted, rtol, kept=kept)
+            for row in range(len(form.speed))
+            if self._store is not None
+        ]
 
 
 def _known(signs: Array) -> Any:
@@ -222,6 +239,9 @@ class SlowMonodromy:
         Parts of the error of the matrix, over its largest entry.
     drift : float
         Largest mean growth of the modes left out, crank held, per radian.
+    states : ndarray or None
+        (q, M q') of the canonical slow coordinates at those angles, ``(ns, 2n, 2k)``, where asked
+        for.
     """
 
     matrix: Array
@@ -233,6 +253,7 @@ class SlowMonodromy:
     residual: float
     rounding: float
     drift: float
+    states: Array | None = None
 
     @property
     def error(self) -> float:
@@ -277,7 +298,13 @@ class _FrameStore:
 
 
 def _best(
-    form: CanonicalForm, store: _FrameStore, row: int, wanted: int, rtol: float
+    form: CanonicalForm,
+    store: _FrameStore,
+    row: int,
+    wanted: int,
+    rtol: float,
+    *,
+    kept: bool = False,
 ) -> SlowMonodromy:
     """Return the monodromy matrix with the fewest modes that decouple well enough."""
     own = form.take(slice(row, row + 1))
@@ -293,6 +320,8 @@ def _best(
         if last.residual > 0.3 * rtol:
             left = decoupling_error(slow, last, period)
             last = replace(last, residual=left)
+        if kept:
+            last = replace(last, states=_states(own, frames, slow))
         if last.residual <= 0.3 * rtol:
             return last
     if last is None:
@@ -300,12 +329,28 @@ def _best(
     return last
 
 
+def _states(form: CanonicalForm, frames: Frames, slow: Slow) -> Array:
+    """Return (q, M q') of the canonical slow coordinates at the stations, ``(ns, 2n, 2k)``."""
+    every = slice(None, None, len(frames.theta) // _STATIONS)
+    theta, basis, n = frames.theta[every], frames.basis[every], frames.basis.shape[-1]
+    mass = form.require_mass(form.assemble("M", theta))[0]
+    scale, embedding = slow.scale[0][:, None], slow.embedding[0, every]
+    place = basis @ (scale * embedding[:, :n])
+    # The momentum goes with the inverse of the transpose of the basis, which is M times the basis.
+    momentum = mass @ basis @ (embedding[:, n:] / scale)
+    gyro = form.assemble("A", theta)
+    return np.concatenate([place, momentum if gyro is None else momentum - gyro[0] @ place], axis=1)
+
+
 def decoupling_error(slow: Slow, found: SlowMonodromy, period: float) -> float:
     """Return the error of the matrix by incomplete decoupling: what the last pass changed.
 
     The multipliers of the last pass but one, whose error is larger, are compared, each divided by
-    its condition number.
+    its condition number.  Where the first pass made it worse already there is nothing to compare
+    with, and the error is 1.
     """
+    if not slow.passes[0]:
+        return 1.0
     series = PeriodicSeries.of(slow.before[0], period)
     coarse = np.linalg.eigvals(_stations(series, found.segments, period)[-1])
     values, vectors = np.linalg.eig(found.matrix)

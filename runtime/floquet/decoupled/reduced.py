@@ -22,8 +22,13 @@ Array = NDArray[np.float64]
 # Degrees in the speed squared that are tried, and the part of an array left out that is enough.
 _DEGREES = (1, 2, 3, 4, 6, 8)
 _SMALL = 1e-11
-# Change of a monodromy matrix that ends the search for a gap, and the largest that will do.
-_ENOUGH, _MOST = 1e-9, 1e-2
+# Change of a monodromy matrix that ends the search for a gap, that ends it where better ones are
+# dearer, and the largest that will do.
+_PRECISE, _ENOUGH, _MOST = 1e-9, 1e-6, 1e-3
+# How many times the work of the first choice that is good enough a better one may cost.
+_DEARER = 10.0
+# Gap above the slow modes, in turns a period, from which decoupling is worth a try.
+_WORTH = 4.0
 _FEWEST = 4
 
 
@@ -81,7 +86,8 @@ def slow_system(
         Lowest and highest speed [rad/s] that the result shall hold for.
     modes : int, optional
         Number of slow modes.  By default the least of at least 4 with a relative change of the
-        monodromy matrix below 1e-6 at the highest speed, or, where none is, with the least.
+        monodromy matrix below 1e-9 at the highest speed; where that takes over ten times the work
+        of the first below 1e-6, the best until there; where none is below 1e-6, the best.
     **parameters : float
         Parameter values that replace the system's own; geometry too.
 
@@ -89,8 +95,8 @@ def slow_system(
     ------
     BadInput
         If an argument is unusable, the system is not conservative but for damping, no gap of the
-        frequencies lets any modes be left out, or the arrays are no polynomials in the speed
-        squared.
+        frequencies lets modes be left out with a change below 1e-3, or the arrays are no
+        polynomials in the speed squared.
     """
     low, high = speed_span(speed_range)
     system, changed = at_geometry(system, parameters)
@@ -103,8 +109,9 @@ def slow_system(
             "a system conservative but for damping",
             "use characteristic_exponents",
         )
-    frames, residual = _chosen(top, modes)
-    degree, coefficients, fit = _fitted(calm, frames, (low, high), changed)
+    chosen = _chosen(top, modes)
+    frames = chosen.frames
+    degree, coefficients, fit = _fitted(calm, chosen, (low, high), changed)
     terms = _terms(coefficients, system.period, high)
     damped = canonical_form(system, np.array([high]), changed)
     if damped.damped:
@@ -118,57 +125,85 @@ def slow_system(
         labels=tuple(f"slow {i + 1}" for i in range(frames.modes)),
         provenance=system.changed_provenance(**changed),
     )
-    return SlowSystem(reduced, frames.modes, (low, high), fit, residual, degree)
+    return SlowSystem(reduced, frames.modes, (low, high), fit, chosen.change, degree)
 
 
 def _no_scales(values: object) -> dict[str, Array]:
     return {}
 
 
-def _chosen(form: CanonicalForm, modes: int | None) -> tuple[Frames, float]:
-    """Return the basis and the change by incomplete decoupling, for the one speed of a form."""
+@dataclass(frozen=True)
+class _Choice:
+    """A basis, the change of the matrix by incomplete decoupling, and the passes it takes."""
+
+    frames: Frames
+    change: float
+    passes: int
+
+
+def _chosen(form: CanonicalForm, modes: int | None) -> _Choice:
+    """Return the basis for the one speed of a form, the highest."""
     n = form.system.size
     if modes is not None:
         if modes != int(modes) or not 1 <= modes < n:
             raise bad("modes", modes, f"a whole number from 1 to {n - 1}", "correct it")
-        frames = moving_frames(form, int(modes))
-        return frames, _left(form, frames)
-    frequency = held_modes(form, even_angles(form.system.period, 256))[0]
-    best: tuple[Frames, float] | None = None
-    for k, _ in gap_choices(frequency, min(_FEWEST, n - 1)):
-        try:
-            frames = moving_frames(form, k)
-        except BadInput:
-            continue
-        change = _left(form, frames)
-        if best is None or change < best[1]:
-            best = frames, change
-        if change < _ENOUGH:
-            break
-    if best is None or not best[1] < _MOST:
+        return _tried(form, int(modes))
+    best = _searched(form)
+    if best is None or not best.change < _MOST:
+        found = "no gap of the natural frequencies is wide enough to leave the modes above it out"
+        if best is not None:
+            found += f" (best: {best.frames.modes} modes, relative change {best.change:.1e})"
         raise bad(
             "speed_range",
-            f"up to {float(form.speed[0]):.4g} rad/s, where no modes can be left out",
+            f"up to {float(form.speed[0]):.4g} rad/s, where {found}",
             "speeds far below a gap of the natural frequencies",
             "lower the speeds or use the whole system",
         )
     return best
 
 
-def _left(form: CanonicalForm, frames: Frames) -> float:
-    """Return the error of a monodromy matrix by incomplete decoupling."""
+def _searched(form: CanonicalForm) -> _Choice | None:
+    """Return the best choice that is not dear without need; None where there is none."""
+    n, period = form.system.size, form.system.period
+    frequency = held_modes(form, even_angles(period, 256))[0]
+    work = np.max(frequency, axis=0) * np.arange(1, n + 1) ** 3.0
+    least = _WORTH * 2 * np.pi / period * float(form.speed[0])
+    best: _Choice | None = None
+    dearest = np.inf
+    for k, gap in gap_choices(frequency, min(_FEWEST, n - 1)):
+        if work[k - 1] > dearest:
+            break
+        if gap < least:
+            continue
+        try:
+            found = _tried(form, k)
+        except BadInput:
+            continue
+        if best is None or found.change < best.change:
+            best = found
+        if found.change < _PRECISE:
+            break
+        if found.change < _ENOUGH:
+            dearest = min(dearest, _DEARER * float(work[k - 1]))
+    return best
+
+
+def _tried(form: CanonicalForm, modes: int) -> _Choice:
+    """Return the basis for a number of modes and what it costs."""
+    frames = moving_frames(form, modes)
     slow, period = slow_part(form, frames), form.system.period
     rate = float(np.max(frames.slow) / form.speed[0])
     found = integrated(slow, frames.modes, period, rate, 1e-9)
-    return min(decoupling_error(slow, found, period), found.residual)
+    change = min(decoupling_error(slow, found, period), found.residual)
+    return _Choice(frames, change, int(slow.passes[0]))
 
 
 def _arrays(
-    system: LinearPeriodic, frames: Frames, speed: Array, changed: Mapping[str, ArrayLike]
+    system: LinearPeriodic, chosen: _Choice, speed: Array, changed: Mapping[str, ArrayLike]
 ) -> dict[str, Array]:
     """Return M, A and R = K + Kg - w^2 B of the slow modes, each ``(ns, nt, k, k)``."""
     form = canonical_form(system, speed, changed)
-    slow, k = slow_part(form, frames), frames.modes
+    slow, k = slow_part(form, chosen.frames, chosen.passes), chosen.frames.modes
     scale = slow.scale[:, None, :k]
     size = np.concatenate([scale, 1.0 / scale], axis=-1)
     plain = slow.generator * size[..., :, None] / size[..., None, :]
@@ -185,7 +220,7 @@ def _arrays(
 
 def _fitted(
     system: LinearPeriodic,
-    frames: Frames,
+    chosen: _Choice,
     span: tuple[float, float],
     changed: Mapping[str, ArrayLike],
 ) -> tuple[int, dict[str, list[Array]], float]:
@@ -197,7 +232,7 @@ def _fitted(
         nodes = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
         extra = np.array([-1.0, 0.37, 1.0])
         places = 0.5 * (low + high) + 0.5 * (high - low) * np.concatenate([nodes, extra])
-        found = _arrays(system, frames, np.sqrt(places), changed)
+        found = _arrays(system, chosen, np.sqrt(places), changed)
         unit = places / high
         vander = np.vander(unit, degree + 1, increasing=True)
         inverse = np.linalg.inv(vander[: degree + 1])

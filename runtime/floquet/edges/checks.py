@@ -41,31 +41,48 @@ def edge_checks(
     parameters : mapping
         Parameter values that replace the system's own.
     """
+    samples, verdicts = contradictions(system, regions, span, parameters)
+    return {
+        "samples": Check(float(len(samples)), 0.0),
+        "verdicts": Check(float(len(verdicts)), 0.0),
+    }
+
+
+def contradictions(
+    system: LinearPeriodic,
+    regions: Regions,
+    span: tuple[float, float],
+    parameters: Mapping[str, float],
+) -> tuple[Array, Array]:
+    """Return the speeds that :func:`edge_checks` counts: of even samples, and of verdicts."""
     begin, end = np.maximum(regions.begin, span[0]), np.minimum(regions.end, span[1])
     regions = replace(regions, begin=begin, end=end)
     speeds = np.linspace(*span, _SAMPLES)
     found = floquet_multipliers(system, speeds, **parameters)
-    missed = int(np.sum(~_covered(regions, speeds) & _grows(found)))
+    missed = speeds[~_covered(regions, speeds) & _grows(found)]
     # Deep inside a region something grows.
-    missed += int(np.sum(_within(regions, speeds) & found.stable))
-    wrong = _narrow(system, regions, parameters) + _counts(system, regions, span, parameters)
-    return {"samples": Check(float(missed), 0.0), "verdicts": Check(float(wrong), 0.0)}
+    calm = speeds[_within(regions, speeds) & found.stable]
+    narrow = _narrow(system, regions, parameters)
+    counted = _counts(system, regions, span, parameters)
+    return np.concatenate([missed, calm]), np.concatenate([narrow, counted])
 
 
-def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, float]) -> int:
-    """Return how many regions do not grow in their middle as much as their width promises."""
+def _narrow(system: LinearPeriodic, regions: Regions, parameters: Mapping[str, float]) -> Array:
+    """Return middles of regions that do not grow there as much as their width promises."""
     with np.errstate(invalid="ignore"):
         whole = np.flatnonzero(regions.upper - regions.lower > 4 * regions.error)
     if not len(whole):
-        return 0
+        return np.zeros(0)
     low, high = regions.lower[whole], regions.upper[whole]
-    inside = floquet_multipliers(system, 0.5 * (low + high), **parameters)
+    middle: Array = 0.5 * (low + high)
+    inside = floquet_multipliers(system, middle, **parameters)
     expected = _growth(regions, whole)
     told = expected > _TELLING * np.max(inside.error, axis=-1)
     grown = np.max(inside.exponents.real, axis=-1)
     if _damped(inside):
         expected = np.zeros_like(expected)
-    return int(np.sum(told & (grown <= _PART * expected)))
+    value: Array = middle[told & (grown <= _PART * expected)]
+    return value
 
 
 def _growth(regions: Regions, index: NDArray[np.intp]) -> Array:
@@ -80,8 +97,8 @@ def _counts(
     regions: Regions,
     span: tuple[float, float],
     parameters: Mapping[str, float],
-) -> int:
-    """Return at how many places between ends not as many multipliers grow as regions cover.
+) -> Array:
+    """Return places between ends at which not as many multipliers grow as regions cover.
 
     The places are beside each end and in the middle between each two.  A principal region stands
     for one multiplier, any other for two, which holds too where four meet off the circle.
@@ -98,7 +115,7 @@ def _counts(
     near = ends[1:] - _BESIDE * gap
     speeds = np.unique(np.concatenate([speeds, near[_BESIDE * gap > spread]]))
     if not len(speeds):
-        return 0
+        return speeds
     found = floquet_multipliers(system, speeds, **parameters)
     modulus, blur = np.abs(found.multipliers), np.max(found.error, axis=-1)
     covers = (speeds[:, None] > begin) & (speeds[:, None] < end)
@@ -116,7 +133,8 @@ def _counts(
     if np.any(_ragged(regions, span)):
         # Kinds that go over into each other are seen from sample to sample only.
         fewest, most, expected = (np.minimum(n, 1) for n in (fewest, most, expected))
-    return int(np.sum((fewest > expected) | (most < expected)))
+    value: Array = speeds[(fewest > expected) | (most < expected)]
+    return value
 
 
 def _ragged(regions: Regions, span: tuple[float, float]) -> NDArray[np.bool_]:

@@ -86,7 +86,9 @@ def averaged_modes(
     return Modes(turns, shapes, mean["M"])
 
 
-def meeting_labels(modes: Modes, plus: Array, minus: Array) -> tuple[Whole, Whole, Array]:
+def meeting_labels(
+    modes: Modes, plus: Array, minus: Array, shares: Array | None = None
+) -> tuple[Whole, Whole, Array]:
     """Return modes ``(k, 2)`` from 1, the harmonic, and how far off, of meetings of two modes.
 
     The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
@@ -98,6 +100,8 @@ def meeting_labels(modes: Modes, plus: Array, minus: Array) -> tuple[Whole, Whol
         At the meetings.
     plus, minus : ndarray, shape (k,)
         Arguments of the multipliers of positive and negative signature [rad].
+    shares : ndarray, shape (k, n), optional
+        How much of the motion each mode has; what a label's two modes lack of it counts too.
     """
     k, n = modes.turns.shape
     options: dict[tuple[int, int, int], dict[int, float]] = {}
@@ -112,9 +116,10 @@ def meeting_labels(modes: Modes, plus: Array, minus: Array) -> tuple[Whole, Whol
                     + _apart(modes.turns[row, b], -minus[row])
                     for a, b in ((i, j), (j, i))
                 )
+                lack = 0.0 if shares is None else 1.0 - float(shares[row, i] + shares[row, j])
                 middle = round(float(total))
                 for harmonic in range(middle - _REACH, middle + _REACH + 1):
-                    cost = abs(float(total) - harmonic) + 0.5 * phases
+                    cost = abs(float(total) - harmonic) + 0.5 * phases + _LACK * lack
                     options.setdefault((i + 1, j + 1, harmonic), {})[row] = cost
     found = np.zeros((k, 2), dtype=np.int64)
     chosen = np.zeros(k, dtype=np.int64)
@@ -125,7 +130,9 @@ def meeting_labels(modes: Modes, plus: Array, minus: Array) -> tuple[Whole, Whol
     return found, chosen, off
 
 
-def principal_labels(modes: Modes, real: Array) -> tuple[Whole, Whole, Array]:
+def principal_labels(
+    modes: Modes, real: Array, shares: Array | None = None
+) -> tuple[Whole, Whole, Array]:
     """Return mode from 1, number and how far off, of meetings of a mode with itself.
 
     Parameters
@@ -134,6 +141,8 @@ def principal_labels(modes: Modes, real: Array) -> tuple[Whole, Whole, Array]:
         At the meetings.
     real : ndarray, shape (k,)
         The multiplier there, +1 or -1.
+    shares : ndarray, shape (k, n), optional
+        How much of the motion each mode has; what a label's mode lacks of it counts too.
     """
     k, n = modes.turns.shape
     options: dict[tuple[int, int, int], dict[int, float]] = {}
@@ -142,14 +151,16 @@ def principal_labels(modes: Modes, real: Array) -> tuple[Whole, Whole, Array]:
         for i in range(n):
             total = 2 * float(modes.turns[row, i])
             if np.isfinite(total):
+                lack = 0.0 if shares is None else 1.0 - float(shares[row, i])
                 middle = 2 * round((total - parity) / 2) + parity
                 for number in range(middle - 4, middle + 5, 2):
-                    options.setdefault((i + 1, number, parity), {})[row] = abs(total - number)
+                    cost = abs(total - number) + _LACK * lack
+                    options.setdefault((i + 1, number, parity), {})[row] = cost
     mode, chosen = np.zeros((2, k), dtype=np.int64)
     off = np.full(k, np.nan)
-    for row, (i, number, parity) in _assigned(k, options).items():
+    for row, (i, number, _) in _assigned(k, options).items():
         mode[row], chosen[row] = i, abs(number)
-        off[row] = options[i, number, parity][row]
+        off[row] = abs(2 * float(modes.turns[row, i - 1]) - number)
     return mode, chosen, off
 
 

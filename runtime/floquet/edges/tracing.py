@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -19,6 +19,7 @@ from .checks import edge_checks
 from .damped_edges import damped_regions
 from .mended import mended
 from .mode_labels import (
+    Modes,
     averaged_modes,
     boundary_units,
     meeting_labels,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
+_Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
 
 # Relative width from which a tongue gets samples of its own on either side.
 _WIDE = 1e-6
@@ -277,14 +279,26 @@ def _undamped(
 
 
 def combined_regions(
-    system: LinearPeriodic, events: Events, edges: Edges, parameters: Mapping[str, float]
+    system: LinearPeriodic,
+    events: Events,
+    edges: Edges,
+    parameters: Mapping[str, float],
+    described: _Described | None = None,
 ) -> Regions:
-    """Return the combination regions in which pairs meet, with labels."""
+    """Return the combination regions in which pairs meet, with labels.
+
+    ``described`` takes speeds and multipliers, and returns modes and how much of the motion each
+    has; without it, frequencies and phases of the averaged equation alone decide.
+    """
     lower, upper, phase = edges.lower, edges.upper, edges.phase
     inner = np.mean(events.reach, axis=1)
     middle = np.where(np.isfinite(lower + upper), 0.5 * (lower + upper), inner)
-    modes = averaged_modes(system, middle, parameters)
-    pair, harmonic, off = meeting_labels(modes, phase, phase)
+    shares: Array | None = None
+    if described is None:
+        modes = averaged_modes(system, middle, parameters)
+    else:
+        modes, shares = described(middle, np.exp(1j * phase))
+    pair, harmonic, off = meeting_labels(modes, phase, phase, shares)
     rows = np.arange(len(middle))
     signs = [np.sign(modes.turns[rows, pair[:, c] - 1]) for c in (0, 1)] if len(middle) else [rows]
     kind = tuple(

@@ -186,8 +186,9 @@ def _arrays(point: Point, order: int) -> dict[str, RealSeries]:
 def _samples(system: LinearPeriodic, order: int) -> int:
     """Return how many angles tell all harmonics of a product of ``order`` factors apart."""
     reach = 0
-    for term, amplitude in zip(system.terms, system.spectra, strict=True):
+    for row, term in enumerate(system.terms):
         if term.array in SPEED_POWER and not term.constant:
+            amplitude = system.spectrum(row)
             kept = np.flatnonzero(amplitude > _SEEN * np.max(amplitude, initial=0.0))
             reach = max(reach, int(kept[-1]) if len(kept) else 0)
     wanted = 2 * (order * min(reach, 128) + 40)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import bad
+from ...inputs import is_whole
 from ...results import BROADCAST, Result, provenance
 from ...series.periodic import PeriodicFunction
 from ..exact.matrix import Boundaries, hill_boundaries
@@ -183,8 +184,7 @@ class Meissner:
         BadInput
             If ``harmonics`` is not a whole number from 1 to 100000.
         """
-        whole = isinstance(harmonics, int | np.integer) and not isinstance(harmonics, bool)
-        if not whole or not 1 <= harmonics <= _MOST_HARMONICS:
+        if not is_whole(harmonics, 1, _MOST_HARMONICS):
             expected = f"a whole number from 1 to {_MOST_HARMONICS}"
             raise bad("harmonics", repr(harmonics), expected, "correct it")
         m = np.arange(1, harmonics + 1)
@@ -247,13 +247,12 @@ class MathieuCharacteristic(Result):
         BadInput
             If q is not one-dimensional.
         """
-        import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
         if self.q.ndim != 1:
             shape = f"q of shape {self.q.shape}"
             raise bad("MathieuCharacteristic.plot", shape, "a line of q", "slice it")
-        if ax is None:
-            ax = plt.figure().add_subplot()
+        ax = axes_or_new(ax)
         ax.plot(self.q, self.value)
         ax.set_xlabel("$q$")
         ax.set_ylabel(f"${self.kind}_{{{self.m}}}$")
@@ -291,8 +290,7 @@ def mathieu_characteristic(m: int, q: ArrayLike, kind: Kind = "a") -> MathieuCha
     if kind not in ("a", "b"):
         raise bad("kind", repr(kind), "'a' or 'b'", "choose one")
     least = 0 if kind == "a" else 1
-    whole = isinstance(m, int | np.integer) and not isinstance(m, bool)
-    if not whole or not least <= m <= _LARGEST_NUMBER:
+    if not is_whole(m, least, _LARGEST_NUMBER):
         expected = f"a whole number from {least} to {_LARGEST_NUMBER}"
         raise bad("m", repr(m), expected, "correct it")
     values = finite("q", q)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import bad
+from ...inputs import is_whole
 from ...results import Check, Result, provenance
 from ...series.periodic import PeriodicFunction
 from ..half_trace import HalfTrace, arguments, check_function, discriminant, finite
@@ -318,8 +319,7 @@ def interval_values(f: PeriodicFunction, intervals: int, rule: Rule = "midpoint"
     BadInput
         If ``intervals`` is no whole number from 1 to 65536, or the rule is unknown.
     """
-    whole = isinstance(intervals, (int, np.integer)) and not isinstance(intervals, bool)
-    if not whole or not 1 <= intervals <= MOST_INTERVALS:
+    if not is_whole(intervals, 1, MOST_INTERVALS):
         raise bad("intervals", repr(intervals), f"a whole number, 1 to {MOST_INTERVALS}", "try 180")
     if rule not in get_args(Rule):
         raise bad("rule", repr(rule), f"one of {get_args(Rule)}", "correct it")

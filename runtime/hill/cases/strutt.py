@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import bad
+from ...inputs import is_whole
 from ...results import Check, Result, provenance
 from ...series.periodic import PeriodicFunction
 from ..exact.matrix import hill_boundaries
@@ -197,7 +198,7 @@ def _range(name: str, ends: ArrayLike) -> tuple[float, float]:
 
 
 def _count(name: str, count: object) -> int:
-    if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 2:
+    if not is_whole(count, 2):
         raise bad("points", f"{count!r} in {name}", "whole numbers from 2", "for example 201")
     return int(count)
 

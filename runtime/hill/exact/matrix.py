@@ -83,12 +83,11 @@ class Boundaries(Result):
         BadInput
             If mu is not one-dimensional.
         """
-        import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
         if self.mu.ndim != 1:
             raise bad("Boundaries.plot", f"mu of shape {self.mu.shape}", "a line of mu", "slice it")
-        if ax is None:
-            ax = plt.figure().add_subplot()
+        ax = axes_or_new(ax)
         for low, high in zip(self.lower, self.upper, strict=True):
             line, other = ax.plot(np.stack([low, high], axis=1), self.mu)
             other.set_color(line.get_color())

@@ -17,6 +17,7 @@ from ...series.periodic import PeriodicFunction
 from ..half_trace import arguments, check_function, discriminant
 from ..transfer import EPS
 from .layout import LARGEST, truncation
+from .verification import LIMIT, half_trace_near, sample_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _CHUNK = 2**18
-_SAMPLE, _LIMIT, _STEP = 24, 4.0, 1e-4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,12 +66,11 @@ class BlochBands(Result):
         BadInput
             If nu is not a line.
         """
-        import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
         if self.nu.ndim != 1:
             raise bad("BlochBands.plot", f"nu of shape {self.nu.shape}", "a line", "slice it")
-        if ax is None:
-            ax = plt.figure().add_subplot()
+        ax = axes_or_new(ax)
         for band in self.lam2:
             ax.plot(self.nu, band)
         ax.set_xlabel(r"$\nu$")
@@ -189,23 +188,17 @@ def _checks(
     places = np.argwhere(np.isfinite(lam2))
     if not len(places):
         return {}
-    chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
-    row, column = places[chosen.astype(int)].T
+    row, column = sample_of(places)
     x, figure = lam2[row, column], error[row, column]
     name = "half trace over what the figures explain"
-    step = _STEP * (1.0 + np.sqrt(np.abs(x)))
     try:
-        found = discriminant(f, x + step * np.array([[-1.0], [0.0], [1.0]]), mu[column], k[column])
+        found, explained = half_trace_near(f, x, figure, mu[column], k[column])
     except BadInput:
-        return {name: Check(np.nan, _LIMIT)}
+        return {name: Check(np.nan, LIMIT)}
     with np.errstate(invalid="ignore", over="ignore"):
-        before, at, after = found.value
-        slope = np.abs(after - before) / (2.0 * step)
-        bend = np.abs(after - 2.0 * at + before) / step**2
-        explained = slope * figure + 0.5 * bend * figure**2 + found.error[1]
         level = np.exp(-2.0 * pi * k[column]) * np.cos(2.0 * pi * nu[column])
-        share = np.abs(at - level) / (explained + 4.0 * EPS)
-    return {name: Check(float(share.max()), _LIMIT)}
+        share = np.abs(found.value[1] - level) / (explained + 4.0 * EPS)
+    return {name: Check(float(share.max()), LIMIT)}
 
 
 @dataclass(frozen=True, kw_only=True)

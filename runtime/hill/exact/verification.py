@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from ...errors import BadInput
 from ...results import Check
 from ...series.periodic import PeriodicFunction
-from ..half_trace import discriminant
+from ..half_trace import HalfTrace, discriminant
 
 Array = NDArray[np.float64]
 
 _SAMPLE = 24
 # The figures are estimates, and slope and curvature come from differences.
-_LIMIT = 4.0
+LIMIT = 4.0
 _STEP = 1e-4
 
 
@@ -61,23 +61,55 @@ def boundary_checks(
     places = np.argwhere(np.isfinite(ends))
     if not len(places):
         return told
-    chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
-    side, row, column = places[chosen.astype(int)].T
+    side, row, column = sample_of(places)
     lam2, size = ends[side, row, column], error[row, column]
     numbers = np.asarray(regions)[row]
     name = "half trace at the ends over what the figures explain"
-    step = _STEP * (1.0 + np.sqrt(np.abs(lam2)))
     try:
-        found = discriminant(
-            f, lam2 + step * np.array([[-1.0], [0.0], [1.0]]), mu[column], damping[column]
-        )
+        found, explained = half_trace_near(f, lam2, size, mu[column], damping[column])
     except BadInput:
-        return {**told, name: Check(np.nan, _LIMIT)}
+        return {**told, name: Check(np.nan, LIMIT)}
     level = np.where(numbers % 2 == 0, 1.0, -1.0) * found.level
+    with np.errstate(invalid="ignore", over="ignore"):
+        share = np.abs(found.value[1] - level) / explained
+    return {**told, name: Check(float(share.max()), LIMIT)}
+
+
+def sample_of(places: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return an even sample of places ``(n, d)``, its ends included, by coordinate."""
+    chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
+    return np.asarray(places[chosen.astype(int)].T)
+
+
+def half_trace_near(
+    f: PeriodicFunction, lam2: Array, error: Array, mu: Array, damping: Array
+) -> tuple[HalfTrace, Array]:
+    """Return the half trace beside, at and beside lam2, and what error figures explain at it.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        The coefficient function.
+    lam2, error : ndarray, shape (n,)
+        Places and their error figures.
+    mu, damping : ndarray, shape (n,)
+        Factor and K.
+
+    Returns
+    -------
+    HalfTrace, ndarray
+        Values of shape ``(3, n)``, the middle one at lam2; deviations ``(n,)`` by slope, curvature
+        and the figure of the half trace.
+
+    Raises
+    ------
+    BadInput
+        If the half trace cannot be computed.
+    """
+    step = _STEP * (1.0 + np.sqrt(np.abs(lam2)))
+    found = discriminant(f, lam2 + step * np.array([[-1.0], [0.0], [1.0]]), mu, damping)
     with np.errstate(invalid="ignore", over="ignore"):
         before, at, after = found.value
         slope = np.abs(after - before) / (2.0 * step)
         bend = np.abs(after - 2.0 * at + before) / step**2
-        explained = slope * size + 0.5 * bend * size**2 + found.error[1]
-        share = np.abs(at - level) / explained
-    return {**told, name: Check(float(share.max()), _LIMIT)}
+        return found, slope * error + 0.5 * bend * error**2 + found.error[1]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import bad
+from ...inputs import is_whole
 from ...results import Check, provenance
 from ...series.periodic import PeriodicFunction
 from ..exact.matrix import Boundaries, check_regions
@@ -133,8 +134,7 @@ def perturbation_boundaries(
     numbers = check_regions(regions)
     check_order(order)
     _check_options(form, outside)
-    named = {f"mu[{i}]" if len(values) > 1 else "mu": v for i, v in enumerate(values)}
-    (*amps, k), shape = arguments(**named, damping=damping)
+    amps, k, shape = amplitudes_of(values, damping)
     flat = np.stack([np.broadcast_to(item, shape).ravel() for item in (*amps, k)])
     work = _Work(functions, flat, int(order), form)
     count = flat.shape[1]
@@ -308,10 +308,18 @@ def parameters_of(
     return functions, tuple(mu)
 
 
+def amplitudes_of(
+    values: tuple[ArrayLike, ...], damping: ArrayLike
+) -> tuple[list[Array], Array, tuple[int, ...]]:
+    """Return the parameters as arrays, the damping, and the shape that they broadcast to."""
+    named = {f"mu[{i}]" if len(values) > 1 else "mu": v for i, v in enumerate(values)}
+    (*amps, k), shape = arguments(**named, damping=damping)
+    return amps, k, shape
+
+
 def check_order(order: object) -> None:
     """Refuse an order that is not a whole number from 1 to 8."""
-    whole = isinstance(order, int | np.integer) and not isinstance(order, bool)
-    if not whole or not 1 <= int(order) <= HIGHEST:  # type: ignore[call-overload]
+    if not is_whole(order, 1, HIGHEST):
         raise bad(
             "order",
             repr(order),

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import bad
+from ...inputs import is_whole
 from ...results import Check, Result, provenance
 from ...series.periodic import PeriodicFunction
 from ..exact.matrix import check_regions, hill_boundaries
@@ -71,10 +72,9 @@ class BoundarySeries(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw partial sums of every order and the exact boundaries, mu upwards."""
-        import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
-        if ax is None:
-            ax = plt.figure().add_subplot()
+        ax = axes_or_new(ax)
         mu = np.linspace(0.0, 1.0, 101)
         exact = hill_boundaries(self.function, mu, (self.region,), damping=self.damping_ratio * mu)
         start = 0.25 * self.region**2
@@ -157,8 +157,7 @@ def boundary_series(
 
 
 def _check(order: object, damping_ratio: float) -> None:
-    whole = isinstance(order, int) and not isinstance(order, bool)
-    if not whole or not 1 <= order <= HIGHEST_ORDER:  # type: ignore[operator]
+    if not is_whole(order, 1, HIGHEST_ORDER):
         raise bad("order", repr(order), f"a whole number from 1 to {HIGHEST_ORDER}", "choose one")
     real = isinstance(damping_ratio, int | float | np.integer | np.floating)
     if not real or not 0.0 <= damping_ratio < np.inf:

@@ -40,6 +40,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....generated import hill_recursion
 from ...errors import bad
+from ...inputs import is_whole
 from ...series.periodic import PeriodicFunction
 
 Array = NDArray[np.float64]
@@ -50,6 +51,12 @@ Couple = tuple[NDArray[Any], NDArray[Any]]
 HIGHEST_ORDER = len(hill_recursion.RETURNS)
 
 _Key = tuple[tuple[bytes, bytes], ...]
+
+
+def check_region(n: object) -> None:
+    """Refuse a number of a region that is no whole number from 0."""
+    if not is_whole(n, 0):
+        raise bad("region", repr(n), "a whole number >= 0", "correct it")
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,10 +198,8 @@ def effective_operator(
     """
     if not parts or not all(isinstance(part, PeriodicFunction) for part in parts):
         raise bad("parts", repr(parts)[:60], "periodic functions", "pass a list, even of one")
-    if not isinstance(n, int | np.integer) or isinstance(n, bool) or n < 0:
-        raise bad("region", repr(n), "a whole number >= 0", "correct it")
-    whole = isinstance(order, int | np.integer) and not isinstance(order, bool)
-    if not (whole and 1 <= order <= HIGHEST_ORDER):
+    check_region(n)
+    if not is_whole(order, 1, HIGHEST_ORDER):
         raise bad("order", repr(order), f"a whole number from 1 to {HIGHEST_ORDER}", "correct it")
     key = tuple((part.a.tobytes(), part.b.tobytes()) for part in parts)
     return _operator(key, int(n), int(order), bool(damped))

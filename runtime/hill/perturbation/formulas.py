@@ -17,10 +17,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-import numpy as np
-
 from ....generated import hill_recursion
 from ...errors import bad
+from ...inputs import is_whole
+from .effective import check_region
 
 HIGHEST_FORMULA = max(hill_recursion.WORDS)
 _WIDTH = 200  # characters of source in a line of a sum
@@ -128,8 +128,7 @@ def solution_latex(order: int, n: int | None = None, damped: bool = False) -> st
 
 def _checked(order: int, n: int | None, highest: int = HIGHEST_FORMULA) -> str:
     """Return the region as it is written."""
-    whole = isinstance(order, int | np.integer) and not isinstance(order, bool)
-    if not (whole and 1 <= order <= highest):
+    if not is_whole(order, 1, highest):
         raise bad(
             "order",
             repr(order),
@@ -138,8 +137,7 @@ def _checked(order: int, n: int | None, highest: int = HIGHEST_FORMULA) -> str:
         )
     if n is None:
         return "n"
-    if not isinstance(n, int | np.integer) or isinstance(n, bool) or n < 0:
-        raise bad("region", repr(n), "a whole number >= 0", "correct it")
+    check_region(n)
     return str(int(n))
 
 

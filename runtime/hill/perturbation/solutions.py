@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from ...errors import bad
 from ...results import Check, Result, provenance
 from ...series.periodic import PeriodicFunction
+from ...series.sampling import finite_angles
 from ..exact.layout import LARGEST, layout, stacked
 from ..exact.matrix import check_regions, hill_boundaries
-from ..half_trace import arguments
 from ..transfer import EPS
-from .boundaries import check_order, combined, parameters_of
+from .boundaries import amplitudes_of, check_order, combined, parameters_of
 from .effective import effective_operator
 from .orders import BEYOND, Components, contraction, uniform
 
@@ -93,9 +93,7 @@ class BoundarySolution(Result):
 
     def __call__(self, theta: ArrayLike) -> Array:
         """Evaluate at angles [rad] of any shape; the result has the same shape."""
-        angles = np.asarray(theta, dtype=float)
-        if not np.all(np.isfinite(angles)):
-            raise bad("theta", "an angle that is not finite", "finite angles", "correct the input")
+        angles = finite_angles(theta)
         # Horner in exp(i theta), times the half turn that odd regions have.
         z, first = np.exp(1j * angles), np.exp(1j * self.wave_numbers[0] * angles)
         total = np.zeros(angles.shape, dtype=complex)
@@ -105,10 +103,9 @@ class BoundarySolution(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the solution over a period."""
-        import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
-        if ax is None:
-            ax = plt.figure().add_subplot()
+        ax = axes_or_new(ax)
         theta = np.linspace(0.0, self.period, 721)
         ax.plot(theta, self(theta))
         ax.set_xlabel(r"$\theta$ [rad]")
@@ -164,8 +161,7 @@ def boundary_solution(
     if end not in ("lower", "upper") or (end == "lower" and number == 0):
         expected = "'upper'" if number == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
-    named = {f"mu[{i}]" if len(values) > 1 else "mu": v for i, v in enumerate(values)}
-    (*amps, k), shape = arguments(**named, damping=damping)
+    amps, k, shape = amplitudes_of(values, damping)
     if shape:
         raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
     point = np.array([float(v) for v in amps])

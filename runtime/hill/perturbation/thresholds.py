@@ -153,13 +153,12 @@ def _lines(
     across: tuple[Array, str],
     up: tuple[Array, str],
 ) -> Axes:
-    import matplotlib.pyplot as plt
+    from ...plotting import axes_or_new
 
     if across[0].ndim != 1:
         name = type(result).__name__
         raise bad(f"{name}.plot", f"an array of shape {across[0].shape}", "a line", "slice it")
-    if ax is None:
-        ax = plt.figure().add_subplot()
+    ax = axes_or_new(ax)
     for n, row in zip(result.regions, up[0], strict=True):
         ax.plot(across[0], np.where(np.isfinite(row), row, np.nan), label=f"region {n}")
     ax.set_xlabel(across[1])

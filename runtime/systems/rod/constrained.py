@@ -20,6 +20,7 @@ from .inputs import require_drop, require_numbers, require_points
 
 DROPPED = ("tension",)
 _DERIVATIVES = ("", "_d1", "_d2", "_d3")
+_STATIONS = np.linspace(0.0, 1.0, 21)
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,7 @@ class _AtBlock:
         self._modes, self._speed = modes, speed
         self._crank, self._frame = linkage.crank / linkage.rod, linkage.frame / linkage.rod
         self._last: tuple[float, float, tuple[list[float], ...]] | None = None
-        self._last_batch: tuple[Array, Array, tuple[Array, ...]] | None = None
+        self._last_batch: tuple[object, tuple[Array, ...]] | None = None
 
     def mode(self, order: int, index: int) -> Callable[[Array, Array], ArrayLike]:
         """Return a derivative of one mode as a function of coordinates and time."""
@@ -185,12 +186,14 @@ class _AtBlock:
 
     def _batch(self, gamma: Array, t: Array) -> tuple[Array, ...]:
         last = self._last_batch
-        if last is None or not (np.array_equal(last[0], gamma) and np.array_equal(last[1], t)):
+        # Bytes are compared several times faster than small arrays.
+        key = (gamma.shape, gamma.tobytes(), np.shape(t), np.asarray(t).tobytes())
+        if last is None or last[0] != key:
             # The first part of the loop (44): the distance of the block from the pin.
             turned = np.cos(gamma - t * self._speed)
             found = self._modes(self._crank * turned + self._frame * np.cos(gamma))
-            self._last_batch = last = (gamma.copy(), np.array(t), found)
-        return last[2]
+            self._last_batch = last = (key, found)
+        return last[1]
 
 
 def rigid_state(rod: FreeFreeRod, theta: ArrayLike) -> RigidState:
@@ -314,6 +317,12 @@ def deflection(rod: FreeFreeRod, q: Array, t: ArrayLike, places: ArrayLike) -> A
     bent = length * q[..., 3:] @ rod.modes(eta)[0].T
     along = length * (eta - 0.5) * np.sin(lean)[..., None]
     return np.asarray(centre[..., None] + along + bent * np.cos(lean)[..., None])
+
+
+def largest_deflection(rod: FreeFreeRod, q: Array, t: ArrayLike) -> Array:
+    """Return the largest deflection at 21 places, over the length of the rod; shape batch."""
+    bent = np.abs(deflection(rod, q, t, _STATIONS))
+    return np.asarray(np.max(bent, axis=-1) / rod.linkage.rod, dtype=np.float64)
 
 
 def tip_deflection(rod: FreeFreeRod, q: Array, t: ArrayLike) -> Array:

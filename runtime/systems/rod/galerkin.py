@@ -69,10 +69,9 @@ class GalerkinIntegrals(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the entries of ``a_bar`` and ``b_bar`` over the crank angle."""
-        if ax is None:
-            import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
-            ax = plt.subplots()[1]
+        ax = axes_or_new(ax)
         n = self.roots.shape[1]
         for name, array in (("a", self.a_bar), ("b", self.b_bar)):
             for k, j in np.ndindex(n, n):

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from numbers import Real
-
-import numpy as np
-from numpy.typing import ArrayLike
 
 from ...constrained import ConstrainedMotion, Guard, constrained_motion
 from ...errors import bad
-from .basis import Array
-from .constrained import FreeFreeRod, deflection, place_of_block, rigid_state
+from .constrained import FreeFreeRod, largest_deflection, place_of_block, rigid_state
 
-_STATIONS = np.linspace(0.0, 1.0, 21)
 # Deflections over the length beyond which the equations mean nothing any more.
 _BENT = 0.5
 _MOST_SAMPLES = 2**20
@@ -22,7 +18,7 @@ def rod_motion(
     rod: FreeFreeRod,
     revolutions: float = 1.0,
     *,
-    method: str = "projection",
+    method: str = "collocation",
     rtol: float = 1e-9,
     samples: int = 360,
     progress: bool = False,
@@ -62,10 +58,7 @@ def rod_motion(
     if not (isinstance(samples, Real) and 1 <= samples <= _MOST_SAMPLES):
         raise bad("samples", repr(samples), f"a number from 1 to {_MOST_SAMPLES}", "try 360")
 
-    def watch(q: Array, t: ArrayLike) -> Array:
-        bent = np.abs(deflection(rod, q, t, _STATIONS))
-        return np.asarray(np.max(bent, axis=-1) / rod.linkage.rod, dtype=np.float64)
-
+    watch = partial(largest_deflection, rod)
     guards = (
         Guard(
             lambda t, q, qd: float(1.0 - place_of_block(rod, q, t)),

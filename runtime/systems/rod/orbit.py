@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from numbers import Real
 
 import numpy as np
@@ -10,10 +11,8 @@ import numpy as np
 from ...constrained.orbits import PeriodicOrbit, periodic_orbit
 from ...errors import bad
 from ...results import Check
-from .basis import Array
-from .constrained import FreeFreeRod, deflection, rigid_state
+from .constrained import FreeFreeRod, largest_deflection, rigid_state
 
-_STATIONS = np.linspace(0.0, 1.0, 21)
 _MOST_SAMPLES = 2**16
 
 
@@ -52,10 +51,7 @@ def rod_orbit(rod: FreeFreeRod, *, rtol: float = 1e-10, samples: int = 64) -> Pe
     advance[2] = 2.0 * np.pi * turns
     state.q[:, 2] = np.unwrap(state.q[:, 2])
 
-    def watch(q: Array, t: Array) -> Array:
-        bent = np.abs(deflection(rod, q, t, _STATIONS))
-        return np.asarray(np.max(bent, axis=-1) / rod.linkage.rod, dtype=np.float64)
-
+    watch = partial(largest_deflection, rod)
     orbit = periodic_orbit(
         rod, rod.period, state.q, state.qd, advance=advance, rtol=rtol, watch=watch
     )

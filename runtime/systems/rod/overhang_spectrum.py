@@ -185,10 +185,9 @@ class OverhangFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies against the block's place."""
-        if ax is None:
-            import matplotlib.pyplot as plt
+        from ...plotting import axes_or_new
 
-            ax = plt.subplots()[1]
+        ax = axes_or_new(ax)
         order = np.argsort(self.place)
         for mode in range(self.frequencies.shape[1]):
             ax.plot(self.place[order], self.frequencies[order, mode], label=f"mode {mode + 1}")

@@ -1,9 +1,10 @@
-"""A field of a result that is worked out when it is first looked at."""
+"""Fields of a result that are worked out when they are first looked at."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import Any
 
 
@@ -42,3 +43,28 @@ class DeferredField:
         if isinstance(value, Deferred):
             value = instance.__dict__[self._name] = value.make()
         return value
+
+
+@dataclass(frozen=True)
+class DeferredGroup:
+    """Fields that are worked out together, when the first of them is looked at.
+
+    Parameters
+    ----------
+    make : callable
+        Takes nothing and returns the values by name; must bear pickling where the result should.
+    """
+
+    make: Callable[[], Mapping[str, Any]]
+
+    @cached_property
+    def _made(self) -> Mapping[str, Any]:
+        return self.make()
+
+    def value(self, name: str) -> Any:
+        """Return one value, having worked out all of them."""
+        return self._made[name]
+
+    def later(self, name: str) -> Deferred:
+        """Return one value to be."""
+        return Deferred(partial(self.value, name))

@@ -1,0 +1,111 @@
+"""The constrained problem: a flexible rod in a floating frame, from its undeformed state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import partial
+from typing import Any, cast
+
+import numpy as np
+
+from ...constrained import constrained_motion
+from ...families import Constrained
+from .equation import Array
+from .method import Method, Problem, Work
+from .peers import TOLERANCES
+
+NAME = "constrained-trajectory"
+METHODS = ("collocation", "projection", "coordinate_partitioning", "gear_gupta_leimkuhler")
+_EACH = 32
+_RTOL = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+_TIGHT = 1e-13
+# What the references in doubles may differ by at the least.
+_DIGITS = 1e-13
+_PEERS = ("solve_ivp DOP853", "solve_ivp Radau", "CVODE")
+
+
+def problem(peers: Iterable[str], methods: Iterable[str] | None) -> Problem:
+    """Return the problem of a revolution of the constrained rod.
+
+    The reference is a run with explicit projected steps; its digits are those that it shares with
+    one of collocation, both at 1e-13.  Peers get the accelerations of the emitted functions.
+    """
+    from ...scenes import load_scene
+    from ...systems.rod import rigid_state
+    from ...systems.rod.constrained import FreeFreeRod
+
+    overrides = {"model.formulation": "free_free", "model.modes": 2}
+    rod = cast(FreeFreeRod, load_scene("beale_1992_flexible_rod", overrides=overrides).system())
+    start = rigid_state(rod, 0.0)
+    times = np.linspace(0.0, rod.period, _EACH + 1, dtype=np.float64)
+    march = partial(constrained_motion, rod, start.q, start.qd, rod.period, samples=_EACH)
+    truth = march(method="projection", rtol=_TIGHT).q
+    again = march(method="collocation", rtol=_TIGHT).q
+    size = np.max(np.abs(truth), axis=0)
+    size = np.maximum(size, 1e-3 * np.max(size))
+
+    def error(found: Any) -> float:
+        q = found.q if hasattr(found, "q") else found
+        return float(np.max(np.abs(q - truth) / size)) if q.shape == truth.shape else float("inf")
+
+    def ours(method: str, rtol: float) -> Work:
+        return partial(march, method=method, rtol=rtol)
+
+    made = [
+        Method(f"constrained_motion, {m}", partial(ours, m), _RTOL, ours=True)
+        for m in METHODS
+        if methods is None or m in set(methods)
+    ]
+
+    def theirs(peer: str, tolerance: float) -> Work:
+        return lambda: _peer(peer, rod, start.q, start.qd, times, tolerance)
+
+    wanted = [peer for peer in peers if peer in _PEERS]
+    made += [Method(peer, partial(theirs, peer), TOLERANCES) for peer in wanted]
+    digits = max(_DIGITS, error(again))
+    title = "a revolution of the flexible rod of Beale & Scott in a floating frame, two modes"
+    absent = tuple(f"{p}: needs the equation as a Fourier series" for p in peers if p not in _PEERS)
+    return Problem(NAME, title, error, digits, tuple(made), absent)
+
+
+def _peer(
+    name: str, system: Constrained, q: Array, qd: Array, times: Array, tolerance: float
+) -> Array:
+    """Return the coordinates by a general integrator of the accelerations."""
+    n = system.size
+
+    def slope(t: float, state: Array) -> Array:
+        at = system.dynamics(state[:n], state[n:], t)
+        k = len(at["jacobian"])
+        matrix = np.zeros((n + k, n + k))
+        matrix[:n, :n], matrix[:n, n:] = at["mass"], -at["jacobian"].T
+        matrix[n:, :n] = at["jacobian"]
+        right = np.concatenate([at["forces"] - at["rest"], at["gamma"]])[:, 0]
+        return np.concatenate([state[n:], np.linalg.solve(matrix, right)[:n]])
+
+    state = np.concatenate([q, qd])
+    speeds = np.abs(qd) + np.max(np.abs(q)) / times[-1]
+    absolute = 1e-2 * tolerance * np.concatenate([np.maximum(np.abs(q), 1e-3), speeds])
+    if name == "CVODE":
+        from sksundae.cvode import CVODE
+
+        def into(t: float, state: Array, out: Array) -> None:
+            out[:] = slope(t, state)
+
+        solver = CVODE(
+            into, method="Adams", rtol=max(tolerance, 1e-15), atol=absolute, max_num_steps=10**7
+        )
+        return np.asarray(solver.solve(times, state).y)[:, :n]
+    from scipy.integrate import solve_ivp
+
+    scheme: Any = name.rpartition(" ")[2]
+    found = solve_ivp(
+        slope,
+        (times[0], times[-1]),
+        state,
+        method=scheme,
+        t_eval=times,
+        rtol=max(tolerance, 3e-14),
+        atol=absolute,
+    )
+    return np.asarray(found.y.T[:, :n])

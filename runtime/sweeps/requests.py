@@ -1,0 +1,210 @@
+"""What a sweep was asked for, as a digest: the same request, and no other, goes on in a store."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import pickle
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
+from functools import partial
+from pathlib import PurePath
+from types import BuiltinFunctionType, FunctionType, MethodType
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from .pieces import Grid
+
+FORMAT = 1
+# Angles by the golden section, at which functions of the angle are told apart.
+_ANGLES = 16
+_GOLDEN = 0.6180339887498949
+# Digits to which they are compared: of what another machine computes the last may differ.
+_DIGITS = 9
+
+
+class _Hash(Protocol):
+    def update(self, data: bytes, /) -> None: ...
+
+
+def request_of(
+    task: str,
+    subject: object,
+    grid: Grid,
+    options: Mapping[str, object],
+    outputs: tuple[str, ...] | None,
+) -> dict[str, Any]:
+    """Return what a manifest says of a request: names, counts and digests, ready for JSON.
+
+    Parameters
+    ----------
+    task : str
+        Name of what is done at the points.
+    subject : object
+        What it is done with.
+    grid : Grid
+        The points and their pieces.
+    options : mapping
+        Further arguments.
+    outputs : tuple of str or None
+        Which arrays are kept.
+
+    Raises
+    ------
+    BadInput
+        If the subject or an option is of a kind that cannot be told from another.
+    """
+    from ... import __version__
+
+    axes = [
+        {
+            "name": name,
+            "count": len(axis),
+            "first": float(axis[0]),
+            "last": float(axis[-1]),
+            "digest": digest(axis),
+        }
+        for name, axis in zip(grid.names, grid.axes, strict=True)
+    ]
+    return {
+        "format": FORMAT,
+        "task": task,
+        "subject": digest(subject),
+        "values": axes,
+        "pieces": list(grid.parts),
+        "options": {name: digest(value) for name, value in sorted(options.items())},
+        "outputs": None if outputs is None else list(outputs),
+        "elastolink": __version__,
+        "numpy": np.__version__,
+    }
+
+
+def digest_of_request(request: Mapping[str, Any]) -> str:
+    """Return the digest of a request."""
+    text = json.dumps(request, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def digest(value: object) -> str:
+    """Return a digest that depends on content alone, not on addresses or the order of sets.
+
+    Raises
+    ------
+    BadInput
+        If something in it has no content that could be told.
+    """
+    found = hashlib.sha256()
+    _feed(found, value, ())
+    return found.hexdigest()
+
+
+def _feed(found: _Hash, value: object, above: tuple[int, ...]) -> None:
+    """Add a value to a hash; ``above`` are those that hold it."""
+    if id(value) in above:
+        found.update(b"<again>")
+        return
+    inner = (*above, id(value))
+    found.update(f"<{type(value).__module__}.{type(value).__qualname__}>".encode())
+    if value is None or isinstance(value, (bool, int, str, bytes, PurePath)):
+        found.update(repr(value).encode())
+    elif isinstance(value, (float, complex, np.generic, np.ndarray)):
+        _feed_numbers(found, np.asarray(value))
+    elif isinstance(value, LinearPeriodic):
+        _feed_system(found, value, inner)
+    elif isinstance(value, Mapping):
+        for key in sorted(value, key=str):
+            _feed(found, key, inner)
+            _feed(found, value[key], inner)
+    elif isinstance(value, (tuple, list)):
+        found.update(str(len(value)).encode())
+        for item in value:
+            _feed(found, item, inner)
+    elif isinstance(value, (set, frozenset)):
+        found.update("".join(sorted(digest(item) for item in value)).encode())
+    elif is_dataclass(value) and not isinstance(value, type):
+        for item in fields(value):
+            found.update(item.name.encode())
+            _feed(found, getattr(value, item.name), inner)
+    elif callable(value):
+        _feed_callable(found, value, inner)
+    else:
+        _feed_pickled(found, value)
+
+
+def _feed_numbers(found: _Hash, values: np.ndarray[Any, Any]) -> None:
+    if values.dtype == object:
+        raise _untold(values)
+    found.update(f"{values.dtype.str}{values.shape}".encode())
+    found.update(np.ascontiguousarray(values).tobytes())
+
+
+def _feed_system(found: _Hash, system: LinearPeriodic, inner: tuple[int, ...]) -> None:
+    """Add what a system does: its numbers, and its functions at some angles and parameters."""
+    numbers = (system.size, system.period, system.labels, system.reference_length)
+    _feed(found, (*numbers, dict(system.parameters), dict(system.geometry)), inner)
+    theta = np.asarray(system.period * (np.arange(_ANGLES) * _GOLDEN % 1.0), dtype=np.float64)
+    for term in system.terms:
+        _feed(found, (term.array, term.scale, term.power, term.constant), inner)
+        _feed_numbers(found, _rounded(term(theta)))
+    # How monomials depend on parameters: at two points beside their own.
+    for k, factor in enumerate((1.0, 1.25)):
+        moved = {
+            name: factor * value + 0.125 * k * (i + 1)
+            for i, (name, value) in enumerate(sorted(system.parameters.items()))
+        }
+        for name, value in sorted(system.scales(moved).items()):
+            found.update(name.encode())
+            _feed_numbers(found, _rounded(np.asarray(value, dtype=float)))
+
+
+def _rounded(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return values to nine digits of the largest; no negative zeros."""
+    size = float(np.max(np.abs(values), initial=0.0))
+    if not np.isfinite(size) or size == 0.0:
+        return np.asarray(values, dtype=float)
+    # A power of two: dividing by it loses nothing.
+    unit = 2.0 ** np.ceil(np.log2(size))
+    return np.asarray(np.round(values / unit, _DIGITS) + 0.0)
+
+
+def _feed_callable(found: _Hash, value: Callable[..., Any], inner: tuple[int, ...]) -> None:
+    if isinstance(value, partial):
+        _feed(found, (value.func, value.args, dict(value.keywords)), inner)
+    elif isinstance(value, MethodType):
+        _feed(found, (value.__func__.__qualname__, value.__self__), inner)
+    elif isinstance(value, FunctionType):
+        code = value.__code__
+        found.update(f"{value.__module__}.{value.__qualname__}".encode())
+        found.update(code.co_code)
+        _feed(found, tuple(c for c in code.co_consts if not hasattr(c, "co_code")), inner)
+        cells = tuple(cell.cell_contents for cell in value.__closure__ or ())
+        _feed(found, (cells, value.__defaults__, value.__kwdefaults__), inner)
+    elif isinstance(value, (type, BuiltinFunctionType, np.ufunc)):
+        name = getattr(value, "__qualname__", "") or value.__name__
+        found.update(f"{getattr(value, '__module__', '')}.{name}".encode())
+    else:
+        _feed_pickled(found, value)
+
+
+def _feed_pickled(found: _Hash, value: object) -> None:
+    state = getattr(value, "__dict__", None)
+    if state is not None and type(value).__reduce__ is object.__reduce__:
+        # A plain object is what its attributes are.
+        _feed(found, dict(state), (id(value),))
+        return
+    try:
+        found.update(pickle.dumps(value, protocol=4))
+    except (pickle.PicklingError, AttributeError, TypeError) as reason:
+        raise _untold(value) from reason
+
+
+def _untold(value: object) -> Exception:
+    return bad(
+        "sweep",
+        f"an argument of type {type(value).__name__}, whose content cannot be told",
+        "numbers, texts, arrays, systems, scenes and functions of a module",
+        "leave out the store, or give something simpler",
+    )

@@ -1,0 +1,313 @@
+"""Sweeps over a grid of values: piece by piece, on any executor, from and to a store."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..progress import bar
+from ..response.checks import warn_beyond
+from ..results import Check, provenance
+from ..scenes import Scene
+from .pieces import Grid, check_chunk, grid_of
+from .requests import request_of
+from .result import Sweep
+from .store import Joined, Store
+from .tasks import NAMED, Outputs, Piece, Task, checks_of, task_of, told_of, worst
+from .workers import Workers, check_executor
+
+AnyArray = NDArray[Any]
+
+
+def sweep(
+    what: str | Callable[..., Any],
+    subject: object,
+    values: Mapping[str, ArrayLike],
+    *,
+    options: Mapping[str, object] | None = None,
+    outputs: tuple[str, ...] | None = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool = False,
+) -> Sweep:
+    """Work out something at all combinations of values, in pieces that do not know each other.
+
+    The borders of the pieces follow from the values and ``chunk`` alone: the same sweep gives the
+    same bytes by any executor, number of workers and order, and after any interruption.
+
+    Parameters
+    ----------
+    what : str or callable
+        ``"stability_chart"`` (two axes: the first along y, the second along x),
+        ``"floquet_multipliers"``, ``"steady_state"`` (peak and rms of each coordinate), which
+        take all points of a piece at once; the name of any other public function; or a function
+        of your own, called at one point after another as ``what(subject, **values, **options)``,
+        which returns a number, an array, a mapping of such or a result.
+    subject : object
+        A system or scene for those of the first kind, else the first argument of the function.
+    values : mapping
+        Values along each axis [SI] by name, the last running fastest: ``"speed"`` and parameters
+        or geometry of the system; of other functions their arguments, and numbers of the subject
+        that it can be made anew for.
+    options : mapping, optional
+        Further arguments.
+    outputs : tuple of str, optional
+        Which arrays are kept; by default all, of ``"stability_chart"`` all but ``invariants``.
+    executor : concurrent.futures.Executor, optional
+        Threads, processes (:func:`process_pool`) or Dask's ``client.get_executor()``; what is
+        swept must bear pickling for all but threads.
+    chunk : int, optional
+        About how many points a piece has, which bounds the memory of each worker.  A chart's
+        piece has at least two whole rows.
+    store : path, optional
+        Where finished pieces are kept: a folder, at the end with one ``.npy`` file per array, or
+        a path ending in ``.npz``.  The same sweep goes on from there after it was killed, or
+        gives what is complete there.
+    progress : bool
+        Whether to show a progress bar with the time left (extra ``progress``).
+
+    Returns
+    -------
+    Sweep
+        ``outputs`` by name, shape ``(*grid, ...)``; of a folder they are maps of its files.  Its
+        error is the largest of the pieces, its checks are the worst of each.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If a deflection of ``"steady_state"`` passes 5 % of the reference length.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, the store holds another request, or the solver refuses a
+        point.
+    WorkersLost
+        If the executor's workers end; with a store the finished pieces are kept.
+    """
+    plan = planned(what, subject, values, options, outputs, chunk)
+    check_executor(executor)
+    found = _swept(plan, executor, store, progress)
+    if plan.task.name == "steady_state" and "linear range" in found.checks:
+        warn_beyond(found.checks["linear range"].value)
+    return found
+
+
+def _swept(
+    plan: Plan, executor: Executor | None, store: str | os.PathLike[str] | None, progress: bool
+) -> Sweep:
+    """Return the whole sweep, from the store what is there."""
+    if store is None:
+        return _in_memory(plan, executor, progress)
+    place = _place(store)
+    kept = Store(place, request_of(*plan.request()), plan.grid)
+    done = kept.finished()
+    if done is not None:
+        return _assembled(plan, done, place, plan.grid.pieces)
+    with kept.opened():
+        return _through_store(plan, kept, executor, progress)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A sweep whose arguments have been checked.
+
+    Attributes
+    ----------
+    task : Task
+        What is done.
+    subject : object
+        With what.
+    grid : Grid
+        Where, and in which pieces.
+    options : mapping
+        Further arguments.
+    outputs : tuple of str or None
+        Arrays that are kept.
+    """
+
+    task: Task
+    subject: Any
+    grid: Grid
+    options: Mapping[str, object]
+    outputs: Outputs
+
+    def request(self) -> tuple[str, object, Grid, Mapping[str, object], Outputs]:
+        """Return what tells this sweep from another."""
+        return self.task.name, self.subject, self.grid, self.options, self.outputs
+
+    def piece(self, number: int) -> Piece:
+        """Work out one piece."""
+        return self.task.run(self.subject, self.grid.values(number), self.options, self.outputs)
+
+
+def planned(
+    what: str | Callable[..., Any],
+    subject: object,
+    values: Mapping[str, ArrayLike],
+    options: Mapping[str, object] | None,
+    outputs: tuple[str, ...] | None,
+    chunk: int | None,
+) -> Plan:
+    """Return the plan of a sweep.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    task = task_of(what)
+    grid = grid_of(values, task.chunk if chunk is None else check_chunk(chunk), rows=task.rows)
+    if isinstance(subject, Scene) and task.of_systems:
+        subject = subject.linear_system() if task.name in NAMED else subject.system()
+    told = dict(options or {})
+    if task.name in NAMED:
+        _check_axes(task, subject, grid, told)
+    both = sorted(set(told) & set(grid.names))
+    if both:
+        raise bad("options", both, "arguments that are no axis", "leave them out there")
+    if outputs is not None and (isinstance(outputs, str) or not outputs):
+        fix = 'give a tuple, as ("stable",)'
+        raise bad("outputs", repr(outputs), "names of arrays", fix)
+    kept = task.outputs if outputs is None else tuple(outputs)
+    return Plan(task, subject, grid, told, kept)
+
+
+def _check_axes(task: Task, subject: object, grid: Grid, told: Mapping[str, object]) -> None:
+    """Refuse a subject or axes that a solver of linear periodic systems cannot take."""
+    if not isinstance(subject, LinearPeriodic):
+        fix = "give scene.system() or a scene"
+        raise bad(task.name, type(subject).__name__, "a linear periodic system", fix)
+    known = ["speed", *sorted({*subject.parameters, *subject.geometry})]
+    unknown = sorted(set(grid.names) - set(known))
+    if unknown:
+        raise bad("values", f"axes {unknown}", f"some of {known}", "correct the names")
+    if task.rows:
+        rising = all(np.all(np.diff(axis) > 0) for axis in grid.axes)
+        if len(grid.names) != 2 or min(grid.shape) < 2 or not rising:
+            expected = "two axes of at least two rising values each"
+            raise bad("values", f"axes of {grid.shape} values", expected, "correct them")
+    elif "speed" not in (*grid.names, *told):
+        fix = "make it an axis, or give options={'speed': ...} in rad/s"
+        raise bad(task.name, "no speed", "a crank speed", fix)
+
+
+def _place(store: str | os.PathLike[str]) -> Path:
+    try:
+        return Path(store)
+    except TypeError:
+        raise bad("store", repr(store), "a path", "give a folder or a .npz file") from None
+
+
+def prepared(plan: Plan) -> Plan:
+    """Return what a worker keeps between pieces."""
+    return plan
+
+
+def work_on(plan: Plan, number: int) -> Piece:
+    """Work out one piece."""
+    return plan.piece(number)
+
+
+def _pieces(
+    plan: Plan, executor: Executor | None, wanted: list[int], progress: bool
+) -> Iterator[tuple[int, Piece]]:
+    """Yield the pieces that are wanted as they are done."""
+    workers = Workers(executor, prepared, plan)
+    points = plan.grid.points
+    sizes = [plan.grid.run(number) for number in wanted]
+    done = points - sum(run.stop - run.start for run in sizes)
+    with bar(progress, points, begun=done, unit=" points") as tick:
+        for place, piece in workers.run(work_on, wanted):
+            yield wanted[place], piece
+            done += sizes[place].stop - sizes[place].start
+            if tick is not None:
+                tick(done)
+
+
+class Summary:
+    """What is told of all pieces, whatever order they come in."""
+
+    def __init__(self) -> None:
+        self._told: dict[int, tuple[str, float, str, Mapping[str, Check]]] = {}
+        self.shapes: dict[str, tuple[tuple[int, ...], str]] = {}
+
+    def add(self, number: int, piece: Piece) -> None:
+        """Take in a piece; refuse one whose arrays are not like those of the others."""
+        found = {name: (array.shape[1:], array.dtype.str) for name, array in piece.arrays.items()}
+        self.shapes = self.shapes or found
+        if found != self.shapes:
+            raise bad(
+                "outputs",
+                f"{sorted(found.items())} in one piece, {sorted(self.shapes.items())} in another",
+                "arrays of the same names, shapes and types",
+                "name the outputs that have them, as outputs=(...)",
+            )
+        self._told[number] = (piece.method, piece.error, piece.error_norm, piece.checks)
+
+    def about(self) -> dict[str, Any]:
+        """Return method, error and checks, ready for JSON."""
+        told = [self._told[number] for number in sorted(self._told)]
+        errors = [error for _, error, _, _ in told if not np.isnan(error)]
+        checks = worst(checks for _, _, _, checks in told)
+        method = "; ".join(dict.fromkeys(method for method, _, _, _ in told))
+        error = max(errors) if errors else float("nan")
+        return told_of(method, error, told[0][2], checks)
+
+
+def _in_memory(plan: Plan, executor: Executor | None, progress: bool) -> Sweep:
+    grid = plan.grid
+    summary = Summary()
+    arrays: dict[str, AnyArray] = {}
+    for number, piece in _pieces(plan, executor, list(range(grid.pieces)), progress):
+        summary.add(number, piece)
+        for name, array in piece.arrays.items():
+            if name not in arrays:
+                arrays[name] = np.empty((grid.points, *array.shape[1:]), dtype=array.dtype)
+            arrays[name][grid.run(number)] = array
+    whole = {name: array.reshape(*grid.shape, *array.shape[1:]) for name, array in arrays.items()}
+    return _assembled(plan, Joined(dict(sorted(whole.items())), summary.about()), None, 0)
+
+
+def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress: bool) -> Sweep:
+    summary = Summary()
+    wanted = []
+    for number in range(plan.grid.pieces):
+        piece = kept.read(number)
+        if piece is None:
+            wanted.append(number)
+        else:
+            summary.add(number, piece)
+    for number, piece in _pieces(plan, executor, wanted, progress):
+        summary.add(number, piece)
+        kept.write(number, piece)
+    joined = kept.join(summary.shapes, summary)
+    return _assembled(plan, joined, kept.path, plan.grid.pieces - len(wanted))
+
+
+def _assembled(plan: Plan, joined: Joined, place: Path | None, resumed: int) -> Sweep:
+    about = joined.about
+    known = plan.subject.provenance if isinstance(plan.subject, LinearPeriodic) else {}
+    return Sweep(
+        method=about["method"],
+        error=float(about["error"]),
+        error_norm=about["error_norm"],
+        checks=checks_of(about),
+        provenance=provenance(known),
+        what=plan.task.name,
+        axes=dict(zip(plan.grid.names, plan.grid.axes, strict=True)),
+        outputs=joined.arrays,
+        pieces=plan.grid.pieces,
+        resumed=resumed,
+        store=place,
+    )

@@ -1,0 +1,382 @@
+"""What a sweep can do at its points: the solvers that take many at once, or any function."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import bad
+from ..families import LinearPeriodic
+from ..results import Check, Result
+
+Array = NDArray[np.float64]
+AnyArray = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What was found at a run of the grid's points.
+
+    Attributes
+    ----------
+    arrays : mapping of str to ndarray
+        Shape ``(points, ...)`` each.
+    method, error_norm : str
+        As of the result that they are from.
+    error : float
+        Largest error figure of the points; NaN where there is none.
+    checks : mapping of str to Check
+        The worst of each self-check.
+    """
+
+    arrays: Mapping[str, AnyArray]
+    method: str
+    error: float
+    error_norm: str
+    checks: Mapping[str, Check]
+
+    def about(self) -> dict[str, Any]:
+        """Return all but the arrays, ready for JSON."""
+        return told_of(self.method, self.error, self.error_norm, self.checks)
+
+    @classmethod
+    def from_about(cls, arrays: Mapping[str, AnyArray], about: Mapping[str, Any]) -> Piece:
+        """Undo :meth:`about`."""
+        error, checks = float(about["error"]), checks_of(about)
+        return cls(arrays, about["method"], error, about["error_norm"], checks)
+
+
+def told_of(
+    method: str, error: float, error_norm: str, checks: Mapping[str, Check]
+) -> dict[str, Any]:
+    """Return what a result says of itself, ready for JSON, which has no word for infinity."""
+    pairs = {name: [_json(c.value), _json(c.limit)] for name, c in checks.items()}
+    return {"method": method, "error": _json(error), "error_norm": error_norm, "checks": pairs}
+
+
+def checks_of(about: Mapping[str, Any]) -> dict[str, Check]:
+    """Return the self-checks that :func:`told_of` tells."""
+    return {name: Check(*map(float, pair)) for name, pair in about["checks"].items()}
+
+
+def _json(number: float) -> float | str:
+    return float(number) if np.isfinite(number) else str(float(number))
+
+
+# Subject, values along each axis of a piece, further arguments, wanted arrays.
+Outputs = tuple[str, ...] | None
+Run = Callable[[Any, Mapping[str, Array], Mapping[str, Any], Outputs], Piece]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A way to work out a piece.
+
+    Attributes
+    ----------
+    name : str
+        What it is called in a manifest.
+    run : callable
+        Works out a piece.
+    chunk : int
+        Points of a piece unless told otherwise.
+    of_systems : bool
+        Whether its subject is a linear periodic system, which a scene is turned into.
+    rows : bool
+        Whether a piece wants its last axis whole.
+    outputs : tuple of str or None
+        Arrays that are kept unless told otherwise; None for all.
+    """
+
+    name: str
+    run: Run
+    chunk: int
+    of_systems: bool = True
+    rows: bool = False
+    outputs: Outputs = None
+
+
+def worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
+    """Return of each self-check the one that came closest to its limit, or went beyond it most."""
+    found: dict[str, Check] = {}
+    for each in checks:
+        for name, check in each.items():
+            if name not in found or _share(check) > _share(found[name]):
+                found[name] = check
+    return dict(sorted(found.items()))
+
+
+def _share(check: Check) -> float:
+    if np.isnan(check.value):
+        return float("inf")
+    if check.limit > 0:
+        return float(check.value / check.limit)
+    return -1.0 if check.passed else float("inf")
+
+
+def _largest(error: object) -> float:
+    """Return the largest error figure that is a number; NaN where there is none."""
+    values = np.asarray(error, dtype=float)
+    values = values[~np.isnan(values)]
+    return float(np.max(values)) if values.size else float("nan")
+
+
+def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
+    return Piece(
+        arrays,
+        results[0].method,
+        _largest([_largest(result.error) for result in results]),
+        results[0].error_norm,
+        worst(result.checks for result in results),
+    )
+
+
+def _chart(
+    system: LinearPeriodic,
+    axes: Mapping[str, Array],
+    options: Mapping[str, Any],
+    outputs: Outputs,
+) -> Piece:
+    from ..charts.chart import stability_chart
+
+    (y, along_y), (x, along_x) = axes.items()
+    told = {"boundaries": False, **options}
+    chart = stability_chart(system, x=(x, along_x), y=(y, along_y), **told)
+    arrays = {
+        name: getattr(chart, name)
+        for name in ("stable", "largest", "slack", "undecided", "kind", "invariants")
+    }
+    count = len(along_x) * len(along_y)
+    flat = {k: v.reshape(count, *v.shape[2:]) for k, v in arrays.items()}
+    return _of_result(_wanted(flat, outputs), chart)
+
+
+def _by_geometry(
+    system: LinearPeriodic,
+    axes: Mapping[str, Array],
+    options: Mapping[str, Any],
+    outputs: Outputs,
+    solve: Callable[..., tuple[dict[str, AnyArray], Result]],
+) -> Piece:
+    """Call a solver with all points of a piece at once, or once for each geometry."""
+    mesh = np.meshgrid(*axes.values(), indexing="ij")
+    values = {name: part.ravel() for name, part in zip(axes, mesh, strict=True)}
+    shapes = [name for name in values if name in system.geometry]
+    rest = {name: value for name, value in values.items() if name not in shapes}
+    count = len(mesh[0].ravel())
+    if not shapes:
+        arrays, result = solve(system, **rest, **options)
+        return _of_result(_wanted(arrays, outputs), result)
+    table = np.stack([values[name] for name in shapes], axis=-1)
+    found: list[tuple[NDArray[np.intp], dict[str, AnyArray], Result]] = []
+    for shape in np.unique(table, axis=0):
+        own = np.flatnonzero(np.all(table == shape, axis=1))
+        made = system.with_geometry(**dict(zip(shapes, shape.tolist(), strict=True)))
+        arrays, result = solve(made, **{k: v[own] for k, v in rest.items()}, **options)
+        found.append((own, _wanted(arrays, outputs), result))
+    joined = {}
+    for name, first in found[0][1].items():
+        joined[name] = np.empty((count, *first.shape[1:]), dtype=first.dtype)
+        for own, arrays, _ in found:
+            joined[name][own] = arrays[name]
+    return _of_result(joined, *(result for _, _, result in found))
+
+
+def _multipliers(
+    system: LinearPeriodic,
+    axes: Mapping[str, Array],
+    options: Mapping[str, Any],
+    outputs: Outputs,
+) -> Piece:
+    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
+        from ..floquet.monodromy_matrix import floquet_multipliers
+
+        result = floquet_multipliers(made, **values)
+        arrays = {
+            "multipliers": result.multipliers,
+            "error": np.asarray(result.error),
+            "stable": np.asarray(result.stable),
+            "growth": result.growth,
+        }
+        return arrays, result
+
+    return _by_geometry(system, axes, options, outputs, solve)
+
+
+def _steady(
+    system: LinearPeriodic,
+    axes: Mapping[str, Array],
+    options: Mapping[str, Any],
+    outputs: Outputs,
+) -> Piece:
+    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
+        from ..response.steady_state import without_warning
+
+        # What costs little at one speed may not at another: asked for or not, but everywhere.
+        asked = {"method": None, "rtol": None, "samples": 256, "options": None, "stability": False}
+        asked |= {name: values.pop(name) for name in list(values) if name in asked}
+        result = without_warning(made, values.pop("speed"), asked, values)
+        arrays = {
+            "peak": np.max(np.abs(result.q), axis=-2),
+            "rms": np.sqrt(np.mean(result.q**2, axis=-2)),
+            "error": np.asarray(result.error),
+        }
+        if result.stable is not None:
+            arrays |= {"stable": result.stable, "distance": result.distance}
+        return arrays, result
+
+    return _by_geometry(system, axes, options, outputs, solve)
+
+
+def _each(
+    function: Callable[..., Any],
+    subject: Any,
+    axes: Mapping[str, Array],
+    options: Mapping[str, Any],
+    outputs: Outputs,
+) -> Piece:
+    """Call a function at one point after another."""
+    mesh = np.meshgrid(*axes.values(), indexing="ij")
+    rows = np.stack([part.ravel() for part in mesh], axis=-1).tolist()
+    own = _own_values(function, subject, tuple(axes))
+    arrays: list[dict[str, AnyArray]] = []
+    results: list[Result] = []
+    for row in rows:
+        point = dict(zip(axes, row, strict=True))
+        made = _moved(subject, {name: point.pop(name) for name in own})
+        answer = function(made, **point, **options)
+        arrays.append(_wanted(_arrays_of(answer), outputs))
+        if isinstance(answer, Result):
+            results.append(answer)
+    joined = {name: _stacked(name, [found.get(name) for found in arrays]) for name in arrays[0]}
+    if results:
+        return _of_result(joined, *results)
+    name = getattr(function, "__name__", "function")
+    return Piece(joined, name, float("nan"), "none: the function gives none", {})
+
+
+def _own_values(
+    function: Callable[..., Any], subject: Any, names: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return which values are the subject's own, and not arguments of the function.
+
+    Raises
+    ------
+    BadInput
+        If one is neither.
+    """
+    try:
+        arguments = list(inspect.signature(function).parameters.values())[1:]
+    except (TypeError, ValueError):
+        return ()
+    plain = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    taken = {item.name for item in arguments if item.kind in plain}
+    known: set[str] = set()
+    if isinstance(subject, LinearPeriodic):
+        known = {*subject.parameters, *subject.geometry}
+    elif is_dataclass(subject) and not isinstance(subject, type):
+        known = {item.name for item in fields(subject) if item.init}
+    own = tuple(name for name in names if name not in taken and name in known)
+    left = [name for name in names if name not in taken and name not in known]
+    if left and not any(item.kind is inspect.Parameter.VAR_KEYWORD for item in arguments):
+        expected = f"some of {sorted(taken | known)}"
+        raise bad("values", f"axes {left}", expected, "correct the names")
+    return own
+
+
+def _moved(subject: Any, values: dict[str, float]) -> Any:
+    """Return the subject with other values of its own."""
+    if not values:
+        return subject
+    if not isinstance(subject, LinearPeriodic):
+        return replace(subject, **values)
+    shapes = {name: value for name, value in values.items() if name in subject.geometry}
+    made = subject.with_geometry(**shapes) if shapes else subject
+    numbers = {name: value for name, value in values.items() if name not in shapes}
+    return made.with_parameters(**numbers) if numbers else made
+
+
+def _wanted(arrays: dict[str, AnyArray], outputs: Outputs) -> dict[str, AnyArray]:
+    """Return the arrays that are wanted.
+
+    Raises
+    ------
+    BadInput
+        If one of them is not among those that there are.
+    """
+    if outputs is None:
+        return arrays
+    missing = [name for name in outputs if name not in arrays]
+    if missing:
+        raise bad("outputs", missing, f"some of {sorted(arrays)}", "correct the names")
+    return {name: arrays[name] for name in outputs}
+
+
+def _arrays_of(answer: Any) -> dict[str, AnyArray]:
+    if isinstance(answer, Result):
+        return answer.arrays()
+    if isinstance(answer, Mapping):
+        return {str(name): np.asarray(value) for name, value in answer.items()}
+    return {"value": np.asarray(answer)}
+
+
+def _stacked(name: str, values: list[AnyArray | None]) -> AnyArray:
+    """Return the values of all points in one array."""
+    shapes = {None if value is None else value.shape for value in values}
+    kinds = {None if value is None else value.dtype.kind for value in values}
+    if len(shapes) > 1 or kinds & {"O", None}:
+        raise bad(
+            f"output {name!r}",
+            "numbers at every point" if len(shapes) == 1 else f"shapes {sorted(map(str, shapes))}",
+            "numbers of one shape at every point",
+            "name the outputs that have one, as outputs=(...), or return such",
+        )
+    return np.stack([value for value in values if value is not None])
+
+
+NAMED: Mapping[str, Task] = {
+    "stability_chart": Task(
+        "stability_chart",
+        _chart,
+        1_000_000,
+        rows=True,
+        outputs=("stable", "largest", "slack", "undecided", "kind"),
+    ),
+    "floquet_multipliers": Task("floquet_multipliers", _multipliers, 2048),
+    "steady_state": Task("steady_state", _steady, 64),
+}
+
+
+def task_of(what: str | Callable[..., Any]) -> Task:
+    """Return the task that a name or a function stands for.
+
+    Raises
+    ------
+    BadInput
+        If it is neither the name of a public function nor callable.
+    """
+    if isinstance(what, str):
+        if what in NAMED:
+            return NAMED[what]
+        public = import_module(__name__.partition(".")[0])
+        function = getattr(public, what, None) if what in public.__all__ else None
+        if not callable(function) or isinstance(function, type):
+            from ..scenes.validation import nearest
+
+            known = [name for name in public.__all__ if name[:1].islower()]
+            fix = nearest(what, known, "name one of these")
+            expected = "the name of a public function, or a function"
+            raise bad("sweep", repr(what), expected, fix)
+        return Task(what, partial(_each, function), 16)
+    if not callable(what):
+        fix = "give 'stability_chart', or a function of your own"
+        raise bad("sweep", repr(what)[:60], "a name or a function", fix)
+    name = f"{getattr(what, '__module__', '')}.{getattr(what, '__qualname__', repr(what))}"
+    return Task(name, partial(_each, what), 16, of_systems=False)

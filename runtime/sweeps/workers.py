@@ -1,0 +1,234 @@
+"""Independent pieces of work, done here or by an executor, the same by any and in any order."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import contextmanager
+from functools import partial
+from itertools import islice
+from typing import Any
+
+from ..errors import ElastolinkError, bad
+
+# Pieces handed over for each worker: one being done and one waiting.
+_EACH = 2
+_PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_MOST_WORKERS = 1024
+
+
+class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
+    """The workers of an executor ended before their work did."""
+
+
+class Workers:
+    """Does the same work on many items, with a subject that every worker prepares once.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor or None
+        Threads, processes, or what :meth:`distributed.Client.get_executor` returns; None does
+        everything here.
+    prepare : callable
+        Makes the subject from ``arguments``.
+    *arguments : object
+        They, and ``prepare``, must bear pickling for anything but threads.
+
+    Raises
+    ------
+    BadInput
+        If the executor is none, or the subject cannot be sent to it.
+    """
+
+    def __init__(
+        self, executor: Executor | None, prepare: Callable[..., Any], *arguments: Any
+    ) -> None:
+        check_executor(executor)
+        self._executor = executor
+        self._subject: Any = None
+        self._sent: bytes | None = None
+        if executor is None or isinstance(executor, ThreadPoolExecutor):
+            self._subject = prepare(*arguments)
+        else:
+            self._sent = _pickled(prepare, arguments)
+
+    @property
+    def in_flight(self) -> int:
+        """How many items are handed over at a time, which bounds the memory."""
+        if self._executor is None:
+            return 1
+        # Dask's executor does not tell how many workers it has.
+        count = getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1
+        return _EACH * int(count)
+
+    def run(
+        self, work: Callable[[Any, Any], Any], items: Iterable[Any]
+    ) -> Iterator[tuple[int, Any]]:
+        """Yield the number of an item and ``work(subject, item)``, as they are done.
+
+        Raises
+        ------
+        WorkersLost
+            If the executor's workers end, for example for want of memory.
+        BadInput
+            If the executor was shut down.
+        """
+        queue = enumerate(items)
+        if self._executor is None:
+            for number, item in queue:
+                yield number, work(self._subject, item)
+            return
+        waiting: dict[Future[Any], int] = {}
+        try:
+            while True:
+                for number, item in islice(queue, self.in_flight - len(waiting)):
+                    waiting[self._submit(work, item)] = number
+                if not waiting:
+                    return
+                done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in sorted(done, key=waiting.__getitem__):
+                    yield waiting.pop(future), _result(future)
+        finally:
+            for future in waiting:
+                future.cancel()
+
+    def map(self, work: Callable[[Any, Any], Any], items: Iterable[Any]) -> list[Any]:
+        """Return ``work(subject, item)`` of all items, in their order."""
+        found = dict(self.run(work, items))
+        return [found[number] for number in range(len(found))]
+
+    def _submit(self, work: Callable[[Any, Any], Any], item: Any) -> Future[Any]:
+        executor = self._executor
+        if executor is None:
+            raise ValueError("no executor")
+        call = partial(work, self._subject) if self._sent is None else partial(_call, self._sent)
+        try:
+            return (
+                executor.submit(call, item)
+                if self._sent is None
+                else executor.submit(call, work, item)
+            )
+        except BrokenExecutor as reason:
+            raise _lost(reason) from reason
+        except RuntimeError as reason:
+            fix = "do the work inside its with block"
+            raise bad(
+                "executor", f"one that says: {reason}", "one that takes work", fix
+            ) from reason
+
+
+def check_executor(executor: object) -> None:
+    """Refuse what is neither None nor an executor.
+
+    Raises
+    ------
+    BadInput
+        If it is something else.
+    """
+    if executor is not None and not isinstance(executor, Executor):
+        raise bad(
+            "executor",
+            type(executor).__name__,
+            "a concurrent.futures.Executor",
+            "give a pool of threads or processes, or Dask's client.get_executor()",
+        )
+
+
+@contextmanager
+def process_pool(workers: int) -> Iterator[Executor]:
+    """Open a pool of processes for sweeps, each with its numerical libraries on one thread.
+
+    Parameters
+    ----------
+    workers : int
+        How many, 1 to 1024.
+
+    Raises
+    ------
+    BadInput
+        If that is no such number.
+
+    Notes
+    -----
+    The processes are started afresh, not copied: a script that opens a pool keeps its own work
+    under ``if __name__ == "__main__":``, as with any such pool.
+    """
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    check_workers(workers)
+    before = {name: os.environ.get(name) for name in _PINNED}
+    # The libraries read it as they load, in the processes that start here.
+    os.environ.update(dict.fromkeys(_PINNED, "1"))
+    try:
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(max_workers=int(workers), mp_context=context) as pool:
+            yield pool
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def check_workers(workers: object) -> None:
+    """Refuse a number of workers that is none.
+
+    Raises
+    ------
+    BadInput
+        If it is not a whole number from 1 to 1024.
+    """
+    whole = isinstance(workers, int) and not isinstance(workers, bool)
+    if not whole or not 1 <= workers <= _MOST_WORKERS:  # type: ignore[operator]
+        fix = "give the number of cores"
+        raise bad("workers", repr(workers), f"a whole number from 1 to {_MOST_WORKERS}", fix)
+
+
+_prepared = threading.local()
+
+
+def _call(sent: bytes, work: Callable[[Any, Any], Any], item: Any) -> Any:
+    """Do the work on one item in a worker, which keeps the subject for the next one."""
+    if getattr(_prepared, "sent", None) != sent:
+        prepare, arguments = pickle.loads(sent)
+        _prepared.subject = prepare(*arguments)
+        _prepared.sent = sent
+    return work(_prepared.subject, item)
+
+
+def _pickled(prepare: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
+    try:
+        return pickle.dumps((prepare, arguments))
+    except (pickle.PicklingError, AttributeError, TypeError) as reason:
+        raise bad(
+            "executor",
+            f"a subject or function that cannot be sent to another process ({reason})",
+            "functions of a module, and systems and scenes made of such",
+            "define them at the top of a file, or use a ThreadPoolExecutor",
+        ) from reason
+
+
+def _result(future: Future[Any]) -> Any:
+    try:
+        return future.result()
+    except BrokenExecutor as reason:
+        raise _lost(reason) from reason
+
+
+def _lost(reason: BaseException) -> WorkersLost:
+    return WorkersLost(
+        f"executor: found workers that ended ({reason}); expected them to live until the work is "
+        "done; give fewer workers or smaller chunks, and the same store to go on from there"
+    )

@@ -1,0 +1,126 @@
+"""Where the numbers themselves are ill-conditioned: the figure grows with it, or a clear refusal.
+
+Each test names its danger and the figure it guards.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.beams import Section, frame, linear_system
+from elastolink.runtime.dynamic_stiffness import dynamic_stiffness, wittrick_williams
+from elastolink.runtime.errors import BadInput
+from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.frequencies import natural_frequencies
+from elastolink.runtime.response import steady_state
+
+pytestmark = pytest.mark.filterwarnings("error")
+CLAMPED = ("x", "y", "rotation")
+BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)
+
+
+@pytest.mark.parametrize(
+    "exponent",
+    [*range(1, 6), *(pytest.param(k, marks=pytest.mark.slow) for k in (6, 7)), 8],
+)
+def test_coordinates_that_hardly_differ(exponent):
+    """Danger: a basis nearly dependent.  Figure: that of the multipliers."""
+    squares, speed = np.array([2.0, 5.3]), 1.1
+    basis = np.array([[1.0, 1.0], [0.0, 10.0**-exponent]])
+    terms = (
+        Term("M", None, basis.T @ basis),
+        Term("K", None, basis.T @ np.diag(squares) @ basis),
+    )
+    system = LinearPeriodic(2, terms, {}, lambda values: {})
+    try:
+        found = floquet_multipliers(system, speed)
+    except BadInput:
+        # The mass is positive definite no more in doubles.
+        assert exponent >= 7
+        return
+    phase = np.sqrt(squares) * 2 * np.pi / speed
+    exact = np.exp(1j * np.concatenate([phase, -phase]))
+    # The arrays themselves are rounded: relative to the condition of the mass.
+    data = 4 * np.finfo(float).eps * np.linalg.cond(basis) ** 2 * np.max(phase)
+    for value, error in zip(found.multipliers, found.error, strict=True):
+        assert np.isfinite(value) or np.isinf(error)
+        if np.isfinite(error):
+            assert np.min(np.abs(exact - value)) <= error + data
+
+
+@pytest.mark.parametrize("exponent", range(1, 9))
+def test_an_element_whose_length_vanishes(exponent):
+    """Danger: stiffness entries as 1/h^3.  Figure: that of natural frequencies, by round-off."""
+    short = 10.0**-exponent
+    places = {"A": (0.0, 0.0), "B": (0.5, 0.0), "C": (0.5 + short, 0.0), "D": (1.0, 0.0)}
+    members = {"one": ("A", "B"), "tiny": ("B", "C"), "two": ("C", "D")}
+    structure = frame(places, members, BAR, supports={"A": CLAMPED}, elements=1)
+    try:
+        found = natural_frequencies(linear_system(structure), 0.0, 2)
+    except BadInput:
+        assert exponent >= 5
+        return
+    places.pop("C")
+    whole = frame(
+        places, {"one": ("A", "B"), "two": ("B", "D")}, BAR, supports={"A": CLAMPED}, elements=1
+    )
+    plain = natural_frequencies(linear_system(whole), 0.0, 2)
+    assert np.all(np.isfinite(found.frequency)) and np.all(np.isfinite(found.error))
+    # One more node makes the mesh no worse, and lets it be better by its share of the bar alone.
+    gap = np.abs(found.frequency - plain.frequency) / plain.frequency
+    assert np.all(gap <= found.error / found.frequency + 0.01 * 10.0 * short)
+
+
+def test_every_mode_from_the_first_to_the_hundredth():
+    """Danger: cosh and sinh lose every digit by mode 12.  Figure: the bound of each frequency."""
+    structure = frame({"A": (0, 0), "B": (1, 0)}, {"bar": ("A", "B")}, BAR, supports={"A": CLAMPED})
+    problem = dynamic_stiffness(structure, inextensible=True)
+    found = wittrick_williams(problem, count=100)
+    assert found.passed
+    number = np.arange(1, 101)
+    root = ((number - 0.5) * np.pi).astype(np.longdouble)
+    side = np.where(number % 2, 1, -1)
+    for _ in range(30):
+        # cos z = -1/cosh z, solved for the angle beside each whole and a half.
+        root = (number - 0.5) * (4 * np.arctan(np.longdouble(1))) + side * np.arcsin(
+            1 / np.cosh(root)
+        )
+    gap = np.abs(found.frequencies - root**2).astype(float)
+    assert np.all(gap <= found.error)
+
+
+@pytest.mark.parametrize("exponent", range(1, 16))
+def test_a_hair_from_an_undamped_resonance(exponent):
+    """Danger: a motion that grows without bound.  Figure: that of the steady state."""
+    speed = 1.0 + 10.0**-exponent
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", None, np.eye(1)),
+        Term("p", None, lambda theta: np.cos(theta)[:, None]),
+    )
+    system = LinearPeriodic(1, terms, {}, lambda values: {})
+    found = steady_state(system, speed)
+    exact = 1.0 / ((1.0 - np.longdouble(speed)) * (1.0 + np.longdouble(speed)))
+    error = float(np.max(found.error))
+    if not np.isfinite(error):
+        assert exponent >= 12
+        return
+    gap = np.max(np.abs(found.q[:, 0] - exact * np.cos(found.theta))) / abs(exact)
+    assert float(gap) <= error
+
+
+def test_at_an_undamped_resonance_no_motion_is_claimed():
+    """Danger: a division by zero.  Figure: infinite, and never a number that looks like one."""
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", None, np.eye(1)),
+        Term("p", None, lambda theta: np.cos(theta)[:, None]),
+    )
+    system = LinearPeriodic(1, terms, {}, lambda values: {})
+    try:
+        found = steady_state(system, 1.0)
+    except BadInput:
+        return
+    assert not np.any(np.isfinite(found.error))
+    assert not found.passed or np.all(np.isnan(found.q))

@@ -1,0 +1,420 @@
+"""Asking for less costs less: emitted modules beside fuller ones, imports, functions called."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import json
+import pickle
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import elastolink as el
+import elastolink.generated
+import numpy as np
+import pytest
+from elastolink.derive.spec import read_manifest
+from elastolink.runtime.dynamics import force_modules, forces
+from elastolink.runtime.skipping import read_cost
+from elastolink.runtime.systems import assembly
+
+PACKAGED = Path(elastolink.generated.__path__[0])
+SPECS = {entry.module: entry.spec for entry in read_manifest(PACKAGED).values()}
+COSTS = {name: read_cost(PACKAGED / f"{name}.py") for name in SPECS}
+
+# The tension of the rod is two terms: its work in Buckens' frame, and in the rotation of that
+# frame.  One of them alone is the whole less the other, which has to be subtracted.
+HALVES = {
+    "quick_return_rod_moving_basis_without_frame",
+    "quick_return_rod_moving_basis_without_tension",
+}
+# A drive is a constraint; without it the crank is free, and its torque a force that is added.
+EXCHANGED = {name for name in SPECS if name.endswith("multibody_without_drive")}
+
+
+def restricts(less, more):
+    """Return True where a spec asks for a part of what another one asks for."""
+    same = all(
+        getattr(less, part) == getattr(more, part)
+        for part in ("mechanism", "formulation", "flexible", "modes")
+    )
+    dropped = set(more.drop) <= set(less.drop) and set(more.balanced) <= set(less.balanced)
+    wanted = not more.outputs or (less.outputs and set(less.outputs) <= set(more.outputs))
+    return bool(same and dropped and wanted and less != more)
+
+
+PAIRS = [
+    (less, more)
+    for less, more in itertools.permutations(sorted(SPECS), 2)
+    if restricts(SPECS[less], SPECS[more])
+]
+FEWER_MODES = [
+    (less, more)
+    for less, more in itertools.permutations(sorted(SPECS), 2)
+    if (SPECS[less].modes or 0) < (SPECS[more].modes or 0)
+    and SPECS[less].with_(modes=None) == SPECS[more].with_(modes=None)
+]
+
+
+def test_every_packaged_restriction_is_looked_at():
+    """Three modules of forces give three pairs, four of the moving basis five, and so on."""
+    dropping = [name for name, spec in SPECS.items() if spec.drop or spec.balanced or spec.outputs]
+    assert {less for less, _ in PAIRS} == set(dropping) and len(PAIRS) >= 3 * 3 + 5 + 3 + 5
+    assert len(FEWER_MODES) == 2 * 10
+
+
+@pytest.mark.parametrize(("less", "more"), PAIRS, ids=lambda name: name)
+def test_a_module_that_leaves_something_out_is_smaller(less, more):
+    small, large = COSTS[less], COSTS[more]
+    if less in HALVES and more not in HALVES:
+        # Nothing but the subtraction of the other half has been added.
+        assert set(small.operations) - set(large.operations) == {"basis_products"}
+        assert all(small.operations[name] <= n for name, n in large.operations.items())
+        return
+    assert small.size < large.size
+    if less in EXCHANGED:
+        assert small.total <= large.total
+        rows = {key: n for key, (_, n) in small.entries.items()}
+        assert all(rows[key] <= n for key, (_, n) in large.entries.items())
+        assert sum(rows.values()) < sum(n for _, n in large.entries.values())
+        return
+    assert small.total < large.total
+    assert set(small.operations) <= set(large.operations)
+    assert all(n <= large.operations[name] for name, n in small.operations.items())
+
+
+@pytest.mark.parametrize(("less", "more"), FEWER_MODES, ids=lambda name: name)
+def test_fewer_modes_cost_less_in_every_function(less, more):
+    small, large = COSTS[less], COSTS[more]
+    assert small.size < large.size
+    assert all(small.operations[name] < n for name, n in large.operations.items())
+
+
+# Functions that one calls for a part of what another one gives.
+PARTS = {
+    "forces": ("pin_forces", "driving_torque", "shaking_force", "shaking_moment", "load_forces"),
+    "dynamics": ("constraints",),
+    "variations": ("constraints",),
+    "angle_functions": ("acceleration_functions", "acceleration_forcing_functions"),
+}
+
+
+@pytest.mark.parametrize("name", sorted(SPECS))
+def test_a_function_of_a_module_costs_less_than_the_module(name):
+    cost = COSTS[name]
+    busy = {function: n for function, n in cost.operations.items() if n}
+    assert len(busy) < 2 or max(busy.values()) < cost.total
+    for whole, parts in PARTS.items():
+        for part in parts:
+            if whole in cost.operations and part in cost.operations:
+                assert cost.operations[part] < cost.operations[whole]
+
+
+MEASURE = """
+import json, os, sys
+start = set(sys.modules)
+import elastolink
+root = sorted(set(sys.modules) - start)
+import importlib, elastolink.generated, numpy
+figures = {}
+for name in sys.argv[1:]:
+    before = set(sys.modules)
+    module = importlib.import_module(f"elastolink.generated.{name}")
+    new = sorted(set(sys.modules) - before)
+    figures[name] = [new, sum(os.path.getsize(sys.modules[n].__file__) for n in new)]
+print(json.dumps({"root": root, "figures": figures}))
+"""
+
+
+@pytest.fixture(scope="module")
+def imported():
+    """Return what importing the package, and then each emitted module, loads."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", MEASURE, *sorted(SPECS)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    return json.loads(done.stdout)
+
+
+def test_importing_the_package_loads_one_module_of_it(imported):
+    mine = [name for name in imported["root"] if name.startswith("elastolink")]
+    assert mine == ["elastolink"]
+    # The standard library's importing machinery and no numerics.
+    assert not {name.partition(".")[0] for name in imported["root"]} & {"numpy", "scipy"}
+
+
+@pytest.mark.parametrize("name", sorted(SPECS))
+def test_an_emitted_module_loads_itself_alone(name, imported):
+    """Beside NumPy, which all but the recursion need; that it needs no more: test_walls."""
+    new, size = imported["figures"][name]
+    assert new == [f"elastolink.generated.{name}"]
+    assert size == COSTS[name].size
+
+
+def machine():
+    linkage = el.FourBar(frame=0.3, crank=0.1, coupler=0.25, follower=0.2)
+    link = el.MassDistribution(mass=0.4, along=0.02, across=0.002, inertia=2e-3)
+    return el.Machine(linkage, {"crank": link, "coupler": link, "follower": link})
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    """Count calls of emitted functions of forces, by module and function."""
+    calls = Counter()
+    evaluate = forces.evaluate
+
+    def counting(function, *arguments, **options):
+        calls[function.__module__.rpartition(".")[2], function.__name__] += 1
+        return evaluate(function, *arguments, **options)
+
+    monkeypatch.setattr(forces, "evaluate", counting)
+    return calls
+
+
+def operations(calls):
+    return sum(COSTS[module].operations[name] * n for (module, name), n in calls.items())
+
+
+@pytest.mark.parametrize("acceleration", [0.0, 3.0])
+def test_every_set_of_outputs_costs_no_more_than_a_larger_one(counted, acceleration):
+    costs = {}
+    for count in range(1, len(forces.OUTPUTS) + 1):
+        for wanted in itertools.combinations(forces.OUTPUTS, count):
+            counted.clear()
+            found = el.rigid_forces(machine(), [0.3, 1.0], 10.0, acceleration, outputs=wanted)
+            assert sum(counted.values()) == 1
+            costs[wanted] = operations(counted)
+            assert np.all(np.isfinite(next(iter(found.values.values()))))
+    everything = costs[forces.OUTPUTS]
+    for wanted, cost in costs.items():
+        assert cost <= everything if len(wanted) > 1 else cost < everything
+        larger = [other for other in costs if set(wanted) <= set(other)]
+        assert all(cost <= costs[other] for other in larger)
+
+
+def test_a_machine_at_constant_speed_takes_the_module_without_acceleration(counted):
+    costs = {}
+    for name, acceleration in (("steady", 0.0), ("accelerated", 2.0)):
+        counted.clear()
+        el.driving_torque(machine(), 0.4, 10.0, acceleration)
+        costs[name] = operations(counted)
+    assert costs["steady"] < costs["accelerated"]
+    assert force_modules.force_module(machine(), True).accelerated is False
+
+
+def test_checks_and_error_figure_of_forces_cost_nothing_until_they_are_read(counted):
+    found = el.rigid_forces(machine(), [0.3, 1.0], 10.0)
+    assert sum(counted.values()) == 1
+    assert found.passed
+    assert np.all(np.asarray(found.error) >= 0.0)
+
+
+RIG = "smith_1972_5152_sixteenth_inch"
+FAMILY = "four_bar_coupler_complete"
+
+
+class _Calls:
+    """Counts of the emitted functions of angle, where the assembly calls them."""
+
+    def __init__(self, monkeypatch):
+        self.of = Counter()
+        shared = assembly._Shared
+        evaluate = shared.__call__
+
+        def counting(kernel, theta):
+            self.of[kernel._function.__name__] += 1
+            return evaluate(kernel, theta)
+
+        monkeypatch.setattr(shared, "__call__", counting)
+
+
+QUESTIONS = {
+    "floquet_multipliers": {"angle_functions"},
+    "stability_chart": {"angle_functions"},
+    "steady_state": {"angle_functions", "forcing_functions"},
+    "resonance_curve": {"angle_functions", "forcing_functions"},
+}
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_a_question_evaluates_the_functions_that_it_needs_alone(question, monkeypatch):
+    """Stability takes no forcing; a constant speed, nothing of the crank's acceleration."""
+    system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
+    kernels = {name for name in COSTS[FAMILY].operations if name.endswith("_functions")}
+    assert kernels > QUESTIONS[question] | {"acceleration_functions"}
+    calls = _Calls(monkeypatch)
+    if question == "stability_chart":
+        el.stability_chart(
+            system,
+            x=("speed", np.linspace(30.0, 60.0, 4)),
+            y=("follower_inertia", np.linspace(1e-3, 2e-3, 3)),
+        )
+    elif question == "resonance_curve":
+        el.resonance_curve(system, np.linspace(30.0, 40.0, 3))
+    else:
+        getattr(el, question)(system, 34.0)
+    assert set(calls.of) == QUESTIONS[question]
+
+
+def test_a_term_that_nobody_asks_about_is_never_sampled():
+    def refused(theta):
+        if len(theta) > 1:
+            raise AssertionError("a forcing was evaluated")
+        return np.zeros((len(theta), 1))
+
+    system = el.load_scene("mathieu").system()
+    system = system.with_terms(el.Term("f", None, refused), el.Term("g", None, refused))
+    assert np.all(np.isfinite(el.floquet_multipliers(system, 1.0).multipliers))
+    with pytest.raises(AssertionError, match="was evaluated"):
+        el.steady_state(system, 1.0)
+
+
+@pytest.fixture(scope="module")
+def steady_four_bar():
+    system = el.load_scene("aannaque_1996_table_4_1", {"mesh.elements": 1}).system()
+    return system, el.steady_state(system, 30.0, rtol=1e-3, stability=False)
+
+
+RESULTS = {
+    "stress": lambda system, motion: el.stress(system, motion).maximum,
+    "recover": lambda system, motion: el.recover(system, motion).moment,
+    "pin_reactions": lambda system, motion: el.pin_reactions(system, motion).torque(),
+    "beam_energies": lambda system, motion: el.beam_energies(system, motion).peak,
+    "elastic_coupler_curve": lambda system, motion: (
+        el.elastic_coupler_curve(system, motion).largest
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_asking_for_the_error_is_what_finds_it(name, steady_four_bar, monkeypatch):
+    """A finer mesh takes longer than the motion: none is made for values alone."""
+    system, motion = steady_four_bar
+    module = importlib.import_module(getattr(el, name).__module__)
+    made = Counter()
+    find = module.on_finer_mesh
+
+    def counting(*arguments):
+        made["finer"] += 1
+        return find(*arguments)
+
+    monkeypatch.setattr(module, "on_finer_mesh", counting)
+    found = getattr(el, name)(system, motion)
+    RESULTS[name](system, motion)
+    assert found.passed and not made
+    assert np.all(np.asarray(found.error) > 0.0) and found.error_norm
+    # What is found once is kept, and found alike by what is read first.
+    assert made == {"finer": 1}
+    again = getattr(el, name)(system, motion)
+    assert again.error_norm == found.error_norm
+    assert np.array_equal(again.error, found.error)
+    assert made == {"finer": 2}
+    copied = pickle.loads(pickle.dumps(found))
+    assert np.array_equal(copied.error, found.error) and made == {"finer": 2}
+
+
+def test_asking_for_the_quasi_static_stress_is_what_computes_it(steady_four_bar, monkeypatch):
+    module = importlib.import_module("elastolink.runtime.beams.stress")
+    made = Counter()
+    for name in ("frozen", "motion_error"):
+        own = getattr(module, name)
+
+        def counting(*arguments, _own=own, _name=name):
+            made[_name] += 1
+            return _own(*arguments)
+
+        monkeypatch.setattr(module, name, counting)
+    found = el.stress(*steady_four_bar)
+    assert found.maximum.value and found.safety(250e6) and not made
+    assert np.all(np.isfinite(found.quasi_static))
+    assert found.fibre(part="dynamic").shape == found.axial.shape
+    assert made == {"frozen": 1}
+    assert found.motion_error >= 0.0 and found.mesh_error > 0.0
+    assert found.error > found.mesh_error
+    assert made == {"frozen": 1, "motion_error": 1}
+    assert found.to_dict()["error_norm"] == found.error_norm
+
+
+LOADED = """
+import sys
+import numpy as np
+import elastolink as el
+{code}
+names = (name.removeprefix("elastolink.") for name in sys.modules if name.startswith("elastolink."))
+print(*sorted(names))
+"""
+LINKAGES = {"generated.four_bar_kinematics", "runtime.mechanisms.four_bar"}
+EVERY_LINKAGE = LINKAGES | {
+    f"{part}{name}{end}"
+    for name in ("slider_crank", "quick_return")
+    for part, end in (("generated.", "_kinematics"), ("runtime.mechanisms.", ""))
+}
+# What is done, what it may load of these packages, and packages that it has no use for.
+LOADS = {
+    "a four-bar moves": (
+        "el.FourBar(frame=5.0, crank=1.0, coupler=5.0, follower=2.0).motion(0.3)",
+        LINKAGES,
+        ("floquet", "response", "hill", "beams", "scenes"),
+    ),
+    "multipliers of a coupler": (
+        f"el.floquet_multipliers(el.load_scene('{RIG}').system(), 34.0)",
+        LINKAGES | {f"generated.{FAMILY}"},
+        ("response", "hill", "beams", "floquet.edges", "floquet.tongues", "floquet.decoupled"),
+    ),
+    "beams of one kind": (
+        "el.load_scene('aannaque_1996_table_4_1').system()",
+        # The table of supports knows every linkage.
+        EVERY_LINKAGE | {"generated.beam_element_cubic", "generated.beam_shapes_cubic"},
+        ("hill", "beams.layered", "beams.elastic_curve", "beams.strain_energy", "design"),
+    ),
+}
+
+
+@pytest.mark.parametrize("what", LOADS)
+def test_what_is_not_used_is_not_loaded(what):
+    code, allowed, unused = LOADS[what]
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED.format(code=code)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    loaded = set(done.stdout.split())
+    own = {name for name in loaded if name.startswith("generated.")}
+    own |= {name for name in loaded if name.startswith("runtime.mechanisms.") and "_" in name}
+    assert own <= allowed
+    for package in unused:
+        inside = {name for name in loaded if f"{name}.".startswith(f"runtime.{package}.")}
+        assert not inside
+
+
+@pytest.mark.parametrize("method", ["harmonic_balance", "cyclic"])
+def test_asking_for_the_stability_of_a_response_is_what_computes_it(method, monkeypatch):
+    module = importlib.import_module("elastolink.runtime.response.steady_state")
+    made = Counter()
+    find = module.floquet_multipliers
+
+    def counting(*arguments, **options):
+        made["multipliers"] += 1
+        return find(*arguments, **options)
+
+    monkeypatch.setattr(module, "floquet_multipliers", counting)
+    system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
+    found = el.steady_state(system, [30.0, 40.0], method=method)
+    assert found.passed and np.all(found.peak() > 0.0) and np.all(found.error < 1e-6)
+    assert not made
+    assert found.stable.shape == found.distance.shape == (2,)
+    assert found.multipliers.shape == (2, 2) and made == {"multipliers": 1}
+    asked = el.steady_state(system, [30.0, 40.0], method=method, stability=True)
+    assert made == {"multipliers": 2}
+    assert np.array_equal(asked.multipliers, found.multipliers)
+    assert np.array_equal(asked.distance, found.distance)
+    without = el.steady_state(system, [30.0, 40.0], method=method, stability=False)
+    assert without.stable is None and np.all(np.isnan(without.distance))
+    assert made == {"multipliers": 2}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -163,3 +164,13 @@ def test_methods_can_be_chosen() -> None:
         ["hill-monodromy"], methods=["magnus4"], peers=[], rounds=1
     )
     assert {p.method for p in found.points} == {"magnus4, fixed steps"}
+
+
+def test_stored_ratios_are_of_known_problems_and_levels() -> None:
+    """What ``--compare`` reads: ahead of every peer wherever it was measured."""
+    stored = work.load_ratios(Path(__file__).with_name("ratios.json"))
+    assert stored
+    assert set(stored) <= set(work.PROBLEMS)
+    for own in stored.values():
+        assert {float(level) for level in own} <= set(work.LEVELS)
+        assert all(ratio > 1.0 for ratio in own.values())

@@ -142,7 +142,7 @@ class WorkPrecision(Result):
         names = tuple(self.titles)
         columns = min(3, len(names))
         rows = -(-len(names) // columns)
-        figure.set_size_inches(5.2 * columns, 4.0 * rows)
+        figure.set_size_inches(6.4 * columns, 4.0 * rows)
         grid = figure.subplots(rows, columns, squeeze=False)
         for place, name in zip(grid.flat, names, strict=False):
             self._draw(place, name)
@@ -162,7 +162,8 @@ class WorkPrecision(Result):
         ax.set_title(problem, fontsize=9)
         ax.set_xlabel("error")
         ax.set_ylabel("time [ms]")
-        ax.legend(fontsize=6)
+        # Beside the lines, of which there are many.
+        ax.legend(fontsize=5, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def leads(points: Iterable[Point], problems: Iterable[str]) -> tuple[Lead, ...]:

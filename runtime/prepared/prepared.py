@@ -407,8 +407,8 @@ def prepare(
     Raises
     ------
     BadInput
-        If an argument is unusable, numba is wanted and missing, or the tables would take more
-        than 320 MB for a range of 2 to 1.
+        If an argument is unusable, M or A carries a power of the speed, numba is wanted and
+        missing, or the tables would take more than 320 MB for a range of 2 to 1.
 
     Examples
     --------

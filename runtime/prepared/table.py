@@ -123,6 +123,11 @@ class Maker:
         Wanted angles [rad] within a period, ``(nt,)``.
     parameters : mapping
         Of :func:`canonical_form`.
+
+    Raises
+    ------
+    BadInput
+        If a mass or gyroscopic term carries a power of the speed.
     """
 
     def __init__(self, form: CanonicalForm, theta: Array, parameters: dict[str, float]) -> None:
@@ -131,10 +136,12 @@ class Maker:
         powers = [
             -(SPEED_POWER[t.array] + t.power) for t in self.system.terms if t.array in SPEED_POWER
         ]
-        plain = all(
-            SPEED_POWER[t.array] + t.power == 0 for t in self.system.terms if t.array in "MA"
-        )
-        whole = plain and all(p >= 0 and p == int(p) for p in powers)
+        inertia = [t for t in self.system.terms if t.array in "MA" and t.power]
+        if inertia:
+            # Rates follow from momenta by matrices that all speeds share.
+            found, fix = f"a term {inertia[0].array} with a power of the speed", "use simulate"
+            raise bad("prepare", found, "inertia that does not depend on the speed", fix)
+        whole = all(p >= 0 and p == int(p) for p in powers)
         # The generator is a polynomial of the inverse speed of this degree, where it is one.
         self.degree = int(max(powers)) if whole else None
 

@@ -175,8 +175,9 @@ def test_results_bear_pickling_and_know_their_origin() -> None:
     """The checks of a motion are made when they are looked at."""
     system = el.load_scene(SCENE).system()
     found = el.prepare(system, (70.0, 90.0)).simulate(80.0, 2, (1e-4, 0.0))
-    again = pickle.loads(pickle.dumps(found.q))
-    np.testing.assert_array_equal(again, found.q)
+    again = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(again.q, found.q)
+    assert dict(again.checks) == dict(found.checks)
     assert found.checks["accuracy"].passed
     steady = el.prepare(system, (70.0, 90.0)).steady_state(80.0)
     other = el.steady_state(system, 80.0)
@@ -208,6 +209,13 @@ def test_bad_input_is_refused_in_one_line(call, name) -> None:
     """Object, found, expected, fix."""
     with pytest.raises(BadInput, match=name):
         call(el.load_scene(SCENE).system())
+
+
+def test_inertia_that_depends_on_the_speed_is_refused() -> None:
+    """Rates would be those of another speed."""
+    terms = (el.Term("M", None, np.eye(1), power=1), el.Term("K", None, np.eye(1)))
+    with pytest.raises(BadInput, match="power of the speed"):
+        el.prepare(el.LinearPeriodic(1, terms, {}, lambda values: {}), (1.0, 2.0))
 
 
 def test_a_stiff_system_is_told_to_be_reduced_first() -> None:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from .equation import Array, Equation
-from .method import Work
 from .numba_loop import compiled_loop
 
 # From a start ``(m, columns)`` and rising angles to the states ``(angles, m, columns)``.
@@ -212,8 +211,3 @@ def settings_of(name: str, equation: Equation) -> tuple[float, ...]:
     if name != "numba loop":
         return TOLERANCES
     return tuple(float(round(2.0 * np.pi * max(equation.rate, 1.0) * s)) for s in _STEPS)
-
-
-def work_of(solve: Solve, start: Array, angles: Array) -> Work:
-    """Return the work of one solution."""
-    return lambda: solve(start, angles)

@@ -315,11 +315,7 @@ def _peers(
     for peer in wanted:
         if peer == unsuited:
             continue
-        try:
-            solve = PEERS[peer](equation, settings_of(peer, equation)[0])
-        except MemoryError:
-            solve = None
-        if solve is None:
+        if PEERS[peer](equation, settings_of(peer, equation)[0]) is None:
             absent.append(f"{peer}: not installed, or too many terms")
             continue
 

@@ -39,3 +39,8 @@ class Description:
     results: Mapping[str, Result] = field(default_factory=dict)
     parameters: tuple[Argument, ...] = ()
     notes: tuple[str, ...] = ()
+
+
+def array_results(words: Mapping[str, tuple[str, str]]) -> dict[str, Result]:
+    """Return results that have the shape of the crank angle, from unit and meaning by name."""
+    return {name: Result(name, "ndarray, shape (...)", *pair) for name, pair in words.items()}

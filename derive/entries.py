@@ -13,7 +13,7 @@ from .ir import Argument, Kernel, ModuleSpec, Result
 from .lowering import lower_kernel
 from .records import EquationsOfMotion, VariationalEquations
 from .spec import Family, ModelSpec
-from .staged import Steps
+from .staged import Steps, chosen_outputs
 
 
 @dataclass(frozen=True)
@@ -46,12 +46,7 @@ class MatrixForm:
         ValueError
             If one is not there.
         """
-        chosen = set(names)
-        known = [name for name, _ in self.arrays]
-        unknown = sorted(chosen - set(known))
-        if unknown:
-            raise ValueError(f"unknown outputs {unknown}; expected some of {known}")
-        return replace(self, arrays=tuple(item for item in self.arrays if item[0] in chosen))
+        return replace(self, arrays=chosen_outputs(self.arrays, names))
 
 
 @dataclass(frozen=True)

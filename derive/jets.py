@@ -166,6 +166,13 @@ def linearise(expression: sp.Expr, orders: Mapping[sp.Expr, int], upto: int = 1)
     return sum((order_part(expression, orders, power) for power in range(upto + 1)), sp.S.Zero)
 
 
+def _entered(expression: sp.Expr, field: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, Jet]]:
+    """Return an expression in the jets of one field, and those that occur in it."""
+    space = JetSpace([field])
+    entered = space.enter(expression)
+    return entered, dict(space.present(entered))
+
+
 def linear_jets(expression: sp.Expr, field: sp.Expr) -> tuple[Flux, sp.Expr]:
     """Split an expression that is linear in one field.
 
@@ -181,13 +188,12 @@ def linear_jets(expression: sp.Expr, field: sp.Expr) -> tuple[Flux, sp.Expr]:
     ValueError
         If the expression is not linear in the field.
     """
-    space = JetSpace([field])
-    entered = space.enter(expression)
-    present = list(space.present(entered))
-    symbols = [symbol for symbol, _ in present]
-    rest = entered.xreplace(dict.fromkeys(symbols, sp.S.Zero))
-    coefficients = {(jet.k, jet.j): sp.expand(sp.diff(entered, symbol)) for symbol, jet in present}
-    if any(coefficient.has(*symbols) for coefficient in coefficients.values()):
+    entered, present = _entered(expression, field)
+    rest = entered.xreplace(dict.fromkeys(present, sp.S.Zero))
+    coefficients = {
+        (jet.k, jet.j): sp.expand(sp.diff(entered, symbol)) for symbol, jet in present.items()
+    }
+    if any(coefficient.has(*present) for coefficient in coefficients.values()):
         raise ValueError(f"{expression} is not linear in {field}")
     return coefficients, rest
 
@@ -210,19 +216,16 @@ def quadratic_jets(
     ValueError
         If the expression is not a polynomial of second degree in the field.
     """
-    space = JetSpace([field])
-    entered = space.enter(expression)
-    present = list(space.present(entered))
-    symbols = [symbol for symbol, _ in present]
-    at_rest = dict.fromkeys(symbols, sp.S.Zero)
+    entered, present = _entered(expression, field)
+    at_rest = dict.fromkeys(present, sp.S.Zero)
     quadratic: dict[tuple[Order, Order], sp.Expr] = {}
     linear: Flux = {}
-    for symbol, jet in present:
+    for symbol, jet in present.items():
         slope = sp.diff(entered, symbol)
         linear[jet.k, jet.j] = slope.xreplace(at_rest)
-        for other, jet_2 in present:
+        for other, jet_2 in present.items():
             second = sp.expand(sp.diff(slope, other))
-            if second.has(*symbols):
+            if second.has(*present):
                 raise ValueError(f"{expression} is not quadratic in {field}")
             if second != 0:
                 quadratic[(jet.k, jet.j), (jet_2.k, jet_2.j)] = second

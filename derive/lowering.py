@@ -422,15 +422,7 @@ def lower_closed_form(spec: ModelSpec, closed: ClosedForm, description: Descript
         outputs,
         description.references,
     )
-    return ModuleSpec(
-        spec=spec,
-        family="closed_form",
-        title=description.title,
-        notes=description.notes,
-        references=description.references,
-        kernels=(kernel,),
-        parameters=description.parameters,
-    )
+    return _closed_module(spec, (kernel,), description)
 
 
 def lower_kernel_forms(spec: ModelSpec, forms: KernelForms, description: Description) -> ModuleSpec:
@@ -454,12 +446,18 @@ def lower_kernel_forms(spec: ModelSpec, forms: KernelForms, description: Descrip
                 description.references,
             )
         )
+    return _closed_module(spec, tuple(kernels), description)
+
+
+def _closed_module(
+    spec: ModelSpec, kernels: tuple[Kernel, ...], description: Description
+) -> ModuleSpec:
     return ModuleSpec(
         spec=spec,
         family="closed_form",
         title=description.title,
         notes=description.notes,
         references=description.references,
-        kernels=tuple(kernels),
+        kernels=kernels,
         parameters=description.parameters,
     )

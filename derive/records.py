@@ -174,6 +174,11 @@ class ActionDensity:
         object.__setattr__(self, "force_density", _frozen_map(self.force_density))
         object.__setattr__(self, "orders", _frozen_map(self.orders))
 
+    def held(self, item: sp.Expr) -> list[tuple[sp.Expr, int]]:
+        """Return where a field, or which of its derivatives by x, is held at zero."""
+        ends = [(end.position, end.order) for end in self.essential if end.field == item]
+        return ends + [(point.position, 0) for point in self.supports if point.field == item]
+
     def with_(self, **changes: object) -> ActionDensity:
         """Return a copy with some attributes changed."""
         return replace(self, **changes)  # type: ignore[arg-type]

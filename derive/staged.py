@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import sympy as sp
 
 Step: TypeAlias = tuple[sp.Symbol, sp.Expr]
+Output = TypeVar("Output")
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,23 @@ class Steps:
         return dict(self.steps)
 
 
+def chosen_outputs(
+    outputs: Sequence[tuple[str, Output]], names: Iterable[str]
+) -> tuple[tuple[str, Output], ...]:
+    """Return those outputs that are named, in their own order.
+
+    Raises
+    ------
+    ValueError
+        If one is not there.
+    """
+    chosen, known = set(names), [name for name, _ in outputs]
+    unknown = sorted(chosen - set(known))
+    if unknown:
+        raise ValueError(f"unknown outputs {unknown}; expected some of {known}")
+    return tuple(item for item in outputs if item[0] in chosen)
+
+
 @dataclass(frozen=True)
 class ClosedForm:
     """Outputs as functions of inputs through named steps.
@@ -74,12 +92,14 @@ class ClosedForm:
     outputs: tuple[tuple[str, sp.Expr], ...]
 
     def only(self, names: Iterable[str]) -> ClosedForm:
-        """Return the closed form with some of its outputs, and no step that they do not need."""
-        chosen = set(names)
-        unknown = sorted(chosen - {name for name, _ in self.outputs})
-        if unknown:
-            raise ValueError(f"unknown outputs {unknown}")
-        outputs = tuple(item for item in self.outputs if item[0] in chosen)
+        """Return the closed form with some of its outputs, and no step that they do not need.
+
+        Raises
+        ------
+        ValueError
+            If one is not there.
+        """
+        outputs = chosen_outputs(self.outputs, names)
         steps = self.steps.needed(expression for _, expression in outputs)
         return ClosedForm(self.inputs, steps, outputs)
 
@@ -113,8 +133,5 @@ class KernelForms:
         ValueError
             If one is not there.
         """
-        chosen, known = set(names), [kernel.name for kernel in self.kernels]
-        unknown = sorted(chosen - set(known))
-        if unknown:
-            raise ValueError(f"unknown outputs {unknown}; expected some of {known}")
-        return KernelForms(tuple(kernel for kernel in self.kernels if kernel.name in chosen))
+        known = [(kernel.name, kernel) for kernel in self.kernels]
+        return KernelForms(tuple(kernel for _, kernel in chosen_outputs(known, names)))

@@ -260,6 +260,29 @@ def solve_end_value(condition: sp.Expr, unknown: sp.Expr) -> sp.Expr:
     return sp.expand(-plain.xreplace({symbol: sp.S.Zero}) / factor)
 
 
+def undeflected_tension(equations: FieldEquations, along: sp.Expr, tension: sp.Expr) -> sp.Expr:
+    """Return the tension in an undeflected link, from its slope and the condition at the far end.
+
+    Parameters
+    ----------
+    equations : FieldEquations
+        With the equation of the displacement along the link.
+    along, tension : Expr
+        That displacement, and the multiplier that is the tension.
+
+    Raises
+    ------
+    ValueError
+        If either is not linear in the tension.
+    """
+    action = equations.action
+    x, end, orders = action.x, action.length, action.orders
+    at_end = linearise(equations.condition(end, along, 0), orders, 0)
+    value = solve_end_value(at_end.subs(x, end), tension.subs(x, end))
+    slope = linearise(equations.equations[along], orders, 0)
+    return solve_tension(slope, tension, x, end, value)
+
+
 def quadratic_action(
     action: ActionDensity,
     values: Mapping[sp.Expr, sp.Expr],

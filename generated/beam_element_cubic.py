@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 81 operations
-Content hash 41fe588458ee131d4100643dded2f6d3; derived with SymPy 1.14.0.
+Content hash 75148b0d03e2b1e30b49adef8164509b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"cubic","mechanism":"beam_element","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "41fe588458ee131d4100643dded2f6d3"
+CONTENT = "75148b0d03e2b1e30b49adef8164509b"
 ARRAYS = (
     {'element': {'mass': ((6, 6), ((0, 0, 0), (0, 3, 1), (1, 1, 2), (1, 2, 3), (1, 4, 4), (1, 5,
     5), (2, 1, 3), (2, 2, 6), (2, 4, 7), (2, 5, 8), (3, 0, 1), (3, 3, 0), (4, 1, 4), (4, 2, 7), (4,

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 168 operations
-Content hash 053931304b5aff176b31f749181b2b89; derived with SymPy 1.14.0.
+Content hash c26545ec41d6dbc55904aa1e48e1e3d2; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_element","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "053931304b5aff176b31f749181b2b89"
+CONTENT = "c26545ec41d6dbc55904aa1e48e1e3d2"
 ARRAYS = (
     {'element': {'mass': ((8, 8), ((0, 0, 0), (0, 3, 1), (1, 1, 2), (1, 2, 3), (1, 4, 4), (1, 5,
     5), (1, 6, 6), (1, 7, 7), (2, 1, 3), (2, 2, 8), (2, 4, 9), (2, 5, 10), (2, 6, 11), (2, 7, 12),

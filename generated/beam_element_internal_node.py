@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash 5112e3c3509f88827ad6fce0e38b48f2; derived with SymPy 1.14.0.
+Content hash e66845243ff29bf014181d1d70939b2a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "5112e3c3509f88827ad6fce0e38b48f2"
+CONTENT = "e66845243ff29bf014181d1d70939b2a"
 ARRAYS = (
     {'element': {'mass': ((8, 8), ((0, 0, 0), (0, 3, 1), (1, 1, 2), (1, 2, 3), (1, 4, 4), (1, 5,
     5), (1, 6, 6), (1, 7, 7), (2, 1, 3), (2, 2, 8), (2, 4, 9), (2, 5, 10), (2, 6, 11), (2, 7, 12),

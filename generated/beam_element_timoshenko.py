@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 216 operations
-Content hash 73e6ecabf1106159b06b194723424972; derived with SymPy 1.14.0.
+Content hash edd7b05da00647a96bd67064b613e07a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_element",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "73e6ecabf1106159b06b194723424972"
+CONTENT = "edd7b05da00647a96bd67064b613e07a"
 ARRAYS = (
     {'element': {'mass': ((6, 6), ((0, 0, 0), (0, 3, 1), (1, 1, 2), (1, 2, 3), (1, 4, 4), (1, 5,
     5), (2, 1, 3), (2, 2, 6), (2, 4, 7), (2, 5, 8), (3, 0, 1), (3, 3, 0), (4, 1, 4), (4, 2, 7), (4,

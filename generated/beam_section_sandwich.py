@@ -10,7 +10,7 @@ core_shear_modulus (1 + i core_loss), shears and carries no axial force.
 
 Cost per evaluation:
     sandwich: 58 operations
-Content hash 7df720a262553720c30c11800105549f; derived with SymPy 1.14.0.
+Content hash cbaf12c66f2c28d82f6d862521ce2ce3; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sandwich","mechanism":"beam_section","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "7df720a262553720c30c11800105549f"
+CONTENT = "cbaf12c66f2c28d82f6d862521ce2ce3"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -10,7 +10,7 @@ rotations, k curvatures; node 3 is the middle.
 
 Cost per evaluation:
     shapes: 113 operations
-Content hash cff0189931f70add6b7123ee6958591f; derived with SymPy 1.14.0.
+Content hash 621fc2d8455dd562427375423ca2c8af; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_shapes","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "cff0189931f70add6b7123ee6958591f"
+CONTENT = "621fc2d8455dd562427375423ca2c8af"
 ARRAYS = (
     {'shapes': {'u': ((1, 8), ((0, 0, 0), (0, 3, 1),)), 'strain': ((1, 8), ((0, 0, 2), (0, 3,
     3),)), 'v': ((1, 8), ((0, 1, 4), (0, 2, 5), (0, 4, 6), (0, 5, 7), (0, 6, 8), (0, 7, 9),)),

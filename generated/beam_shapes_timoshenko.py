@@ -10,7 +10,7 @@ curvatures; node 3 is the middle.
 
 Cost per evaluation:
     shapes: 86 operations
-Content hash 9035d69a09a042a1c168931c3da13aa7; derived with SymPy 1.14.0.
+Content hash 8d6428531a173dbd17f91bb8ccc41cb2; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_shapes","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "9035d69a09a042a1c168931c3da13aa7"
+CONTENT = "8d6428531a173dbd17f91bb8ccc41cb2"
 ARRAYS = (
     {'shapes': {'u': ((1, 6), ((0, 0, 0), (0, 3, 1),)), 'strain': ((1, 6), ((0, 0, 2), (0, 3,
     3),)), 'v': ((1, 6), ((0, 1, 4), (0, 2, 5), (0, 4, 6), (0, 5, 7),)), 'slope': ((1, 6), ((0, 1,

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 166 operations
     shaking_moment: 149 operations
     load_forces: 99 operations
-Content hash fd057b89a11be0af1ea0e49cc2635d83; derived with SymPy 1.14.0.
+Content hash 12ba73d33f3ae10845dfd4be3da49c99; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"four_bar","modes":'
     'null,"outputs":[]}'
 )
-CONTENT = "fd057b89a11be0af1ea0e49cc2635d83"
+CONTENT = "12ba73d33f3ae10845dfd4be3da49c99"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -20,7 +20,7 @@ Cost per evaluation:
     shaking_force: 139 operations
     shaking_moment: 122 operations
     load_forces: 99 operations
-Content hash 8217057e96cdb7dd01e68056051e9fd2; derived with SymPy 1.14.0.
+Content hash 4951775104d1145563ae48a37e798bf0; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ SPEC = (
     '{"balanced":[],"drop":["across","crank_acceleration"],"flexible":[],"formulation":"forces","m'
     'echanism":"four_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "8217057e96cdb7dd01e68056051e9fd2"
+CONTENT = "4951775104d1145563ae48a37e798bf0"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 159 operations
     shaking_moment: 139 operations
     load_forces: 99 operations
-Content hash 09e7bdffc33e6c99fda543966bbabea6; derived with SymPy 1.14.0.
+Content hash 8ca5cda57915fea4b643e02f0e7923b6; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"four_bar","modes":null,"outputs":[]}'
 )
-CONTENT = "09e7bdffc33e6c99fda543966bbabea6"
+CONTENT = "8ca5cda57915fea4b643e02f0e7923b6"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

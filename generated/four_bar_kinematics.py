@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash 30e36ed859e7529507e148b0ec8f26b0; derived with SymPy 1.14.0.
+Content hash 68473e93ff28470bfabbca06ef07786e; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "30e36ed859e7529507e148b0ec8f26b0"
+CONTENT = "68473e93ff28470bfabbca06ef07786e"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

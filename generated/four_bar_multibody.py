@@ -11,7 +11,7 @@ torque.
 Cost per evaluation:
     constraints: 30 operations
     dynamics: 76 operations
-Content hash eb60d2c14084be90b38433c105428e2a; derived with SymPy 1.14.0.
+Content hash 03ec2aa67cde3b1a8a71f7607703fcb7; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"multibody","mechanism":"four_bar","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "eb60d2c14084be90b38433c105428e2a"
+CONTENT = "03ec2aa67cde3b1a8a71f7607703fcb7"
 COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
 MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'x34', 'y34', 'x41', 'y41', 'torque')
 EXTERNAL = ('drive', 'drive_d1', 'drive_d2')

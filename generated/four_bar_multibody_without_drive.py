@@ -10,7 +10,7 @@ Multipliers xij, yij, couple are the force and couple of link i on link j.
 Cost per evaluation:
     constraints: 29 operations
     dynamics: 77 operations
-Content hash e49b1d9ae4eb426be3ae7d85e265962a; derived with SymPy 1.14.0.
+Content hash b7465405fa4632721b850adac7fca07b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":["drive"],"flexible":[],"formulation":"multibody","mechanism":"four_bar'
     '","modes":null,"outputs":[]}'
 )
-CONTENT = "e49b1d9ae4eb426be3ae7d85e265962a"
+CONTENT = "b7465405fa4632721b850adac7fca07b"
 COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
 MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'x34', 'y34', 'x41', 'y41')
 EXTERNAL = ()

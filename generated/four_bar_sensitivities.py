@@ -11,7 +11,7 @@ fifth.
 
 Cost per evaluation:
     sensitivities: 306 operations
-Content hash 4c5e028d8e19c7bc2c3b3a04d206785c; derived with SymPy 1.14.0.
+Content hash db54f432406dc7be09d2938391f8913f; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sensitivities","mechanism":"four_bar","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "4c5e028d8e19c7bc2c3b3a04d206785c"
+CONTENT = "db54f432406dc7be09d2938391f8913f"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

@@ -7,7 +7,7 @@ Equations: Smith (7.23), (7.25); Smith (7.46), (7.49).
 
 Cost per evaluation:
     first_order: 14 operations
-Content hash c1a0382d8310f9451750aad0a4f61096; derived with SymPy 1.14.0.
+Content hash 60be0f3ea0148f5bc2dafdfe97274f5b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"boundaries_first_order","mechanism":"hi'
     'll","modes":null,"outputs":[]}'
 )
-CONTENT = "c1a0382d8310f9451750aad0a4f61096"
+CONTENT = "60be0f3ea0148f5bc2dafdfe97274f5b"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

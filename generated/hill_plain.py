@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash dda6d576d309b7ae679a6c7c80a159ec; derived with SymPy 1.14.0.
+Content hash 5162758dfddaa24b387533ad83a55b5b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "dda6d576d309b7ae679a6c7c80a159ec"
+CONTENT = "5162758dfddaa24b387533ad83a55b5b"
 EXTERNAL = ('f',)
 MODAL_1 = ((1.0,),)
 MODAL_2 = ((2.0,),)

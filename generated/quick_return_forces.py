@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 86 operations
     shaking_moment: 88 operations
     load_forces: 59 operations
-Content hash 75b43dfc55e2bf8f1e794fdba9d98e9b; derived with SymPy 1.14.0.
+Content hash 5f3ba56fca42c20bcadc919b2111c40b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"quick_return","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "75b43dfc55e2bf8f1e794fdba9d98e9b"
+CONTENT = "5f3ba56fca42c20bcadc919b2111c40b"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

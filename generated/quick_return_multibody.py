@@ -11,7 +11,7 @@ torque.
 Cost per evaluation:
     constraints: 27 operations
     dynamics: 92 operations
-Content hash f64722f4436c91e0fb57240bb39c7d74; derived with SymPy 1.14.0.
+Content hash a8c7fb5eeefd7526efe713c0aa4e516b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"multibody","mechanism":"quick_return","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "f64722f4436c91e0fb57240bb39c7d74"
+CONTENT = "a8c7fb5eeefd7526efe713c0aa4e516b"
 COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
 MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'normal34', 'couple34', 'x41', 'y41', 'torque')
 EXTERNAL = ('drive', 'drive_d1', 'drive_d2')

@@ -10,7 +10,7 @@ Multipliers xij, yij, couple are the force and couple of link i on link j.
 Cost per evaluation:
     constraints: 26 operations
     dynamics: 93 operations
-Content hash 7fa3a5534d8c06625303896f8415c917; derived with SymPy 1.14.0.
+Content hash 588e8b6228fef81618cfdd32f7071073; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":["drive"],"flexible":[],"formulation":"multibody","mechanism":"quick_re'
     'turn","modes":null,"outputs":[]}'
 )
-CONTENT = "7fa3a5534d8c06625303896f8415c917"
+CONTENT = "588e8b6228fef81618cfdd32f7071073"
 COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
 MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'normal34', 'couple34', 'x41', 'y41')
 EXTERNAL = ()

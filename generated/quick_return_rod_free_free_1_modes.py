@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 49 operations
     dynamics: 141 operations
     variations: 253 operations
-Content hash ce23c61cf3c14ccae029f1b2c6be680c; derived with SymPy 1.14.0.
+Content hash 14c66002c7256c0dbb5ae0b800e19660; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":1,"outputs":[]}'
 )
-CONTENT = "ce23c61cf3c14ccae029f1b2c6be680c"
+CONTENT = "14c66002c7256c0dbb5ae0b800e19660"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = ('psi_1', 'psi_1_d1', 'psi_1_d2', 'psi_1_d3')

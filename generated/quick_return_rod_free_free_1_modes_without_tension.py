@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 43 operations
     dynamics: 132 operations
     variations: 245 operations
-Content hash 817933a57a71e0d131e5390c41170f9c; derived with SymPy 1.14.0.
+Content hash 4e173f7f11571dd2f683d36277a8593d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":1,"outputs":[]}'
 )
-CONTENT = "817933a57a71e0d131e5390c41170f9c"
+CONTENT = "4e173f7f11571dd2f683d36277a8593d"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = ('psi_1', 'psi_1_d1', 'psi_1_d2', 'psi_1_d3')

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 72 operations
     dynamics: 179 operations
     variations: 305 operations
-Content hash 91c3a03f4ac2d9f576e223ca5dcf3262; derived with SymPy 1.14.0.
+Content hash 9bb48f69b4c06d3acf694e7d8a943b72; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":2,"outputs":[]}'
 )
-CONTENT = "91c3a03f4ac2d9f576e223ca5dcf3262"
+CONTENT = "9bb48f69b4c06d3acf694e7d8a943b72"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

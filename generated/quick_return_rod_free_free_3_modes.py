@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 95 operations
     dynamics: 239 operations
     variations: 384 operations
-Content hash 236a91d9d7491f9e683c199e7b5475ed; derived with SymPy 1.14.0.
+Content hash 20bd759595f9ae400e099d7aa77ca0d7; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":3,"outputs":[]}'
 )
-CONTENT = "236a91d9d7491f9e683c199e7b5475ed"
+CONTENT = "20bd759595f9ae400e099d7aa77ca0d7"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 58 operations
     dynamics: 168 operations
     variations: 303 operations
-Content hash 23ef3c3028e6fe991d615a8712bae90d; derived with SymPy 1.14.0.
+Content hash e66879671d0e3a1ea46a3fd549287398; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":3,"outputs":[]}'
 )
-CONTENT = "23ef3c3028e6fe991d615a8712bae90d"
+CONTENT = "e66879671d0e3a1ea46a3fd549287398"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 133 operations
     dynamics: 315 operations
     variations: 478 operations
-Content hash e24437d10e40e5aa84e6d45563124fc4; derived with SymPy 1.14.0.
+Content hash 32c8cb0f09ce9885699504e3727bb9ba; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":4,"outputs":[]}'
 )
-CONTENT = "e24437d10e40e5aa84e6d45563124fc4"
+CONTENT = "32c8cb0f09ce9885699504e3727bb9ba"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 68 operations
     dynamics: 185 operations
     variations: 332 operations
-Content hash c9e0aecb8757c6dac0cf5d91c14aad85; derived with SymPy 1.14.0.
+Content hash f2a7364a4d10ac079e6508b4f2301c08; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":4,"outputs":[]}'
 )
-CONTENT = "c9e0aecb8757c6dac0cf5d91c14aad85"
+CONTENT = "f2a7364a4d10ac079e6508b4f2301c08"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

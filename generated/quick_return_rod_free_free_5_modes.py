@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 167 operations
     dynamics: 402 operations
     variations: 575 operations
-Content hash e8a3052b2774541e1e242dccb9752f44; derived with SymPy 1.14.0.
+Content hash be56e70310a73508b983262e9aba91bb; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"free_free","mechanism":"quick_retu'
     'rn","modes":5,"outputs":[]}'
 )
-CONTENT = "e8a3052b2774541e1e242dccb9752f44"
+CONTENT = "be56e70310a73508b983262e9aba91bb"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4', 'f5')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

@@ -16,7 +16,7 @@ Cost per evaluation:
     constraints: 72 operations
     dynamics: 202 operations
     variations: 361 operations
-Content hash 46eb4140b653c3026cbacaa85c93cff0; derived with SymPy 1.14.0.
+Content hash 180188dd4e75c04bb3523a2613fccd81; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ SPEC = (
     '{"balanced":[],"drop":["tension"],"flexible":["rod"],"formulation":"free_free","mechanism":"q'
     'uick_return","modes":5,"outputs":[]}'
 )
-CONTENT = "46eb4140b653c3026cbacaa85c93cff0"
+CONTENT = "180188dd4e75c04bb3523a2613fccd81"
 COORDINATES = ('R1', 'R2', 'gamma', 'f1', 'f2', 'f3', 'f4', 'f5')
 MULTIPLIERS = ('lam_1', 'lam_2', 'lam_3')
 EXTERNAL = (

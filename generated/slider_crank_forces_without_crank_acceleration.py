@@ -18,7 +18,7 @@ Cost per evaluation:
     shaking_force: 101 operations
     shaking_moment: 107 operations
     load_forces: 75 operations
-Content hash d8d52d562b1dda55de7de08829f38a6a; derived with SymPy 1.14.0.
+Content hash d1bf706a6b8e5de0d4dbc6b56d2808b1; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ SPEC = (
     '{"balanced":[],"drop":["crank_acceleration"],"flexible":[],"formulation":"forces","mechanism"'
     ':"slider_crank","modes":null,"outputs":[]}'
 )
-CONTENT = "d8d52d562b1dda55de7de08829f38a6a"
+CONTENT = "d1bf706a6b8e5de0d4dbc6b56d2808b1"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

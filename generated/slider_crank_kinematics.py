@@ -11,7 +11,7 @@ the guide.
 
 Cost per evaluation:
     motion: 78 operations
-Content hash 751bc8d38e4fd29ed3a987c716420680; derived with SymPy 1.14.0.
+Content hash e7bd73022f5a1f5f5cae5e710a0fbde6; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"slider_crank",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "751bc8d38e4fd29ed3a987c716420680"
+CONTENT = "e7bd73022f5a1f5f5cae5e710a0fbde6"
 
 # Parameters: name, unit, meaning.
 PARAMETERS = (

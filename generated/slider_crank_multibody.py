@@ -11,7 +11,7 @@ torque.
 Cost per evaluation:
     constraints: 22 operations
     dynamics: 69 operations
-Content hash 6280710dbd0deded4c632dcc3971c9de; derived with SymPy 1.14.0.
+Content hash 80433c01ef614ff4522fa40275a0aee2; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"multibody","mechanism":"slider_crank","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "6280710dbd0deded4c632dcc3971c9de"
+CONTENT = "80433c01ef614ff4522fa40275a0aee2"
 COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
 MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'x34', 'y34', 'normal41', 'couple41', 'torque')
 EXTERNAL = ('drive', 'drive_d1', 'drive_d2')

@@ -10,7 +10,7 @@ Multipliers xij, yij, couple are the force and couple of link i on link j.
 Cost per evaluation:
     constraints: 21 operations
     dynamics: 70 operations
-Content hash 8147e4717fda2018767d609fb2e4f2f7; derived with SymPy 1.14.0.
+Content hash d5e4501f474d855ced8e6adc9b2df777; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SPEC = (
     '{"balanced":[],"drop":["drive"],"flexible":[],"formulation":"multibody","mechanism":"slider_c'
     'rank","modes":null,"outputs":[]}'
 )
-CONTENT = "8147e4717fda2018767d609fb2e4f2f7"
+CONTENT = "d5e4501f474d855ced8e6adc9b2df777"
 COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
 MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'x34', 'y34', 'normal41', 'couple41')
 EXTERNAL = ()

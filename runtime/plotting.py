@@ -6,6 +6,8 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .errors import bad
 from .results import write_whole
 
@@ -31,6 +33,17 @@ def new_figure(width: float = 8.0, height: float = 5.5) -> Figure:
 def axes_or_new(ax: Axes | None) -> Axes:
     """Return ``ax``, or the axes of a new figure where it is None."""
     return new_figure().add_subplot() if ax is None else ax
+
+
+def multiplier_plane(ax: Axes | None) -> Axes:
+    """Return axes for Floquet multipliers, in ``ax`` or new, with the unit circle drawn."""
+    ax = axes_or_new(ax)
+    circle = np.exp(1j * np.linspace(0.0, 2 * np.pi, 361))
+    ax.plot(circle.real, circle.imag, color="0.6", linewidth=0.8)
+    ax.set_aspect("equal")
+    ax.set_xlabel("real part of multiplier")
+    ax.set_ylabel("imaginary part of multiplier")
+    return ax
 
 
 def check_picture_path(path: str | Path) -> Path:

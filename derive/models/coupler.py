@@ -38,13 +38,7 @@ from ..records import (
 )
 from ..separation import StagedSystem
 from ..spec import ModelSpec
-from ..variational import (
-    hamilton,
-    linearise,
-    quadratic_action,
-    solve_end_value,
-    solve_tension,
-)
+from ..variational import hamilton, quadratic_action, undeflected_tension
 from . import four_bar
 from .four_bar import ARGUMENTS, coupler, crank, follower, frame, theta2
 
@@ -183,11 +177,7 @@ def _relative_angles(
 
 def tension_in(equations: FieldEquations) -> sp.Expr:
     """Return the tension along the undeflected coupler: its natural condition at C and ``N_x``."""
-    orders = equations.action.orders
-    at_end = linearise(equations.condition(coupler, u, 0), orders, 0)
-    value = solve_end_value(at_end.subs(x, coupler), tension.subs(x, coupler))
-    slope = linearise(equations.equations[u], orders, 0)
-    return solve_tension(slope, tension, x, coupler, value)
+    return undeflected_tension(equations, u, tension)
 
 
 def discretise(spec: ModelSpec, equations: FieldEquations) -> StagedSystem:

@@ -38,13 +38,7 @@ from ..records import (
 )
 from ..separation import StagedSystem
 from ..spec import Choices, ModelSpec
-from ..variational import (
-    hamilton,
-    linearise,
-    quadratic_action,
-    solve_end_value,
-    solve_tension,
-)
+from ..variational import hamilton, quadratic_action, undeflected_tension
 from . import quick_return
 from .quick_return import ARGUMENTS, crank, frame, theta2
 
@@ -109,11 +103,7 @@ def action(spec: ModelSpec) -> ActionDensity:
 
 def tension_in(equations: FieldEquations) -> sp.Expr:
     """Return the tension in the undeflected rod, from its slope and the condition at the tip."""
-    orders = equations.action.orders
-    at_tip = linearise(equations.condition(length, u, 0), orders, 0)
-    value = solve_end_value(at_tip.subs(x, length), tension.subs(x, length))
-    slope = linearise(equations.equations[u], orders, 0)
-    return solve_tension(slope, tension, x, length, value)
+    return undeflected_tension(equations, u, tension)
 
 
 @dataclass(frozen=True)

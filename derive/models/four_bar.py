@@ -7,13 +7,14 @@ DC, anticlockwise from the frame AD.  Derivatives are with respect to the crank 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..describe import Description, array_results
+from ..ir import Argument
 from ..pipeline import Model
+from ..rigid.closure import SolvedLoop
 from ..safe import bernstein_in_cosine, root_of_parts, solve_cosine_sine
 from ..spec import ModelSpec
 from ..staged import ClosedForm, Step, Steps
@@ -44,20 +45,16 @@ _RESULTS = {
 }
 
 
-@dataclass(frozen=True)
-class Kinematics:
+@dataclass(frozen=True, kw_only=True)
+class Kinematics(SolvedLoop):
     """The solved linkage: its symbols, and the steps that define them.
 
     Attributes
     ----------
-    steps : Steps
-        Definitions, in order.
     near, far, straight, folded : Symbol
         ``l1 - l2``, ``l1 + l2``, ``l3 + l4`` and ``l3 - l4``; their differences lose no digit.
-    half_sine, half_cosine : Symbol
-        Of half the crank angle.
-    sin2, cos2, sin3, cos3, sin4, cos4 : Symbol
-        Sines and cosines of the link angles.
+    sin3, cos3, sin4, cos4 : Symbol
+        Sines and cosines of the angles of coupler and follower.
     sin23, cos23, sin24, cos24 : Symbol
         Of ``theta2 - theta3`` and ``theta2 - theta4``.
     w3, w4, a3, a4 : Symbol
@@ -80,15 +77,10 @@ class Kinematics:
         Of ``theta4 - theta3``.
     """
 
-    steps: Steps
     near: sp.Symbol
     far: sp.Symbol
     straight: sp.Symbol
     folded: sp.Symbol
-    half_sine: sp.Symbol
-    half_cosine: sp.Symbol
-    sin2: sp.Symbol
-    cos2: sp.Symbol
     sin3: sp.Symbol
     cos3: sp.Symbol
     sin4: sp.Symbol
@@ -121,11 +113,6 @@ class Kinematics:
     cosine_transmission: sp.Symbol
 
     @property
-    def half_squares(self) -> tuple[sp.Expr, sp.Expr]:
-        """``cos^2`` and ``sin^2`` of half the crank angle."""
-        return self.half_cosine**2, self.half_sine**2
-
-    @property
     def of_angles(self) -> dict[sp.Expr, sp.Symbol]:
         """Sine and cosine of each link's angle as a function of time, and their symbols."""
         sines, cosines = (self.sin2, self.sin3, self.sin4), (self.cos2, self.cos3, self.cos4)
@@ -149,9 +136,7 @@ def kinematics() -> Kinematics:
     Kinematics
         Steps free of cancellation beyond that of the lengths themselves.
     """
-    names = [item.name for item in fields(Kinematics) if item.name != "steps"]
-    made = {name: sp.Symbol(_EMITTED.get(name, name), real=True) for name in names}
-    k = Kinematics(Steps(), **made)
+    k = Kinematics.unsolved(_EMITTED)
     lengths = (
         (k.near, frame - crank),
         (k.far, frame + crank),
@@ -340,16 +325,13 @@ def _closed_form(spec: ModelSpec) -> ClosedForm:
 
 
 def _describe(spec: ModelSpec) -> Description:
-    results = {
-        name: Result(name, "ndarray, shape (...)", *words) for name, words in _RESULTS.items()
-    }
     return Description(
         title="Kinematics of the four-bar linkage in closed form",
         references=("Smith (2.1)-(2.10)", "Smith (A.1)-(A.8)"),
         arguments=(*ARGUMENTS, _WINDING),
         kernel="motion",
         summary="Return angles, speeds and accelerations of coupler and follower",
-        results=results,
+        results=array_results(_RESULTS),
         notes=(
             "The squares of the diagonal and of the area are sums of like-signed terms for every "
             "crank that turns fully, so that no digit is lost near a dead centre; speeds and "

@@ -8,14 +8,15 @@ the crank angle, as in the four-bar linkage.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..describe import Description, array_results
+from ..ir import Argument
 from ..pipeline import Model
+from ..rigid.closure import SolvedLoop, closure_rates
 from ..safe import UnsafeRewriting, bernstein_in_cosine
 from ..spec import ModelSpec
 from ..staged import ClosedForm, Step, Steps
@@ -42,20 +43,16 @@ _RESULTS = {
 }
 
 
-@dataclass(frozen=True)
-class Kinematics:
+@dataclass(frozen=True, kw_only=True)
+class Kinematics(SolvedLoop):
     """The solved linkage: its symbols, and the steps that define them.
 
     Attributes
     ----------
-    steps : Steps
-        Definitions, in order.
     near, far : Symbol
         ``frame - crank`` and ``frame + crank``.
-    half_sine, half_cosine : Symbol
-        Of half the crank angle.
-    sin2, cos2, sin4, cos4 : Symbol
-        Sines and cosines of crank and rod angle.
+    sin4, cos4 : Symbol
+        Sine and cosine of the rod angle.
     sin24, cos24 : Symbol
         Of ``theta2 - theta4``.
     slide2, slide : Symbol
@@ -66,13 +63,8 @@ class Kinematics:
         First and second derivative of ``slide`` by the crank angle.
     """
 
-    steps: Steps
     near: sp.Symbol
     far: sp.Symbol
-    half_sine: sp.Symbol
-    half_cosine: sp.Symbol
-    sin2: sp.Symbol
-    cos2: sp.Symbol
     sin4: sp.Symbol
     cos4: sp.Symbol
     sin24: sp.Symbol
@@ -83,11 +75,6 @@ class Kinematics:
     a4: sp.Symbol
     v3: sp.Symbol
     a3: sp.Symbol
-
-    @property
-    def half_squares(self) -> tuple[sp.Expr, sp.Expr]:
-        """``cos^2`` and ``sin^2`` of half the crank angle."""
-        return self.half_cosine**2, self.half_sine**2
 
     @property
     def of_angles(self) -> dict[sp.Expr, sp.Symbol]:
@@ -114,9 +101,7 @@ def kinematics() -> Kinematics:
     Kinematics
         Steps free of cancellation beyond that of the lengths themselves.
     """
-    names = [item.name for item in fields(Kinematics) if item.name != "steps"]
-    made = {name: sp.Symbol(_EMITTED.get(name, name), real=True) for name in names}
-    k = Kinematics(Steps(), **made)
+    k = Kinematics.unsolved(_EMITTED)
     start = (
         (k.near, frame - crank),
         (k.far, frame + crank),
@@ -149,10 +134,8 @@ def _rates(k: Kinematics) -> tuple[Step, ...]:
 
     In terms of the crank angle alone each of them is a product of factors linear in its cosine.
     """
-    first = {_TH2.diff(_T): sp.Integer(1), _TH4.diff(_T): k.w4, _SLIDE.diff(_T): k.v3}
-    second = {_TH2.diff(_T, 2): sp.Integer(0), _TH4.diff(_T, 2): k.a4, _SLIDE.diff(_T, 2): k.a3}
-    speeds = [e.diff(_T).subs(first).subs(k.of_angles) for e in _LOOP]
-    changes = [e.diff(_T, 2).subs(second).subs(first).subs(k.of_angles) for e in _LOOP]
+    rates = {_TH2: (sp.S.One, sp.S.Zero), _TH4: (k.w4, k.a4), _SLIDE: (k.v3, k.a3)}
+    speeds, changes = closure_rates(_LOOP, _T, rates, k.of_angles)
     found = _solved(k, speeds, (k.w4, k.v3))
     found |= _solved(k, [e.subs(found) for e in changes], (k.a4, k.a3))
     return tuple((name, _product(k, value)) for name, value in found.items())
@@ -250,16 +233,13 @@ def _closed_form(spec: ModelSpec) -> ClosedForm:
 
 
 def _describe(spec: ModelSpec) -> Description:
-    results = {
-        name: Result(name, "ndarray, shape (...)", *words) for name, words in _RESULTS.items()
-    }
     return Description(
         title="Kinematics of the quick-return mechanism in closed form",
         references=("closure of the loop DA + AB = DB",),
         arguments=(*ARGUMENTS, _WINDING),
         kernel="motion",
         summary="Return angle, speed and acceleration of the rod, and the block's slide along it",
-        results=results,
+        results=array_results(_RESULTS),
         notes=(
             "Every rate is a product of factors that are linear in the cosine of the crank angle, "
             "each written by its values at the ends; so no digit is lost where the rod swings "

@@ -7,13 +7,14 @@ Derivatives are with respect to the crank angle, as in the four-bar linkage.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..describe import Description, array_results
+from ..ir import Argument
 from ..pipeline import Model
+from ..rigid.closure import SolvedLoop, closure_rates
 from ..safe import UnsafeRewriting, root_of_parts
 from ..spec import ModelSpec
 from ..staged import ClosedForm, Step, Steps
@@ -43,20 +44,16 @@ _RESULTS = {
 }
 
 
-@dataclass(frozen=True)
-class Kinematics:
+@dataclass(frozen=True, kw_only=True)
+class Kinematics(SolvedLoop):
     """The solved linkage: its symbols, and the steps that define them.
 
     Attributes
     ----------
-    steps : Steps
-        Definitions, in order.
     reach, total : Symbol
         ``l3 - l2`` and ``l3 + l2``.
-    half_sine, half_cosine : Symbol
-        Of half the crank angle.
-    sin2, cos2, sin3, cos3 : Symbol
-        Sines and cosines of the link angles.
+    sin3, cos3 : Symbol
+        Sine and cosine of the coupler angle.
     sin23, cos23 : Symbol
         Of ``theta2 - theta3``.
     raised, lowered : Symbol
@@ -72,13 +69,8 @@ class Kinematics:
         Place of C along the guide, and its first and second derivative by the crank angle.
     """
 
-    steps: Steps
     reach: sp.Symbol
     total: sp.Symbol
-    half_sine: sp.Symbol
-    half_cosine: sp.Symbol
-    sin2: sp.Symbol
-    cos2: sp.Symbol
     sin3: sp.Symbol
     cos3: sp.Symbol
     sin23: sp.Symbol
@@ -118,9 +110,7 @@ def kinematics() -> Kinematics:
     Kinematics
         Steps free of cancellation beyond that of the lengths themselves.
     """
-    names = [item.name for item in fields(Kinematics) if item.name != "steps"]
-    made = {name: sp.Symbol(_EMITTED.get(name, name), real=True) for name in names}
-    k = Kinematics(Steps(), **made)
+    k = Kinematics.unsolved(_EMITTED)
     start = (
         (k.reach, coupler - crank),
         (k.total, coupler + crank),
@@ -161,10 +151,8 @@ def _rates(k: Kinematics) -> tuple[Step, ...]:
     The coupler's acceleration times ``cos^3`` is a quadratic in the sine of the crank angle.  It
     vanishes with ``cos^3`` at a change point; in terms that vanish there too, it keeps its digits.
     """
-    first = {_TH2.diff(_T): sp.Integer(1), _TH3.diff(_T): k.w3, _PLACE.diff(_T): k.v4}
-    second = {_TH2.diff(_T, 2): sp.Integer(0), _TH3.diff(_T, 2): k.a3, _PLACE.diff(_T, 2): k.a4}
-    speeds = [e.diff(_T).subs(first).subs(k.of_angles) for e in _LOOP]
-    changes = [e.diff(_T, 2).subs(second).subs(first).subs(k.of_angles) for e in _LOOP]
+    rates = {_TH2: (sp.S.One, sp.S.Zero), _TH3: (k.w3, k.a3), _PLACE: (k.v4, k.a4)}
+    speeds, changes = closure_rates(_LOOP, _T, rates, k.of_angles)
     (w3,) = sp.solve(speeds[1], k.w3)
     (v4,) = sp.solve(speeds[0].subs(k.w3, w3), k.v4)
     (a3,) = sp.solve(changes[1], k.a3)
@@ -226,16 +214,13 @@ def _closed_form(spec: ModelSpec) -> ClosedForm:
 
 
 def _describe(spec: ModelSpec) -> Description:
-    results = {
-        name: Result(name, "ndarray, shape (...)", *words) for name, words in _RESULTS.items()
-    }
     return Description(
         title="Kinematics of the slider-crank in closed form",
         references=("closure of the loop AB + BC = AC",),
         arguments=ARGUMENTS,
         kernel="motion",
         summary="Return angles and places, speeds and accelerations of coupler and slider",
-        results=results,
+        results=array_results(_RESULTS),
         notes=(
             "The length of the coupler along the guide is the root of two factors, each a sum of "
             "like-signed terms for every crank that turns fully; so no digit is lost where the "

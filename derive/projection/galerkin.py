@@ -251,9 +251,7 @@ def _energy_targets(
 
 
 def _check_essential(action: ActionDensity, item: sp.Expr, basis: Basis) -> None:
-    held = [(e.position, e.order) for e in action.essential if e.field == item]
-    held += [(s.position, 0) for s in action.supports if s.field == item]
-    for position, order in held:
+    for position, order in action.held(item):
         values = basis.single(sp.S.One, order, sp.sympify(position))
         if not vanishes(mapped(values, sp.expand)):
             raise ValueError(

@@ -138,10 +138,8 @@ def _check_held(
     shapes: MovingShapes,
     followers: Mapping[sp.Expr, sp.Expr],
 ) -> None:
-    held = [(e.position, e.order) for e in action.essential if e.field == item]
-    held += [(s.position, 0) for s in action.supports if s.field == item]
     zeros = (sp.S.Zero, sp.expand(shapes.place * shapes.length))
-    for position, order in held:
+    for position, order in action.held(item):
         at = sp.expand(sp.sympify(position).xreplace(dict(followers)))
         if order or at not in zeros:
             raise ValueError(f"the shapes are not held at {position} (derivative {order})")

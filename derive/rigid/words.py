@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..describe import Description
+from ..describe import Description, array_results
 from ..ir import Argument, Result
 from ..spec import ModelSpec
 
@@ -86,7 +86,7 @@ def _results(sliding: str) -> dict[str, Result]:
         "shaking_y": ("N", "Force on the frame along y"),
         "shaking_moment": ("N m", "Moment on the frame about A, the drive's reaction in it"),
     }
-    return {name: Result(name, "ndarray, shape (...)", *words) for name, words in found.items()}
+    return array_results(found)
 
 
 _RESTRICTIONS = (

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import BadInput, bad
-from ..inputs import is_whole
+from ..inputs import require_whole
 from ..results import Check, Result, provenance
 from .barrier import PER_LINK, Array
 from .bounds import Bounds
@@ -132,8 +132,7 @@ def trade_off(
             raise bad(name, repr(term), f"one of {', '.join(TERMS)}", "correct the name")
     if first == second:
         raise bad("second", repr(second), "another force than the first", "choose another")
-    if not is_whole(points, 2, 1000):
-        raise bad("points", repr(points), "a whole number from 2 to 1000", "correct it")
+    require_whole("points", points, 2, 1000)
     both = {first: 1.0, second: 1.0}
     search, everything = searched(machine, speed, acceleration, both, links, bounds, None, angles)
     (low, least), (high, _) = _end(search, first, second), _end(search, second, first)

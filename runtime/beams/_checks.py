@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from numbers import Real
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -89,19 +88,6 @@ def require_mapping(where: str, value: object, fix: str) -> None:
     """
     if not (isinstance(value, Mapping) and all(isinstance(name, str) for name in value)):
         raise bad(where, repr(value), "a mapping from names", fix)
-
-
-def whole(where: str, value: Any, most: int) -> int:
-    """Return a whole number from 1 to some other.
-
-    Raises
-    ------
-    BadInput
-        If it is no such number.
-    """
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
-        raise bad(where, repr(value), f"a whole number from 1 to {most}", "correct it")
-    return value
 
 
 def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np.float64]:

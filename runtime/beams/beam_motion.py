@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 # Mesh and equations err far more than this.
 _RTOL = 1e-7
+# Angles of one piece.
+_CHUNK = 256
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,6 +145,11 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
         found = f"{made.q.shape[1]} coordinates"
         raise bad("motion", found, f"{system.size}", "give the motion of this system")
     return made
+
+
+def chunks(motion: BeamMotion) -> list[slice]:
+    """Return pieces of the many angles of a motion, so that the arrays of one fit the memory."""
+    return [slice(start, start + _CHUNK) for start in range(0, len(motion.theta), _CHUNK)]
 
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:

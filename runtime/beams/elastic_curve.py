@@ -11,13 +11,13 @@ import numpy as np
 from ..deferred import DeferredField, DeferredGroup
 from ..errors import bad
 from ..families import LinearPeriodic
-from ..results import Result, provenance
+from ..results import Result
 from ._checks import is_finite
 from .assembly import Array
-from .beam_motion import BeamMotion, beam_motion
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import in_motion
 from .element_forms import required_structure
 from .finer_mesh import CAUTION, on_finer_mesh
-from .recovered import chunks, linear_range
 from .recovery import recovery
 from .structure import Beam
 
@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
     from .beam_motion import Motion
 
-# Fields that are worked out when they are first looked at.
+# Fields that are worked out when they are first looked at; of its own and not of BeamResult, as in
+# its files the place comes before the speed.
 _LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
@@ -144,17 +145,12 @@ def elastic_coupler_curve(
     rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
     return ElasticCurve(
         method="shape functions",
-        error=later.later("error"),
-        error_norm=later.later("error_norm"),
-        checks={**moving.checks, **linear_range(system, moving)},
-        provenance=provenance({**system.provenance, **moving.provenance}),
         link=link,
         along=float(foot),
         across=float(across),
-        speed=moving.speed,
-        theta=moving.theta,
         rigid=rigid,
         elastic=rigid + shift,
+        **in_motion(system, moving, later),
     )
 
 
@@ -183,7 +179,7 @@ def _shift(
 ) -> tuple[Array, float]:
     """Return the displacement of the point ``(nt, 2)``, and what the motion's error does to it."""
     found, doubt = [], 0.0
-    for chunk in chunks(len(motion.theta)):
+    for chunk in chunks(motion):
         rows = _rows(system, beam, motion.theta[chunk], *place)
         found.append(np.einsum("txn,tn->tx", rows, motion.q[chunk]))
         doubt = max(doubt, float(np.max(np.abs(rows) @ motion.doubt)))

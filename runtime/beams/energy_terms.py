@@ -9,8 +9,8 @@ import numpy as np
 from ..errors import bad
 from ..families import LinearPeriodic
 from .assembly import Array
-from .beam_motion import BeamMotion
 from .element_forms import ElementForms
+from .motion_forms import MotionValues
 from .recovery_forms import LinearForm
 
 # Least amplitude that counts, over the largest: that of round-off in solving for the forces.
@@ -78,27 +78,21 @@ class Energies:
     ----------
     forms : ElementForms
         At these angles.
-    motion : BeamMotion
-        The whole motion.
-    chunk : slice
-        Which of its angles.
+    values : MotionValues
+        The motion there.
     slopes : mapping
         As :func:`force_slopes` returns them.
     """
 
-    def __init__(
-        self, forms: ElementForms, motion: BeamMotion, chunk: slice, slopes: Slopes
-    ) -> None:
-        self.forms, self.speed = forms, motion.speed
-        self.q, self.slope = motion.q[chunk], motion.slope[chunk]
-        second = forms.acceleration.values(self.speed, self.q, self.slope)
-        self.second = second / self.speed**2
+    def __init__(self, forms: ElementForms, values: MotionValues, slopes: Slopes) -> None:
+        self.forms, self.values = forms, values
+        self.speed, self.q, self.slope = values.speed, values.q, values.slope
         self.rigid = forms.arrays.motion(forms.theta)
         self.still = not forms.structure.moving
         self.changing = {power: slope(forms.theta) for power, slope in slopes.items()}
 
-    def _values(self, form: LinearForm, like: Array) -> Array:
-        return np.broadcast_to(form.values(self.speed, self.q, self.slope, self.second), like.shape)
+    def _spread(self, form: LinearForm, like: Array) -> Array:
+        return np.broadcast_to(self.values(form), like.shape)
 
     def found(self) -> dict[str, Array]:
         """Return the arrays by name, as :class:`BeamEnergies` has them."""
@@ -131,13 +125,13 @@ class Energies:
         w = self.speed
         sums["kinetic"] += 0.5 * w**2 * _square(first + rate, mass, spun, across, centre)
         # Accelerations, with gravity but without what acts from outside.
-        direct = self._values(forms.direct(e) - forms.outside.turned(at.own), local)
-        sideways = self._values(forms.across(e), local)
-        towards = self._values(forms.centripetal(e), local)
+        direct = self._spread(forms.direct(e) - forms.outside.turned(at.own), local)
+        sideways = self._spread(forms.across(e), local)
+        towards = self._spread(forms.centripetal(e), local)
         virtual = first + turned
         work = _dot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
         work += _dot(spun, direct @ across + sideways @ centre - towards @ across)
-        forces = self._values(forms.strain(e), local) @ own.stiffness
+        forces = self._spread(forms.strain(e), local) @ own.stiffness
         # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
         passive = self._rayleigh(e) @ own.stiffness
         work += _dot(turned, forces - passive)
@@ -199,26 +193,20 @@ class Energies:
         speeds = self.speed * speeds
         sums["kinetic"] += 0.5 * speeds**2 @ lumped
         drag = forms.outside.values(self.speed, self.q, self.slope)
-        inertia = np.array(np.broadcast_to(self._node_inertia(), count))
+        inertia = np.array(np.broadcast_to(self.values(forms.node_inertia()), count))
         inertia[:, free] -= np.broadcast_to(drag, (count[0], len(free))) * lumped[free]
         loads = np.zeros(count)
-        loads += np.broadcast_to(self._node_values(forms.node_loads()), count)
+        loads += np.broadcast_to(self.values(forms.node_loads()), count)
         weight = forms.axial.weight_field(forms.theta) * lumped
         sums["drive"] += self.speed * _dot(first, inertia - loads)
         sums["loads"] += _dot(speeds, weight + loads)
         q = np.zeros(count)
         q[:, free] = self.q
         sums["springs"] += 0.5 * q**2 @ forms.springs
-        holds = np.broadcast_to(self._node_values(forms.node_holds()), count)
+        holds = np.broadcast_to(self.values(forms.node_holds()), count)
         rates = np.zeros(count)
         rates[:, free] = self.speed * self.slope
         sums["dissipated"] += _dot(rates, holds - q * forms.springs)
-
-    def _node_inertia(self) -> Array:
-        return self._node_values(self.forms.node_inertia())
-
-    def _node_values(self, form: LinearForm) -> Array:
-        return form.values(self.speed, self.q, self.slope, self.second)
 
     def _outside_power(self) -> Array:
         """Return the power that drag from outside takes."""

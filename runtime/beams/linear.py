@@ -16,14 +16,13 @@ from .assembly import AngleArrays, Array
 from .axial_forces import AxialForces
 from .deflections import relative_deflection
 from .freedoms import Freedoms
+from .held import require_held
 from .sliding import Slide, slid_terms
 from .structure import Structure
 
 FORMS = ("full", "instantaneous")
 # Factors of the structure's own numbers: of every modulus, density and lumped mass.
 FACTORS = ("elasticity", "distributed_mass", "lumped_mass")
-# A mode softer than this, over the stiffest, is taken for one that nothing resists.
-_SOFTEST = 1e-14
 
 
 def linear_system(
@@ -73,7 +72,7 @@ def linear_system(
     lumped, springs, dampers = lumped_values(structure)
     free = arrays.free
     slide = Slide(arrays) if structure.sliding else None
-    _require_held(arrays, springs[free], slide)
+    require_held(arrays, springs[free], slide)
     axial = AxialForces(arrays, np.diag(springs[free]), lumped, gravity, slide)
     acting = _sources(structure, lumped, gravity)
     terms = [
@@ -200,32 +199,6 @@ def lumped_values(
 def _relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) -> Array:
     found = relative_deflection(arrays, theta)
     return found if slide is None else np.asarray(found @ slide.basis(theta))
-
-
-def _require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> None:
-    """Refuse a structure that can move without resistance, at a few angles of the crank."""
-    structure = arrays.structure
-    theta = structure.period * np.array([0.0, 0.37, 0.61]) if structure.moving else np.zeros(1)
-    matrices = arrays.stiffness(theta) + np.diag(springs)
-    if slide is not None:
-        basis = slide.basis(theta)
-        matrices = np.swapaxes(basis, -1, -2) @ matrices @ basis
-    for angle, stiffness in zip(theta, matrices, strict=True):
-        sizes = np.sqrt(np.diag(stiffness))
-        loose = [structure.labels[i] for i in np.flatnonzero(sizes == 0.0)]
-        if not loose:
-            values, vectors = np.linalg.eigh(stiffness / np.outer(sizes, sizes))
-            if values[0] > _SOFTEST * len(values) * values[-1]:
-                continue
-            motion = np.abs(vectors[:, 0] / sizes)
-            motion /= np.max(motion)
-            loose = [structure.labels[i] for i in np.flatnonzero(motion > 0.1)]
-        raise bad(
-            "structure",
-            f"a motion of {', '.join(loose[:6])} that nothing resists at crank angle {angle:.4g}",
-            "a structure whose every motion is held or sprung",
-            "hold a node, join beams, or add a spring",
-        )
 
 
 def _sources(structure: Structure, lumped: Array, gravity: tuple[float, float]) -> list[str]:

@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..deferred import DeferredField, DeferredGroup
+from ..deferred import DeferredGroup
 from ..errors import bad
 from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
+from ..results import Check
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion
+from .beam_result import BeamResult, in_motion
 from .element_forms import ElementForms, required_structure
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-from .recovered import chunks, linear_range, propagated
-from .recovery_forms import LinearForm
+from .motion_forms import MotionValues, over_motion
+from .recovered import propagated
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,20 +29,16 @@ if TYPE_CHECKING:
 # Round-off of the balance of forces, over the largest end force of an element.
 _ROUNDING = 1e-9
 _PARTS = ("x", "y", "moment")
-# Fields that are worked out when they are first looked at.
-_LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinReactions(Result):
+class PinReactions(BeamResult):
     """Forces at the nodes of a structure of beams, linear in its elastic motion.
+
+    Speed and crank angles: see :class:`BeamResult`.
 
     Attributes
     ----------
-    speed : float
-        Crank speed [rad/s].
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
     on_beams : mapping of (str, str) to ndarray
         By node and beam, what the node does to the end of the beam: force along the fixed axes
         [N] and moment [N m], shape ``(nt, 3)``.
@@ -56,21 +53,16 @@ class PinReactions(Result):
         ground and the drag bring it about.
     error : float
         Largest error of a force [N], moments over the longest beam's length: by the error of the
-        motion and, where it was found on a finer mesh too, by that of the mesh.  Worked out when
-        it is first looked at.
+        motion and, where it was found on a finer mesh too, by that of the mesh.
     """
 
-    speed: float
-    theta: Array
     on_beams: Mapping[tuple[str, str], Array]
     of_ground: Mapping[str, Array]
     drag: Array
     momentum_rate: Array
-    error: Any = _LATER["error"]
-    error_norm: Any = _LATER["error_norm"]  # str
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("sample",),
+        **BeamResult.dimensions,
         "drag": ("sample", "direction"),
         "momentum_rate": ("sample", "direction"),
     }
@@ -170,16 +162,11 @@ def pin_reactions(
     doubt = DeferredGroup(partial(_doubt, system, moving, on_beams, finer_mesh))
     return PinReactions(
         method="end forces of the elements",
-        error=doubt.later("error"),
-        error_norm=doubt.later("error_norm"),
-        checks={**moving.checks, **checks, **linear_range(system, moving)},
-        provenance=provenance({**system.provenance, **moving.provenance}),
-        speed=moving.speed,
-        theta=moving.theta,
         on_beams=on_beams,
         of_ground=of_ground,
         drag=drag,
         momentum_rate=rate,
+        **in_motion(system, moving, doubt, checks),
     )
 
 
@@ -188,12 +175,7 @@ def _forces(
 ) -> tuple[dict[tuple[str, str], Array], dict[str, Array], dict[str, Array]]:
     """Return forces by node and beam, of the ground by node, and all of them with the sums."""
     structure = required_structure(system)
-    pieces: list[dict[str, Array]] = []
-    for chunk in chunks(len(motion.theta)):
-        forms = ElementForms(system, motion.theta[chunk])
-        forms.require_same()
-        pieces.append(_at_nodes(forms, _Values(forms, motion, chunk)))
-    joined = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+    joined = over_motion(system, motion, _at_nodes)
     on_beams = {
         (node.name, beam.name): joined[f"{node.name} {beam.name}"]
         for node in structure.nodes
@@ -204,20 +186,7 @@ def _forces(
     return on_beams, of_ground, joined
 
 
-class _Values:
-    """Values of forms in a motion, with the accelerations by the equation of motion."""
-
-    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice) -> None:
-        self.speed = motion.speed
-        self.q, self.slope = motion.q[chunk], motion.slope[chunk]
-        second = forms.acceleration.values(self.speed, self.q, self.slope)
-        self.second = second / self.speed**2
-
-    def __call__(self, form: LinearForm) -> Array:
-        return form.values(self.speed, self.q, self.slope, self.second)
-
-
-def _at_nodes(forms: ElementForms, values: _Values) -> dict[str, Array]:
+def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
     """Return forces by node and beam, of the ground by node, drag and rate of momentum."""
     structure, freedoms = forms.structure, forms.structure.freedoms
     found: dict[str, Array] = {}
@@ -251,7 +220,7 @@ def _at_nodes(forms: ElementForms, values: _Values) -> dict[str, Array]:
     return found
 
 
-def _outside_forces(forms: ElementForms, values: _Values) -> Array:
+def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
     """Return the sum of what drag from outside takes, counted among the inertia: ``(nt, 2)``."""
     total = np.zeros((len(forms.theta), 2))
     if not forms.outside.parts:

@@ -2,52 +2,41 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..deferred import DeferredField, DeferredGroup
-from ..errors import LinearRangeWarning, bad
+from ..deferred import DeferredGroup
+from ..errors import bad
 from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
-from ..simulation.trajectory import LINEAR_RANGE
 from .assembly import Array
-from .beam_motion import BeamMotion, beam_motion
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import StationResult, in_motion, stations_on
 from .element_forms import required_structure
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-from .recovery import FORCES, METHODS, Recovery, recovery, stations_of
+from .recovery import FORCES, METHODS, Recovery, recovery, require_method, stations_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .beam_motion import Motion
 
-_CHUNK = 256
 QUANTITIES = ("along", "across", "slope", *FORCES)
 _UNITS = {"along": "m", "across": "m", "slope": "rad", "axial": "N", "shear": "N", "moment": "N m"}
-# Fields that are worked out when they are first looked at.
-_LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
 @dataclass(frozen=True, kw_only=True)
-class BeamForces(Result):
+class BeamForces(StationResult):
     """Displacements and forces along the beams.
+
+    Speed, crank angles and stations: see :class:`StationResult`.
 
     Attributes
     ----------
-    speed : float
-        Crank speed [rad/s].
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-    links : tuple of str
-        Beam of each station.
-    places : ndarray
-        x over the beam's length of each station, shape ``(stations,)``.
     along, across : ndarray
         Displacements from the rigid beam, in its axes [m], shape ``(nt, stations)``.
     slope : ndarray
@@ -61,25 +50,18 @@ class BeamForces(Result):
     error : ndarray
         Largest error of axial force [N], shear force [N] and moment [N m] over angles and
         stations: by the error of the motion, and by the difference to a finer mesh or, where that
-        is not to be had, of the two ways to recover them.  Worked out when it is first looked at.
+        is not to be had, of the two ways to recover them.
     """
 
-    speed: float
-    theta: Array
-    links: tuple[str, ...]
-    places: Array
     along: Array
     across: Array
     slope: Array
     axial: Array
     shear: Array
     moment: Array
-    error: Any = _LATER["error"]
-    error_norm: Any = _LATER["error_norm"]  # str
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("sample",),
-        "places": ("station",),
+        **StationResult.dimensions,
         "error": ("force",),
         **dict.fromkeys(QUANTITIES, ("sample", "station")),
     }
@@ -111,20 +93,6 @@ class BeamForces(Result):
         ax.set_ylabel(f"extremes of {quantity} [{_UNITS[quantity]}]")
         ax.legend()
         return ax
-
-
-def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:
-    """Return the places of a beam's stations among all.
-
-    Raises
-    ------
-    BadInput
-        If it has none.
-    """
-    if link not in links:
-        known = ", ".join(dict.fromkeys(links))
-        raise bad("link", repr(link), f"one of {known}", "choose one with stations")
-    return np.flatnonzero(np.array(links) == link).astype(np.int64)
 
 
 def recover(
@@ -160,21 +128,16 @@ def recover(
     BadInput
         If an argument is unusable.
     """
-    _require_method(method)
+    require_method(method)
     moving = beam_motion(system, motion)
     chosen = stations_of(required_structure(system), stations)
     own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
     doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own, finer_mesh))
     return BeamForces(
         method=method,
-        error=doubt.later("error"),
-        error_norm=doubt.later("error_norm"),
-        speed=moving.speed,
-        theta=moving.theta,
         links=tuple(station.beam for station in chosen),
         places=np.array([station.place for station in chosen]),
-        checks={**moving.checks, **linear_range(system, moving)},
-        provenance=provenance({**system.provenance, **moving.provenance}),
+        **in_motion(system, moving, doubt),
         **own,
     )
 
@@ -205,11 +168,6 @@ def _doubt(
     }
 
 
-def _require_method(method: str) -> None:
-    if method not in METHODS:
-        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
-
-
 def evaluated(
     system: LinearPeriodic,
     motion: BeamMotion,
@@ -233,7 +191,7 @@ def evaluated(
         Whether rates and accelerations of the coordinates are left out.
     """
     parts: dict[str, list[Array]] = {name: [] for name in names}
-    for chunk in chunks(len(motion.theta)):
+    for chunk in chunks(motion):
         made = recovery(system, motion.theta[chunk], stations, method)
         q, slope = motion.q[chunk], motion.slope[chunk]
         second = np.zeros_like(q) if frozen else None
@@ -241,11 +199,6 @@ def evaluated(
         for name in names:
             parts[name].append(made.values(name, motion.speed, q, slope, second))
     return {name: np.concatenate(values) for name, values in parts.items()}
-
-
-def chunks(count: int) -> list[slice]:
-    """Return pieces of many angles, so that the arrays of one piece fit the memory."""
-    return [slice(start, start + _CHUNK) for start in range(0, count, _CHUNK)]
 
 
 def propagated(
@@ -266,26 +219,3 @@ def propagated(
         rows = made.forms[name].at_speed(motion.speed)
         found.append(max(float(np.max(np.abs(r) @ motion.doubt)) for r in (rows["q"],)))
     return np.array(found)
-
-
-def linear_range(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Check]:
-    """Return the check of the largest deflection over the length of its beam.
-
-    Warns whoever called the caller where it is beyond 5 %.
-    """
-    if system.relative_deflection is None:
-        return {}
-    largest = 0.0
-    for chunk in chunks(len(motion.theta)):
-        rows = system.relative_deflection(motion.theta[chunk])
-        largest = max(
-            largest, float(np.max(np.abs(np.einsum("tkn,tn->tk", rows, motion.q[chunk]))))
-        )
-    if largest > LINEAR_RANGE:
-        warnings.warn(
-            f"deflection reaches {largest:.3g} of the length of its beam; the linear equations "
-            f"hold to about {LINEAR_RANGE}: lower the speed or stiffen the beams",
-            LinearRangeWarning,
-            stacklevel=3,
-        )
-    return {"linear range": Check(largest, LINEAR_RANGE)}

@@ -166,6 +166,18 @@ def _station(structure: Structure, beam: Beam, place: float) -> Station:
     return Station(beam.name, place, e, xi)
 
 
+def require_method(method: str) -> None:
+    """Refuse a way to recover forces that is not known.
+
+    Raises
+    ------
+    BadInput
+        If it is none of ``METHODS``.
+    """
+    if method not in METHODS:
+        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+
+
 def recovery(
     system: LinearPeriodic,
     theta: ArrayLike,
@@ -194,8 +206,7 @@ def recovery(
     BadInput
         If the method or a beam is unknown, or the system is not one of beams.
     """
-    if method not in METHODS:
-        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+    require_method(method)
     structure = required_structure(system)
     angles = np.atleast_1d(numbers("theta", theta))
     if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..deferred import DeferredField, DeferredGroup
+from ..deferred import DeferredGroup
 from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
+from ..results import Check
 from .assembly import Array
-from .beam_motion import BeamMotion, beam_motion
-from .element_forms import ElementForms, required_structure
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import BeamResult, in_motion
+from .element_forms import required_structure
 from .energy_terms import Energies, force_slopes
 from .finer_mesh import CAUTION, on_finer_mesh
-from .recovered import chunks, linear_range
+from .motion_forms import over_motion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,20 +26,16 @@ if TYPE_CHECKING:
 
 # Round-off of energies that are sums of large parts, over the largest power.
 _ROUNDING = 1e-9
-# Fields that are worked out when they are first looked at.
-_LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
 @dataclass(frozen=True, kw_only=True)
-class BeamEnergies(Result):
+class BeamEnergies(BeamResult):
     """Energies of a structure of beams in a motion.
+
+    Speed and crank angles: see :class:`BeamResult`.
 
     Attributes
     ----------
-    speed : float
-        Crank speed [rad/s].
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
     links : tuple of str
         The beams.
     strain : ndarray
@@ -61,8 +58,6 @@ class BeamEnergies(Result):
         found on a finer mesh too, by that of the mesh.
     """
 
-    speed: float
-    theta: Array
     links: tuple[str, ...]
     strain: Array
     springs: Array
@@ -71,13 +66,12 @@ class BeamEnergies(Result):
     dissipated: Array
     loads: Array
     drive: Array
-    error: Any = _LATER["error"]
-    error_norm: Any = _LATER["error_norm"]  # str
 
     dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        **BeamResult.dimensions,
         "strain": ("sample", "link"),
         **dict.fromkeys(
-            ("theta", "springs", "stiffening", "kinetic", "dissipated", "loads", "drive", "total"),
+            ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive", "total"),
             ("sample",),
         ),
     }
@@ -152,20 +146,15 @@ def beam_energies(
     structure = required_structure(system)
     joined = _energies(system, moving)
     doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"], finer_mesh))
-    checks = {**moving.checks, **linear_range(system, moving)}
+    shared = in_motion(system, moving, doubt)
     made = BeamEnergies(
         method="element matrices",
-        error=doubt.later("error"),
-        error_norm=doubt.later("error_norm"),
-        checks=checks,
-        provenance=provenance({**system.provenance, **moving.provenance}),
-        speed=moving.speed,
-        theta=moving.theta,
         links=tuple(beam.name for beam in structure.beams),
+        **shared,
         **joined,
     )
     if moving.period is not None and system.has("A"):
-        checks["balance"] = _balance(made, moving)
+        shared["checks"]["balance"] = _balance(made, moving)
     return made
 
 
@@ -186,12 +175,9 @@ def _doubt(
 def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
     """Return the energies and powers of a motion by name."""
     slopes = force_slopes(system)
-    pieces = []
-    for chunk in chunks(len(motion.theta)):
-        forms = ElementForms(system, motion.theta[chunk])
-        forms.require_same()
-        pieces.append(Energies(forms, motion, chunk, slopes).found())
-    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+    return over_motion(
+        system, motion, lambda forms, values: Energies(forms, values, slopes).found()
+    )
 
 
 def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
@@ -218,7 +204,7 @@ def _figure(system: LinearPeriodic, motion: BeamMotion) -> float:
     if not np.any(motion.doubt):
         return 0.0
     largest = 0.0
-    for chunk in chunks(len(motion.theta)):
+    for chunk in chunks(motion):
         stiffness = system.array("K", motion.theta[chunk])
         force = np.einsum("tij,tj->ti", stiffness, motion.q[chunk])
         largest = max(largest, float(np.max(np.abs(force) @ motion.doubt)))

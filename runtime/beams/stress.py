@@ -13,14 +13,13 @@ from numpy.typing import ArrayLike
 from ..deferred import DeferredField, DeferredGroup
 from ..errors import BadInput, Problem, bad
 from ..families import LinearPeriodic
-from ..results import Result, provenance
 from ._checks import is_finite
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion
+from .beam_result import StationResult, in_motion, stations_on
 from .element_forms import required_structure
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-from .recovered import linear_range, stations_on
-from .recovery import METHODS, Station, recovery, stations_of
+from .recovery import METHODS, Station, recovery, require_method, stations_of
 from .recovery_forms import LinearForm, stacked
 from .stress_errors import (
     Stations,
@@ -44,14 +43,7 @@ _FINER = 8
 # Fields that are worked out when they are first looked at.
 _LATER = {
     name: DeferredField()
-    for name in (
-        "static_axial",
-        "static_bending",
-        "motion_error",
-        "mesh_error",
-        "error",
-        "error_norm",
-    )
+    for name in ("static_axial", "static_bending", "motion_error", "mesh_error")
 }
 
 
@@ -82,19 +74,13 @@ class StressPeak:
 
 
 @dataclass(frozen=True, kw_only=True)
-class StressResult(Result):
+class StressResult(StationResult):
     """Stresses along the beams over the cycle.
+
+    Speed, crank angles and stations: see :class:`StationResult`.
 
     Attributes
     ----------
-    speed : float
-        Crank speed [rad/s].
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-    links : tuple of str
-        Beam of each station.
-    places : ndarray
-        x over the beam's length of each station, shape ``(stations,)``.
     axial, bending : ndarray
         Stress [Pa] of the axial force, and of the bending moment at the outer fibre on the beam's
         positive side, shape ``(nt, stations)``; on the other side it has the other sign.
@@ -108,26 +94,20 @@ class StressResult(Result):
 
     Notes
     -----
-    The quasi-static part and the error figures are worked out when they are first looked at.
+    The quasi-static part and the parts of the error figure are worked out when they are first
+    looked at, as the figure itself.
     """
 
-    speed: float
-    theta: Array
-    links: tuple[str, ...]
-    places: Array
     axial: Array
     bending: Array
     static_axial: Any = _LATER["static_axial"]  # Array
     static_bending: Any = _LATER["static_bending"]  # Array
     motion_error: Any = _LATER["motion_error"]  # float
     mesh_error: Any = _LATER["mesh_error"]  # float
-    error: Any = _LATER["error"]
-    error_norm: Any = _LATER["error_norm"]  # str
     period: float | None = None
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("sample",),
-        "places": ("station",),
+        **StationResult.dimensions,
         **dict.fromkeys(
             ("axial", "bending", "static_axial", "static_bending", "stress"), ("sample", "station")
         ),
@@ -311,8 +291,7 @@ def stress(
     difference of the two recoveries over that of the forces: for a natural mode this is the
     relative error of the squared frequency.
     """
-    if method not in METHODS:
-        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+    require_method(method)
     structure = required_structure(system)
     chosen = stations_of(structure, stations)
     levers = fibre_factors(system, chosen)
@@ -324,12 +303,6 @@ def stress(
     )
     return StressResult(
         method=method,
-        error=doubt.later("error"),
-        error_norm=doubt.later("error_norm"),
-        checks={**moving.checks, **linear_range(system, moving)},
-        provenance=provenance({**system.provenance, **moving.provenance}),
-        speed=moving.speed,
-        theta=moving.theta,
         links=tuple(station.beam for station in chosen),
         places=np.array([station.place for station in chosen]),
         axial=own[0],
@@ -339,6 +312,7 @@ def stress(
         motion_error=doubt.later("motion_error"),
         mesh_error=doubt.later("mesh_error"),
         period=moving.period,
+        **in_motion(system, moving, doubt),
     )
 
 

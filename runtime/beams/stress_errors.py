@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from ..errors import BadInput, Problem
 from ..families import LinearPeriodic
 from .assembly import Array
-from .beam_motion import BeamMotion
+from .beam_motion import BeamMotion, chunks
 from .element_forms import ElementForms, required_structure
-from .recovered import chunks, evaluated, propagated
+from .recovered import evaluated, propagated
 from .recovery import METHODS, Station
 
 Stations = int | Mapping[str, ArrayLike] | None
@@ -81,7 +81,7 @@ def motion_error(
 def frozen(system: LinearPeriodic, motion: BeamMotion) -> BeamMotion:
     """Return the quasi-static motion: equilibrium at each angle without any rates."""
     found = np.empty_like(motion.q)
-    for chunk in chunks(len(motion.theta)):
+    for chunk in chunks(motion):
         forms = ElementForms(system, motion.theta[chunk])
         rows = forms.resisted.at_speed(motion.speed)
         free = forms.arrays.free

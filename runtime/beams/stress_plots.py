@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .recovered import stations_on
+from .beam_result import stations_on
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -112,16 +112,16 @@ def _sweeps(scale: float) -> dict[str, Callable[..., Any]]:
 
     rod = load_scene("beale_1992_flexible_rod", {"model.modes": 2}).linear_system()
     coupler = load_scene("smith_1972_5152_sixteenth_inch").linear_system()
-    speeds = max(32, round(400 * scale))
-    ratios = max(8, round(64 * scale))
-    motions = max(64, round(512 * scale))
+    speeds = max(32, round(4000 * scale))
+    ratios = max(8, round(128 * scale))
+    motions = max(64, round(2048 * scale))
     return {
         "multipliers of the flexible rod": partial(
             sweep,
             "floquet_multipliers",
             rod,
             {"speed": np.linspace(500.0, 4000.0, speeds)},
-            chunk=max(4, speeds // 16),
+            chunk=max(4, speeds // 32),
         ),
         "chart of the flexible rod": partial(
             sweep,
@@ -131,14 +131,14 @@ def _sweeps(scale: float) -> dict[str, Callable[..., Any]]:
                 "crank_ratio": np.linspace(0.01, 0.2, ratios),
                 "speed": np.linspace(500.0, 4000.0, 200),
             },
-            chunk=200 * max(2, ratios // 16),
+            chunk=200 * max(2, ratios // 32),
         ),
         "steady states of the coupler": partial(
             sweep,
             "steady_state",
             coupler,
             {"speed": np.linspace(30.0, 33.0, motions)},
-            chunk=max(4, motions // 16),
+            chunk=max(4, motions // 32),
         ),
     }
 

@@ -13,6 +13,7 @@ from ..errors import bad
 from ..families import Array, LinearPeriodic
 from ..hill.form import is_hill
 from ..hill.perturbation.boundaries import check_order
+from ..inputs import numbers
 from ..results import Check, Result
 from .boundaries import BoundaryCurves, boundary_curves
 from .edge_rows import EdgeCurves, edge_curves
@@ -271,7 +272,7 @@ def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tu
     for label, (name, given) in (("x", x), ("y", y)):
         if name not in known:
             raise bad(f"axis {label}", repr(name), f"one of {known}", "correct the name")
-        values = np.asarray(given, dtype=float)
+        values = numbers(f"axis {label}", given)
         if values.ndim != 1 or len(values) < 2 or not np.all(np.isfinite(values)):
             raise bad(
                 f"axis {label}",

@@ -199,7 +199,7 @@ class Lines:
             degree=self.degree,
         )
         self.modes = turn.modes
-        series = turn.series() if self.leaves is None else turn.series(leaves=self.leaves)
+        series = turn.series(self.leaves)
         if series.low < series.high:
-            self.leaves = len(series.maps)
+            self.leaves = len(series.stretches)
         return series

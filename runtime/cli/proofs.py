@@ -117,7 +117,11 @@ def _work_precision(options: argparse.Namespace) -> int:
             work.load_ratios(target)
     methods, peers = (_names(value) for value in (options.methods, options.peers))
     result = work.benchmark_work_precision(
-        options.subject, methods=methods, peers=peers, rounds=options.rounds
+        options.subject,
+        methods=methods,
+        peers=peers,
+        rounds=options.rounds,
+        progress=sys.stderr.isatty() and not options.json,
     )
     if stored is not None:
         result = work.compared(result, stored)

@@ -108,11 +108,9 @@ class ConstrainedMultipliers(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw physical and constraint multipliers and the unit circle; return the axes."""
-        from ..plotting import axes_or_new
+        from ..plotting import multiplier_plane
 
-        ax = axes_or_new(ax)
-        circle = np.exp(1j * np.linspace(0.0, 2 * np.pi, 361))
-        ax.plot(circle.real, circle.imag, color="0.6", linewidth=0.8)
+        ax = multiplier_plane(ax)
         ax.plot(self.physical.real, self.physical.imag, "o", markersize=4, label="physical")
         if len(self.others):
             ax.plot(
@@ -124,9 +122,6 @@ class ConstrainedMultipliers(Result):
                 label="of the constraints",
             )
             ax.legend(frameon=False, fontsize="small")
-        ax.set_aspect("equal")
-        ax.set_xlabel("real part of multiplier")
-        ax.set_ylabel("imaginary part of multiplier")
         return ax
 
 

@@ -12,7 +12,16 @@ from ..errors import BadInput, bad
 from ..families import Constrained
 from ..families.multipliers import check_rank, scaling
 from .gauss_steps import STAGES, Ring
-from .variational import Array, Linearised, Scale, linearised, onto_manifold, scale_of, tangent
+from .variational import (
+    Array,
+    Linearised,
+    Scale,
+    linearised,
+    onto_manifold,
+    scale_of,
+    tangent,
+    variations_of,
+)
 
 # Phase of the fastest motion that a first step covers [rad]; 12 stages err 1e-14 a step at 5.
 _PHASE = 5.0
@@ -47,13 +56,7 @@ def checked_guess(
     BadInput
         As :func:`.orbits.periodic_orbit`.
     """
-    if system.variations is None:
-        raise bad(
-            "system",
-            "no variational equations",
-            "a constrained system with variations",
-            "emit the model with the output 'variations'",
-        )
+    variations_of(system)
     if not (isinstance(period, Real) and np.isfinite(float(period)) and period > 0):
         raise bad("period", repr(period), "a finite number above 0 [s]", "correct it")
     n = system.size

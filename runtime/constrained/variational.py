@@ -77,7 +77,7 @@ def linearised(system: Constrained, q: Array, qd: Array, t: Array) -> Linearised
     right = np.concatenate([a["forces"] - a["rest"], a["gamma"]], axis=-2)
     solved = np.linalg.solve(matrix, right)[..., 0]
     qdd, lam = solved[..., :n], solved[..., n:]
-    varied = _variations(system)(q, qd, qdd, lam, t)
+    varied = variations_of(system)(q, qd, qdd, lam, t)
     rates = np.zeros((*mass.shape[:-2], n + k, 2 * n))
     rates[..., :n, :n] = -varied["stiffness"]
     rates[..., :n, n:] = -varied["damping"]
@@ -99,7 +99,14 @@ def linearised(system: Constrained, q: Array, qd: Array, t: Array) -> Linearised
     )
 
 
-def _variations(system: Constrained) -> Callable[..., dict[str, Array]]:
+def variations_of(system: Constrained) -> Callable[..., dict[str, Array]]:
+    """Return the variational equations of a system.
+
+    Raises
+    ------
+    BadInput
+        If it has none.
+    """
     if system.variations is None:
         raise bad(
             "system",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..beams._checks import is_finite
 from ..errors import BadInput, Problem, bad
 from ..families import Transcendental
+from ..inputs import is_whole
 from ..results import Check, provenance
 from .bisection import bisected
 from .frames import DynamicStiffness
@@ -162,10 +163,6 @@ def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
     return found
 
 
-def _is_whole(value: object) -> bool:
-    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-
-
 def _check(upto: float | None, count: int | None, rtol: float) -> None:
     problems = []
     if (upto is None) == (count is None):
@@ -173,7 +170,7 @@ def _check(upto: float | None, count: int | None, rtol: float) -> None:
         problems.append(Problem("upto, count", found, "one of the two", "choose"))
     if upto is not None and not (is_finite(upto) and upto > 0):
         problems.append(Problem("upto", repr(upto), "a positive frequency [rad/s]", "correct it"))
-    if count is not None and not (_is_whole(count) and count >= 1):
+    if count is not None and not is_whole(count, 1):
         problems.append(Problem("count", repr(count), "a whole number from 1", "correct it"))
     if not (is_finite(rtol) and 1e-15 <= rtol < 1.0):
         problems.append(Problem("rtol", repr(rtol), "between 1e-15 and 1", "choose 1e-12"))

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from inspect import signature
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -145,8 +147,21 @@ class _AtState:
         return function, _places(self.module.ARRAYS[self.name])
 
     @cached_property
+    def _in_a_row(self) -> tuple[Callable[[list[float]], Array], tuple[str, ...]] | None:
+        """What takes its numbers in one row, where the function is compiled, and their names."""
+        function = getattr(self.module, self.name, None)
+        row = getattr(function, "at_numbers", None)
+        if function is None or row is None:
+            return None
+        return row, tuple(signature(function).parameters)
+
+    @cached_property
     def _batched(self) -> Callable[..., Mapping[str, Array]]:
         return array_function(self.module, self.name)
+
+    def with_functions(self, change: Callable[[ModuleType], ModuleType]) -> _AtState:
+        """Return the same of a changed module, for example a compiled one."""
+        return _AtState(change(self.module), self.name, self.given, self.values)
 
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
@@ -163,6 +178,12 @@ class _AtState:
             }
             if all(value.ndim == 0 for value in given.values()):
                 passed = {name: float(value) for name, value in given.items()}
+                if self._in_a_row is not None:
+                    row, names = self._in_a_row
+                    rest: dict[str, Any] = {**passed, **self.values}
+                    numbers.append(moment)
+                    numbers += [rest[name] for name in names[len(numbers) :]]
+                    return places.fill_row(row(numbers))
                 try:
                     return places.fill(function(*numbers, moment, **passed, **self.values))
                 except (OverflowError, ZeroDivisionError):
@@ -187,6 +208,17 @@ class _Places:
         whole: Array = np.zeros(self.size)
         whole[self.target] = [entries[i] for i in self.source]
         return {name: whole[a:b].reshape(shape) for name, a, b, shape in self.parts}
+
+    def fill_row(self, returned: Array) -> dict[str, Array]:
+        """Return the arrays by name of what a compiled function returned in one row."""
+        whole: Array = np.zeros(self.size)
+        whole[self.target] = returned[self.places]
+        return {name: whole[a:b].reshape(shape) for name, a, b, shape in self.parts}
+
+    @cached_property
+    def places(self) -> NDArray[np.intp]:
+        """Places of the numbers among those that are returned."""
+        return np.array(self.source, dtype=np.intp)
 
 
 def _places(arrays: Places) -> _Places:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         monodromy,
         relative_multipliers,
     )
+    from .namespace_monodromy import MonodromyMatrices, monodromy_matrices
     from .slow_driving import SlowTongues, slow_tongues
     from .tongues.resonances import Resonance, resonances
     from .tongues.series import Tongue, tongue
@@ -45,6 +46,7 @@ _PUBLIC = {
     "KreinSignatures": "krein",
     "MarkedSpeeds": "critical",
     "Monodromy": "monodromy_matrix",
+    "MonodromyMatrices": "namespace_monodromy",
     "Resonance": "tongues.resonances",
     "SlowMultipliers": "decoupled",
     "SlowSystem": "decoupled",
@@ -61,6 +63,7 @@ _PUBLIC = {
     "meissner_function": "critical",
     "meissner_speeds": "critical",
     "monodromy": "monodromy_matrix",
+    "monodromy_matrices": "namespace_monodromy",
     "multiplier_maxima": "critical",
     "relative_multipliers": "monodromy_matrix",
     "resonances": "tongues.resonances",
@@ -79,6 +82,7 @@ __all__ = [
     "KreinSignatures",
     "MarkedSpeeds",
     "Monodromy",
+    "MonodromyMatrices",
     "Resonance",
     "SlowMultipliers",
     "SlowSystem",
@@ -95,6 +99,7 @@ __all__ = [
     "meissner_function",
     "meissner_speeds",
     "monodromy",
+    "monodromy_matrices",
     "multiplier_maxima",
     "relative_multipliers",
     "resonances",

@@ -81,10 +81,9 @@ class SpeedBoundaries(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the boundaries as lines over the speed and return the axes."""
-        if ax is None:
-            from matplotlib.figure import Figure
+        from ..plotting import axes_or_new
 
-            ax = Figure().add_subplot()
+        ax = axes_or_new(ax)
         for sign, colour in ((1, "C0"), (-1, "C1")):
             for speed in self.speed[self.multiplier == sign]:
                 ax.axvline(speed * 30 / np.pi, color=colour, linewidth=0.8)

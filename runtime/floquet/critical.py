@@ -164,11 +164,8 @@ def multiplier_maxima(
     beside = real[row - 1, mode], real[row, mode], real[row + 1, mode]
     at, best, width = _refined(value, mode, (own[1], own[0], own[2]), beside)
     order = np.round(turns[row, mode]).astype(np.int64)
-    # Rounding of the values leaves the place of a maximum open by the root of it.
-    curve = np.abs(real[row - 1, mode] - 2 * real[row, mode] + real[row + 1, mode])
-    spread = (own[2] - own[1]) ** 2 / 4
     noise = np.max(found.error[row if swept is None else np.zeros_like(row)], axis=-1)
-    blur = np.sqrt(2 * noise * spread / np.maximum(curve, 1e-300))
+    blur = _blur(beside, own[2] - own[1], noise)
     return MarkedSpeeds(
         method="local maxima of the real parts of the multipliers"
         + ("" if swept is None else f", on {swept.system.size} natural modes"),
@@ -182,6 +179,15 @@ def multiplier_maxima(
         value=best,
         speed_range=(low, high),
     )
+
+
+def _blur(values: tuple[Array, Array, Array], across: Array, noise: Array) -> Array:
+    """Return how far the place of a maximum is open: rounding leaves it so by its root.
+
+    From the values before, at and after the highest sample, and how far the outer two are apart.
+    """
+    curve = np.abs(values[0] - 2 * values[1] + values[2])
+    return np.asarray(np.sqrt(2 * noise * (across**2 / 4) / np.maximum(curve, 1e-300)))
 
 
 def _real_parts(

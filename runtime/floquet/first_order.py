@@ -16,6 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import BadInput, bad
 from ..families import DAMPING, LinearPeriodic, Term
+from ..inputs import numbers as numbers
+from ..namespaces import BlockMatrices, in_numpy, namespace_of, to_numpy
 
 Array = NDArray[np.float64]
 
@@ -147,7 +149,11 @@ class CanonicalForm:
         angles = theta[:1] if all(term.constant for term, _ in pairs) else theta
         samples = np.stack([_sample(term, angles) for term, _ in pairs])
         factors = np.stack([factor for _, factor in pairs], axis=1)
-        flat = factors @ samples.reshape(len(pairs), -1)
+        return self._combined(factors, samples)
+
+    def _combined(self, factors: Array, samples: Array) -> Array:
+        """Return the sums over the terms of factors ``(nb, k)`` times samples ``(k, nt, ...)``."""
+        flat = factors @ samples.reshape(len(samples), -1)
         shaped: Array = flat.reshape(len(self.speed), *samples.shape[1:])
         return shaped
 
@@ -185,30 +191,29 @@ class CanonicalForm:
         carried = self.assemble("D", theta)
         inertia = self.assemble("B", theta)
         stiffness = self.assemble(("K", "Kg"), theta)
-        out: Array = np.zeros((len(self.speed), len(theta), self.size, self.size))
-        out[..., :n, n : 2 * n] = flexibility
-        if inertia is not None:
-            out[..., n : 2 * n, :n] += inertia
-        if stiffness is not None:
-            out[..., n : 2 * n, :n] -= stiffness
-        if carried is not None:
-            out[..., n : 2 * n, :n] -= carried
+        sizes = (n, n, 1)[: 2 + self.forced]
+        out = BlockMatrices((len(self.speed), len(theta)), sizes, flexibility)
+        out.add(0, 1, flexibility)
+        for part, sign in ((inertia, 1), (stiffness, -1), (carried, -1)):
+            if part is not None:
+                out.add(1, 0, part, sign)
         # q' = M^-1 (p - A q) enters p' through A^T - C.
         feedback: Array | None = None if damping is None else -damping
         if gyro is not None:
-            transposed = np.swapaxes(gyro, -1, -2)
+            transposed = namespace_of(gyro).matrix_transpose(gyro)
             feedback = transposed if feedback is None else feedback + transposed
-            out[..., :n, :n] = -(flexibility @ gyro)
+            out.add(0, 0, flexibility @ gyro, -1)
         if feedback is not None:
             through = feedback @ flexibility
-            out[..., n : 2 * n, n : 2 * n] = through
+            out.add(1, 1, through)
             if gyro is not None:
-                out[..., n : 2 * n, :n] -= through @ gyro
+                out.add(1, 0, through @ gyro, -1)
         if self.forced:
             force = self.assemble(("f", "h", "p"), theta)
             if force is not None:
-                out[..., n : 2 * n, -1] = force
-        return out
+                out.add(1, 2, force[..., None])
+        whole: Array = out.whole()
+        return whole
 
     def _first_of_equal(self, array: str) -> CanonicalForm:
         """Return the form of the first member where all have an array in common, else itself."""
@@ -258,14 +263,19 @@ class CanonicalForm:
     def _inverse_mass(self, theta: Array) -> Array:
         mass = self.require_mass(self.assemble("M", theta))
         if mass.shape[-1] == 1:
-            if not np.all(mass > 0):
-                raise _bad_mass(mass)
+            if not namespace_of(mass).all(mass > 0):
+                raise _bad_mass(to_numpy(mass))
             return 1.0 / mass
+        xp = namespace_of(mass)
         try:
-            np.linalg.cholesky(mass)
+            root = xp.linalg.cholesky(mass)
         except np.linalg.LinAlgError as indefinite:
-            raise _bad_mass(mass) from indefinite
-        return np.linalg.inv(mass).astype(np.float64)
+            raise _bad_mass(to_numpy(mass)) from indefinite
+        if not in_numpy(mass) and not xp.all(xp.isfinite(root)):
+            # Where a namespace does not raise.
+            raise _bad_mass(to_numpy(mass))
+        inverse: Array = xp.linalg.inv(mass)
+        return inverse
 
     @cached_property
     def mean(self) -> Mapping[str, Array]:
@@ -471,23 +481,6 @@ def _bad_mass(mass: Array) -> BadInput:
         "a symmetric positive definite matrix at every angle and parameter value",
         "check masses, inertias and parameter values",
     )
-
-
-def numbers(name: str, value: object) -> Array:
-    """Return an argument as an array of floats.
-
-    Raises
-    ------
-    BadInput
-        If it is not made of real numbers; text that spells a number is none.
-    """
-    try:
-        given = np.asarray(value)
-    except ValueError as ragged:
-        raise bad(name, repr(value), "numbers", "correct it") from ragged
-    if given.size and given.dtype.kind not in "iuf":
-        raise bad(name, repr(value), "real numbers", "give numbers")
-    return given.astype(np.float64)
 
 
 def _used(term: Term, forced: bool) -> bool:

@@ -10,7 +10,7 @@ needs no derivative of a coefficient, and is symmetric where the system is undam
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +49,32 @@ class Wave:
     def reach(self) -> int:
         """Highest harmonic r."""
         return len(self.coefficients) // 2
+
+    def placed(
+        self, rate: Array
+    ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], ComplexArray, Array, Array]]:
+        """Yield where each harmonic stands among those of a motion.
+
+        Parameters
+        ----------
+        rate : ndarray, shape (K,)
+            Rate of each harmonic of the motion, rising by one harmonic each.
+
+        Yields
+        ------
+        rows, columns : ndarray
+            Harmonics of the motion that it leads to and from.
+        block : ndarray of complex, shape (n, n)
+            Its coefficients.
+        left, right : ndarray, shape (len(rows), 1, 1)
+            Rates of the rows and of the columns.
+        """
+        count = len(rate)
+        for shift, block in enumerate(self.coefficients, start=-self.reach):
+            # Row k, column l = k - shift.
+            rows = np.arange(max(0, shift), min(count, count + shift))
+            columns = rows - shift
+            yield rows, columns, block, rate[rows][:, None, None], rate[columns][:, None, None]
 
 
 def waves(system: LinearPeriodic, parameters: Mapping[str, ArrayLike]) -> tuple[Wave, ...]:
@@ -156,11 +182,7 @@ def real_matrices(
         total = totals.setdefault(
             wave.exponent, np.zeros((count, size, count, size), dtype=complex)
         )
-        for shift, block in enumerate(wave.coefficients, start=-wave.reach):
-            # Row k, column l = k - shift.
-            rows = np.arange(max(0, shift), min(count, count + shift))
-            columns = rows - shift
-            left, right = rate[rows][:, None, None], rate[columns][:, None, None]
+        for rows, columns, block, left, right in wave.placed(rate):
             total[rows, :, columns, :] += _entry(wave.array, block, left, right)
     return {exponent: _in_real_basis(total) for exponent, total in totals.items()}
 

@@ -3,27 +3,43 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..integrators.gauss_legendre import gauss_maps
+from ..integrators.gauss_legendre import gauss_legendre, gauss_maps
+from ..integrators.protocol import OneStep
+from ..namespaces import carried, in_numpy, namespace_of, to_numpy
 from .first_order import CanonicalForm
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 STAGES = 8
+GAUSS = gauss_legendre(STAGES)
 _BLOCK_FLOATS = 4_000_000
 
 
-def period_product(form: CanonicalForm, segments: int) -> tuple[Array, NDArray[np.int64]]:
+def period_product(
+    form: CanonicalForm, segments: int, method: OneStep = GAUSS
+) -> tuple[Array, NDArray[np.int64]]:
     """Return the scaled monodromy matrices from a number of equal segments.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+        The systems, ``nb`` of them.
+    segments : int
+        Steps per period.
+    method : OneStep
+        Gauss-Legendre collocation of order 16 by default.
 
     Returns
     -------
     matrix : ndarray
-        Shape ``(nb, 2n, 2n)``; the largest entry is of order 1 where a power was taken out.
+        Shape ``(nb, 2n, 2n)``, of the array namespace that the generator of the form is of; the
+        largest entry is of order 1 where a power was taken out.
     exponent : ndarray of int
         Powers of two taken out, shape ``(nb,)``.
     """
@@ -35,40 +51,63 @@ def period_product(form: CanonicalForm, segments: int) -> tuple[Array, NDArray[n
     results, powers = [], []
     for begin in range(0, len(form.speed), together):
         part = form.take(slice(begin, begin + together))
-        total = np.broadcast_to(np.eye(m), (len(part.speed), m, m))
-        power = np.zeros(len(part.speed), dtype=np.int64)
+        total: Any = np.eye(m)
+        power: Any = 0
         for left in range(0, segments, stretch):
-            maps = gauss_maps(
-                STAGES, part.generator, _left_ends(left, stretch, segments, step), step
-            )
+            maps = method.maps(part.generator, _left_ends(left, stretch, segments, step), step)
             product, more = ordered_product(maps)
-            total, extra = _normalised(product @ total)
+            total, extra = _normalised(product @ total if left else product)
             power = power + more + extra
         results.append(total)
         powers.append(power)
-    return np.concatenate(results), np.concatenate(powers)
+    xp = namespace_of(results[0])
+    return xp.concat(results, axis=0), xp.concat(powers, axis=0)
 
 
 def ordered_product(maps: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Return ``maps[:, -1] @ ... @ maps[:, 0]`` by pairs, powers of two taken out."""
-    power = np.zeros(len(maps), dtype=np.int64)
+    """Return ``maps[:, -1] @ ... @ maps[:, 0]`` by pairs, powers of two taken out.
+
+    The maps may be of any array namespace; the answer is of the same.
+    """
+    xp = namespace_of(maps)
+    power: Any = 0
     while maps.shape[1] > 1:
-        odd = maps[:, -1:] if maps.shape[1] % 2 else maps[:, :0]
-        even = maps.shape[1] - odd.shape[1]
-        pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
-        maps = np.concatenate([pairs, odd], axis=1)
+        odd = maps.shape[1] % 2
+        even = maps.shape[1] - odd
+        pairs = maps[:, 1:even:2, ...] @ maps[:, 0:even:2, ...]
+        maps = xp.concat([pairs, maps[:, even:, ...]], axis=1) if odd else pairs
         # One power per matrix would do no better: the sum is all that matters.
         maps, extra = _normalised(maps)
-        power += np.sum(extra, axis=1)
-    return maps[:, 0], power
+        power = power + xp.sum(extra, axis=1)
+    whole: Array = maps[:, 0, ...]
+    if isinstance(power, int):
+        power = xp.astype(xp.zeros_like(whole[:, 0, 0]), xp.int64)
+    return whole, power
 
 
 def _normalised(matrices: Array) -> tuple[Array, NDArray[np.int64]]:
     """Take a power of two out of matrices whose largest entry is beyond 1e60 or below 1e-60."""
+    if not in_numpy(matrices):
+        return _normalised_elsewhere(matrices)
     top = np.max(np.abs(matrices), axis=(-2, -1))
     extreme = ((top > 1e60) | (top < 1e-60)) & (top > 0) & np.isfinite(top)
     _, power = np.frexp(np.where(extreme, top, 0.5))
     return np.ldexp(matrices, -power[..., None, None]), power.astype(np.int64)
+
+
+def _normalised_elsewhere(matrices: Any) -> tuple[Any, Any]:
+    """Do so in another namespace, which has no function that takes a number apart."""
+    xp = namespace_of(matrices)
+    top = xp.max(xp.abs(matrices), axis=(-2, -1))
+    if not xp.any((top > 1e60) | (top < 1e-60)):
+        return matrices, xp.astype(xp.zeros_like(top), xp.int64)
+    known = to_numpy(top)
+    extreme = ((known > 1e60) | (known < 1e-60)) & (known > 0) & np.isfinite(known)
+    _, power = np.frexp(np.where(extreme, known, 0.5))
+    first = power // 2  # in two factors: one alone could overflow
+    for part in (first, power - first):
+        matrices = matrices * carried(np.ldexp(1.0, -part), matrices)[..., None, None]
+    return matrices, xp.asarray(power.astype(np.int64), device=matrices.device)
 
 
 # Growth, and decay, that one merged matrix may hold: what is small in it keeps its digits.

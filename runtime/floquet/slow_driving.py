@@ -52,7 +52,7 @@ class SlowTongues(Result):
     lowest : ndarray of int, shape (k,)
         Lowest order whose foot is within the range.
     slope : ndarray, shape (k, m)
-        Change of ``ln(width/speed)`` from one order to the next, on the mean.
+        Change of ``ln(n width/speed)`` from one order n to the next, on the mean.
     largest_width : ndarray, shape (k, m)
         Upper estimate of the width [rad/s] of the widest tongue of the pair in the range, the
         lowest order; NaN where too few widths were measured.
@@ -106,10 +106,12 @@ def slow_tongues(
 ) -> SlowTongues:
     """Tell how wide the tongues below a low speed can be, which no search could see.
 
-    A tongue ``w_i + w_j = n w`` of a smooth system narrows like ``exp(-s n)`` (to leading order
-    of slow driving).  Those of moderate order are traced and measured; a line through the
-    logarithms of the upper half of the orders, lifted by its uncertainty, is carried on to the
-    lowest order in the range.  A kink of the line beyond what is measured would go unseen.
+    The width of a tongue ``w_i + w_j = n w`` of a smooth system over its speed falls like
+    ``exp(-s n)/n`` (to leading order of slow driving: the share of the motion that changes its
+    sense in a period, over the turns that it makes in it).  Those of moderate order are traced and
+    measured; a line through the logarithms of n times the width, of the upper half of the orders,
+    lifted by its uncertainty, is carried on to the lowest order in the range.  A kink of the line
+    beyond what is measured would go unseen.
 
     Parameters
     ----------
@@ -168,14 +170,10 @@ def slow_tongues(
         width = high - low
         fine = width > _MEASURED * np.maximum(error, least)
         relative = np.where(fine, width / (0.5 * (low + high)), np.nan)
-    slope, most, lift = (np.full((shape[0], shape[2]), np.nan) for _ in range(3))
-    for k in range(shape[0]):
-        for m in range(shape[2]):
-            line = _line(order, relative[k, m], int(lowest[k]))
-            slope[k, m], most[k, m], lift[k, m] = line
+    slope, most, lift = _lines(order, relative, lowest)
     short = np.sum(np.isnan(slope))
     return SlowTongues(
-        method="tongues traced from their feet, logarithm of the width linear in the order",
+        method="tongues traced from their feet, logarithm of order times width linear in the order",
         error=lift,
         error_norm="natural logarithm of the factor on largest_width",
         checks={"measured": Check(float(short), 0.0)},
@@ -190,6 +188,14 @@ def slow_tongues(
         slope=slope,
         largest_width=np.exp(most) * top,
     )
+
+
+def _lines(order: Whole, width: Array, lowest: Whole) -> tuple[Array, Array, Array]:
+    """Return slope, logarithm of the largest width and its uncertainty of every tongue's line."""
+    slope, most, lift = (np.full(width.shape[:2], np.nan) for _ in range(3))
+    for k, m in np.ndindex(slope.shape):
+        slope[k, m], most[k, m], lift[k, m] = _line(order, width[k, m], int(lowest[k]))
+    return slope, most, lift
 
 
 def _foot(pair: tuple[int, int], n: int, speed: float, frequency: Array) -> Resonance:
@@ -217,12 +223,16 @@ def _line(order: Whole, relative: Array, lowest: int) -> tuple[float, float, flo
     early, late = kept[: len(kept) - part], kept[-part:]
     if len(early) < 2:
         return np.nan, np.nan, np.nan
-    logs = np.log(relative)
-    slope, doubt, rest = _fitted(order[late].astype(float), logs[late])
+    logs = np.log(order * relative)
+    slope, *spread = _fitted(order[late].astype(float), logs[late])
+    # Few points lie on any line: what all of them tell of the scatter counts too.
+    _, *whole = _fitted(order[kept].astype(float), logs[kept])
+    doubt, rest = max(spread[0], whole[0]), max(spread[1], whole[1])
     change = abs(slope - _fitted(order[early].astype(float), logs[early])[0])
     ahead = lowest - float(np.mean(order[late]))
     lift = (_SAFETY * doubt + change) * ahead + rest
-    return slope, float(np.mean(logs[late])) + slope * ahead + lift, lift
+    middle = float(np.mean(logs[late]))
+    return slope, middle + slope * ahead + lift - float(np.log(lowest)), lift
 
 
 def _fitted(x: Array, y: Array) -> tuple[float, float, float]:

@@ -1,139 +1,76 @@
-"""Monodromy matrices of one system at very many speeds, from tables over the speed.
+"""Monodromy matrices of one system at very many speeds, from stretches of the turn.
 
-Over a stretch of the crank angle in which no mode turns far, the transition matrix is a smooth
-function of the inverse speed: a polynomial through few speeds gives it to round-off for all
-speeds between.  The product of the stretches is then the monodromy matrix; its fast turning with
-the speed never has to be resolved by the polynomials.
+Their polynomials in the inverse speed never have to resolve how fast the monodromy matrix turns
+with the speed.  Collocation at some speeds tells the error.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import BadInput
 from ..families import LinearPeriodic, Term
-from ..integrators.gauss_legendre import gauss_maps
 from .first_order import CanonicalForm, canonical_form
-from .period_products import STAGES, ordered_product, period_product
-from .refined_products import Refined, distance, refined_products, rounding_error
+from .period_products import period_product
+from .refined_products import Refined, distance, gathered, refined_products, rounding_error
+from .turn_series import Turn, TurnSeries
 
 Array = NDArray[np.float64]
 
-# Ratio of the speeds of one table, and segments in a stretch with the phase that each may turn.
-_RATIO, _MERGED, _PHASE = 2.0, 4, 1.5
-# Speeds that the polynomials go through; the greater number where the smaller does not do.
-_NODES = (18, 26)
-_FEWEST = 4
+# Ratio of the speeds of one table.
+_RATIO = 2.0
+# Phase that the highest mode turns in a segment of the collocation that tells the error, and the
+# fewest segments.
+_PHASE, _FEWEST = 0.75, 32
+# How many times the stretches that the modes ask for the harmonics of the coefficients may take.
+_FINER = 8
 # Error over the largest entry, at speeds between, beyond which a table is not used.
 _MOST = 1e-8
 # What the error at the speeds tried is multiplied by.
 _MARGIN = 4.0
 _TRIED = np.array([0.0, 0.381966, 1.0])
-_BLOCK_FLOATS = 4_000_000
 
 
 @dataclass(frozen=True)
 class SpeedTable:
-    """Transition matrices of even stretches of the period over a range of speeds.
+    """Monodromy matrices over a range of speeds.
 
     Attributes
     ----------
-    low, high : float
-        The range [rad/s].
-    nodes : ndarray
-        Inverse speeds that the polynomials go through, shape ``(m,)``.
-    weights : ndarray
-        Of their barycentric form, shape ``(m,)``.
-    maps : ndarray
-        Shape ``(m, stretches, 2n, 2n)``, scaled by ``size`` and the root of the speed.
+    turn : TurnSeries
+        Over the inverse speed [s/rad].
     size : ndarray
-        Scale of the state at a speed of 1 rad/s, shape ``(2n,)``.
+        Scale of the state that they are in, shape ``(2n,)``.
     error : float
         Largest error over the largest entry of the monodromy matrices.
     """
 
-    low: float
-    high: float
-    nodes: Array
-    weights: Array
-    maps: Array
+    turn: TurnSeries
     size: Array
     error: float
 
     def products(self, speed: Array, scale: Array) -> tuple[Array, NDArray[np.int64]]:
         """Return the monodromy matrices at speeds, in wanted scales, and powers of two."""
-        together = max(1, _BLOCK_FLOATS // self.maps[0].size)
-        found, powers = [], []
-        for begin in range(0, len(speed), together):
-            part = speed[begin : begin + together]
-            rows = barycentric_rows(self.nodes, self.weights, 1.0 / part)
-            stretches = rows @ self.maps.reshape(len(self.nodes), -1)
-            product, power = ordered_product(stretches.reshape(-1, *self.maps.shape[1:]))
-            own = _scale(self.size, part)
-            found.append(_rescaled(product, own, scale[begin : begin + together]))
-            powers.append(power)
-        return np.concatenate(found), np.concatenate(powers)
+        product, power = self.turn.products(1.0 / speed)
+        ratio = self.size / scale
+        return product * ratio[:, :, None] / ratio[:, None, :], power
 
+    def refined(self, form: CanonicalForm) -> Refined:
+        """Return what :func:`refined_products` does, for speeds within the range."""
+        count = len(form.speed)
+        segments = np.full(count, self.turn.stretches.shape[1], dtype=np.int64)
+        return *self.products(form.speed, form.scale), np.full(count, self.error), segments
 
-def chebyshev_places(low: float, high: float, count: int) -> tuple[Array, Array]:
-    """Return places between two ends for polynomials, and the weights of their barycentric form.
-
-    Parameters
-    ----------
-    low, high : float
-        The ends.
-    count : int
-        How many places.
-
-    Returns
-    -------
-    nodes, weights : ndarray, shape (count,)
-        Places from high to low, none of them an end, and weights.
-    """
-    order = np.pi * (np.arange(count) + 0.5) / count
-    nodes = 0.5 * (low + high) + 0.5 * (high - low) * np.cos(order)
-    return nodes, np.where(np.arange(count) % 2, -1.0, 1.0) * np.sin(order)
-
-
-def barycentric_rows(nodes: Array, weights: Array, places: Array) -> Array:
-    """Return what the values at nodes count at places, of the polynomial through them.
-
-    Parameters
-    ----------
-    nodes, weights : ndarray, shape (m,)
-        From :func:`chebyshev_places`.
-    places : ndarray, shape (k,)
-        Where the polynomial is wanted.
-
-    Returns
-    -------
-    ndarray, shape (k, m)
-    """
-    gap = places[:, None] - nodes
-    met = gap == 0.0
-    parts = weights / np.where(met, 1.0, gap)
-    rows = np.where(np.any(met, axis=1, keepdims=True), met, parts)
-    value: Array = rows / np.sum(rows, axis=1, keepdims=True)
-    return value
-
-
-def _scale(size: Array, speed: Array) -> Array:
-    """Return scales of the state that change with the speed as the frequencies over it do."""
-    half = len(size) // 2
-    root = np.sqrt(speed)[:, None]
-    return np.concatenate([size[:half] * root, size[half:] / root], axis=1)
-
-
-def _rescaled(matrices: Array, own: Array, wanted: Array) -> Array:
-    """Return scaled matrices ``(k, [ns,] m, m)`` in other scales ``(k, m)``."""
-    ratio = own / wanted
-    ratio = ratio.reshape(len(ratio), *(1,) * (matrices.ndim - 3), -1)
-    value: Array = matrices * ratio[..., :, None] / ratio[..., None, :]
-    return value
+    def holds(self, speed: Array) -> NDArray[np.bool_]:
+        """Return which speeds lie in its range."""
+        inverse = 1.0 / speed
+        found: NDArray[np.bool_] = (inverse >= self.turn.low) & (inverse <= self.turn.high)
+        return found
 
 
 @dataclass(frozen=True)
@@ -183,62 +120,43 @@ def looked_up(form: CanonicalForm, parameters: Mapping[str, ArrayLike], rtol: fl
     tables: tuple[SpeedTable, ...] = ()
     if isinstance(system, TabulatedSystem) and not parameters and system.tabulated is system.terms:
         tables = system.tables
-    count, m = len(form.speed), form.size
-    scaled, exponent = np.zeros((count, m, m)), np.zeros(count, dtype=np.int64)
-    error, segments = np.zeros(count), np.zeros(count, dtype=np.int64)
-    rest = np.ones(count, dtype=bool)
+    return gathered(form, _parts(form, tables, rtol))
+
+
+def _parts(
+    form: CanonicalForm, tables: tuple[SpeedTable, ...], rtol: float
+) -> Iterator[tuple[NDArray[np.intp], Refined]]:
+    """Return the members of a batch that each table holds, and what it gives; then the rest."""
+    rest = np.ones(len(form.speed), dtype=bool)
     for table in tables:
-        own = np.flatnonzero(rest & (form.speed >= table.low) & (form.speed <= table.high))
-        if not len(own):
-            continue
-        scaled[own], exponent[own] = table.products(form.speed[own], form.scale[own])
-        segments[own], error[own] = _MERGED * table.maps.shape[1], table.error
-        rest[own] = False
+        own = np.flatnonzero(rest & table.holds(form.speed))
+        if len(own):
+            rest[own] = False
+            yield own, table.refined(form.take(own))
     left = np.flatnonzero(rest)
     if len(left):
-        found = refined_products(form.take(left), rtol)
-        scaled[left], exponent[left], error[left], segments[left] = found
-    return scaled, exponent, error, segments
+        yield left, refined_products(form.take(left), rtol)
 
 
 def _table(system: LinearPeriodic, low: float, high: float) -> SpeedTable | None:
-    """Return the table between two speeds; None where no number of nodes is enough."""
+    """Return the table between two speeds; None where it is not right."""
+
+    def form_at(inverse: Array) -> CanonicalForm:
+        return canonical_form(system, 1.0 / inverse, {}, probed=False)
+
+    # Nothing but the scale is taken from the coordinates: any other transformation costs digits.
+    size = form_at(np.array([(1.0 / low / high) ** 0.5])).scale[0]
+    own = size[: system.size]
+    try:
+        turn = Turn(form_at, 1.0 / high, 1.0 / low, modes=(np.diag(own), np.diag(1.0 / own)))
+        table = SpeedTable(turn.series(finer=_FINER), size, 0.0)
+    except BadInput:
+        return None
     inverse = (1.0 - _TRIED) / high + _TRIED / low
-    tried = canonical_form(system, 1.0 / inverse, {}, probed=False)
-    finer: tuple[Array, NDArray[np.int64]] | None = None
-    for count in _NODES:
-        table = _unchecked(system, low, high, count)
-        segments = _MERGED * table.maps.shape[1]
-        if finer is None:
-            # With half the step the collocation's own error is 2^-16 of the table's.
-            finer = period_product(tried, 2 * segments)
-        gap = distance(*table.products(tried.speed, tried.scale), *finer)
-        noise = rounding_error(tried, 2 * segments)
-        table = replace(table, error=float(np.max(_MARGIN * gap + noise)))
-        if np.all(gap <= noise):
-            break
-    return table if table.error <= _MOST else None
-
-
-def _unchecked(system: LinearPeriodic, low: float, high: float, count: int) -> SpeedTable:
-    nodes, weights = chebyshev_places(1.0 / high, 1.0 / low, count)
-    form = canonical_form(system, 1.0 / nodes, {}, probed=False)
-    middle = form.take(slice(count // 2, count // 2 + 1))
-    half = system.size
-    root = float(np.sqrt(middle.speed[0]))
-    size = np.concatenate([middle.scale[0, :half] / root, middle.scale[0, half:] * root])
-    slowest = form.needed_rate[0] * low * nodes[0]
-    number = max(_FEWEST, int(np.ceil(slowest * system.period / (_PHASE * _MERGED))))
-    number = max(number, int(np.ceil(form.reach / _MERGED)))
-    step = system.period / (number * _MERGED)
-    scale = _scale(size, form.speed)
-    together = max(1, _BLOCK_FLOATS // ((STAGES * form.size) ** 2 * count * _MERGED))
-    parts = []
-    for begin in range(0, number, together):
-        stretches = min(together, number - begin)
-        left = step * np.arange(begin * _MERGED, (begin + stretches) * _MERGED, dtype=float)
-        maps = gauss_maps(STAGES, form.generator, left, step)
-        while maps.shape[1] > stretches:
-            maps = maps[:, 1::2] @ maps[:, 0::2]
-        parts.append(_rescaled(maps, form.scale, scale))
-    return SpeedTable(low, high, nodes, weights, np.concatenate(parts, axis=1), size, 0.0)
+    tried = form_at(inverse)
+    # Where nothing is lost to the polynomials, what is left is round-off.
+    rate = float(np.max(tried.needed_rate))
+    segments = max(_FEWEST, int(np.ceil(rate * system.period / _PHASE)), 2 * tried.reach)
+    gap = distance(*table.products(tried.speed, tried.scale), *period_product(tried, segments))
+    error = float(np.max(_MARGIN * gap + rounding_error(tried, segments)))
+    return replace(table, error=error) if error <= _MOST else None

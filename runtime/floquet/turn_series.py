@@ -1,96 +1,49 @@
-"""Monodromy matrices of many values of one variable at once: short stretches of the turn as series.
+"""Monodromy matrices of many values of one variable at once, from stretches of the turn.
 
-The turn is cut into stretches that hardly turn the state.  Over each the solution is a power
-series in the angle, found at a few Chebyshev nodes of the variable and interpolated between them:
-a stretch is so short that a dozen nodes fix it for all values.  What remains for each value is a
-product.  Where the system is the same after a reversal of the crank, half a turn is enough.
+The state is that of scaled modes, in which each stretch is nearly a rotation.  Where the system is
+the same after a reversal of the crank, half a turn is enough.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import bad
-from ..series import chebyshev
+from ..stretches import Equation, Tabulated, solved
+from ..stretches.solving import MOST_STRETCHES
 from .first_order import CanonicalForm, even_angles
-from .period_products import ordered_product
 
 Array = NDArray[np.float64]
 # From values of the variable (n,) to the canonical form of the systems there.
 FormAt = Callable[[Array], CanonicalForm]
 
-_EPS = float(np.finfo(float).eps)
-# How far the fastest mode turns within a stretch, half of it either way of the middle [rad].
-_PHASE = 4.0
-# Chebyshev nodes of the angle in a stretch, and of the variable to begin with.
-_ANGLES, _LEAVES = 16, 15
-_MOST_LEAVES, _MOST_TERMS, _MOST_STRETCHES = 80, 64, 2**17
-# Where a series is cut, relative to its largest term.
-_CUT = 2e-16
-# How much of the coefficients and of the series in the variable may be missed.
-_ROUGH = 64 * _EPS
-# Last terms beyond which a series has not ended.
-_FAR_OFF = 1e-13
-_BLOCK_FLOATS = 2_000_000
+# How far the fastest mode turns within a stretch, half of it either way of the middle [rad], and
+# stretches that are multiplied into one.
+_PHASE, _TOGETHER = 4.0, 2
 # Even angles at which symmetry and rates are judged: a prime number, which no harmonic divides.
 _PROBES = 67
 _ALIKE = 1e-13
 
 
 @dataclass(frozen=True)
-class TurnSeries:
-    """The solution over stretches of the turn, as Chebyshev series in one variable.
+class TurnSeries(Tabulated):
+    """The solution over stretches of the turn, in scaled modal coordinates.
 
     Attributes
     ----------
-    maps : ndarray
-        Chebyshev coefficients of the matrices of the stretches, shape ``(k, stretches, m, m)``, in
-        scaled modal coordinates.
-    low, high : float
-        Ends of the variable.
     half : bool
         Whether the stretches fill half a turn, the other half being its mirror image.
     missed : float
         What the series leave out, summed over the stretches, relative to the matrices.
     """
 
-    maps: Array
-    low: float
-    high: float
     half: bool
     missed: float
-
-    def products(self, values: Array) -> tuple[Array, NDArray[np.int64]]:
-        """Return the products of all stretches, and the powers of two taken out of them.
-
-        Parameters
-        ----------
-        values : ndarray
-            Values of the variable, shape ``(n,)``.
-
-        Returns
-        -------
-        matrices : ndarray
-            Shape ``(n, m, m)``: over the turn, or over half of it.
-        power : ndarray of int
-            Shape ``(n,)``.
-        """
-        count, stretches, m, _ = self.maps.shape
-        basis = chebyshev.basis(chebyshev.unit(values, self.low, self.high), count)
-        flat = self.maps.reshape(count, -1)
-        found = np.empty((len(values), m, m))
-        power = np.zeros(len(values), dtype=np.int64)
-        together = max(1, _BLOCK_FLOATS // (stretches * m * m))
-        for start in range(0, len(values), together):
-            part = slice(start, start + together)
-            single = (basis[:, part].T @ flat).reshape(-1, stretches, m, m)
-            found[part], power[part] = ordered_product(single)
-        return found, power
 
 
 def mirrored_sums(halves: Array) -> Array:
@@ -152,12 +105,6 @@ class Turn:
         self.ends = form_at(np.array([low, high]))
         self.period = self.ends.system.period
 
-    def nodes(self, count: int) -> Array:
-        """Return Chebyshev nodes of the variable."""
-        half = 0.5 * (self.high - self.low)
-        value: Array = 0.5 * (self.low + self.high) + half * chebyshev.nodes(count)
-        return value
-
     @cached_property
     def modes(self) -> tuple[Array, Array]:
         """Modes of the mean mass and stiffness, scaled: ``q = T Q``, and the inverse of T.
@@ -176,17 +123,23 @@ class Turn:
         return np.linalg.solve(lower.T, vectors) * size, (vectors / size).T @ lower.T
 
     @cached_property
+    def _transforms(self) -> tuple[Array, Array]:
+        """From the state (q, p) to modal coordinates, and back; ``(m, m)`` each."""
+        modes, inverse = self.modes
+        n = len(modes)
+        there, back = np.zeros((2 * n, 2 * n)), np.zeros((2 * n, 2 * n))
+        there[:n, :n], there[n:, n:] = inverse, modes.T
+        back[:n, :n], back[n:, n:] = modes, inverse.T
+        return there, back
+
+    @cached_property
     def _probes(self) -> Array:
         return even_angles(self.period, _PROBES)
 
     def generator(self, form: CanonicalForm, theta: Array) -> Array:
         """Return L of y' = L y in modal coordinates, shape ``(nb, nt, m, m)``."""
-        modes, inverse = self.modes
-        n = len(modes)
-        left, right = np.zeros((2 * n, 2 * n)), np.zeros((2 * n, 2 * n))
-        left[:n, :n], left[n:, n:] = inverse, modes.T
-        right[:n, :n], right[n:, n:] = modes, inverse.T
-        value: Array = left @ form.plain_generator(theta) @ right
+        to_modes, back = self._transforms
+        value: Array = to_modes @ form.plain_generator(theta) @ back
         return value
 
     @cached_property
@@ -239,145 +192,45 @@ class Turn:
         first, second = (np.sqrt(np.sum(block**2, axis=(-2, -1))) for block in blocks)
         rate = max(rate, 0.5 * float(np.sqrt(np.max(first * second))))
         wanted = self.fineness * rate * self.span / _PHASE
-        if wanted > _MOST_STRETCHES:
+        if wanted > MOST_STRETCHES:
             raise bad(
                 "stability_chart",
                 f"a mode that turns through {rate * self.period:.3g} rad in a period",
-                f"at most {_PHASE * _MOST_STRETCHES:.3g} rad",
+                f"at most {_PHASE * MOST_STRETCHES:.3g} rad",
                 "raise the lowest speed or leave out the highest modes",
             )
         # The least number too is raised: two finenesses never share their stretches.
         return max(int(np.ceil(8 * self.fineness)), int(np.ceil(wanted)))
 
-    def series(
-        self,
-        stretches: int | None = None,
-        leaves: int = _LEAVES,
-        *,
-        before: float = np.inf,
-    ) -> TurnSeries:
+    def series(self, leaves: int | None = None, finer: int | None = None) -> TurnSeries:
         """Return the stretches as series, their numbers raised until nothing is missed.
 
-        ``before`` is the tail with fewer nodes: round-off, where another try did not halve it.
-        """
-        count = self.stretches() if stretches is None else stretches
-        if self.low == self.high:
-            leaves = 1
-        maps, missed, rough = self._stretch_maps(count, leaves)
-        finer = self.fineness == 1.0
-        while maps is None:
-            # Stretches too long for the coefficients, which hold high harmonics: what polynomials
-            # miss falls like a power of the width.
-            factor = 1.1 * (rough / _ROUGH) ** (1.0 / (_ANGLES - 1))
-            count = min(int(np.ceil(min(max(factor, 1.15), 2.0) * count)), _MOST_STRETCHES)
-            maps, missed, rough = self._stretch_maps(count, leaves)
-            if maps is not None and not finer:
-                # Found so, the number hardly depends on where it began; another fineness is to
-                # give another one.
-                finer, count = True, min(int(np.ceil(self.fineness * count)), _MOST_STRETCHES)
-                maps, missed, rough = self._stretch_maps(count, leaves)
-        table = (chebyshev.analysis(leaves) @ maps.reshape(leaves, -1)).reshape(maps.shape)
-        tail = 0.0
-        if leaves > 1:
-            tail = float(np.max(np.abs(table[-2:])))
-            if tail > _ROUGH and tail < 0.5 * before and leaves < _MOST_LEAVES:
-                return self.series(count, leaves + leaves // 4, before=tail)
-        missed = (missed + rough + tail) * count
-        return TurnSeries(table, self.low, self.high, self.mirrored, missed)
+        Parameters
+        ----------
+        leaves : int, optional
+            Chebyshev nodes of the variable to begin with.
+        finer : int, optional
+            How many times :meth:`stretches` there may be at the most, rough or not.
 
-    def _stretch_maps(self, count: int, leaves: int) -> tuple[Array | None, float, float]:
-        """Return the matrices of the stretches at nodes of the variable, ``(leaves, count, m, m)``.
-
-        With what the power series miss, and how much of the coefficients their polynomials miss;
-        where that is too much and more stretches are allowed, no matrices.
+        Raises
+        ------
+        BadInput
+            If more than a hundred thousand stretches would be needed.
         """
-        # A generator that is a polynomial of the variable is known from few of its values.
-        own = leaves if self.degree is None else min(leaves, self.degree + 1)
-        form = self.form_at(self.nodes(own))
-        spread = chebyshev.basis(chebyshev.nodes(leaves), own).T @ chebyshev.analysis(own)
-        m = form.size
-        together = max(1, _BLOCK_FLOATS // (leaves * _ANGLES * m * m))
-        width = self.span / count
-        found, missed, rough = [], 0.0, 0.0
-        # In two steps: the coefficients by Chebyshev polynomials fall, and with them the round-off
-        # of those by powers.
-        analysis, powers = chebyshev.analysis(_ANGLES), by_powers(_ANGLES)
-        for start in range(0, count, together):
-            middles = (np.arange(start, min(count, start + together)) + 0.5) * width
-            angles = middles[:, None] + 0.5 * width * chebyshev.nodes(_ANGLES)
-            values = self.generator(form, angles.ravel())
-            values = values.reshape(own, len(middles), _ANGLES, m * m)
-            values *= 0.5 * width
-            values = analysis @ values
-            rough = max(rough, float(np.max(np.abs(values[..., -2:, :]))))
-            if rough > _ROUGH and count < _MOST_STRETCHES:
-                return None, missed, rough
-            coefficients = np.moveaxis(powers @ values, 2, 0).reshape(_ANGLES, own, -1)
-            if own < leaves:
-                coefficients = spread @ coefficients
-            maps, left_out = _maps(coefficients.reshape(_ANGLES, leaves, -1, m, m))
-            if maps is None:
-                if count < _MOST_STRETCHES:
-                    return None, missed, np.inf
-                raise bad(
-                    "stability_chart",
-                    f"terms too large for {count} stretches of the turn",
-                    "a motion that is slower",
-                    "raise the lowest speed or leave out the highest modes",
-                )
-            found.append(maps)
-            missed = max(missed, left_out)
-        return np.concatenate(found, axis=1), missed, rough
+        count = self.stretches()
+        equation = Equation(
+            lambda values: partial(self.generator, self.form_at(values)),
+            self.ends.size,
+            self.low,
+            self.high,
+            self.span,
+            degree=self.degree,
+            together=_TOGETHER,
+            most_stretches=MOST_STRETCHES if finer is None else finer * count,
+        )
+        found = solved(equation, count, leaves, fineness=self.fineness)
+        return TurnSeries(self.low, self.high, found.stretches, self.mirrored, found.missed)
 
 
 def _mean(values: Array | None) -> Array | None:
     return None if values is None else np.asarray(values.mean(axis=(0, 1)))
-
-
-def by_powers(count: int) -> Array:
-    """Return the matrix from coefficients by Chebyshev polynomials to those by powers."""
-    table = np.zeros((count, count))  # T_k by powers, column k
-    table[0, 0] = table[1, 1] = 1.0
-    for k in range(2, count):
-        table[1:, k] = 2.0 * table[:-1, k - 1]
-        table[:, k] -= table[:, k - 2]
-    return table
-
-
-def _maps(coefficients: Array) -> tuple[Array | None, float]:
-    """Return the matrices from the left to the right ends of stretches, and what they miss.
-
-    ``Y' = sum_j L_j tau^j Y`` on -1 < tau < 1 with Y(0) = 1 is solved by powers of tau;
-    coefficients ``(nodes, ..., m, m)``.  None where the series has not ended after all
-    its terms: the mean rate, zero in a system that only its waves move, says too little there.
-    """
-    terms, last = power_terms(coefficients)
-    if not last <= _FAR_OFF:
-        return None, float("inf")
-    even, odd = (np.sum(terms[k::2], axis=0) for k in (0, 1))
-    forward, backward = even + odd, even - odd
-    # X (left end to right end) = forward @ backward^-1.
-    maps = np.linalg.solve(np.swapaxes(backward, -1, -2), np.swapaxes(forward, -1, -2))
-    return np.ascontiguousarray(np.swapaxes(maps, -1, -2)), 2.0 * last
-
-
-def power_terms(coefficients: Array) -> tuple[list[Array], float]:
-    """Return the terms of ``Y = sum_k Y_k tau^k`` with ``Y' = sum_j L_j tau^j Y``, Y(0) = 1.
-
-    Coefficients ``(powers, ..., m, m)``; also returned is the size of the last two terms, which
-    says whether the series has ended at |tau| = 1.
-    """
-    m = coefficients.shape[-1]
-    sizes = [float(np.max(np.abs(part))) for part in coefficients]
-    used = max(1, chebyshev.length(np.array(sizes), _EPS * max(sizes)))
-    terms: list[Array] = [np.broadcast_to(np.eye(m), coefficients.shape[1:])]
-    last = [1.0, 1.0]
-    while max(last) > _CUT and len(terms) < _MOST_TERMS:
-        k = len(terms)
-        term = coefficients[0] @ terms[k - 1]
-        for j in range(1, min(k, used)):
-            term += coefficients[j] @ terms[k - 1 - j]
-        term *= 1.0 / k
-        terms.append(term)
-        last = [last[1], float(np.max(np.abs(term)))]
-    return terms, max(last)

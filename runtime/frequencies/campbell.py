@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
+from ..inputs import require_whole
 from ..progress import bar
 from ..results import Check, Result, provenance
 from .buckling import buckling_speed
@@ -172,9 +173,8 @@ def campbell(
     speeds = numbers("speed", speed)
     if speeds.ndim != 1 or len(speeds) < 4 or not np.all(np.diff(speeds) > 0) or speeds[0] <= 0:
         raise bad("speed", speed, "at least four rising speeds [rad/s]", "use numpy.linspace")
-    count = min(_MODES, system.size) if modes is None else modes
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= system.size:
-        raise bad("modes", repr(modes), f"a whole number from 1 to {system.size}", "correct it")
+    wanted = min(_MODES, system.size) if modes is None else modes
+    count = require_whole("modes", wanted, 1, system.size)
     limit = buckling_speed(system).speed
     held, error = _held(system, speeds, count, limit, progress)
     nothing = np.full(held.shape, np.nan)

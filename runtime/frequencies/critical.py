@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
+from ..inputs import require_whole
 from .critical_floquet import by_meissner, by_multipliers
 from .critical_means import by_mean_frequency, by_running_mean
 from .critical_response import by_response
@@ -87,11 +88,10 @@ def critical_speeds(
     low, high = _range(speed_range)
     if not isinstance(method, str) or method not in METHODS:
         raise bad("method", repr(method), f"one of {tuple(METHODS)}", "choose one")
-    if modes is not None and not (isinstance(modes, int) and 1 <= modes <= system.size):
-        raise bad("modes", repr(modes), f"a whole number from 1 to {system.size}", "correct it")
+    wanted = min(_MODES, system.size) if modes is None else modes
+    count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
-    count = min(_MODES, system.size) if modes is None else modes
     request = Request(system, low, high, count, speeds, measure, progress)
     return METHODS[method](request)
 

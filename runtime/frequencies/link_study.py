@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import positive, require_kind, whole
+from ..beams._checks import positive, require_kind
 from ..beams.section import Section
 from ..beams.structure import Beam, Structure
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import numbers
+from ..inputs import require_whole
 from ..progress import bar
 from ..results import Check, Result, provenance
 from .eigenproblem import held_frequencies, require_system
@@ -198,7 +199,7 @@ def link_frequencies(
     values = np.atleast_1d(numbers("value", value))
     if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values) & (values > 0)):
         raise bad("value", value, "positive numbers, one row", "correct them")
-    whole("count", count, system.size)
+    require_whole("count", count, 1, system.size)
     rows, pinned = [], []
     with bar(progress, len(values)) as tick:
         for k, number in enumerate(values):
@@ -247,7 +248,7 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
         If the system is not a linkage of beams, or the number of modes is unusable.
     """
     structure, names = _structure(system)
-    whole("count", count, system.size)
+    require_whole("count", count, 1, system.size)
     mean, own_error, _, _ = _means(system, count)
     rows, exponent, error = [], [], []
     lengths = [name for name in (*names, "frame") if name in system.geometry]

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..beams._checks import is_finite, whole
+from ..beams._checks import is_finite
 from ..beams.placed_shapes import placed_shapes
 from ..beams.structure import Structure
 from ..errors import bad
 from ..families import LinearPeriodic
+from ..inputs import require_whole
 from .eigenproblem import crank_angles, require_system
 from .natural import NaturalFrequencies, natural_frequencies
 
@@ -100,7 +101,7 @@ def draw_mode(
     from ..plotting import axes_or_new
 
     structure = _structure(system)
-    whole("mode", mode, system.size)
+    require_whole("mode", mode, 1, system.size)
     if not is_finite(theta):
         raise bad("theta", repr(theta), "one number [rad]", "choose a crank angle")
     held = natural_frequencies(system, float(theta), mode) if found is None else found
@@ -156,7 +157,7 @@ def draw_modes(
         angles = np.linspace(0.0, system.period, _POSITIONS, endpoint=False)
     else:
         angles = crank_angles(system, theta)
-    found = natural_frequencies(system, angles, whole("modes", modes, system.size))
+    found = natural_frequencies(system, angles, require_whole("modes", modes, 1, system.size))
     figure = new_figure(2.6 * modes, 1.7 * len(angles))
     axes = figure.subplots(len(angles), modes, squeeze=False)
     for row, angle in zip(axes, angles, strict=True):

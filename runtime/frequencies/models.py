@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import numbers_in_a_row, require_kind, require_mapping, whole
+from ..beams._checks import numbers_in_a_row, require_kind, require_mapping
 from ..beams.structure import Structure
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import even_angles
+from ..inputs import require_whole
 from ..progress import bar
 from ..results import Result, provenance
 from .eigenproblem import crank_angles, held_frequencies, require_system
@@ -141,7 +142,7 @@ def compare_models(
     first = next(iter(models.values()))
     angles = even_angles(first.period, _ANGLES) if theta is None else crank_angles(first, theta)
     smallest = min(system.size for system in models.values())
-    whole("count", count, smallest)
+    require_whole("count", count, 1, smallest)
     pairs = [held_frequencies(system, angles, {}) for system in models.values()]
     frequency, error = ([pair[k][:, :count] for pair in pairs] for k in (0, 1))
     names, sizes = list(models), [system.size for system in models.values()]
@@ -188,7 +189,7 @@ def exact_frequencies(
 
     require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
     angles = numbers_in_a_row("theta", theta, " [rad]")
-    whole("count", count, _MOST_EXACT)
+    require_whole("count", count, 1, _MOST_EXACT)
     frequency, error = np.empty((2, len(angles), count))
     with bar(progress, len(angles)) as tick:
         for k, angle in enumerate(angles):

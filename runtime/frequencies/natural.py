@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..families import LinearPeriodic
+from ..inputs import require_whole
 from ..results import Check, Result, provenance
 from .curves import Curves, followed_shapes
 from .eigenproblem import (
@@ -216,8 +217,7 @@ def natural_frequencies(
     angles = crank_angles(system, theta)
     if count is None:
         count = min(system.size, _FEW)
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= system.size:
-        raise bad("count", repr(count), f"a whole number from 1 to {system.size}", "correct it")
+    count = require_whole("count", count, 1, system.size)
     if not (isinstance(speed, (int, float)) and np.isfinite(speed) and speed >= 0.0):
         raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")
     period, start = system.period, float(angles[0])

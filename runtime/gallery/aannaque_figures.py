@@ -7,6 +7,7 @@ from . import (
     aannaque_elements,
     aannaque_exact,
     aannaque_lengths,
+    aannaque_newmark,
     aannaque_operations,
     aannaque_pulses,
     aannaque_stability,
@@ -61,7 +62,7 @@ _STEADY_STATE = (
         "aannaque",
         "6.1",
         "Limits of stability of Newmark's scheme",
-        aannaque_steady_state.figure_6_1,
+        aannaque_newmark.figure_6_1,
     ),
     *(
         FigureEntry(

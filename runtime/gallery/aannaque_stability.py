@@ -12,14 +12,12 @@ import numpy as np
 
 from ...generated import hill_meissner
 from ..hill.cases.piecewise import interval_values, piecewise_monodromy
-from ..hill.cases.strutt import (
-    COSINE,
+from ..hill.cases.strutt import COSINE, StruttChart, strutt_chart
+from ..hill.cases.surfaces import (
     MultiplierSurfaces,
-    StruttChart,
     Which,
     boundary_fitted_grid,
     multiplier_surfaces,
-    strutt_chart,
 )
 from ..hill.exact.matrix import hill_boundaries
 from .records import Drawn, Quoted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..hill.cases.strutt import Which
+from ..hill.cases.surfaces import Which
 from . import (
     aannaque_forces,
     aannaque_kinematics,

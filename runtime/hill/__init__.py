@@ -24,7 +24,8 @@ if TYPE_CHECKING:
         piecewise_approximation,
         piecewise_monodromy,
     )
-    from .cases.strutt import MultiplierSurfaces, StruttChart, multiplier_surfaces, strutt_chart
+    from .cases.strutt import StruttChart, strutt_chart
+    from .cases.surfaces import MultiplierSurfaces, multiplier_surfaces
     from .exact.certified import CertifiedBoundaries
     from .exact.derivatives import BoundaryDerivatives, boundary_derivatives
     from .exact.matrix import Boundaries, hill_boundaries
@@ -61,7 +62,7 @@ _PUBLIC = {
     "Mathieu": "cases.named",
     "MathieuCharacteristic": "cases.named",
     "Meissner": "cases.named",
-    "MultiplierSurfaces": "cases.strutt",
+    "MultiplierSurfaces": "cases.surfaces",
     "PerturbationBoundaries": "perturbation.boundaries",
     "PiecewiseApproximation": "cases.piecewise",
     "PiecewiseMonodromy": "cases.piecewise",
@@ -83,7 +84,7 @@ _PUBLIC = {
     "least_parameter": "perturbation.thresholds",
     "mathieu_characteristic": "cases.named",
     "meissner_boundaries": "cases.meissner",
-    "multiplier_surfaces": "cases.strutt",
+    "multiplier_surfaces": "cases.surfaces",
     "perturbation_boundaries": "perturbation.boundaries",
     "piecewise_approximation": "cases.piecewise",
     "piecewise_monodromy": "cases.piecewise",

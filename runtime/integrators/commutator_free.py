@@ -8,8 +8,7 @@ digits.
 
 from __future__ import annotations
 
-import numpy as np
-
+from ..namespaces import carried, namespace_of
 from .commutators import ExponentialProduct, combination, moments_of
 from .expm import expm
 from .protocol import Array, Generator, OneStep
@@ -60,14 +59,13 @@ def commutator_free(product: ExponentialProduct) -> OneStep:
 
     def maps(generator: Generator, theta: Array, step: float) -> Array:
         moments = moments_of(generator, theta, step, product.order // 2)
-        flat = moments.reshape(*moments.shape[:-2], -1)
-        exponents = (product.weights @ flat).reshape(
-            *moments.shape[:-3], len(product.factors), *moments.shape[-2:]
-        )
-        factors = np.moveaxis(expm(exponents), -3, 0)
-        flow: Array = factors[0]
-        for factor in factors[1:]:
-            flow = factor @ flow
+        xp = namespace_of(moments)
+        flat = xp.reshape(moments, (*moments.shape[:-2], moments.shape[-1] ** 2))
+        shape = (*moments.shape[:-3], len(product.factors), *moments.shape[-2:])
+        factors = expm(xp.reshape(carried(product.weights, moments) @ flat, shape))
+        flow: Array = factors[..., 0, :, :]
+        for k in range(1, len(product.factors)):
+            flow = factors[..., k, :, :] @ flow
         return flow
 
     return OneStep(product.name, order=product.order, maps=maps, explicit=False, symplectic=True)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SelfCheckFailed
+from ..namespaces import carried, namespace_of
 from .lie_series import LieSeries, legendre_flow, letters, one
 from .protocol import Array, Generator, at_nodes
 from .tableau import gauss_tableau
@@ -54,7 +55,7 @@ class MagnusExponent:
 
     def matrices(self, moments: Array) -> Array:
         """Return the exponents from moments ``(..., order/2, m, m)``."""
-        elements = list(np.moveaxis(moments, -3, 0))
+        elements = [moments[..., k, :, :] for k in range(moments.shape[-3])]
         for first, second in self.brackets:
             left, right = _sum(first, elements), _sum(second, elements)
             elements.append(left @ right - right @ left)
@@ -138,8 +139,9 @@ def moments_of(generator: Generator, theta: Array, step: float, count: int) -> A
     values = at_nodes(generator, theta, step * tableau.c)
     shapes = np.polynomial.legendre.legvander(2 * tableau.c - 1, count - 1)
     weights = step * (2 * np.arange(count)[:, None] + 1) * (tableau.b * shapes.T)
-    flat = values.reshape(*values.shape[:-2], -1)
-    moments: Array = (weights @ flat).reshape(values.shape)
+    xp = namespace_of(values)
+    flat = xp.reshape(values, (*values.shape[:-2], values.shape[-1] ** 2))
+    moments: Array = xp.reshape(carried(weights, values) @ flat, values.shape)
     return moments
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..namespaces import identity, namespace_of
 from .protocol import Array, Generator, OneStep, at_nodes
 
 ORDER = 4
@@ -39,12 +40,14 @@ def maps(generator: Generator, theta: Array, half_step: float) -> Array:
     values = half_step**2 * at_nodes(generator, theta, half_step * np.arange(3.0))
     f0, f1, f2 = (values[..., k, :, :] for k in range(3))
     n = values.shape[-1]
-    y, slope, past = np.split(np.broadcast_to(np.eye(3 * n), (*f0.shape[:-2], 3 * n, 3 * n)), 3, -2)
+    unit = identity(3 * n, values)
+    y, slope, past = unit[:n, :], unit[n : 2 * n, :], unit[2 * n :, :]
     start = f0 @ y
     middle = f1 @ (y + slope + (4 * start - past) / 6)
     end = y + 2 * slope + (2 * start + 4 * middle) / 3
     end_slope = slope + (start + 4 * middle + f2 @ end) / 3
-    return np.concatenate([end, end_slope, middle], axis=-2)
+    found: Array = namespace_of(values).concat([end, end_slope, middle], axis=-2)
+    return found
 
 
 def start(generator: Generator, theta: float, half_step: float, y: Array, slope: Array) -> Array:

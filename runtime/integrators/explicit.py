@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 
+from ..namespaces import identity, namespace_of
 from .protocol import Array, Generator, at_nodes
 from .tableau import ExplicitTableau
 
@@ -32,9 +35,9 @@ def stage_slopes(
     nodes = sorted(set(tableau.c))
     values = at_nodes(generator, theta, step * np.array([float(c) for c in nodes]))
     slopes: list[Array] = []
-    identity = np.eye(values.shape[-1])
+    unit = identity(values.shape[-1], values)
     for c, row in zip(tableau.c, tableau.a, strict=True):
-        inner = identity
+        inner = unit
         for weight, slope in zip(row, slopes, strict=True):
             if weight:
                 inner = inner + step * float(weight) * slope
@@ -47,8 +50,15 @@ def explicit_maps(
 ) -> Array:
     """Return the step matrices ``I + h sum_i b_i K_i``, shape ``(*batch, ns, m, m)``."""
     slopes = stage_slopes(tableau, generator, theta, step)
-    total: Array = np.zeros_like(slopes[0])
-    for weight, slope in zip(tableau.b, slopes, strict=True):
+    total: Array = summed(tableau.b, slopes, step)
+    total = total + identity(total.shape[-1], total)
+    return total
+
+
+def summed(weights: tuple[Fraction, ...], slopes: list[Array], step: float) -> Array:
+    """Return ``step sum_i weights[i] slopes[i]``."""
+    total: Array = namespace_of(slopes[0]).zeros_like(slopes[0])
+    for weight, slope in zip(weights, slopes, strict=True):
         if weight:
             total += step * float(weight) * slope
-    return total + np.eye(total.shape[-1])
+    return total

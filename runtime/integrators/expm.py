@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import bad
+from ..namespaces import identity, namespace_of
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ def expm(matrices: Array) -> Array:
     Parameters
     ----------
     matrices : ndarray
-        Shape ``(..., m, m)``.
+        Shape ``(..., m, m)``, of any array namespace.
 
     Returns
     -------
@@ -48,7 +49,9 @@ def expm(matrices: Array) -> Array:
     BadInput
         If the largest 1-norm is not a number below 1e15.
     """
-    norm = float(np.max(np.sum(np.abs(matrices), axis=-2), initial=0.0))
+    xp = namespace_of(matrices)
+    empty = 0 in matrices.shape
+    norm = 0.0 if empty else float(xp.max(xp.sum(xp.abs(matrices), axis=-2)))
     if not norm < _LARGEST:
         raise bad("norm of a matrix exponent", norm, "a number below 1e15", "shorten the step")
     if matrices.shape[-1] == 2:
@@ -68,20 +71,24 @@ def _two_by_two(matrices: Array) -> Array:
     half = 0.5 * (matrices[..., 0, 0] - matrices[..., 1, 1])
     upper, lower = matrices[..., 0, 1], matrices[..., 1, 0]
     square = half**2 + upper * lower
-    root = np.sqrt(np.abs(square))
+    xp = namespace_of(matrices)
+    root = xp.sqrt(xp.abs(square))
     growing = square > 0
-    safe = np.where(root > 0, root, 1.0)
+    nothing = xp.zeros_like(root)
+    one = nothing + 1.0
+    safe = xp.where(root > 0, root, one)
+    grows = xp.where(growing, root, nothing)
     with np.errstate(over="ignore"):
         # e^mu cosh and e^mu sinh/s without a large factor times a small one.
-        rise, size = np.exp(mean + np.where(growing, root, 0.0)), np.exp(mean)
-        fall = np.exp(-2.0 * np.where(growing, root, 0.0))
-        even = np.where(growing, 0.5 * rise * (1.0 + fall), size * np.cos(root))
-        grown = -0.5 * rise * np.expm1(-2.0 * np.where(growing, root, 0.0)) / safe
-        turned = size * np.where(root > 0, np.sin(root) / safe, 1.0)
-    odd = np.where(growing, grown, turned)
-    out: Array = np.empty_like(matrices)
-    out[..., 0, 0], out[..., 1, 1] = even + odd * half, even - odd * half
-    out[..., 0, 1], out[..., 1, 0] = odd * upper, odd * lower
+        rise, size = xp.exp(mean + grows), xp.exp(mean)
+        fall = xp.exp(-2.0 * grows)
+        even = xp.where(growing, 0.5 * rise * (1.0 + fall), size * xp.cos(root))
+        grown = -0.5 * rise * xp.expm1(-2.0 * grows) / safe
+        turned = size * xp.where(root > 0, xp.sin(root) / safe, one)
+    odd = xp.where(growing, grown, turned)
+    first, last = even + odd * half, even - odd * half
+    rows = [first, odd * upper, odd * lower, last]
+    out: Array = xp.reshape(xp.stack(rows, axis=-1), matrices.shape)
     return out
 
 
@@ -114,7 +121,8 @@ def _twelfth(x: Array) -> Array:
 
 
 def _constant(value: float, like: Array) -> Array:
-    return value * np.eye(like.shape[-1])
+    constant: Array = value * identity(like.shape[-1], like)
+    return constant
 
 
 @cache

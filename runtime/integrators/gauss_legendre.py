@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import bad
+from ..namespaces import any_entry, carried, identity, in_numpy, namespace_of, weighted_sum
 from .protocol import Array, Generator, OneStep, at_nodes
 from .tableau import GaussTableau, gauss_tableau
 
@@ -19,20 +20,29 @@ def gauss_maps(stages: int, generator: Generator, theta: Array, step: float) -> 
     values = at_nodes(generator, theta, step * tableau.c)
     m = values.shape[-1]
     n = m // 2
-    if m % 2 == 0 and not values[..., :n, :n].any() and not values[..., n:, n:].any():
+    xp = namespace_of(values)
+    if m % 2 == 0 and not any_entry(values[..., :n, :n]) and not any_entry(values[..., n:, n:]):
         return _condensed(tableau, values[..., :n, n:], values[..., n:, :n], step)
-    lead = values.shape[:-3]
+    lead, whole = values.shape[:-3], stages * m
     # (..., i, j) block of the system: delta_ij I - h a_ij L_i, laid out as (..., i, row, j, column)
-    system = -step * np.einsum("ij,...irc->...irjc", tableau.a, values)
-    diagonal = np.arange(stages)
-    rows = np.arange(m)
-    system[..., diagonal[:, None], rows, diagonal[:, None], rows] += 1.0
-    slopes = np.linalg.solve(
-        system.reshape(*lead, stages * m, stages * m), values.reshape(*lead, stages * m, m)
-    )
-    weighted = np.einsum("i,...irc->...rc", step * tableau.b, slopes.reshape(*lead, stages, m, m))
-    result: Array = weighted + np.eye(m)
+    coefficients = carried(tableau.a, values)[:, None, :, None]
+    system = -step * (coefficients * values[..., :, :, None, :])
+    system = _plus_identity(xp.reshape(system, (*lead, whole, whole)))
+    slopes = xp.linalg.solve(system, xp.reshape(values, (*lead, whole, m)))
+    weighted = weighted_sum(step * tableau.b, xp.reshape(slopes, (*lead, stages, m, m)))
+    result: Array = weighted + identity(m, values)
     return result
+
+
+def _plus_identity(matrices: Array) -> Array:
+    """Return fresh matrices with 1 added to their diagonals, in place where they are NumPy's."""
+    size = matrices.shape[-1]
+    if in_numpy(matrices):
+        diagonal = np.arange(size)
+        matrices[..., diagonal, diagonal] += 1.0
+        return matrices
+    value: Array = matrices + identity(size, matrices)
+    return value
 
 
 def _condensed(tableau: GaussTableau, upper: Array, lower: Array, step: float) -> Array:
@@ -42,24 +52,37 @@ def _condensed(tableau: GaussTableau, upper: Array, lower: Array, step: float) -
     """
     s, n = tableau.stages, upper.shape[-1]
     lead = upper.shape[:-3]
-    a, b = step * tableau.a, step * tableau.b
-    through = np.einsum("ik,kj->ijk", a, a).reshape(s * s, s) @ upper.reshape(*lead, s, n * n)
-    coupling = through.reshape(*lead, s, s, n, n) @ lower[..., None, :, :, :]
-    system = -np.moveaxis(coupling, -2, -3).reshape(*lead, s * n, s * n)
-    diagonal = np.arange(s * n)
-    system[..., diagonal, diagonal] += 1.0
-    start = np.zeros((*lead, s, n, 2 * n))
-    start[..., :n] = np.eye(n)
-    start[..., n:] = (a @ upper.reshape(*lead, s, n * n)).reshape(*lead, s, n, n)
-    stages = np.linalg.solve(system, start.reshape(*lead, s * n, 2 * n))
-    push = lower @ stages.reshape(*lead, s, n, 2 * n)
-    momenta = (a @ push.reshape(*lead, s, 2 * n * n)).reshape(*lead, s, n, 2 * n)
-    momenta[..., n:] += np.eye(n)
-    out = np.zeros((*lead, 2 * n, 2 * n))
-    rise = b @ (upper @ momenta).reshape(*lead, s, 2 * n * n)
-    out[..., :n, :] = rise.reshape(*lead, n, 2 * n)
-    out[..., n:, :] = (b @ push.reshape(*lead, s, 2 * n * n)).reshape(*lead, n, 2 * n)
-    return out + np.eye(2 * n)
+    xp = namespace_of(upper)
+    weights = step * tableau.a
+    twice = np.einsum("ik,kj->ijk", weights, weights).reshape(s * s, s)
+    a, b, twice = (carried(part, upper) for part in (weights, step * tableau.b, twice))
+    flat = xp.reshape(upper, (*lead, s, n * n))
+    through = xp.reshape(twice @ flat, (*lead, s, s, n, n))
+    coupling = xp.moveaxis(through @ lower[..., None, :, :, :], -2, -3)
+    system = _plus_identity(-xp.reshape(coupling, (*lead, s * n, s * n)))
+    start = _beside_identity(xp.reshape(a @ flat, (*lead, s, n, n)))
+    stages = xp.linalg.solve(system, xp.reshape(start, (*lead, s * n, 2 * n)))
+    push = xp.reshape(lower @ xp.reshape(stages, start.shape), (*lead, s, 2 * n * n))
+    both = identity(2 * n, upper)
+    momenta = xp.reshape(a @ push, start.shape)
+    momenta += both[n:, :]
+    rise = b @ xp.reshape(upper @ momenta, push.shape)
+    rows = [xp.reshape(part, (*lead, n, 2 * n)) for part in (rise, b @ push)]
+    out: Array = xp.concat(rows, axis=-2)
+    out += both
+    return out
+
+
+def _beside_identity(right: Array) -> Array:
+    """Return ``[1, right]``."""
+    n = right.shape[-1]
+    if in_numpy(right):
+        out = np.empty((*right.shape[:-1], 2 * n))
+        out[..., :n], out[..., n:] = np.eye(n), right
+        return out
+    xp = namespace_of(right)
+    value: Array = xp.concat([xp.broadcast_to(identity(n, right), right.shape), right], axis=-1)
+    return value
 
 
 def gauss_legendre(stages: int = 6, name: str = "gauss_legendre") -> OneStep:

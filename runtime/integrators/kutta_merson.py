@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from .explicit import explicit_maps, stage_slopes
+from .explicit import explicit_maps, stage_slopes, summed
 from .protocol import Array, Generator, OneStep
 from .tableau import ExplicitTableau
 
@@ -42,11 +42,7 @@ def error_maps(generator: Generator, theta: Array, step: float) -> Array:
     Parameters and shapes as in :class:`OneStep`.
     """
     slopes = stage_slopes(TABLEAU, generator, theta, step)
-    weights = TABLEAU.error or ()
-    total: Array = np.zeros_like(slopes[0])
-    for weight, slope in zip(weights, slopes, strict=True):
-        total += step * float(weight) * slope
-    return total
+    return summed(TABLEAU.error or (), slopes, step)
 
 
 # Stands for an error that is not a number: the step shrinks as fast as it may.

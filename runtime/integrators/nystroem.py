@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import SelfCheckFailed, bad
+from ..namespaces import any_entry, carried, identity, namespace_of, weighted_sum
 from .lie_series import LieSeries, letters, one
 from .protocol import Array, Generator, OneStep, at_nodes
 
@@ -172,7 +173,8 @@ def kick_drift(scheme: KickDrift) -> OneStep:
         m = values.shape[-1]
         n = m // 2
         rates = (values[..., :n, :n], values[..., n : 2 * n, n : 2 * n], values[..., 2 * n :, :])
-        if any(part.any() for part in rates):
+        xp = namespace_of(values)
+        if any(any_entry(part) for part in rates):
             raise bad(
                 scheme.name,
                 "damping, Coriolis or other first derivatives",
@@ -180,16 +182,18 @@ def kick_drift(scheme: KickDrift) -> OneStep:
                 "use magnus6, magnus8 or gauss_legendre, or leave the terms out",
             )
         carry = _drifts(generator, theta, step, values[..., :n, n : 2 * n], places, drifts)
-        out = np.zeros((*values.shape[:-3], m, m))
-        out[...] = np.eye(m)
-        q, p = out[..., :n, :], out[..., n : 2 * n, :]
+        unit = identity(m, values)
+        lead = values.shape[:-3]
+        q, p = (xp.broadcast_to(unit[own, :], (*lead, n, m)) for own in (slice(n), slice(n, 2 * n)))
         for k, kick in enumerate(kicks):
             push = values[..., k, n : 2 * n, :n] @ q
             if m > 2 * n:
-                push[..., -1] += values[..., k, n : 2 * n, -1]
-            p += step * kick * push
+                push = push + values[..., k, n : 2 * n, -1:] * unit[-1, :]
+            p = p + float(step * kick) * push
             if k < len(drifts):
-                q += carry[..., k, :, :] @ p
+                q = q + carry[..., k, :, :] @ p
+        rest = [xp.broadcast_to(unit[2 * n :, :], (*lead, 1, m))] if m > 2 * n else []
+        out: Array = xp.concat([q, p, *rest], axis=-2)
         return out
 
     return OneStep(scheme.name, order=scheme.order, maps=maps, explicit=True, symplectic=True)
@@ -205,14 +209,17 @@ def _drifts(
 ) -> Array:
     """Return the integrals of U over the drifts, ``(*batch, ns, drifts, n, n)``."""
     lengths = (step * drifts)[:, None, None]
-    if np.all(flexibility == flexibility[..., :1, :1, :, :]):
-        return flexibility[..., :-1, :, :] * lengths
+    xp = namespace_of(flexibility)
+    lengths = carried(lengths, flexibility)
+    if xp.all(flexibility == flexibility[..., :1, :1, :, :]):
+        even: Array = flexibility[..., :-1, :, :] * lengths
+        return even
     n = flexibility.shape[-1]
     nodes = places[:-1, None] + drifts[:, None] * _POINTS
     values = at_nodes(generator, theta, step * nodes.ravel())[..., :n, n : 2 * n]
-    grouped = values.reshape(*values.shape[:-3], len(drifts), len(_POINTS), n, n)
-    mean: Array = np.einsum("g,...dgij->...dij", _WEIGHTS, grouped)
-    return mean * lengths
+    grouped = xp.reshape(values, (*values.shape[:-3], len(drifts), len(_POINTS), n, n))
+    means: Array = weighted_sum(_WEIGHTS, grouped) * lengths
+    return means
 
 
 METHODS = tuple(kick_drift(scheme) for scheme in (SRKN4, SRKN6))

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..namespaces import namespace_of
+
 Array = NDArray[np.float64]
 Generator = Callable[[Array], Array]
 
@@ -29,7 +31,8 @@ class OneStep:
     maps : callable
         ``maps(generator, theta, step)``: generator from angles ``(nt,)`` to ``(*batch, nt, m, m)``,
         left ends of the steps ``(ns,)`` [rad] and their common length [rad], to the matrices
-        ``(*batch, ns, m, m)`` with ``y(theta + step) = matrix y(theta)``.
+        ``(*batch, ns, m, m)`` with ``y(theta + step) = matrix y(theta)``.  Angles are NumPy's; the
+        matrices are of the array namespace of what the generator returns.
     explicit : bool
         Whether the step is limited by stability.
     symplectic : bool
@@ -48,4 +51,5 @@ def at_nodes(generator: Generator, theta: Array, offsets: Array) -> Array:
     angles = theta[:, None] + offsets
     values = generator(angles.ravel())
     shape = (*values.shape[:-3], *angles.shape, *values.shape[-2:])
-    return values.reshape(shape)
+    reshaped: Array = namespace_of(values).reshape(values, shape)
+    return reshaped

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import bad
-from ..inputs import is_whole
+from ..inputs import require_whole
 from ..mechanisms.linkage import Linkage
 from ..plotting import require_writable
 from ..results import write_whole
@@ -67,10 +67,8 @@ def animate(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     motion.check()
-    if not is_whole(frames, 2, _MOST_FRAMES):
-        raise bad("frames", repr(frames), f"a whole number, 2 to {_MOST_FRAMES}", "correct it")
-    if not is_whole(fps, 1, _FASTEST):
-        raise bad("fps", repr(fps), f"a whole number, 1 to {_FASTEST}", "correct it")
+    require_whole("frames", frames, 2, _MOST_FRAMES)
+    require_whole("fps", fps, 1, _FASTEST)
     for curve in curves:
         if not isinstance(curve, CouplerCurve):
             raise bad("curves", type(curve).__name__, "coupler curves", "use coupler_curve")

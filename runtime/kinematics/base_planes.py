@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import bad
+from ..inputs import require_whole
 from ..results import Result, provenance
 from .barker import number_of_signs
 from .classification import SYMBOLS, classify_many
@@ -43,7 +45,7 @@ class BasePlane(Result):
     numbers : ndarray of int, shape (len(y), len(x))
         Row of Barker's table at each point, 0 where no linkage exists.
     regions : mapping of str to ndarray, shape (n, 3)
-        Corners of the region of each class, as ratios.
+        Corners of the region of each class, as ratios; none that rounding cannot tell from empty.
     outline : ndarray, shape (n, 3)
         Corners of all that can close: zero-mobility planes and vanishing links.
     borders : mapping of str to ndarray, shape (2, 3)
@@ -120,10 +122,10 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
         If no linkage lies in the plane, or there are too few points.
     """
     least = 3.0**-0.5
-    if not least < lam < 1e100:
+    number = isinstance(lam, Real) and not isinstance(lam, bool)
+    if not (number and least < lam < 1e100):
         raise bad("lam", repr(lam), f"a finite number above {least:.6g}", "no linkage lies there")
-    if not 2 <= points <= 5000:
-        raise bad("points", repr(points), "2 to 5000 points", "correct it")
+    require_whole("points", points, 2, 5000)
     total = float(lam) * 3.0**0.5
     outline = _outline(total)
     flat = outline @ _AXES.T
@@ -133,7 +135,8 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
     numbers = np.zeros(inside.shape, dtype=np.int64)
     coupler, output, frame = ratios[inside].T
     numbers[inside] = classify_many(np.stack([frame, np.ones_like(frame), coupler, output], -1))
-    regions, borders = _regions(outline, total), _borders(outline, total)
+    error = 32.0 * np.finfo(float).eps * max(total, 1.0)
+    regions, borders = _regions(outline, total, error), _borders(outline, total)
     return BasePlane(
         lam=float(lam),
         x=x,
@@ -143,8 +146,9 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
         outline=outline,
         borders=borders,
         method="half-planes of the signs of three sums; exact classes at the points",
-        error=32.0 * np.finfo(float).eps * max(total, 1.0),
+        error=error,
         error_norm="corners of regions and borders, absolute, worst",
+        error_kind="bound",
         provenance=provenance({"lam": repr(float(lam))}),
     )
 
@@ -157,8 +161,11 @@ def _outline(total: float) -> Array:
     return corners
 
 
-def _regions(outline: Array, total: float) -> dict[str, Array]:
-    """Return the region of each class: on either side of (total - 1)/2 for each ratio."""
+def _regions(outline: Array, total: float, error: float) -> dict[str, Array]:
+    """Return the region of each class: on either side of (total - 1)/2 for each ratio.
+
+    One whose middle is no farther from its borders than rounding moves them is left out.
+    """
     half = (total - 1.0) / 2.0
     found = {}
     for code in range(8):
@@ -168,7 +175,12 @@ def _regions(outline: Array, total: float) -> dict[str, Array]:
             corners = _clipped(corners, i, half, side)
         # Ratios coupler, output, frame against S_2 (frame), S_3 (output), S_4 (coupler).
         signs = (int(sides[2]), -int(sides[1]), -int(sides[0]))
-        if len(corners) >= 3 and _area(corners) > 1e-13 * _area(outline):
+        if len(corners) < 3:
+            continue
+        # Both the borders and the edges of the outline that lie next to them count.
+        middle = corners.mean(axis=0)
+        room = min(np.abs(middle - half).min(), middle.min(), ((1.0 + total) / 2.0 - middle).min())
+        if room > error:
             found[SYMBOLS[number_of_signs(signs)]] = corners
     return dict(sorted(found.items()))
 
@@ -179,9 +191,11 @@ def _borders(outline: Array, total: float) -> dict[str, Array]:
     found = {}
     for i, name in enumerate(_NAMES):
         part = _clipped(outline, i, half, 1.0)
-        ends = part[np.isclose(part[:, i], half, rtol=1e-12, atol=1e-14 * total)]
+        # Clipping puts its own points exactly on the line.
+        ends = part[part[:, i] == half]
         if len(ends) >= 2:
-            found[f"{name} = (sum - 1)/2"] = ends[:2]
+            last = ends[np.argmax(np.abs(ends - ends[0]).max(axis=1))]
+            found[f"{name} = (sum - 1)/2"] = np.stack([ends[0], last])
     return found
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..errors import BadInput, bad
-from ..inputs import is_whole
+from ..inputs import require_whole
 from ..mechanisms.linkage import Linkage, planar
 from ..results import Check, DeferredChecks, Result, provenance
 from ._arc_length import integrate_turn
@@ -192,8 +192,7 @@ def coupler_curve(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     place = _place(linkage, link, along, across)
-    if not is_whole(points, 16, _MOST_POINTS):
-        raise bad("points", repr(points), f"a whole number, 16 to {_MOST_POINTS}", "correct it")
+    require_whole("points", points, 16, _MOST_POINTS)
     motion.check()
     trace = _Trace(motion, link, place / motion.scale)
     trace.require_motion()

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import bad
-from ..inputs import is_whole
+from ..inputs import require_whole
 from ..mechanisms.linkage import Linkage, Motion
 from ..results import Check, Result, provenance
 from ..series.periodic import PeriodicFunction
@@ -351,8 +351,7 @@ def source_told(source: Source) -> dict[str, str]:
 
 def check_order(order: int, accuracy: float) -> None:
     """Raise BadInput for an impossible order or accuracy."""
-    if not is_whole(order, 1, _HIGHEST):
-        raise bad("order", repr(order), f"a whole number, 1 to {_HIGHEST}", "correct it")
+    require_whole("order", order, 1, _HIGHEST)
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
 

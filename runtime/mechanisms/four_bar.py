@@ -26,7 +26,6 @@ from .linkage import (
     Linkage,
     LinkMotion,
     Motion,
-    PointMotion,
     Terms,
     planar,
     plot_against_crank,
@@ -88,39 +87,9 @@ class FourBarMotion(Motion):
         return {
             "A": start,
             "B": self.link("coupler").origin,
-            "C": self._at_follower_pin().origin,
+            "C": self.point("follower", self.linkage.lengths["follower"]).position,
             "D": start + np.array([frame, 0.0]),
         }
-
-    def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
-        """Return place, velocity and acceleration of a point of a moving link.
-
-        A point of the coupler is reached from the nearer one of its joints, so that C moves with
-        the follower to the last digit.
-
-        Parameters
-        ----------
-        link : str
-            "crank", "coupler" or "follower".
-        along, across : array_like
-            Place of the point in the link's own axes [m]: origin at A, B or D, x along the link;
-            broadcast with the angles.
-
-        Returns
-        -------
-        PointMotion
-            Fields of shape (..., 2).
-
-        Raises
-        ------
-        BadInput
-            If there is no such moving link, or the place is not finite.
-        """
-        near = super().point(link, along, across)
-        coupler = self.linkage.lengths["coupler"]
-        if link != "coupler":
-            return near
-        return near.nearer(self._at_follower_pin(), np.asarray(along, dtype=float), across, coupler)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw follower angle, speed and acceleration against the crank angle."""
@@ -141,8 +110,9 @@ class FourBarMotion(Motion):
         pivot = still + self.linkage.lengths["frame"]
         return self._link(pivot, still, still, self.theta4, self.omega4, self.alpha4)
 
-    def _at_follower_pin(self) -> LinkMotion:
-        """Return the motion of the coupler with its origin at C."""
+    def _at_far_joint(self, name: str) -> LinkMotion | None:
+        if name != "coupler":
+            return None
         at = self.link("follower").point(self.linkage.lengths["follower"])
         return LinkMotion(
             at.position, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
@@ -200,11 +170,6 @@ class FourBar(Linkage):
                 )
         if problems:
             raise BadInput(*problems)
-
-    @property
-    def geometry(self) -> Mapping[str, float]:
-        """Lengths, and +1 or -1 for the assembly, as the emitted modules take them."""
-        return {**self.lengths, "assembly": self.branch}
 
     @property
     def reach(self) -> tuple[float, float]:

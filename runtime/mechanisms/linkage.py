@@ -161,6 +161,9 @@ class Motion(Result, ABC):
     def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
         """Return place, velocity and acceleration of a point of a moving link.
 
+        A point of a link between two moving joints is reached from the nearer one, so that either
+        joint moves with its other link to the last digit.
+
         Parameters
         ----------
         link : str
@@ -182,7 +185,10 @@ class Motion(Result, ABC):
         place = np.asarray(along, dtype=float), np.asarray(across, dtype=float)
         if not all(np.all(np.isfinite(part)) for part in place):
             raise bad("along, across", "a value that is not finite", "finite lengths", "correct it")
-        return self.link(link).point(*place)
+        near, far = self.link(link).point(*place), self._at_far_joint(link)
+        if far is None:
+            return near
+        return near.nearer(far, *place, self.linkage.lengths[link])
 
     @property
     @abstractmethod
@@ -207,6 +213,10 @@ class Motion(Result, ABC):
     @abstractmethod
     def _other_link(self, name: str) -> LinkMotion:
         """Return the motion of a moving link that is not the crank."""
+
+    def _at_far_joint(self, name: str) -> LinkMotion | None:
+        """Return the motion of a link with its origin at its second joint, where that moves too."""
+        return None
 
     def _at_crank_pin(self, angle: Array, speed: Array, acceleration: Array) -> LinkMotion:
         """Return the motion of a link that begins at B."""
@@ -256,9 +266,12 @@ class Linkage(ABC):
         return -1.0 if getattr(self, "assembly", "open") == "crossed" else 1.0
 
     @property
-    @abstractmethod
     def geometry(self) -> Mapping[str, float]:
         """Geometry as the emitted modules take it: lengths, and the sign of the assembly."""
+        found = dict(self.lengths)
+        if hasattr(self, "assembly"):
+            found["assembly"] = self.branch
+        return found
 
     @property
     @abstractmethod

@@ -27,7 +27,6 @@ from .linkage import (
     Linkage,
     LinkMotion,
     Motion,
-    PointMotion,
     Terms,
     planar,
     plot_against_crank,
@@ -94,40 +93,6 @@ class SliderCrankMotion(Motion):
         pins = {"B": self.link("coupler").origin, "C": self.link("slider").origin}
         return {"A": start, **pins}
 
-    def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
-        """Return place, velocity and acceleration of a point of a moving link.
-
-        A point of the coupler is reached from the nearer one of its joints, so that C moves with
-        the slider to the last digit.
-
-        Parameters
-        ----------
-        link : str
-            "crank", "coupler" or "slider".
-        along, across : array_like
-            Place of the point in the link's own axes [m]: origin at A, B or C; x along crank or
-            coupler, and along the guide for the slider; broadcast with the angles.
-
-        Returns
-        -------
-        PointMotion
-            Fields of shape (..., 2).
-
-        Raises
-        ------
-        BadInput
-            If there is no such moving link, or the place is not finite.
-        """
-        near = super().point(link, along, across)
-        if link != "coupler":
-            return near
-        at = self.link("slider")
-        pin = LinkMotion(
-            at.origin, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
-        )
-        coupler = self.linkage.lengths["coupler"]
-        return near.nearer(pin, np.asarray(along, dtype=float), across, coupler)
-
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the slider's place, velocity and acceleration against the crank angle."""
         curves = (
@@ -145,6 +110,14 @@ class SliderCrankMotion(Motion):
         pin = self.position + 1j * self.linkage.lengths["offset"]
         moving = self.slider_velocity, self.slider_acceleration
         return self._link(pin, *moving, still, still, still)
+
+    def _at_far_joint(self, name: str) -> LinkMotion | None:
+        if name != "coupler":
+            return None
+        at = self.link("slider")
+        return LinkMotion(
+            at.origin, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
+        )
 
 
 @dataclass(frozen=True)
@@ -199,11 +172,6 @@ class SliderCrank(Linkage):
             )
         if problems:
             raise BadInput(*problems)
-
-    @property
-    def geometry(self) -> Mapping[str, float]:
-        """Lengths, and +1 or -1 for the assembly, as the emitted modules take them."""
-        return {**self.lengths, "assembly": self.branch}
 
     @property
     def crank_turns(self) -> bool:

@@ -19,7 +19,7 @@ from ..families import LinearPeriodic
 from ..floquet.eigenvalues import conditions, spectrum
 from ..floquet.period_products import ordered_product
 from ..floquet.refined_products import distance
-from ..floquet.speed_tables import barycentric_rows, chebyshev_places
+from ..stretches import Tabulated, coefficients, nodes, running_products
 from .condensed import Condensed
 from .ranges import Grid, limits, wider
 from .trigonometric import Array
@@ -27,7 +27,7 @@ from .trigonometric import Array
 Run = Callable[[Callable[..., Any], Iterable[Any]], Iterable[Any]]
 
 # Ratio of the speeds of one table; speeds that its polynomials go through; phase that the highest
-# mode turns in a step, at the table's lowest speed; steps in a stretch, a power of two.
+# mode turns in a step, at the table's lowest speed; steps in a stretch.
 _RATIO, _NODES, _PHASE, _MERGED = 2.0, 12, 1.25, 8
 # Powers of the speed kept in the equation solved for the acceleration: 0 to 4, as condensed.
 _POWERS = 5
@@ -44,6 +44,7 @@ _FARTHER = 4.0
 _TRIED = 0.381966
 # Speeds at the most that are found from the full system, and the error wanted there.
 _REFINED, _SHARP = 32, 1e-8
+# A multiple of the steps in a stretch.
 _TOGETHER = 4096
 _BLOCK_FLOATS = 1_000_000
 
@@ -152,16 +153,14 @@ class FreeMotion:
             part = moments[:, :, begin : begin + _TOGETHER]
             rows = np.tensordot(powers, part, axes=(0, 1))
             maps = _exponential(_magnus(rows, reach * self.root))
-            for _ in range(_MERGED.bit_length() - 1):
-                maps = maps[1::2] @ maps[0::2]
-            out.append(maps)
+            out.append(running_products(maps, _MERGED)[_MERGED - 1 :: _MERGED])
         return np.concatenate(out).reshape(-1, 2 * m, 2 * m)
 
     def turn(self, speed: float, finer: int = 1) -> Array:
         """Return the monodromy matrix at one speed, in as many times the steps; ``(2m, 2m)``."""
         own = np.tensordot(speed ** np.arange(len(self.series)), self.series, axes=1)[None]
         moments = replace(self, series=own).moments(finer * self.steps(speed))
-        return np.asarray(_product(self.stretches(moments, speed)[None])[0])
+        return np.asarray(_plain(*ordered_product(self.stretches(moments, speed)[None]))[0])
 
 
 def _inverse_series(masses: Mapping[int, Array]) -> list[Array]:
@@ -225,9 +224,8 @@ def _exponential(exponents: Array) -> Array:
     return np.asarray(out)
 
 
-def _product(stretches: Array) -> Array:
-    """Return products of stretches ``(k, stretches, 2m, 2m)``."""
-    product, power = ordered_product(stretches)
+def _plain(product: Array, power: NDArray[np.int64]) -> Array:
+    """Return products without the powers of two taken out of them."""
     return np.asarray(np.ldexp(product, np.clip(power, -1000, 1000)[:, None, None]))
 
 
@@ -399,15 +397,16 @@ def _turns(free: FreeMotion, speeds: Array, run: Run) -> tuple[Array, float]:
         fine = free.turn(low, 2)
         return found, _MARGIN * _distance(found[0], fine)
     # Speeds that lie close together do not leave the nodes without room.
-    nodes, weights = chebyshev_places(1.0 / (_WIDER * high), _WIDER / low, _NODES)
+    slowest, fastest = _WIDER / low, 1.0 / (_WIDER * high)
+    inverse = nodes(fastest, slowest, _NODES)
     moments = free.moments(free.steps(low))
-    maps = np.stack(list(run(_Stretcher(free, moments), (1.0 / nodes).tolist())))
+    maps = np.stack(list(run(_Stretcher(free, moments), (1.0 / inverse).tolist())))
     middle = int(_TRIED * len(speeds))
     tried = list(run(_Turner(free), [(low, 2), (float(speeds[middle]), 1)]))
-    flat = maps.reshape(_NODES, -1)
+    table = Tabulated(fastest, slowest, coefficients(maps))
     together = max(1, _BLOCK_FLOATS // maps[0].size)
-    blocks = [speeds[k : k + together] for k in range(0, len(speeds), together)]
-    looked = _Looker(nodes, weights, flat, maps.shape[1:])
+    blocks = [1.0 / speeds[k : k + together] for k in range(0, len(speeds), together)]
+    looked = _Looker(table)
     found = np.concatenate(list(run(looked, blocks)))
     off = max(_distance(found[0], tried[0]), _distance(found[middle], tried[1]))
     return found, _MARGIN * off
@@ -434,14 +433,13 @@ class _Stretcher:
 
 
 class _Looker:
-    """From speeds to monodromy matrices, by polynomials in the inverse speed."""
+    """From inverse speeds to monodromy matrices."""
 
-    def __init__(self, nodes: Array, weights: Array, flat: Array, shape: tuple[int, ...]) -> None:
-        self.nodes, self.weights, self.flat, self.shape = nodes, weights, flat, shape
+    def __init__(self, table: Tabulated) -> None:
+        self.table = table
 
-    def __call__(self, speeds: Array) -> Array:
-        rows = barycentric_rows(self.nodes, self.weights, 1.0 / speeds)
-        return _product((rows @ self.flat).reshape(-1, *self.shape))
+    def __call__(self, inverse: Array) -> Array:
+        return _plain(*self.table.products(inverse))
 
 
 def _distance(first: Array, second: Array) -> float:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import BadInput, bad
 from ..families import LinearPeriodic
+from ..inputs import require_whole
 from .balance import Balance, balance
 from .condensed import Condensed, condense
 from .expressions import sampled_arrays
@@ -98,10 +99,8 @@ def grid_of(system: LinearPeriodic, modes: int | None, angles: int = _FEWEST) ->
 def _bases(system: LinearPeriodic, still: StillModes, modes: int | None) -> dict[int, MovingBasis]:
     """Return bases by number of modes, of those that leave a gap to the next frequency."""
     if modes is not None:
-        n = system.size
-        if isinstance(modes, bool) or not (isinstance(modes, int) and 1 <= modes <= n):
-            raise bad("modes", repr(modes), f"a whole number from 1 to {n}", "correct it")
-        return {modes: basis_of(system, modes, still)}
+        count = require_whole("modes", modes, 1, system.size)
+        return {count: basis_of(system, count, still)}
     found = {}
     for m in _numbers(still):
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -18,6 +18,10 @@ _FEWEST, _MOST = 128, 2048
 # Their upper harmonics, over the largest, at which they are taken to be resolved.
 _RESOLVED = 1e-13
 _STALLED = 0.1
+# Angles at which the arrays are compared with their definition, and how much worse they may be
+# elsewhere.
+_COMPARED, _ELSEWHERE = 61, 4.0
+_EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,30 @@ class ReducedSystem(LinearPeriodic):
 
     full: LinearPeriodic | None = None
     basis: MovingBasis | None = None
+
+    @cached_property
+    def error(self) -> float:
+        """Largest error of an array beside its definition on the basis.
+
+        Over the largest entry of the products that the array is the sum of.  An estimate, made when
+        it is first looked at: the arrays are compared with the projections at angles that they were
+        not made from.  What the modes left out would change is not in it; ``basis.kept`` and
+        ``basis.left_out`` tell their distance.
+        """
+        assert self.full is not None and self.basis is not None
+        theta = even_angles(self.period, _COMPARED) + 0.37 * self.period / _COMPARED
+        phi, slope = self.basis(theta), self.basis.derivative(theta)
+        gaps = {(term.array, term.scale, term.power): term(theta) for term in self.terms}
+        sizes: dict[str, float] = {}
+        for term in self.full.terms:
+            for array, part in projections(term.array, term(theta), phi, slope):
+                key = (array, term.scale, term.power)
+                gaps[key] = gaps.get(key, 0.0) - part
+                sizes[array] = max(sizes.get(array, 0.0), float(np.max(np.abs(part))))
+        worst = max(
+            float(np.max(np.abs(gap))) / (sizes[key[0]] or 1.0) for key, gap in gaps.items()
+        )
+        return _ELSEWHERE * worst + _EPS * self.full.size
 
     def lift(self, eta: Array, theta: Array) -> Array:
         """Return the coordinates ``Phi eta`` of the full system.

@@ -314,6 +314,7 @@ def _one_range(piece: Range, form: Fibres, speeds: Array, rtol: float, run: Run)
         np.concatenate([part.size for part in parts], axis=1),
         np.concatenate([part.theta for part in parts], axis=1),
         np.concatenate([part.row for part in parts], axis=1),
+        np.concatenate([part.error for part in parts], axis=1),
     )
     solved = _Solved(piece.condensed, balance, moving)
     change = _changes(solved, form, rows, speeds, found)
@@ -378,11 +379,8 @@ def _errors(solved: _Solved, found: Peaks, change: Array) -> Array:
     # A link that happens to be at rest is moved by an error as at its worst speed.
     weight = np.max(share, axis=1, keepdims=True) / share
     left = moving.error + last_harmonics(solved.balance, moving.series)
-    step = 2.0 * np.pi / (8 * len(solved.condensed.theta))
-    # A parabola through three places of the highest harmonics.
-    between = (step * 0.5 * solved.balance.harmonics) ** 4 / 384.0
     largest = _ELSEWHERE * np.max(change, axis=0)
-    return np.asarray(_MARGIN * weight * left + largest[:, None] + between)
+    return np.asarray(_MARGIN * weight * left + largest[:, None] + found.error)
 
 
 def _linear_range(system: LinearPeriodic, found: list[_Found]) -> dict[str, Check]:

@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import bad
 from ..families import LinearPeriodic
 from ..floquet.first_order import even_angles
+from ..inputs import require_whole
 from .trigonometric import Array, PeriodicArray, differentiated, interpolated, tail
 
 _FEWEST, _MOST = 64, 2048
@@ -106,14 +107,12 @@ def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = Non
         If the number is unusable, or the subspace is not smooth or not periodic: the frequencies
         of modes m and m + 1 come too close.
     """
-    n = system.size
-    if isinstance(modes, bool) or not (isinstance(modes, int | np.integer) and 1 <= modes <= n):
-        raise bad("modes", repr(modes), f"a whole number from 1 to {n}", "correct it")
+    modes = require_whole("modes", modes, 1, system.size)
     if system.is_constant("M") and system.is_constant("K"):
-        return _fixed_basis(system, int(modes))
+        return _fixed_basis(system, modes)
     count = _FEWEST if angles is None else int(angles)
     while True:
-        found = carried_basis(system.period, int(modes), still_modes(system, count))
+        found = carried_basis(system.period, modes, still_modes(system, count))
         if angles is not None or found.tail <= _RESOLVED or 2 * count > _MOST:
             break
         count *= 2

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import bad
 from ..floquet.first_order import CanonicalForm
 from ..floquet.monodromy_matrix import FloquetMultipliers
+from ..inputs import require_whole
 from ..results import Check
 
 Array = NDArray[np.float64]
@@ -115,20 +116,7 @@ def whole_option(options: Mapping[str, object], name: str, low: int, high: int) 
         If it is not a whole number from ``low`` to ``high``.
     """
     value = options.get(name)
-    if value is None:
-        return None
-    if (
-        not isinstance(value, (int, np.integer))
-        or isinstance(value, bool)
-        or not low <= value <= high
-    ):
-        raise bad(
-            f"option {name}",
-            repr(value),
-            f"a whole number from {low} to {high}",
-            "correct it",
-        )
-    return int(value)
+    return None if value is None else require_whole(f"option {name}", value, low, high)
 
 
 def word_option(

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import BadInput, Problem
 from ..units import describe, to_si
-from .layouts import LINKS
+from .linkage_tables import LINKS
 from .schema import Layout
 
 Values = Mapping[str, dict[str, Any]]

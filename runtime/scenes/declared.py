@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import Problem
 from ..units import DIMENSIONS
-from .layouts import chart_table
+from .linkage_tables import chart_table
 from .schema import Key, Layout, Table
 
 _KINDS = ("quantity", "quantities", "count", "counts", "text", "texts")

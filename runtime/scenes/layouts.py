@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-
 from ...derive.spec import BEAM_FORMULATIONS, DERIVED_AS, NAMED_DROPS
 from .beam_tables import (
     BEAM_DROPS,
@@ -18,310 +15,25 @@ from .beam_tables import (
     NODES,
     beam_table,
 )
+from .linkage_tables import (
+    ACTING_GRAVITY,
+    COUPLER,
+    FOUR_BAR_LENGTHS,
+    GRAVITY,
+    LINKS,
+    MEASURED,
+    OPERATION,
+    QUICK_RETURN_LENGTHS,
+    QUICK_RETURN_LINKS,
+    SLIDER_CRANK_LENGTHS,
+    SLIDER_CRANK_LINKS,
+    chart_table,
+    rigid_link,
+    rigid_tables,
+)
 from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
 from .schema import Key, Layout, Table
 
-LINKS = ("frame", "crank", "coupler", "follower")
-
-
-def _length(link: str, meaning: str) -> Key:
-    return Key(link, meaning, dimension="length", required=True, limit="positive")
-
-
-_GEOMETRY = Table(
-    "links",
-    "lengths between the pins, and which of the two closures",
-    (
-        _length("frame", "distance between the fixed pivots"),
-        _length("crank", "length of the driven link"),
-        _length("coupler", "length of the link between crank and follower"),
-        _length("follower", "length of the link to the second fixed pivot"),
-        Key("assembly", "closure", "text", default="open", choices=("open", "crossed")),
-    ),
-    required=True,
-)
-_MASS_KEYS = (
-    Key("mass", "mass of the link", dimension="mass", limit="positive"),
-    Key(
-        "weight", "weight of the link, at gravity.acceleration", dimension="force", limit="positive"
-    ),
-)
-_INERTIA = Key("inertia", "about the link's first joint", dimension="inertia", limit="positive")
-_FIRST_MOMENT = Key(
-    "first_moment",
-    "mass times distance of its centre from the first joint",
-    dimension="first_moment",
-)
-_GRAVITY = Table(
-    "gravity",
-    "what turns a weight into a mass",
-    (
-        Key(
-            "acceleration",
-            "acceleration of free fall",
-            dimension="acceleration",
-            default=9.80665,
-            limit="positive",
-        ),
-    ),
-)
-_SPEED = Key("speed", "crank speed", dimension="frequency", limit="positive")
-_OPERATION = Table(
-    "operation",
-    "how the machine runs",
-    (
-        _SPEED,
-        Key(
-            "speed_range",
-            "lowest and highest crank speed",
-            "quantities",
-            "frequency",
-            limit="positive",
-            length=2,
-            rising=True,
-        ),
-    ),
-)
-_MEASURED = Table(
-    "measured",
-    "what was observed on the rig",
-    (
-        Key("follower_inertias", "values tried", "quantities", "inertia", limit="positive"),
-        Key(
-            "follower_inertia_tolerances",
-            "uncertainty of each",
-            "quantities",
-            "inertia",
-            limit="non-negative",
-        ),
-        Key("natural_frequency", "of the coupler", dimension="frequency", limit="positive"),
-        Key("log_decrement", "lowest and highest", "quantities", limit="non-negative", length=2),
-        Key("speeds", "crank speeds of resonances", "quantities", "frequency", limit="positive"),
-        Key(
-            "regions", "region of instability of each, n in 2 Omega / n", "counts", limit="positive"
-        ),
-        Key("inertias", "follower inertia of each", "quantities", "inertia", limit="positive"),
-    ),
-)
-_COUPLER = Table(
-    "coupler",
-    "the flexible coupler",
-    (
-        Key(
-            "bending_stiffness",
-            "EI, in the plane of motion",
-            dimension="bending_stiffness",
-            required=True,
-            limit="positive",
-        ),
-        Key("mass_per_length", "mass per length", dimension="mass_per_length", limit="positive"),
-        Key(
-            "natural_frequency",
-            "first frequency as a pinned beam at rest; gives mu = EI (pi/l3)^4 / Omega^2",
-            dimension="frequency",
-            limit="positive",
-        ),
-        Key(
-            "damping",
-            "distributed viscous damping",
-            dimension="damping_per_length",
-            limit="non-negative",
-        ),
-        Key("damping_ratio", "of the first mode at rest", limit="non-negative"),
-        replace(_INERTIA, meaning="about the crank pin; a uniform bar's by default"),
-        replace(_FIRST_MOMENT, meaning="about the crank pin; a uniform bar's by default"),
-    ),
-    required=True,
-    exactly_one=(("mass_per_length", "natural_frequency"),),
-    at_most_one=(("damping", "damping_ratio"),),
-)
-
-
-def _rigid(link: str, *, inertia_required: bool = False) -> Table:
-    return Table(
-        link,
-        f"mass of the rigid {link}",
-        (*_MASS_KEYS, replace(_INERTIA, required=inertia_required), _FIRST_MOMENT),
-        required=inertia_required,
-        at_most_one=(("mass", "weight"),),
-    )
-
-
-def _positive(name: str, meaning: str, dimension: str) -> Key:
-    return Key(name, meaning, dimension=dimension, limit="positive")
-
-
-def _body(link: str) -> Table:
-    """Return the table of a rigid link whose mass may lie anywhere."""
-    return Table(
-        link,
-        f"mass of the {link}; where it lies and turns, in axes along the link at its first joint",
-        (
-            *_MASS_KEYS,
-            _positive("density", "density; with width and thickness it gives the mass", "density"),
-            _positive("width", "width of a bar across the plane", "length"),
-            _positive("thickness", "thickness of a bar in the plane", "length"),
-            _INERTIA,
-            _positive("inertia_about_centre", "about the centre of mass", "inertia"),
-            _FIRST_MOMENT,
-            replace(
-                _FIRST_MOMENT,
-                name="transverse_moment",
-                meaning="mass times distance of its centre from the link's line, to the left",
-            ),
-            Key(
-                "centre_along",
-                "distance of the centre of mass along the link; half way by default",
-                dimension="length",
-            ),
-            Key(
-                "centre_across",
-                "distance of the centre of mass from the link's line, to the left",
-                dimension="length",
-            ),
-        ),
-        at_most_one=(
-            ("mass", "weight", "density"),
-            ("inertia", "inertia_about_centre"),
-            ("first_moment", "centre_along"),
-            ("transverse_moment", "centre_across"),
-        ),
-    )
-
-
-def chart_table(parameters: Mapping[str, str]) -> Table:
-    """Return the ``[chart]`` table of a mechanism whose charts may vary these parameters."""
-    names = tuple(parameters)
-    axes = []
-    for axis in ("x", "y"):
-        axes += [
-            Key(axis, f"parameter along {axis}", "text", choices=names),
-            Key(f"{axis}_range", "first and last value", "quantities", length=2, rising=True),
-            Key(
-                f"{axis}_points",
-                "number of values",
-                "count",
-                default=201,
-                limit="positive",
-                least=2,
-                most=20000,
-            ),
-        ]
-    return Table("chart", "the stability chart that is drawn by default", tuple(axes))
-
-
-_ACTING_GRAVITY = replace(
-    _GRAVITY,
-    meaning="what turns a weight into a mass; with a direction it also pulls at the links",
-    keys=(
-        *_GRAVITY.keys,
-        Key(
-            "direction",
-            "direction of the pull, from the x axis; left out, the linkage lies flat",
-            dimension="angle",
-        ),
-    ),
-)
-_RIGID_OPERATION = replace(
-    _OPERATION,
-    keys=(
-        *_OPERATION.keys,
-        Key("acceleration", "crank acceleration", dimension="angular_acceleration", default=0.0),
-    ),
-)
-_MOTOR = Table(
-    "motor",
-    "what drives the crank: a torque that falls in a straight line with speed, and a flywheel",
-    (
-        _positive("stall_torque", "torque at rest", "moment"),
-        _positive("no_load_speed", "speed at which no torque is left", "frequency"),
-        Key("flywheel", "inertia on the crank shaft", dimension="inertia", limit="non-negative"),
-    ),
-)
-
-
-def _acting(links: tuple[str, ...]) -> tuple[Table, ...]:
-    """Return the tables of loads and springs on these moving links."""
-    place = "in the link's axes, from its first joint"
-    load = Table(
-        "loads",
-        "external loads, each under a name of its own",
-        (
-            Key("link", "link that it acts on", "text", required=True, choices=links),
-            Key("along", f"point of action along the link, {place}", dimension="length"),
-            Key("across", f"point of action across the link, {place}", dimension="length"),
-            Key("force", "x and y component", "quantities", "force", length=2),
-            Key("couple", "anticlockwise", dimension="moment"),
-            Key("axes", "axes of the force", "text", default="fixed", choices=("fixed", "link")),
-        ),
-        named=True,
-    )
-    ends = ("frame", *links)
-    spring = Table(
-        "springs",
-        "springs and dampers between two points, each under a name of its own",
-        (
-            Key("first", "link of the first end", "text", required=True, choices=ends),
-            Key("first_at", "point in that link's axes", "quantities", "length", length=2),
-            Key("second", "link of the second end", "text", required=True, choices=ends),
-            Key("second_at", "point in that link's axes", "quantities", "length", length=2),
-            Key("stiffness", "stiffness", dimension="stiffness", limit="non-negative"),
-            Key("free_length", "length without force", dimension="length", limit="non-negative"),
-            Key("preload", "tension at the free length", dimension="force"),
-            Key("damping", "viscous damping", dimension="damping", limit="non-negative"),
-        ),
-        named=True,
-    )
-    torsion = Table(
-        "torsion_springs",
-        "torsion springs and dampers between two links, each under a name of its own",
-        (
-            Key("first", "one link", "text", required=True, choices=ends),
-            Key("second", "the other link", "text", required=True, choices=ends),
-            Key("stiffness", "stiffness", dimension="rotational_stiffness", limit="non-negative"),
-            Key("free_angle", "angle of the second against the first", dimension="angle"),
-            Key("preload", "couple at the free angle", dimension="moment"),
-            Key("damping", "viscous damping", dimension="rotational_damping", limit="non-negative"),
-        ),
-        named=True,
-    )
-    return load, spring, torsion
-
-
-def _rigid_tables(geometry: Table, links: tuple[str, ...]) -> tuple[Table, ...]:
-    """Return the tables of a linkage with three moving rigid links."""
-    bodies = tuple(_body(link) for link in links)
-    return (geometry, *bodies, *_acting(links), _ACTING_GRAVITY, _RIGID_OPERATION, _MOTOR)
-
-
-_SLIDER_CRANK = Table(
-    "links",
-    "lengths between the pins, and on which side of the crank pin the slider is",
-    (
-        _length("crank", "length of the driven link"),
-        _length("coupler", "length of the link between crank and slider"),
-        Key(
-            "offset",
-            "distance of the slider's line from the crank pivot, to the left",
-            dimension="length",
-            default=0.0,
-        ),
-        Key("assembly", "closure", "text", default="open", choices=("open", "crossed")),
-    ),
-    required=True,
-)
-_QUICK_RETURN = Table(
-    "links",
-    "lengths between the pins, and of the rod",
-    (
-        _length("frame", "distance between the pivots of crank and rod"),
-        _length("crank", "length of the driven link"),
-        _length("rod", "length of the rod, which a block on the crank pin slides along"),
-    ),
-    required=True,
-)
-SLIDER_CRANK_LINKS = ("crank", "coupler", "slider")
-QUICK_RETURN_LINKS = ("crank", "block", "rod")
 _RIGID = ("kinematics", "forces")
 
 _COUPLER_PARAMETERS = {
@@ -338,7 +50,7 @@ _HILL_PARAMETERS = {"lam2": "dimensionless", "mu": "dimensionless", "damping": "
 RIGID_FOUR_BAR = Layout(
     "four_bar",
     _RIGID,
-    _rigid_tables(_GEOMETRY, LINKS[1:]),
+    rigid_tables(FOUR_BAR_LENGTHS, LINKS[1:]),
     outputs=(
         "theta3",
         "theta4",
@@ -354,14 +66,14 @@ RIGID_FOUR_BAR = Layout(
 SLIDER_CRANK = Layout(
     "slider_crank",
     _RIGID,
-    _rigid_tables(_SLIDER_CRANK, SLIDER_CRANK_LINKS),
+    rigid_tables(SLIDER_CRANK_LENGTHS, SLIDER_CRANK_LINKS),
     links=SLIDER_CRANK_LINKS,
 )
 
 QUICK_RETURN = Layout(
     "quick_return",
     _RIGID,
-    _rigid_tables(_QUICK_RETURN, QUICK_RETURN_LINKS),
+    rigid_tables(QUICK_RETURN_LENGTHS, QUICK_RETURN_LINKS),
     links=QUICK_RETURN_LINKS,
 )
 
@@ -369,13 +81,13 @@ FLEXIBLE_COUPLER = Layout(
     "four_bar",
     ("complete", "printed", "reduced"),
     (
-        _GEOMETRY,
-        _rigid("crank"),
-        _COUPLER,
-        _rigid("follower", inertia_required=True),
-        _GRAVITY,
-        _OPERATION,
-        _MEASURED,
+        FOUR_BAR_LENGTHS,
+        rigid_link("crank"),
+        COUPLER,
+        rigid_link("follower", inertia_required=True),
+        GRAVITY,
+        OPERATION,
+        MEASURED,
         chart_table(_COUPLER_PARAMETERS),
     ),
     flexible=("coupler",),
@@ -385,7 +97,7 @@ FLEXIBLE_COUPLER = Layout(
     closed_in_modes=True,
 )
 
-_ROD_TABLES = (ROD_LINKS, ROD, _OPERATION, chart_table(ROD_PARAMETERS))
+_ROD_TABLES = (ROD_LINKS, ROD, OPERATION, chart_table(ROD_PARAMETERS))
 FLEXIBLE_ROD = Layout(
     "quick_return",
     tuple(name for mechanism, name in DERIVED_AS if mechanism == "quick_return"),
@@ -435,7 +147,7 @@ HILL = Layout(
     parameters=_HILL_PARAMETERS,
 )
 
-_BEAM_TABLES = (MATERIAL, JOINTS, MESH, DAMPING, _ACTING_GRAVITY, _OPERATION)
+_BEAM_TABLES = (MATERIAL, JOINTS, MESH, DAMPING, ACTING_GRAVITY, OPERATION)
 
 
 def _beams(mechanism: str, geometry: Table, links: tuple[str, ...]) -> Layout:
@@ -457,12 +169,12 @@ def _beams(mechanism: str, geometry: Table, links: tuple[str, ...]) -> Layout:
     )
 
 
-FOUR_BAR_OF_BEAMS = _beams("four_bar", _GEOMETRY, LINKS[1:])
-SLIDER_CRANK_OF_BEAMS = _beams("slider_crank", _SLIDER_CRANK, SLIDER_CRANK_LINKS[:2])
+FOUR_BAR_OF_BEAMS = _beams("four_bar", FOUR_BAR_LENGTHS, LINKS[1:])
+SLIDER_CRANK_OF_BEAMS = _beams("slider_crank", SLIDER_CRANK_LENGTHS, SLIDER_CRANK_LINKS[:2])
 FRAME_OF_BEAMS = Layout(
     "frame",
     tuple(BEAM_FORMULATIONS),
-    (NODES, MEMBERS, FRAME, MATERIAL, MESH, DAMPING, _ACTING_GRAVITY),
+    (NODES, MEMBERS, FRAME, MATERIAL, MESH, DAMPING, ACTING_GRAVITY),
     closed_in_modes=True,
     named_drops=BEAM_DROPS,
 )

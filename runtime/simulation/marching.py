@@ -227,7 +227,8 @@ def _march_second_order(
 
     def arrays(theta: Array) -> list[Array]:
         found = second_order_at(form, theta)
-        parts = (found.mass[0], found.rate[0], found.stiffness[0], found.force[0])
+        force = found.force[0] if form.forced else np.zeros_like(found.force[0])
+        parts = (found.mass[0], found.rate[0], found.stiffness[0], force)
         return [np.broadcast_to(a, (len(theta), *a.shape[1:])) for a in parts]
 
     def maps(theta: Array) -> Array:

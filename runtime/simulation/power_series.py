@@ -15,23 +15,18 @@ from numpy.typing import NDArray
 
 from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import ordered_product
+from ..stretches import stretch_maps
+from ..stretches.power_series import MOST_TERMS
 from .generator_series import Expansion, GeneratorSeries, expansion, generator_series
 from .marching import MODERATE, Grid, March, Tick, cyclic, scaled_state, symplectic_defect
 
 Array = NDArray[np.float64]
 
-_EPS = float(np.finfo(float).eps)
 # How far the fastest mode turns within a stretch [rad]: in the motion, and in the other one that
 # tells its error.
 _PHASE, _LONG_PHASE = 4.0, 6.0
 # Stretches of a revolution: fewest, and most.
 _FEWEST, _MOST_STRETCHES = 4.0, 2**20
-# Where a series is cut relative to its unit, the last terms it may have, and its most terms.
-_CUT, _ENDED, _MOST_TERMS = 1e-17, 1e-15, 80
-# Most growth and decay within half a stretch, together.
-_MOST_GROWTH = 1e5
-# Terms that are not looked at, as none of them is the last.
-_TRUSTED = 10
 # Numbers held in one part of the work.
 _BLOCK_FLOATS = 600_000
 _CHUNK_FLOATS = 4_000_000
@@ -267,7 +262,7 @@ class _Run:
         width = 2 * pi / self._count
         blocks = -(-number // self._inside)
         tau = np.arange(1.0, self._inside + 1) * (2.0 / self._inside) - 1.0
-        held = max(_MOST_TERMS + self._expansion.powers, self._inside) * self._merged * m * m
+        held = max(MOST_TERMS + self._expansion.powers, self._inside) * self._merged * m * m
         together = max(1, _BLOCK_FLOATS // held)
         first = grid.start + 2 * pi * (done / grid.per_revolution)
         found = np.empty((blocks, self._inside, m, m))
@@ -275,7 +270,7 @@ class _Run:
             right = min(left + together, blocks)
             places = np.arange(left * self._merged, right * self._merged, dtype=np.float64)
             coefficients = self._expansion.about(first + width * (places + 0.5))
-            maps = _stretch_maps(coefficients, self._expansion.powers, tau)
+            maps = stretch_maps(coefficients, tau)
             if maps is None:
                 return None
             # Of each stretch: that of several may be too small for a number.
@@ -286,43 +281,6 @@ class _Run:
                 maps = np.ldexp(product, power[:, None, None])[:, None]
             found[left:right] = maps
         return found
-
-
-def _stretch_maps(coefficients: Array, powers: int, tau: Array) -> Array | None:
-    """Return the matrices from the left ends of stretches to places in them.
-
-    ``Y' = sum_j L_j tau^j Y`` on -1 < tau < 1 with Y(0) = 1 by powers of tau; coefficients side by
-    side, ``(k, m, powers m)``; shape ``(k, len(tau), m, m)``.  None where the series does not end.
-    """
-    count, m, _ = coefficients.shape
-    # The terms in falling order: the products of all coefficients are one product.
-    terms = np.empty((count, _MOST_TERMS + 1, m, m))
-    terms[:, _MOST_TERMS] = np.eye(m)
-    number, last = 0, 1.0
-    while last > _CUT and number < _MOST_TERMS:
-        number += 1
-        used, place = min(number, powers), _MOST_TERMS - number
-        behind = terms[:, place + 1 : place + 1 + used].reshape(count, used * m, m)
-        term = coefficients[:, :, : used * m] @ behind
-        term *= 1.0 / number
-        terms[:, place] = term
-        # Two terms, as every other one may be zero.
-        if number >= _TRUSTED and number % 2 == 0:
-            last = float(np.max(np.abs(terms[:, place : place + 2])))
-            if not np.isfinite(last):
-                return None
-    if last > _ENDED:
-        return None
-    places = np.concatenate([[-1.0], tau])
-    weights = places[:, None] ** np.arange(number, -1, -1.0)
-    flat = terms[:, _MOST_TERMS - number :].reshape(count, number + 1, m * m)
-    values = (weights @ flat).reshape(count, len(places), m, m)
-    begin = np.linalg.inv(values[:, 0])
-    # Growth within a stretch takes digits.
-    if not np.max(np.abs(begin)) * np.max(np.abs(values)) <= _MOST_GROWTH:
-        return None
-    maps: Array = values[:, 1:] @ begin[:, None]
-    return maps
 
 
 def _flows(blocks: Array) -> Array | None:

@@ -20,6 +20,7 @@ from itertools import islice
 from typing import Any
 
 from ..errors import ElastolinkError, bad
+from ..inputs import require_whole
 
 # Pieces handed over for each worker: one being done and one waiting.
 _EACH = 2
@@ -190,10 +191,7 @@ def check_workers(workers: object) -> None:
     BadInput
         If it is not a whole number from 1 to 1024.
     """
-    whole = isinstance(workers, int) and not isinstance(workers, bool)
-    if not whole or not 1 <= workers <= _MOST_WORKERS:  # type: ignore[operator]
-        fix = "give the number of cores"
-        raise bad("workers", repr(workers), f"a whole number from 1 to {_MOST_WORKERS}", fix)
+    require_whole("workers", workers, 1, _MOST_WORKERS, "give the number of cores")
 
 
 _prepared = threading.local()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
+from copy import copy
 from functools import partial
 from types import ModuleType
 from typing import Any, Protocol
@@ -189,6 +190,13 @@ class _Integrals:
             found[name] = self._basis.array(name, place)
         return found[name]
 
+    def with_functions(self, change: Callable[[Any], Any]) -> _Integrals:
+        """Return the same with its emitted functions changed, for example compiled."""
+        made = copy(self)
+        made._place, made._multiply = change(self._place), change(self._multiply)
+        made._last = None
+        return made
+
     def _product(self, name: str, place: Array, found: dict[str, Array]) -> Array:
         """Return a matrix that is made of products of vectors."""
         if name not in found:
@@ -228,6 +236,11 @@ class _Shared:
             table = {n: np.asarray(v) for n, v in zip(self.names, values, strict=True)}
             last = self._last = (theta.copy(), table)
         return last[1]
+
+    def with_functions(self, change: Callable[[Any], Any]) -> _Shared:
+        """Return the same with its emitted function changed, for example compiled."""
+        external = {name: change(given) for name, given in self._external.items()}
+        return _Shared(change(self._function), self.names, self._fixed, external)
 
 
 def _angle_kernels(

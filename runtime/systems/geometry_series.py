@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
 from ..families import Array, LinearPeriodic, Term
-from ..inputs import is_whole
+from ..inputs import require_whole
 
 ComplexArray = NDArray[np.complex128]
 
@@ -67,8 +67,7 @@ def taylor_in_geometry(
         raise bad("name", repr(name), f"one of {sorted(system.geometry)}", "correct it")
     if name in system.parameters:
         raise bad("name", repr(name), "no parameter of the same name", "rename it")
-    if not is_whole(order, 1, _HIGHEST):
-        raise bad("order", repr(order), f"a whole number from 1 to {_HIGHEST}", "choose 4")
+    require_whole("order", order, 1, _HIGHEST, "choose 4")
     if not (np.isfinite(reach) and reach > 0.0):
         raise bad("reach", reach, "a finite number above 0", "choose 0.2")
     count = 2 * _PLACES

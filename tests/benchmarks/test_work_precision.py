@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from elastolink.runtime.benchmarking import work_precision as work
-from elastolink.runtime.benchmarking.work_precision import peers, reference
+from elastolink.runtime.benchmarking.work_precision import method, peers, reference
 from elastolink.runtime.benchmarking.work_precision.method import Point
 from elastolink.runtime.benchmarking.work_precision.systems import case
 from elastolink.runtime.errors import BadInput
@@ -124,7 +124,7 @@ def test_the_reference_agrees_with_the_collocation_of_the_system() -> None:
     assert np.max(np.abs(half - reference.flows(equation, 1.0, 1)[-1])) <= 1e-16 * np.max(exact)
 
 
-@pytest.mark.parametrize("name", ["solve_ivp DOP853", "CVODE", "heyoka", "numba loop"])
+@pytest.mark.parametrize("name", ["solve_ivp DOP853", "CVODE", "heyoka", "numba loop", "Exudyn"])
 def test_every_peer_solves_the_same_equation(name) -> None:
     """Each gets to 1e-6 of the reference at a tight setting."""
     own = case("hill")
@@ -156,6 +156,21 @@ def test_a_problem_is_measured_from_end_to_end(task) -> None:
     assert found.plot() is not None
     assert f"hill-{task}" in found.full_table()
     assert set(found.to_dict()) >= {"points", "ratios"}
+
+
+def test_methods_that_refuse_and_peers_that_take_too_long_are_left_out_by_name(monkeypatch):
+    """A symplectic method that damping forbids; a peer with no patience left."""
+    monkeypatch.setattr(method, "PATIENCE", 0.0)
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        # Measured in this process, which knows of the patience.
+        monkeypatch.setenv(name, "1")
+    own = {"methods": ["srkn4"], "peers": ["solve_ivp DOP853", "CVODE"], "rounds": 1}
+    found = work.benchmark_work_precision(["quick-return-monodromy"], **own)
+    assert found.points == ()
+    reasons = {text.split(": ")[1]: text for text in found.absent}
+    assert "other first derivatives" in reasons["srkn4, fixed steps"]
+    assert "broken off after 0 s" in reasons["solve_ivp DOP853"]
+    assert "broken off after 0 s" in reasons["CVODE"]
 
 
 def test_methods_can_be_chosen() -> None:

@@ -9,7 +9,8 @@ from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.hill.cases.meissner import meissner_boundaries
 from elastolink.runtime.hill.cases.named import mathieu_characteristic
 from elastolink.runtime.hill.cases.piecewise import piecewise_approximation, piecewise_monodromy
-from elastolink.runtime.hill.cases.strutt import multiplier_surfaces, strutt_chart
+from elastolink.runtime.hill.cases.strutt import strutt_chart
+from elastolink.runtime.hill.cases.surfaces import multiplier_surfaces
 from elastolink.runtime.series.periodic import PeriodicFunction
 from honesty import verdict
 

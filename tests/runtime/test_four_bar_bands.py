@@ -3,6 +3,7 @@
 import elastolink as el
 import numpy as np
 import pytest
+from elastolink.runtime.families import LinearPeriodic, Term
 from elastolink.runtime.floquet import (
     characteristic_exponents,
     floquet_multipliers,
@@ -111,3 +112,23 @@ def test_maxima_swept_on_few_modes_are_those_of_the_whole_linkage():
     column = int(np.argmin(beside[1]))
     assert beside[1, column] < 5e-3
     assert np.all(np.max(whole.multipliers.real, axis=-1) <= whole.multipliers[1, column].real)
+
+
+@pytest.mark.parametrize("order", [1, 3])
+def test_coefficients_that_are_not_smooth_make_no_table(order):
+    """A jump of the stiffness, or of its third derivative: they are found one by one."""
+
+    def stiffness(theta):
+        wave = np.abs(np.sin(0.5 * (theta - 0.3))) ** (order - 1) * np.sign(np.sin(theta - 0.3))
+        return (30.0 + 9.0 * wave)[:, None, None] * np.diag([1.0, 2.0])
+
+    terms = (Term("M", None, np.eye(2)), Term("K", None, stiffness))
+    plain = LinearPeriodic(2, terms, {}, lambda values: {})
+    system = tabulated(plain, (1.0, 1.5))
+    if order == 1:
+        assert system.tables == ()
+    speeds = np.array([1.1, 1.4])
+    found, direct = monodromy(system, speeds, rtol=1e-6), monodromy(plain, speeds, rtol=1e-6)
+    gap = np.max(np.abs(found.scaled - direct.scaled), axis=(1, 2))
+    size = np.max(np.abs(direct.scaled), axis=(1, 2))
+    assert np.all(gap <= (found.error + direct.error) * size)

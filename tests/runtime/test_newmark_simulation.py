@@ -43,6 +43,20 @@ def test_a_wanted_error_is_reached_and_the_period_may_be_any(method):
     assert gap <= np.max(run.error) + np.max(other.error)
 
 
+@pytest.mark.parametrize("method", SECOND)
+def test_without_forcing_none_acts(method):
+    """The free motion of a forced system, beside that of the default method."""
+    system, speed, _ = manufactured(4)
+    start = ([1e-3] * system.size, 0.0)
+    given = {"initial": start, "forcing": False, "samples": 360}
+    run = simulate(system, speed, 1.0, method, steps=1440, **given)
+    other = simulate(system, speed, 1.0, **given)
+    forced = simulate(system, speed, 1.0, initial=start, samples=360)
+    gap, size = np.max(np.abs(run.q - other.q)), np.max(np.abs(other.q))
+    assert gap <= size * (np.max(run.error) + np.max(other.error)) <= 0.02 * size
+    assert np.max(np.abs(forced.q - other.q)) > 10.0 * gap
+
+
 def test_the_coefficients_are_the_same_by_series_and_at_even_angles():
     system, speed, _ = manufactured(5)
     form = canonical_form(system, speed, {}, forcing=True)

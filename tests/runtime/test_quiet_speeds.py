@@ -209,7 +209,8 @@ def test_the_error_of_the_safety_covers_that_of_amplitude_and_mean():
     found = fatigue(of_history(mean + size * np.cos(theta), error=off), STEEL)
     worse = fatigue(of_history(mean + off + (size + off) * np.cos(theta)), STEEL)
     actual = np.max(worse.amplitude) / np.max(found.amplitude) - 1.0
-    np.testing.assert_allclose(found.error, actual, rtol=1e-9)
+    # With what may lie between 512 angles: (2 pi/512)^4 * 3/128 of the size, 5e-9 of the error.
+    assert actual < found.error < actual * (1.0 + 1e-8)
     with pytest.raises(BadInput, match="not finite"):
         fatigue(of_history(np.full(64, np.nan)), STEEL)
     with pytest.raises(BadInput, match="StressResult"):

@@ -94,7 +94,7 @@ def test_multipliers_of_the_practical_range_are_on_the_circle(ratio, modes):
     """Every one of a definite signature, which no small change can bring off the circle."""
     speed = np.array([4.1, 7.7, 12.3, 16.9, 20.0])[modes - 2 :]
     rod = _rod(ratio, **{"model.modes": modes})
-    found = el.floquet_multipliers(rod, speed, rtol=1e-9)
+    found = el.floquet_multipliers(rod, speed, rtol=1e-10)
     assert found.signatures is not None
     assert np.all(np.abs(found.signatures) == 1)
     assert np.all(np.abs(np.log(np.abs(found.multipliers))) <= 2 * found.error)

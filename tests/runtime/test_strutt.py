@@ -5,7 +5,8 @@ import pytest
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.hill import multiplier_surfaces, strutt_chart
 from elastolink.runtime.hill.cases import strutt
-from elastolink.runtime.hill.cases.strutt import boundary_fitted_grid
+from elastolink.runtime.hill.cases.surfaces import boundary_fitted_grid
+from elastolink.runtime.hill.half_trace import discriminant
 from elastolink.runtime.hill.perturbation.thresholds import least_parameter
 from elastolink.runtime.plotting import new_figure
 from elastolink.runtime.series.periodic import PeriodicFunction
@@ -127,7 +128,7 @@ def test_figures_of_multipliers_hold_where_the_values_are_known():
 def test_the_fitted_grid_follows_the_boundaries():
     d, eps = boundary_fitted_grid((0.0, 18.0), np.linspace(0.0, 12.0, 13), per_band=6)
     assert d.shape == eps.shape and np.all(np.diff(d, axis=0) >= 0.0)
-    half = strutt.discriminant(strutt.COSINE, 0.25 * d, 0.25 * eps).value
+    half = discriminant(strutt.COSINE, 0.25 * d, 0.25 * eps).value
     chart = strutt_chart(d_range=(0.0, 18.0), eps_range=(0.0, 12.0), points=(3, 13))
     ends = np.concatenate([chart.lower[1:], chart.upper])
     for j in range(13):

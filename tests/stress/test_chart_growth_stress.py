@@ -149,7 +149,7 @@ def test_the_second_solution_is_another_one(basis):
     lines = Lines(sampler)
     low, high = 1.0 / speeds[1] ** 2, 1.0 / speeds[0] ** 2
     one, other = (lines._line(0.0, low, high, None, f).pieces[0] for f in (1.0, 1.37))
-    assert other.maps.shape[1] > one.maps.shape[1]
+    assert other.stretches.shape[1] > one.stretches.shape[1]
 
 
 def _characteristic_in_many_digits(matrix):

@@ -17,6 +17,9 @@ from elastolink.derive.spec import MANIFEST, read_manifest
 
 CODE = "import sys; from elastolink.derive.regenerate import main; sys.exit(main(sys.argv[1:]))"
 MODELS = ["hill_boundaries_first_order", "hill_plain"]
+# Enough to be still at work after the first of them, which is done within seconds.
+SEVERAL = ["four_bar_coupler_reduced", "four_bar_forces", "four_bar_kinematics", *MODELS]
+SEVERAL += ["quick_return_forces", "quick_return_kinematics", "slider_crank_kinematics"]
 
 
 def assert_truthful(folder):
@@ -132,11 +135,16 @@ def test_a_written_file_has_the_rights_of_any_other(tmp_path):
 def _interrupt(folder, jobs, delay):
     """Start a full run in a group of its own, as a terminal does, and interrupt the group."""
     process = subprocess.Popen(
-        [sys.executable, "-c", CODE, "--out", str(folder), "--jobs", str(jobs), "--force"],
+        [
+            *(sys.executable, "-c", CODE, *SEVERAL),
+            *("--out", str(folder), "--jobs", str(jobs), "--force"),
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # A runner that ignores interrupts itself hands that on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     started = process.stdout.readline() if delay is None else ""
     time.sleep(delay or 0.0)
@@ -172,7 +180,7 @@ def test_an_interrupt_at_any_time_leaves_the_truth(tmp_path):
 def test_a_kill_leaves_a_truthful_manifest_and_whole_files(tmp_path):
     """Nothing can be tidied up then; a temporary file may stay, but nothing false is listed."""
     process = subprocess.Popen(
-        [sys.executable, "-c", CODE, "--out", str(tmp_path), "--jobs", "1"],
+        [sys.executable, "-c", CODE, *SEVERAL, "--out", str(tmp_path), "--jobs", "1"],
         stdout=subprocess.PIPE,
         text=True,
     )

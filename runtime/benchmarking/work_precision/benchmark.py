@@ -5,8 +5,8 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 
-from ...errors import LinearRangeWarning, bad
-from ...integrators import METHODS
+from ...errors import ElastolinkWarning, bad
+from ...integrators import METHODS, SECOND_ORDER
 from ...results import Check
 from ..records import one_thread
 from . import constrained
@@ -28,6 +28,7 @@ def benchmark_work_precision(
     methods: Sequence[str] | None = None,
     peers: Sequence[str] | None = None,
     rounds: int = 5,
+    progress: bool = False,
 ) -> WorkPrecision:
     """Measure run time against error beside what a user would pick instead.
 
@@ -43,6 +44,8 @@ def benchmark_work_precision(
         Some of ``PEERS``; all by default.  Those that are not installed are named and left out.
     rounds : int
         How often each runs, in turn.
+    progress : bool
+        Whether to show how many methods of each problem are prepared.
 
     Returns
     -------
@@ -59,13 +62,15 @@ def benchmark_work_precision(
     unknown = sorted(set(peers or ()) - set(PEERS))
     if unknown:
         raise bad("peers", unknown, f"some of {list(PEERS)}", "correct the name")
-    known = {*METHODS, "monodromy", "simulate", "prepared", *STEADY, *constrained.METHODS}
+    known = {"monodromy", "simulate", "prepared"}
+    known |= {*METHODS, *SECOND_ORDER, *STEADY, *constrained.METHODS}
     odd = sorted(set(methods or ()) - known)
     if odd:
         raise bad("methods", odd, f"some of {sorted(known)}", "correct the name")
     if rounds < 1:
         raise bad("rounds", rounds, "a whole number from 1", "take 5")
-    return one_thread(_measure, chosen, methods, tuple(PEERS if peers is None else peers), rounds)
+    rivals = tuple(PEERS if peers is None else peers)
+    return one_thread(_measure, chosen, methods, rivals, rounds, progress)
 
 
 def selected(names: Sequence[str] | None) -> tuple[str, ...]:
@@ -99,6 +104,7 @@ def _measure(
     methods: Sequence[str] | None,
     peers: tuple[str, ...],
     rounds: int,
+    progress: bool,
 ) -> WorkPrecision:
     points: list[Point] = []
     titles: dict[str, str] = {}
@@ -106,11 +112,12 @@ def _measure(
     for name in names:
         problem = _problem(name, peers, methods)
         titles[name] = problem.title
-        absent += [f"{name}: {reason}" for reason in problem.absent]
         with warnings.catch_warnings():
-            # Resonant motions leave the linear range, for every contender alike.
-            warnings.simplefilter("ignore", LinearRangeWarning)
-            points += measured(problem, rounds)
+            # Long steps are meant; resonant motions leave the linear range for all alike.
+            warnings.simplefilter("ignore", ElastolinkWarning)
+            own, left_out = measured(problem, rounds, progress=progress)
+        points += own
+        absent += [f"{name}: {reason}" for reason in left_out]
     found = leads(points, titles)
     behind = [lead for lead in found if lead.lost and not lead.excused]
     return WorkPrecision(

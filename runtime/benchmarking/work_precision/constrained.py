@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import partial
+from importlib.util import find_spec
 from typing import Any, cast
 
 import numpy as np
@@ -11,7 +12,8 @@ import numpy as np
 from ...constrained import constrained_motion
 from ...families import Constrained
 from .equation import Array
-from .method import Method, Problem, Work
+from .exudyn_peer import Slope, integrated
+from .method import Method, Problem, Work, patient
 from .peers import TOLERANCES
 
 NAME = "constrained-trajectory"
@@ -21,7 +23,14 @@ _RTOL = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 _TIGHT = 1e-13
 # What the references in doubles may differ by at the least.
 _DIGITS = 1e-13
-_PEERS = ("solve_ivp DOP853", "solve_ivp Radau", "CVODE")
+# Peers with their settings, and the packages that they need.
+_STEPS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+_PEERS = {
+    "solve_ivp DOP853": (TOLERANCES, "scipy"),
+    "solve_ivp Radau": (TOLERANCES, "scipy"),
+    "CVODE": (TOLERANCES, "sksundae"),
+    "Exudyn": (_STEPS, "exudyn"),
+}
 
 
 def problem(peers: Iterable[str], methods: Iterable[str] | None) -> Problem:
@@ -60,18 +69,61 @@ def problem(peers: Iterable[str], methods: Iterable[str] | None) -> Problem:
     def theirs(peer: str, tolerance: float) -> Work:
         return lambda: _peer(peer, rod, start.q, start.qd, times, tolerance)
 
-    wanted = [peer for peer in peers if peer in _PEERS]
-    made += [Method(peer, partial(theirs, peer), TOLERANCES) for peer in wanted]
+    absent = []
+    for peer in peers:
+        settings, package = _PEERS.get(peer, ((), ""))
+        if not settings:
+            absent.append(f"{peer}: needs the equation as a Fourier series")
+        elif find_spec(package) is None:
+            absent.append(f"{peer}: not installed")
+        else:
+            made.append(Method(peer, partial(theirs, peer), settings))
     digits = max(_DIGITS, error(again))
     title = "a revolution of the flexible rod of Beale & Scott in a floating frame, two modes"
-    absent = tuple(f"{p}: needs the equation as a Fourier series" for p in peers if p not in _PEERS)
-    return Problem(NAME, title, error, digits, tuple(made), absent)
+    return Problem(NAME, title, error, digits, tuple(made), tuple(absent))
 
 
 def _peer(
-    name: str, system: Constrained, q: Array, qd: Array, times: Array, tolerance: float
+    name: str, system: Constrained, q: Array, qd: Array, times: Array, setting: float
 ) -> Array:
     """Return the coordinates by a general integrator of the accelerations."""
+    n = system.size
+    slope = patient(_slope(system))
+    state = np.concatenate([q, qd])
+    if name == "Exudyn":
+        return integrated(slope, state, times, int(setting))[:, :n]
+    speeds = np.abs(qd) + np.max(np.abs(q)) / times[-1]
+    absolute = 1e-2 * setting * np.concatenate([np.maximum(np.abs(q), 1e-3), speeds])
+    if name == "CVODE":
+        return _sundials(slope, state, times, (setting, absolute))[:, :n]
+    from scipy.integrate import solve_ivp
+
+    scheme: Any = name.rpartition(" ")[2]
+    found = solve_ivp(
+        slope,
+        (times[0], times[-1]),
+        state,
+        method=scheme,
+        t_eval=times,
+        rtol=max(setting, 3e-14),
+        atol=absolute,
+    )
+    return np.asarray(found.y.T[:, :n])
+
+
+def _sundials(slope: Slope, state: Array, times: Array, tolerances: tuple[float, Array]) -> Array:
+    from sksundae.cvode import CVODE
+
+    def into(t: float, state: Array, out: Array) -> None:
+        out[:] = slope(t, state)
+
+    rtol, atol = max(tolerances[0], 1e-15), tolerances[1]
+    solver = CVODE(into, method="Adams", rtol=rtol, atol=atol, max_num_steps=10**7)
+    return np.asarray(solver.solve(times, state).y)
+
+
+def _slope(system: Constrained) -> Slope:
+    """Return the function from time and state (q, qd) to its rate."""
     n = system.size
 
     def slope(t: float, state: Array) -> Array:
@@ -83,29 +135,4 @@ def _peer(
         right = np.concatenate([at["forces"] - at["rest"], at["gamma"]])[:, 0]
         return np.concatenate([state[n:], np.linalg.solve(matrix, right)[:n]])
 
-    state = np.concatenate([q, qd])
-    speeds = np.abs(qd) + np.max(np.abs(q)) / times[-1]
-    absolute = 1e-2 * tolerance * np.concatenate([np.maximum(np.abs(q), 1e-3), speeds])
-    if name == "CVODE":
-        from sksundae.cvode import CVODE
-
-        def into(t: float, state: Array, out: Array) -> None:
-            out[:] = slope(t, state)
-
-        solver = CVODE(
-            into, method="Adams", rtol=max(tolerance, 1e-15), atol=absolute, max_num_steps=10**7
-        )
-        return np.asarray(solver.solve(times, state).y)[:, :n]
-    from scipy.integrate import solve_ivp
-
-    scheme: Any = name.rpartition(" ")[2]
-    found = solve_ivp(
-        slope,
-        (times[0], times[-1]),
-        state,
-        method=scheme,
-        t_eval=times,
-        rtol=max(tolerance, 3e-14),
-        atol=absolute,
-    )
-    return np.asarray(found.y.T[:, :n])
+    return slope

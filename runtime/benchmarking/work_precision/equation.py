@@ -5,6 +5,7 @@ Peers get the series ready made, and so does the reference; this toolkit starts 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,6 +82,10 @@ class Equation:
         value: Array = np.tensordot(np.cos(angle), self.a, 1)
         value += np.tensordot(np.sin(angle), self.b, 1)
         return value
+
+    def slope(self, shape: tuple[int, ...]) -> Callable[[float, Array], Array]:
+        """Return the function from an angle and a flattened state of a shape to y'."""
+        return lambda theta, flat: np.asarray((self.at(theta) @ flat.reshape(shape)).ravel())
 
     def start(self, q: Array, slope: Array) -> Array:
         """Return the state of coordinates and their derivatives d/dtheta at angle 0."""

@@ -3,22 +3,43 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...errors import BadInput
+from ...progress import bar
+
 Array = NDArray[np.float64]
 Work = Callable[[], Any]
 
 # A method is not asked for more digits where a run took longer [s].
-_LONGEST = 5.0
+_LONGEST = 2.0
+# A run that may be broken off is, after this [s].
+PATIENCE = 20.0
 # Runs longer than this [s] are timed once.
 _ONCE = 1.0
 # Runs shorter than this [s] are repeated in a round until they have taken as long.
 _SHORT = 2e-3
+
+
+class TooLongError(Exception):
+    """A run took longer than ``PATIENCE``."""
+
+
+def patient(slope: Callable[[float, Array], Array]) -> Callable[[float, Array], Array]:
+    """Return a slope that raises TooLongError once ``PATIENCE`` has passed since now."""
+    end = time.perf_counter() + PATIENCE
+
+    def limited(place: float, state: Array) -> Array:
+        if time.perf_counter() > end:
+            raise TooLongError
+        return slope(place, state)
+
+    return limited
 
 
 @dataclass(frozen=True)
@@ -116,14 +137,22 @@ class _Run:
     times: list[float] = field(default_factory=list)
 
 
-def measured(problem: Problem, rounds: int) -> list[Point]:
-    """Return every method at every setting that it reached, timed in turn."""
-    runs = [run for method in problem.methods for run in _prepared(problem, method)]
+def measured(
+    problem: Problem, rounds: int, *, progress: bool = False
+) -> tuple[list[Point], list[str]]:
+    """Return every method at every setting that it reached, timed in turn; and who is left out."""
+    runs: list[_Run] = []
+    left_out = list(problem.absent)
+    for method in _shown(problem, progress):
+        found, reason = _prepared(problem, method)
+        runs += found
+        if not found:
+            left_out.append(f"{method.name}: {reason}")
     for _ in range(rounds):
         for run in runs:
             if not run.times or run.times[0] < _ONCE:
                 run.times.append(_timed(run.work, run.repeats))
-    return [
+    points = [
         Point(
             problem.name,
             run.method.name,
@@ -135,15 +164,33 @@ def measured(problem: Problem, rounds: int) -> list[Point]:
         )
         for run in runs
     ]
+    return points, left_out
 
 
-def _prepared(problem: Problem, method: Method) -> list[_Run]:
-    """Return the runs of a method, until one takes too long."""
+def _shown(problem: Problem, progress: bool) -> Iterator[Method]:
+    """Yield the methods, told of on a progress bar."""
+    with bar(progress, len(problem.methods), unit=f" methods of {problem.name}") as tick:
+        for done, method in enumerate(problem.methods, 1):
+            yield method
+            if tick is not None:
+                tick(done)
+
+
+def _prepared(problem: Problem, method: Method) -> tuple[list[_Run], str]:
+    """Return the runs of a method, until one takes too long; and why there is no other."""
     runs: list[_Run] = []
+    reason = "no setting gave a finite result"
     for setting in method.settings:
         begin = time.perf_counter()
-        work = method.prepare(setting)
-        error = problem.error(work())
+        try:
+            work = method.prepare(setting)
+            error = problem.error(work())
+        except TooLongError:
+            reason = f"broken off after {PATIENCE:g} s"
+            break
+        except BadInput as refused:
+            reason = str(refused)
+            break
         first = time.perf_counter() - begin
         single = _timed(work, 1)
         if np.isfinite(error):
@@ -153,7 +200,7 @@ def _prepared(problem: Problem, method: Method) -> list[_Run]:
             runs.append(_Run(method, setting, work, error, repeats, preparation, known))
         if single > _LONGEST:
             break
-    return runs
+    return runs, reason
 
 
 def _timed(work: Work, repeats: int) -> float:

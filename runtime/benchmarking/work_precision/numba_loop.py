@@ -13,6 +13,18 @@ from .equation import Array
 _STAGES = 12
 
 
+def _sum_series(values: Array, a: Array, b: Array, angle: float) -> None:
+    """Enter the values at an angle of Fourier series, a row each."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    for e in range(len(values)):
+        values[e] = a[e, 0]
+    c, s = 1.0, 0.0
+    for k in range(1, a.shape[1]):
+        c, s = c * cos - s * sin, s * cos + c * sin
+        for e in range(len(values)):
+            values[e] += a[e, k] * c + b[e, k] * s
+
+
 @cache
 def compiled_loop() -> Callable[..., Array] | None:
     """Return the compiled loop, or None where numba is not installed.
@@ -72,16 +84,6 @@ def compiled_loop() -> Callable[..., Array] | None:
             found[k] = state
         return found
 
-    def entries(values: Array, a: Array, b: Array, angle: float) -> None:
-        cos, sin = np.cos(angle), np.sin(angle)
-        for e in range(len(values)):
-            values[e] = a[e, 0]
-        c, s = 1.0, 0.0
-        for k in range(1, a.shape[1]):
-            c, s = c * cos - s * sin, s * cos + c * sin
-            for e in range(len(values)):
-                values[e] += a[e, k] * c + b[e, k] * s
-
-    _entries = numba.njit(entries, fastmath=True)
+    _entries = numba.njit(_sum_series, fastmath=True)
     compiled: Callable[..., Array] = numba.njit(loop, fastmath=True)
     return compiled

@@ -1,17 +1,20 @@
 """What a user would pick instead: SciPy, SUNDIALS, heyoka, and a compiled loop by hand.
 
-Each gets the Fourier series of L ready made; compilation is not timed.  A peer that is not
-installed returns None.
+Each gets the Fourier series of L ready made; compilation is not timed.  A peer returns None
+where :func:`absence` has a reason.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 
 from .equation import Array, Equation
+from .exudyn_peer import exudyn_rk67
+from .method import patient
 from .numba_loop import compiled_loop
 
 # From a start ``(m, columns)`` and rising angles to the states ``(angles, m, columns)``.
@@ -22,6 +25,23 @@ Peer = Callable[[Equation, float], Solve | None]
 _COMPACT, _MOST_TERMS = 6, 20_000
 # Absolute tolerance over the relative one; states are scaled.
 _ABSOLUTE = 1e-2
+# What must be installed; SciPy always is.
+_NEEDED = {
+    "CVODE": "sksundae",
+    "heyoka": "heyoka",
+    "heyoka batch": "heyoka",
+    "numba loop": "numba",
+    "Exudyn": "exudyn",
+}
+
+
+def absence(name: str, equation: Equation) -> str | None:
+    """Return why a peer is left out of an equation, None where it is not; nothing is compiled."""
+    needed = _NEEDED.get(name)
+    if needed is not None and find_spec(needed) is None:
+        return "not installed"
+    terms = np.count_nonzero(equation.a) + np.count_nonzero(equation.b)
+    return "too many terms" if needed == "heyoka" and terms > _MOST_TERMS else None
 
 
 def scipy_method(name: str) -> Peer:
@@ -34,10 +54,7 @@ def scipy_method(name: str) -> Peer:
 
         def solve(start: Array, angles: Array) -> Array:
             shape = start.shape
-
-            def slope(theta: float, flat: Array) -> Array:
-                return np.asarray((equation.at(theta) @ flat.reshape(shape)).ravel())
-
+            slope = patient(equation.slope(shape))
             options: dict[str, Any] = {}
             if name == "Radau" and shape[1] == 1:
                 options["jac"] = lambda theta, _: equation.at(theta)
@@ -60,20 +77,21 @@ def scipy_method(name: str) -> Peer:
 
 def sundials(equation: Equation, tolerance: float) -> Solve | None:
     """Return CVODE of scikit-sundae: Adams, BDF where the system is stiff."""
-    try:
-        from sksundae.cvode import CVODE
-    except ImportError:
+    if absence("CVODE", equation):
         return None
+    from sksundae.cvode import CVODE
+
     stiff = equation.rate > 100.0
 
     def solve(start: Array, angles: Array) -> Array:
         shape = start.shape
+        slope = patient(equation.slope(shape))
 
-        def slope(theta: float, flat: Array, out: Array) -> None:
-            out[:] = (equation.at(theta) @ flat.reshape(shape)).ravel()
+        def into(theta: float, flat: Array, out: Array) -> None:
+            out[:] = slope(theta, flat)
 
         solver = CVODE(
-            slope,
+            into,
             method="BDF" if stiff else "Adams",
             rtol=max(tolerance, 1e-15),
             atol=_ABSOLUTE * tolerance,
@@ -164,12 +182,10 @@ def by_hand(equation: Equation, steps: float) -> Solve | None:
 
 
 def _heyoka_system(equation: Equation) -> tuple[Any, list[Any]] | None:
-    try:
-        import heyoka as hy
-    except ImportError:
+    if absence("heyoka", equation):
         return None
-    if np.count_nonzero(equation.a) + np.count_nonzero(equation.b) > _MOST_TERMS:
-        return None
+    import heyoka as hy
+
     m = equation.states
     state = hy.make_vars(*(f"y{i}" for i in range(m)))
     state = list(state) if m > 1 else [state]
@@ -203,11 +219,12 @@ PEERS: Mapping[str, Peer] = {
     "heyoka": heyoka_scalar,
     "heyoka batch": heyoka_batch,
     "numba loop": by_hand,
+    "Exudyn": exudyn_rk67,
 }
 
 
 def settings_of(name: str, equation: Equation) -> tuple[float, ...]:
     """Return the settings of a peer, from loose to tight."""
-    if name != "numba loop":
+    if name not in ("numba loop", "Exudyn"):
         return TOLERANCES
     return tuple(float(round(2.0 * np.pi * max(equation.rate, 1.0) * s)) for s in _STEPS)

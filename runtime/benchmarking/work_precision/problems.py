@@ -15,14 +15,14 @@ from ...families import LinearPeriodic
 from ...floquet import monodromy
 from ...floquet.first_order import CanonicalForm, canonical_form, even_angles
 from ...floquet.period_products import ordered_product
-from ...integrators import METHODS
+from ...integrators import METHODS, SECOND_ORDER
 from ...prepared import Prepared, prepare
 from ...response import steady_state
 from ...simulation import simulate
 from . import reference
 from .equation import Array, Equation
 from .method import Method, Problem, Work
-from .peers import PEERS, Solve, settings_of
+from .peers import PEERS, Solve, absence, settings_of
 from .systems import Case, case
 
 # Angles of a revolution at which motions are compared.
@@ -60,10 +60,12 @@ def trajectory(name: str, peers: Iterable[str], methods: Iterable[str] | None) -
     )
 
     def run(method: str, steps: float) -> Work:
-        return partial(march, method=method, steps=_EACH * max(1, round(steps / _EACH)))
+        return partial(march, method=method, steps=int(steps))
 
+    # All angles are ends of steps.
+    counts = {_EACH * max(1.0, float(round(s / _EACH))): None for s in _step_counts(equation.rate)}
     ours = [
-        Method(f"simulate, {method}", partial(run, method), _step_counts(equation.rate), ours=True)
+        Method(f"simulate, {method}", partial(run, method), tuple(counts), ours=True)
         for method in _marching(methods)
     ]
 
@@ -181,7 +183,8 @@ def steady(name: str, peers: Iterable[str], methods: Iterable[str] | None) -> Pr
     ours = [
         Method(f"steady_state, {m}", partial(run, m), _RTOL, ours=True)
         for m in STEADY
-        if _wanted(methods, m)
+        # Shooting follows the fastest mode: minutes where the system is stiff.
+        if _wanted(methods, m) and (m != "shooting" or equation.rate < _STIFF)
     ]
     if _wanted(methods, "prepared"):
         ours += _prepared(
@@ -254,19 +257,17 @@ def chart(name: str, peers: Iterable[str], methods: Iterable[str] | None) -> Pro
     def ours(_: float) -> Work:
         return partial(stability_chart, own.system, *values)
 
-    def many(peer: str) -> Method | None:
+    def many(peer: str) -> Method:
         def prepare(setting: float) -> Work:
             solves = [PEERS[peer](e, setting) for e in equations]
             unit, ends = np.eye(equations[0].states), np.array([0.0, equations[0].period])
             return lambda: np.stack([s(unit, ends)[-1] for s in solves if s is not None])
 
-        if PEERS[peer](equations[0], 1e-4) is None:
-            return None
         return Method(peer, prepare, settings_of(peer, equations[0]), share=share)
 
-    found = {peer: many(peer) for peer in peers if peer != "heyoka"}
-    absent = tuple(f"{p}: not installed" for p, method in found.items() if method is None)
-    others = [method for method in found.values() if method is not None]
+    reasons = {peer: absence(peer, equations[0]) for peer in peers if peer != "heyoka"}
+    absent = tuple(f"{peer}: {reason}" for peer, reason in reasons.items() if reason)
+    others = [many(peer) for peer, reason in reasons.items() if not reason]
     size = " x ".join(f"{axis[3]} values of {axis[0]}" for axis in own.chart)
     title = f"stability over {size}, {own.title}"
     first = Method("stability_chart", ours, (0.0,), ours=True)
@@ -315,8 +316,8 @@ def _peers(
     for peer in wanted:
         if peer == unsuited:
             continue
-        if PEERS[peer](equation, settings_of(peer, equation)[0]) is None:
-            absent.append(f"{peer}: not installed, or too many terms")
+        if reason := absence(peer, equation):
+            absent.append(f"{peer}: {reason}")
             continue
 
         def prepare(setting: float, peer: str = peer) -> Work:
@@ -357,7 +358,8 @@ def _stepping(methods: Iterable[str] | None) -> list[str]:
 
 
 def _marching(methods: Iterable[str] | None) -> list[str]:
-    return [name for name in _stepping(methods) if name != "kutta_merson"]
+    """Return the methods with fixed steps of ``simulate`` that are wanted."""
+    return [name for name in (*METHODS, *SECOND_ORDER) if _wanted(methods, name)]
 
 
 TASKS: dict[str, Callable[[str, Iterable[str], Iterable[str] | None], Problem]] = {

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..first_order import CanonicalForm
+from ..monodromy_matrix import symplectic_unit
 from .frames import Frames, angle_slope, stiffness_in
 
 Array = NDArray[np.float64]
@@ -191,7 +192,7 @@ def _one(
 
 def _hamiltonian(generator: Array) -> Array:
     """Return the part of a generator that is J times a symmetric matrix."""
-    unit = _unit(generator.shape[-1] // 2)
+    unit = symplectic_unit(generator.shape[-1] // 2)
     energy = -unit @ generator
     value: Array = unit @ (0.5 * (energy + np.swapaxes(energy, -1, -2)))
     return value
@@ -205,11 +206,6 @@ def _cancelled(form: CanonicalForm, frames: Frames, scale: Array, row: int) -> f
         return 0.0
     slow = np.abs(frames.basis[every, :, : frames.modes]) * scale[: frames.modes]
     return float(np.max(stiffness_in(slow, np.abs(held[0]))))
-
-
-def _unit(n: int) -> Array:
-    value: Array = np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
-    return value
 
 
 class _Riccati:
@@ -323,8 +319,8 @@ def _canonical(parts: Array, w: Array, k: int, period: float) -> tuple[Array, Ar
     The columns (1, W) carry the form W^T J W + J; the inverse root of J^-1 times it makes them
     canonical.  It is a polynomial limit of it, so it is as smooth.
     """
-    unit_s = _unit(k)
-    unit_f = _unit((parts.shape[-1] - 2 * k) // 2)
+    unit_s = symplectic_unit(k)
+    unit_f = symplectic_unit((parts.shape[-1] - 2 * k) // 2)
     form = np.eye(2 * k) - unit_s @ (np.swapaxes(w, -1, -2) @ unit_f @ w)
     turn = _inverse_root(form)
     columns = np.concatenate([np.broadcast_to(np.eye(2 * k), form.shape), w], axis=-2)

@@ -16,7 +16,7 @@ from ...results import Check, provenance
 from ..eigenvalues import conditions, spectrum
 from ..first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from ..krein import krein_signatures
-from ..monodromy_matrix import FloquetMultipliers
+from ..monodromy_matrix import FloquetMultipliers, symplectic_unit
 from ..period_products import STAGES, ordered_product
 from .blocks import Slow, slow_part
 from .fourier import PeriodicSeries
@@ -379,7 +379,7 @@ def integrated(slow: Slow, k: int, period: float, rate: float, rtol: float) -> S
         if error <= 0.3 * rtol or stuck or 2 * number > _MOST_SEGMENTS:
             break
         before, last = fine, change
-    levels = -_unit(k) @ slow.generator[0, :: max(1, len(slow.generator[0]) // _STATIONS)]
+    levels = -symplectic_unit(k) @ slow.generator[0, :: max(1, len(slow.generator[0]) // _STATIONS)]
     return SlowMonodromy(
         matrix=fine[-1],
         stations=fine[:-1],
@@ -391,11 +391,6 @@ def integrated(slow: Slow, k: int, period: float, rate: float, rtol: float) -> S
         rounding=period * float(slow.rounding[0]) + _EPS * (8.0 + 0.5 * number),
         drift=float(slow.drift[0]),
     )
-
-
-def _unit(n: int) -> Array:
-    value: Array = np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
-    return value
 
 
 def _stations(series: PeriodicSeries, segments: int, period: float) -> Array:
@@ -457,7 +452,7 @@ def _checks(found: list[SlowMonodromy], rtol: float, conservative: bool) -> Mapp
     if conservative:
         defects, limits = [], []
         for one in found:
-            unit = _unit(one.modes)
+            unit = symplectic_unit(one.modes)
             gap = one.matrix.T @ unit @ one.matrix - unit
             defects.append(float(np.linalg.norm(gap) / np.linalg.norm(one.matrix) ** 2))
             limits.append(16 * one.modes * max(one.rounding, 64 * _EPS))

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import bad
 from ...families import LinearPeriodic
+from ...inputs import require_whole
 from ...results import DeferredChecks, Result, provenance
 from ..first_order import canonical_form, numbers
 from .checks import Places, TongueChecks
@@ -117,10 +118,9 @@ class Tongue(Result):
 
         Ranges without an end are left out.
         """
-        if ax is None:
-            from matplotlib.figure import Figure
+        from ...plotting import axes_or_new
 
-            ax = Figure().add_subplot()
+        ax = axes_or_new(ax)
         speed = self.resonance.detuning == "speed"
         unit = 30 / np.pi if speed else 1.0
         bounded = np.isfinite(self.upper.ravel())
@@ -199,8 +199,7 @@ def tongue(
     -----
     Smith, chapter 9, suggestion 1; Smith (7.12)-(7.18) for one mode.
     """
-    if isinstance(order, bool) or not isinstance(order, int) or not 1 <= order <= HIGHEST - 2:
-        raise bad("order", repr(order), f"a whole number from 1 to {HIGHEST - 2}", "choose 2")
+    order = require_whole("order", order, 1, HIGHEST - 2, "choose 2")
     apart = numbers("merge", merge)
     if apart.shape != () or not 0 <= apart < 0.5:
         raise bad("merge", merge, "a number from 0 to below 0.5", "choose 0.04")

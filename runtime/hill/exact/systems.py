@@ -160,15 +160,13 @@ def _matrices(
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """Return the factors of 1, sigma and sigma^2, each ``(n (2H + 1), n (2H + 1))``."""
     n, count = system.size, 2 * harmonics + 1
-    numbers = np.arange(-harmonics, harmonics + 1)
-    rate: ComplexArray = np.asarray(2j * pi / system.period * numbers, dtype=complex)
+    numbers = np.arange(-harmonics, harmonics + 1, dtype=np.float64)
+    rate: Array = 2.0 * pi / system.period * numbers
     out = np.zeros((3, count, n, count, n), dtype=complex)
     for wave in found:
         scale = speed**wave.exponent
-        for shift, block in enumerate(wave.coefficients, start=-wave.reach):
-            rows = np.arange(max(0, shift), min(count, count + shift))
-            columns = rows - shift
-            left, right = rate[rows][:, None, None], rate[columns][:, None, None]
+        for rows, columns, block, *sides in wave.placed(rate):
+            left, right = (np.asarray(1j * side, dtype=complex) for side in sides)
             for power, entry in enumerate(_powers(wave.array, block, left, right)):
                 out[power, rows, :, columns, :] += scale * entry
     zero, first, second = out.reshape(3, count * n, count * n)

@@ -23,6 +23,7 @@ from ..transfer import EPS
 from .boundaries import amplitudes_of, check_order, combined, parameters_of
 from .effective import effective_operator
 from .orders import BEYOND, Components, contraction, uniform
+from .pair_solutions import direction, reduced_solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -261,7 +262,9 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
     half = float(ends.half[0]) * (1.0 if end == "upper" else -1.0)
     sum_a, sum_b = complex(a[:order].sum()), complex(b[:order].sum())
     lost = float(np.abs(a[order:]).sum() + np.abs(b[order:]).sum() + noise[0])
-    phase, turn, degenerate = _direction(sum_a, sum_b, half, lost, end) if n else (0.0, 0.0, False)
+    phase, turn, degenerate = (
+        direction(sum_a.imag, sum_b, (lost, lost), end) if n else (0.0, 0.0, False)
+    )
     _, columns = operator.solution(at)
     u = np.exp(1j * phase)
     every = u * columns
@@ -279,22 +282,6 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
     residual = _residual(f, v, lam2, damping)
     rounding = 4.0 * EPS * float((np.abs(v) * (np.abs(k * k - lam2) + reach)).sum())
     return _Found(n, lam2, damping, v, error, residual, predicted + rounding, degenerate)
-
-
-def _direction(
-    a: complex, b: complex, half: float, lost: float, end: End
-) -> tuple[float, float, bool]:
-    """Return the phase of the eigenvector, its error, and whether it is arbitrary.
-
-    ``A u + B conj(u) = (Re A + half) u`` with ``u = exp(i phase)``.
-    """
-    size = abs(b)
-    if size <= lost:
-        return (0.0 if end == "upper" else 0.5 * np.pi), 0.0, True
-    phase = -0.5 * float(np.angle((half - 1j * a.imag) / b))
-    near = np.arcsin(min(1.0, abs(a.imag) / size))
-    far = np.arcsin(min(1.0, (abs(a.imag) + lost) / (size - lost)))
-    return phase, 0.5 * float(np.arcsin(lost / size) + far - near), False
 
 
 def _refuse(n: int, order: int, outside: bool, closed: bool) -> None:
@@ -317,6 +304,13 @@ def _exact(f: PeriodicFunction, n: int, end: End, damping: float) -> _Found:
     target, slack = float(getattr(bounds, end)[0]), float(bounds.error[0])
     if np.isnan(target):
         _refuse(n, 0, outside=False, closed=True)
+    near = reduced_solution(f, n, target, slack, damping, end) if n else None
+    if near is not None:
+        v = near.coefficients
+        norm = _rounding_norm(f, v, target)
+        noise = 4.0 * EPS * norm + (slack + f.error) * float(np.linalg.norm(v))
+        residual = _residual(f, v, target, damping)
+        return _Found(n, target, damping, v, near.error, residual, noise, near.degenerate)
     harmonic = 8 + n + int(2.0 * np.sqrt(f.bound())) + min(f.harmonics, 64)
     best: _Found | None = None
     while harmonic <= LARGEST:
@@ -334,6 +328,12 @@ def _exact(f: PeriodicFunction, n: int, end: End, damping: float) -> _Found:
         f"a problem that {LARGEST} harmonics settle",
         "truncate the function or take a smaller mu",
     )
+
+
+def _rounding_norm(f: PeriodicFunction, v: Complex, lam2: float) -> float:
+    """Return what round-off, relative to each term, is multiplied by in the residual."""
+    k = np.arange(v.size) - 0.5 * (v.size - 1)
+    return float(np.abs(v) @ (k * k + abs(lam2) + f.bound()))
 
 
 def _damped_matrix(
@@ -358,30 +358,47 @@ def _null(
 ) -> _Found:
     """Return the null vector of Hill's matrix less the boundary, with its error figure."""
     n, target, damping, end = where
-    _, sizes, right = np.linalg.svd(matrix)
+    left, sizes, right = np.linalg.svd(matrix)
     x, gap = right[-1], float(sizes[-2])
-    norm = float(np.abs(right[-1]) @ (squares + abs(target) + f.bound()))
-    noise = 4.0 * EPS * norm + slack + f.error
-    degenerate = n > 0 and gap <= 4.0 * noise
+    noise = 4.0 * EPS * float(np.abs(x) @ (squares + abs(target) + f.bound()))
+    doubt = slack + f.error
+    degenerate = gap <= 4.0 * (noise + doubt)
     if degenerate:
         # Any mixture will do: the one that is nearest to the cosine, or to the sine.
-        first = n - 1
+        first = max(n - 1, 0)
         pair = right[-2:]
         x = pair[:, first + (end == "lower")] @ pair
         x, gap = x / np.linalg.norm(x), float(sizes[-3])
         # The decomposition leaves round-off of the largest entries of the matrix in the tail.
         x[np.abs(x) < 4.0 * EPS] = 0.0
         noise += 4.0 * EPS * float(squares[x != 0.0].max())
+        wrong = float(np.linalg.norm(matrix @ x)) + noise + doubt
     else:
         # Elimination, row by row, does not: one step of inverse iteration cleans it.
-        matrix[np.diag_indices_from(matrix)] += EPS * (1.0 + abs(target))
-        y = np.linalg.solve(matrix, x)
+        shifted = matrix.copy()
+        shifted[np.diag_indices_from(matrix)] += EPS * (1.0 + abs(target))
+        y = np.linalg.solve(shifted, x)
         x = y / np.linalg.norm(y)
+        gap -= doubt
+        wrong = _own_residual(matrix, left[:, -1], x, noise, damping > 0.0) + f.error
     v = _exponentials(x, n % 2)
     residual = _residual(f, v, target, damping)
     spread = np.sqrt(2.0 * np.count_nonzero(np.abs(x) > EPS))
-    error = float(spread) * (2.0 * (residual + slack + f.error) / gap + 4.0 * EPS)
-    return _Found(n, target, damping, v, error, residual, noise, degenerate)
+    error = float(spread) * (2.0 * wrong / gap + 4.0 * EPS)
+    return _Found(n, target, damping, v, error, residual, noise + doubt, degenerate)
+
+
+def _own_residual(matrix: Array, left: Array, x: Array, noise: float, damped: bool) -> float:
+    """Return a bound of the residual of a null vector with its own eigenvalue.
+
+    What the boundary itself is wrong by turns the vector not at all.
+    """
+    image = matrix @ x
+    along = float(left @ x)
+    own = float(left @ image) / along if damped else float(x @ image)
+    wrong = float(np.linalg.norm(image - own * x)) + noise
+    # The eigenvectors of a symmetric matrix are at right angles: there this error is along x.
+    return wrong + noise / abs(along) if damped else wrong
 
 
 def _exponentials(x: Array, odd: int) -> Complex:

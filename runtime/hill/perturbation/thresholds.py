@@ -6,7 +6,7 @@ above a critical damping.  Exactly, and to any order up to 8.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -14,35 +14,24 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import BadInput, bad
+from ...errors import bad
 from ...results import Check, DeferredChecks, Result, provenance
 from ...series.periodic import PeriodicFunction
 from ..exact.matrix import check_regions, hill_boundaries
-from ..exact.roots import crossing
 from ..half_trace import arguments, check_function
-from ..transfer import EPS
 from .boundaries import HIGHEST, check_order
 from .closing import Closing, exact_closing, order_closing
 from .effective import effective_operator
+from .opening_search import FARTHEST, Closings, first_opening
 from .orders import BEYOND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-Closings = Callable[[Array], Closing]
 
-# Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
-# many times the square of the region's number.
-_PER_DECADE = 24
-_FARTHEST = 16.0
-# How often a maximum between those values is looked at more closely, and by how much.
-_ZOOMS, _ZOOM = 3, 8
 _SAMPLE = 24
-# Where the search begins without damping: there any width will do.
-_SMALLEST = 1e-3
 # With more harmonics order 8 takes longer than it is worth.
 _MOST_HARMONICS = 200
 
@@ -278,8 +267,10 @@ def least_parameter(
     flat = np.broadcast_to(k, shape).ravel()
     reach = float(f.amplitudes[1:].sum())
     scale = max(max(numbers, default=1), float(flat.max(initial=0.0)))
-    top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
-    rows = [_least(_closings(f, n, order), n, flat, _silent(f, n, order), top) for n in numbers]
+    top = FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
+    rows = [
+        first_opening(_closings(f, n, order), n, flat, _silent(f, n, order), top) for n in numbers
+    ]
     fields = {
         name: np.reshape([getattr(row, name) for row in rows], (len(numbers), *shape))
         for name in ("least", "lam2", "error", "absent", "outside", "gap")
@@ -304,26 +295,6 @@ def least_parameter(
         order=None if order is None else int(order),
         searched=np.array([row.searched[0] for row in rows]),
     )
-
-
-@dataclass(frozen=True)
-class _Least:
-    """What the search found for one region, entry by entry."""
-
-    least: Array
-    lam2: Array
-    error: Array
-    absent: Mask
-    outside: Mask
-    gap: Array
-    searched: Array
-
-    @classmethod
-    def nothing(cls, size: int) -> _Least:
-        """Return the answer of a region that never opens."""
-        infinite, unknown = np.full(size, np.inf), np.full(size, np.nan)
-        flag = np.ones(size, dtype=bool)
-        return cls(infinite, unknown, np.zeros(size), flag, ~flag, unknown.copy(), np.zeros(1))
 
 
 def _numbers(regions: Sequence[int]) -> tuple[int, ...]:
@@ -394,105 +365,3 @@ def _either_side(
         shut = np.isnan(both.upper[0])
         wrong += int(np.count_nonzero(shut[0]) + np.count_nonzero(~shut[1]))
     return {"regions open above or closed below": Check(float(wrong), 0.0)} if seen else {}
-
-
-def _least(closing: Closings, n: int, damping: Array, silent: bool, top: float) -> _Least:
-    """Search one region: bracket the first crossing of the critical damping, and refine it."""
-    out = _Least.nothing(damping.size)
-    if silent or top == 0.0 or damping.size == 0:
-        return out
-    drag = damping[damping > 0.0]
-    # Half traces grow with the first power of mu at most while mu f is small.
-    least = min(1.0, 0.125 * n * float(drag.min())) if drag.size else _SMALLEST
-    bottom = least * top / _FARTHEST
-    bottom /= max(n, float(damping.max())) ** 2
-    decades = np.log10(top / bottom)
-    grid = np.geomspace(bottom, top, int(np.ceil(_PER_DECADE * decades)) + 1)
-    grid, highest, edge = _climb(closing, grid, float(damping.max()))
-    out.searched[0] = grid[-1]
-    # The first grid value above each K: the running maximum is in order.
-    first = np.searchsorted(highest, damping, side="right")
-    found = first < grid.size
-    out.outside[:] = np.minimum(first, grid.size - 1) >= edge
-    out.absent[:] = ~found & ~out.outside
-    out.least[out.outside] = np.nan
-    still = found & ~out.outside & (damping == 0.0)
-    out.least[still], out.lam2[still] = 0.0, 0.25 * n * n
-    there = np.flatnonzero(found & ~out.outside & (damping > 0.0))
-    if there.size:
-        low = np.where(first[there] > 1, grid[np.maximum(first[there] - 2, 0)], 0.25 * bottom)
-        _refine(out, closing, damping, there, np.log(low), np.log(grid[first[there]]))
-    return out
-
-
-def _climb(closing: Closings, grid: Array, enough: float) -> tuple[Array, Array, int]:
-    """Return the grid with the running maximum of the critical damping, as far as needed.
-
-    Less its figure, and with the peaks between the values of the grid.  Also the place of the
-    first value at which the orders do not converge.  A decade at a time: small values of mu need
-    small matrices.
-    """
-    found, edge = np.zeros(0), -1
-    for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
-        try:
-            known = closing(part)
-        except BadInput:
-            # Hill's matrix would be too large: the search ends here.
-            if not found.size:
-                raise
-            break
-        value = np.where(known.outside, -np.inf, known.damping - known.error)
-        before = found.size
-        found = np.concatenate([found, value])
-        if known.outside.any():
-            edge = before + int(np.argmax(known.outside))
-            break
-        if found.max() > enough:
-            break
-    grid = grid[: found.size]
-    last = found.size if edge < 0 else edge
-    peaks, tops = _peaks(closing, grid[:last], found[:last])
-    order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
-    grid, found = (
-        np.concatenate([own, more])[order] for own, more in ((grid, peaks), (found, tops))
-    )
-    return grid, np.maximum.accumulate(found), grid.size if edge < 0 else last + peaks.size
-
-
-def _peaks(closing: Closings, grid: Array, value: Array) -> tuple[Array, Array]:
-    """Return the places of maxima near those on a grid, and the values there."""
-    inner = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] >= value[2:])) + 1
-    if not inner.size:
-        return np.zeros(0), np.zeros(0)
-    low, high = np.log(grid[inner - 1]), np.log(grid[inner + 1])
-    each = np.arange(inner.size)
-    for _ in range(_ZOOMS):
-        x = np.linspace(low, high, _ZOOM + 1)
-        known = closing(np.exp(x.ravel()))
-        tops = np.where(known.outside, -np.inf, known.damping - known.error).reshape(x.shape)
-        best, step = tops.argmax(axis=0), (high - low) / _ZOOM
-        low, high = x[best, each] - step, x[best, each] + step
-    return np.exp(x[best, each]), tops[best, each]
-
-
-def _refine(
-    out: _Least, closing: Closings, damping: Array, there: Index, low: Array, high: Array
-) -> None:
-    """Solve ``log K_crit(mu) = log K`` in log mu, and enter what is found."""
-    wanted = damping[there]
-
-    def excess(x: Array, which: Index) -> Array:
-        k = closing(np.exp(x)).damping
-        return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3)))
-
-    x = crossing(excess, low, high)
-    at, step = closing(np.exp(x)), 1e-4
-    with np.errstate(divide="ignore", invalid="ignore"):
-        up, down = (closing(np.exp(x + d)).damping for d in (step, -step))
-        slope = np.maximum((np.log(up) - np.log(down)) / (2.0 * step), 1e-3)
-    rounding = 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
-    out.least[there], out.lam2[there] = np.exp(x), at.lam2
-    out.error[there] = np.exp(x) * ((at.error + rounding) / (wanted * slope) + 4.0 * EPS)
-    out.gap[there] = np.abs(at.damping - wanted) / (at.error + rounding)
-    lost = there[at.outside]
-    out.outside[lost], out.least[lost] = True, np.nan

@@ -1,0 +1,308 @@
+"""Figures of the design tools over random bars that rock: stresses, quiet speeds, fatigue.
+
+The reference solves the full equations of the same elements speed by speed, by dense Fourier
+collocation of the second-order form (``beam_motions``), and looks for the largest stress at 4096
+angles; it shares no mode, no node in the speed and no rational function with the curves.  Fatigue
+is compared with a rainflow count of its own, on the stresses of many elements.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beam_motions import periodic_motion, turning_bar
+from elastolink.runtime.beams import stress
+from elastolink.runtime.beams.beam_motion import quiet_steady_state
+from elastolink.runtime.beams.stress import StressResult
+from elastolink.runtime.design import (
+    Material,
+    damping_effect,
+    fatigue,
+    length_effect,
+    quiet_speeds,
+    running_speed,
+)
+from elastolink.runtime.systems.modal_damping import with_modal_damping
+from honesty import verdict
+
+SCENES = 200
+# Angles of the reference's motion, and those at which its stresses are looked at.
+COUNT, FINE = 64, 4096
+STATIONS = 7
+# First frequency of the bar of 1 m, clamped at one end and pinned at both [rad/s].
+FIRST = {False: 3.516 * 14.93, True: 9.870 * 14.93}
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
+
+
+def rocking_bar(rng, drag=True):
+    """Return a random rocking bar and its first frequency."""
+    size, second = rng.uniform(0.02, 0.6), rng.uniform(-0.2, 0.2)
+    order = int(rng.integers(2, 4))
+
+    def angle(theta):
+        phi = size * np.sin(theta) + second * np.cos(order * theta)
+        rate = size * np.cos(theta) - order * second * np.sin(order * theta)
+        return phi, rate, -size * np.sin(theta) - order**2 * second * np.cos(order * theta)
+
+    pinned = bool(rng.integers(2))
+    loss = 10.0 ** rng.uniform(-2.5, -0.7) * FIRST[pinned] if drag else 0.0
+    return turning_bar(angle, pinned=pinned, drag=loss, elements=1), FIRST[pinned]
+
+
+def rocker(rng):
+    """Return a bar driven by a pin of a crank in its slot, with the frame's length to vary."""
+    crank, frame = 0.1, float(rng.uniform(0.25, 0.8))
+    pinned = bool(rng.integers(2))
+    loss = 10.0 ** rng.uniform(-2.0, -0.7) * FIRST[pinned]
+
+    def made(geometry):
+        length = geometry["frame"]
+
+        def angle(theta):
+            # The pin at L + r exp(i theta): its angle is Im log, with two derivatives.
+            z, turn = length + crank * np.exp(1j * theta), crank * np.exp(1j * theta)
+            slope = 1j * turn / z
+            return np.angle(z), slope.imag, (-turn / z - slope**2).imag
+
+        bar = turning_bar(angle, pinned=pinned, drag=loss, elements=1)
+        return replace(bar, geometry=dict(geometry), rebuild=made)
+
+    return made({"frame": frame}), frame, FIRST[pinned]
+
+
+def random_speeds(rng, first, count):
+    """Return increasing speeds, some of them at fractions of the first frequency."""
+    low = rng.uniform(0.1, 0.3)
+    speeds = first * rng.uniform(low, low + rng.uniform(0.02, 0.3), count)
+    if rng.integers(2):
+        speeds[0] = first / int(rng.integers(2, 6)) * rng.uniform(0.99, 1.01)
+    return np.sort(speeds)
+
+
+def fine_values(values):
+    """Return periodic histories ``(nt, ...)`` at many angles, through their Fourier series."""
+    half = np.fft.rfft(values, axis=0)
+    if len(values) % 2 == 0:
+        half[-1] *= 0.5
+    return np.fft.irfft(half, n=FINE, axis=0) * (FINE / len(values))
+
+
+def largest(values):
+    """Return the largest size in periodic histories ``(nt, stations)``, between angles too."""
+    highest = np.max(np.abs(values), axis=0)
+    size = np.abs(fine_values(values[:, highest > 0.8 * np.max(highest)]))
+    low, high = np.roll(size, 1, axis=0), np.roll(size, -1, axis=0)
+    bend = 2.0 * size - low - high
+    top = (size >= low) & (size >= high) & (bend > 0)
+    added = np.where(top, (low - high) ** 2 / (8.0 * np.where(top, bend, 1.0)), 0.0)
+    return np.max(size + added)
+
+
+def exact_maximum(system, speed, method="equilibrium"):
+    """Return the largest stress of a bar at one speed by dense collocation."""
+    found = stress(system, periodic_motion(system, speed, COUNT), stations=STATIONS, method=method)
+    return max(largest(found.fibre(name)) for name in ("positive", "negative"))
+
+
+def over(figure, actual):
+    """Return figures over actual errors; the reference has round-off of its own."""
+    return np.ravel(figure) / np.maximum(np.ravel(np.abs(actual)), 1e-13)
+
+
+def ratios_of_quiet_speeds(rng):
+    system, first = rocking_bar(rng)
+    speeds = random_speeds(rng, first, 8)
+    found = quiet_speeds(system, speeds, 1e8, rtol=10.0 ** rng.uniform(-5, -2.5))
+    picked = rng.choice(len(speeds), 2, replace=False)
+    exact = np.array([exact_maximum(system, speeds[k]) / 1e8 for k in picked])
+    return over(found.error[picked], found.worst[picked] / exact - 1.0)
+
+
+def ratios_of_running_speed(rng):
+    """Return those of the result, and of the quiet speeds that it holds."""
+    system, frame, first = rocker(rng)
+    speeds = random_speeds(rng, first, 3)
+    exact = np.array([exact_maximum(system, speed) for speed in speeds])
+    limit = float(np.max(exact)) * rng.uniform(1.1, 3.0)
+    found = running_speed(system, speeds, limit, values=[frame], rtol=10.0 ** rng.uniform(-5, -2.5))
+    place = int(np.argmin(np.abs(speeds - found.speed)))
+    assert speeds[place] == found.speed
+    truth = exact[place] / limit
+    assert found.checks["within limits"].value >= truth * (1.0 - 1e-13)
+    actual = np.abs(found.quiet.worst * limit / exact - 1.0)
+    return over(found.error, np.max(actual)), over(found.quiet.error, actual)
+
+
+def ratios_of_damping(rng):
+    bare, first = rocking_bar(rng, drag=False)
+    system = with_modal_damping(bare, 0.02)
+    speeds, values = random_speeds(rng, first, 2), np.sort(10.0 ** rng.uniform(-3, -0.7, 2))
+    found = damping_effect(system, speeds, values, rtol=10.0 ** rng.uniform(-5, -2.5))
+    exact = [
+        [exact_maximum(system.with_parameters(damping_ratio=value), w) for w in speeds]
+        for value in values
+    ]
+    return over(found.error, found.maximum[..., 0] / exact - 1.0)
+
+
+def ratios_of_lengths(rng):
+    system, frame, first = rocker(rng)
+    speeds, values = random_speeds(rng, first, 2), [frame, frame * rng.uniform(0.7, 1.5)]
+    found = length_effect(system, "frame", values, speeds, rtol=10.0 ** rng.uniform(-5, -2.5))
+    exact = [
+        [exact_maximum(system.with_geometry(frame=value), w) for w in speeds] for value in values
+    ]
+    return over(found.error, found.maximum[..., 0] / exact - 1.0)
+
+
+CURVES = {
+    "quiet_speeds": ratios_of_quiet_speeds,
+    "damping_effect": ratios_of_damping,
+    "length_effect": ratios_of_lengths,
+}
+
+
+# As many as give 200 stresses and more: the curves cost more than all the rest.
+BARS = {"quiet_speeds": 100, "damping_effect": 52, "length_effect": 52}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_some_stresses(name):
+    rng = np.random.default_rng(7100)
+    verdict([CURVES[name](rng) for _ in range(2)], 4)
+
+
+def test_a_running_speed():
+    rng = np.random.default_rng(7150)
+    for ratios in zip(*(ratios_of_running_speed(rng) for _ in range(2)), strict=True):
+        verdict(ratios, 2)
+
+
+@pytest.mark.slow
+def test_running_and_quiet_speeds_of_many_bars():
+    rng = np.random.default_rng(7250)
+    found = [ratios_of_running_speed(rng) for _ in range(SCENES)]
+    for ratios in zip(*found, strict=True):
+        verdict(ratios, SCENES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CURVES)
+def test_stresses_of_many_bars(name):
+    """Bars, each at two speeds; of the effects each for two values."""
+    rng = np.random.default_rng(7200)
+    verdict([CURVES[name](rng) for _ in range(BARS[name])], SCENES)
+
+
+def counted(history):
+    """Return ranges and means of the closed cycles of a periodic history, by four points."""
+    start = int(np.argmax(history))
+    turned = np.append(np.roll(history, -start), history[start])
+    rises = np.diff(turned)
+    corner = np.append(np.append(True, rises[:-1] * rises[1:] < 0), True)
+    stack, cycles = [], []
+    for value in turned[corner]:
+        stack.append(value)
+        # An inner pair that its neighbours enclose is a cycle.
+        while len(stack) >= 4:
+            a, b, c, d = stack[-4:]
+            if not (min(a, d) <= min(b, c) and max(b, c) <= max(a, d)):
+                break
+            cycles.append((abs(c - b), (b + c) / 2))
+            del stack[-3:-1]
+    assert len(stack) == 3
+    cycles.append((stack[0] - stack[1], (stack[0] + stack[1]) / 2))
+    return np.array(cycles).T
+
+
+def least_safety(histories, material):
+    """Return the endurance limit over the largest amplitude of Goodman's line."""
+    worst = 0.0
+    for history in histories.T:
+        size, mean = counted(history)
+        amplitude = size / 2 / (1 - np.maximum(mean, 0.0) / material.tensile_strength)
+        worst = max(worst, float(np.max(amplitude)))
+    return material.endurance_limit / worst
+
+
+def waves(rng, harmonics, places):
+    """Return a random series as a function of the angle, ``(nt, places)``, largest about 1."""
+    parts = rng.standard_normal((2, harmonics + 1, places)) * rng.uniform(0.4, 0.9) ** np.arange(
+        harmonics + 1
+    ).reshape(-1, 1)
+    parts /= np.sum(np.abs(parts), axis=(0, 1)).max()
+
+    def function(theta):
+        angle = np.multiply.outer(theta, np.arange(harmonics + 1))
+        return np.cos(angle) @ parts[0] + np.sin(angle) @ parts[1]
+
+    return function
+
+
+def ratio_of_histories(rng):
+    """Histories off by no more than their figure: figure over error of the least safety."""
+    places = int(rng.integers(1, 4))
+    exact, off = waves(rng, int(rng.integers(1, 9)), places), waves(rng, 6, places)
+    size, doubt = 10.0 ** rng.uniform(6, 8.3), 10.0 ** rng.uniform(-6, -1.5)
+    fine = 2 * np.pi * np.arange(FINE) / FINE
+    push = doubt / np.max(np.abs(off(fine)))
+    theta = 2 * np.pi * np.arange(64) / 64
+    values, none = size * (exact(theta) + push * off(theta)), np.zeros((64, places))
+    given = StressResult(
+        method="hand",
+        error=size * doubt,
+        error_norm="largest",
+        speed=10.0,
+        theta=theta,
+        links=("bar",) * places,
+        places=np.linspace(0.1, 0.9, places),
+        axial=values,
+        bending=none,
+        static_axial=none,
+        static_bending=none,
+        motion_error=0.0,
+        mesh_error=0.0,
+        period=2 * np.pi,
+    )
+    material = Material(tensile_strength=6e8, endurance_limit=2e8)
+    found = fatigue(given, material)
+    truth = least_safety(size * exact(fine), material)
+    actual = np.min(found.safety) / truth - 1.0
+    return over(found.error, actual)
+
+
+def ratio_of_bars(rng):
+    """Stresses of one to three elements, against those of many: figure over error of the safety."""
+    system, first = rocking_bar(rng)
+    speed = first * rng.uniform(0.03, 0.4)
+    material = Material(tensile_strength=1e12, endurance_limit=2e8)
+    found = fatigue(stress(system, quiet_steady_state(system, speed), stations=3), material)
+
+    def meshed(structure):
+        return replace(structure, beams=tuple(replace(b, elements=4) for b in structure.beams))
+
+    motion = periodic_motion(system.remesh(meshed), speed, 32)
+    fine = stress(system.remesh(meshed), motion, stations=3)
+    values = np.hstack([fine_values(fine.fibre(name)) for name in ("positive", "negative")])
+    return over(found.error, np.min(found.safety) / least_safety(values, material) - 1.0)
+
+
+def test_cycles_are_counted_as_they_are():
+    """Peaks 300, valley 100, peak 200, valley -300: one cycle of 600, one of 100 within."""
+    size, mean = counted(np.array([300.0, 100.0, 200.0, -300.0]))
+    assert sorted(zip(size, mean, strict=True)) == [(100.0, 150.0), (600.0, 0.0)]
+
+
+@pytest.mark.parametrize("made", [ratio_of_histories, ratio_of_bars])
+def test_some_safeties(made):
+    rng = np.random.default_rng(7300)
+    verdict([made(rng) for _ in range(3)], 3)
+
+
+@pytest.mark.slow
+def test_safeties_of_histories_and_of_bars():
+    rng = np.random.default_rng(7400)
+    verdict([ratio_of_histories(rng) for _ in range(SCENES)], SCENES)
+    verdict([ratio_of_bars(rng) for _ in range(30)], 30)

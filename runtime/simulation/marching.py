@@ -246,6 +246,24 @@ def _march_second_order(
     return March(states[:, :n], states[:, n : 2 * n], None, float("nan"))
 
 
+def up_to(states: Array, bound: Array) -> tuple[Array, bool]:
+    """Return states up to the first beyond a bound, and whether there is one.
+
+    Parameters
+    ----------
+    states : ndarray, shape (nt, m)
+        In the order of the march.
+    bound : ndarray, shape (n,)
+        Of the first n components: the first state beyond is the last one kept, if it is finite.
+    """
+    passed = np.any(np.abs(states[:, : len(bound)]) > bound, axis=1)
+    broken = ~np.all(np.isfinite(states), axis=1)
+    if not np.any(passed | broken):
+        return states, False
+    last = int(np.argmax(passed | broken))
+    return states[: last if broken[last] else last + 1], True
+
+
 class _Runner:
     """Matrices of the intervals of one revolution, made once where they repeat."""
 
@@ -270,13 +288,10 @@ class _Runner:
                 self._block = self._intervals(done, number)
                 self._flows = _flows(self._block)
             piece = self._advance(state, number)
-            passed = np.any(np.abs(piece[:, : len(self._bound)]) > self._bound, axis=1)
-            broken = ~np.all(np.isfinite(piece), axis=1)
-            if np.any(passed | broken):
-                last = int(np.argmax(passed | broken))
-                pieces.append(piece[: last if broken[last] else last + 1])
-                break
+            piece, stopped = up_to(piece, self._bound)
             pieces.append(piece)
+            if stopped:
+                break
             state = piece[-1]
             done += number
             if tick is not None:

@@ -18,7 +18,7 @@ from ..floquet.period_products import ordered_product
 from ..stretches import stretch_maps
 from ..stretches.power_series import MOST_TERMS
 from .generator_series import Expansion, GeneratorSeries, expansion, generator_series
-from .marching import MODERATE, Grid, March, Tick, cyclic, scaled_state, symplectic_defect
+from .marching import MODERATE, Grid, March, Tick, cyclic, scaled_state, symplectic_defect, up_to
 
 Array = NDArray[np.float64]
 
@@ -212,13 +212,10 @@ class _Run:
                 turns = max(1, _CHUNK_FLOATS // (m * grid.per_revolution))
                 number = min(turns * grid.per_revolution, grid.intervals - done)
             piece = self._advance(state, number)
-            passed = np.any(np.abs(piece[:, : len(self._bound)]) > self._bound, axis=1)
-            broken = ~np.all(np.isfinite(piece), axis=1)
-            if np.any(passed | broken):
-                last = int(np.argmax(passed | broken))
-                pieces.append(piece[: last if broken[last] else last + 1])
-                break
+            piece, stopped = up_to(piece, self._bound)
             pieces.append(piece)
+            if stopped:
+                break
             state = piece[-1]
             done += number
             if tick is not None:

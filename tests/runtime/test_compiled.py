@@ -15,13 +15,12 @@ import elastolink as el
 import elastolink.generated
 import numpy as np
 import pytest
+from compiled_loops import NEEDS_NUMBA, emitted
 from elastolink.runtime.compiled import (
     compiled,
     compiled_function,
     compiled_module,
-    functions,
     layouts,
-    modules,
     store,
 )
 from elastolink.runtime.compiled.rewriting import loop_of
@@ -29,42 +28,20 @@ from elastolink.runtime.errors import BadInput
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning"),
-    pytest.mark.skipif(
-        importlib.util.find_spec("numba") is None,
-        reason="numba, of the extra fast, is not installed",
-    ),
+    pytest.mark.usefixtures("loop_cache"),
+    NEEDS_NUMBA,
 ]
 
 SCENE = "smith_1972_5152_sixteenth_inch"
-
-
-def _emitted(name: str) -> types.ModuleType:
-    return importlib.import_module(f"elastolink.generated.{name}")
 
 
 def _tuple(returned: object) -> tuple:
     return returned if isinstance(returned, tuple) else (returned,)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def cache_folder(tmp_path_factory: pytest.TempPathFactory):
-    """A cache of the tests' own; what other tests compiled in this process is made again."""
-    folder = tmp_path_factory.mktemp("cache")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(folder))
-        _forget()
-        yield folder
-        _forget()
-
-
-def _forget() -> None:
-    functions._made.cache_clear()
-    modules._made.cache_clear()
-
-
 @pytest.fixture(scope="module")
 def motion():
-    return compiled_function(_emitted("four_bar_kinematics").motion)
+    return compiled_function(emitted("four_bar_kinematics").motion)
 
 
 def _check(function, call, *arguments, **named) -> None:
@@ -125,7 +102,7 @@ def test_arguments_broadcast_against_each_other(motion) -> None:
 
 def test_outputs_depend_on_what_they_depend_on() -> None:
     """Constants stay plain numbers; what does not see an array is no array."""
-    module = _emitted("beam_element_cubic")
+    module = emitted("beam_element_cubic")
     call, names = compiled_function(module.element), inspect.signature(module.element).parameters
     rng = np.random.default_rng(5)
     numbers = dict(zip(names, rng.uniform(0.5, 2.0, len(names)).tolist(), strict=True))
@@ -277,7 +254,7 @@ def test_a_file_that_changed_is_refused(tmp_path) -> None:
 def test_without_numba_the_extra_is_named(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "numba", None)
     system = el.load_scene(SCENE).system()
-    module = _emitted("hill_plain")
+    module = emitted("hill_plain")
     for ask in (
         lambda: compiled(system),
         lambda: compiled_function(module.scales),
@@ -296,13 +273,13 @@ def test_numba_that_shall_not_compile_is_refused(monkeypatch) -> None:
         compiled(el.load_scene(SCENE).system())
 
 
-def test_files_are_whole_and_right_ones_are_left_alone(cache_folder) -> None:
+def test_files_are_whole_and_right_ones_are_left_alone(loop_cache) -> None:
     """A damaged file is written again; numba takes a newer one for another function."""
-    loop = loop_of(_emitted("hill_plain").scales)
+    loop = loop_of(emitted("hill_plain").scales)
     store.compile_loop(loop)
     (path,) = store.folder().glob("hill_plain_scales_*.py")
     assert path.read_text() == loop.text
-    assert store.folder().is_relative_to(cache_folder)
+    assert store.folder().is_relative_to(loop_cache)
     before, made = path.stat().st_mtime_ns, store.compilations()
     store.compile_loop(loop)
     assert path.stat().st_mtime_ns == before
@@ -316,8 +293,8 @@ def test_files_are_whole_and_right_ones_are_left_alone(cache_folder) -> None:
 def test_a_folder_that_cannot_be_written_is_done_without(tmp_path, monkeypatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    run = store.compile_loop(loop_of(_emitted("hill_plain").scales))
-    out, wanted = np.empty(3), _emitted("hill_plain").scales(2.0, 3.0, 0.5)
+    run = store.compile_loop(loop_of(emitted("hill_plain").scales))
+    out, wanted = np.empty(3), emitted("hill_plain").scales(2.0, 3.0, 0.5)
     places = np.zeros(12, dtype=np.int64)
     places[::2] = [0, 1, 2, 0, 1, 2]
     run(1, places, np.array([2.0, 3.0, 0.5]), out)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import inspect
 import types
 from functools import cache
@@ -12,13 +10,12 @@ from pathlib import Path
 import elastolink.generated
 import numpy as np
 import pytest
-from elastolink.runtime.compiled import compiled_function, compiled_module, functions, modules
+from compiled_loops import NEEDS_NUMBA, emitted
+from elastolink.runtime.compiled import compiled_function, compiled_module
 from elastolink.runtime.compiled.rewriting import loop_of
 from elastolink.runtime.errors import BadInput
 
-needs_numba = pytest.mark.skipif(
-    importlib.util.find_spec("numba") is None, reason="numba, of the extra fast, is not installed"
-)
+pytestmark = pytest.mark.usefixtures("loop_cache")
 
 # Modules whose functions are no arithmetic on numbers, and why.
 NOT_COMPILED = {"hill_recursion": "its functions are an algebra that the caller passes in"}
@@ -34,13 +31,9 @@ SHORT = {"crank": 0.1, "frame": 1.2}
 NASTY = (0.0, 1.0, -1.0, np.pi, -np.pi / 2, 2 * np.pi, 1e-9, -1e-9, 40.0, 1e6, np.inf, np.nan)
 
 
-def _emitted(name: str) -> types.ModuleType:
-    return importlib.import_module(f"elastolink.generated.{name}")
-
-
 def _functions(name: str) -> list[tuple[str, object]]:
     """Return what a module emits; a function whose entries are all zero is not there."""
-    module = _emitted(name)
+    module = emitted(name)
     return [(own, getattr(module, own)) for own in module.RETURNS if hasattr(module, own)]
 
 
@@ -62,22 +55,6 @@ def _arguments(function: object, size: int) -> list[np.ndarray]:
         rough[rng.integers(count, size=2), 3 * k + 1] = value
         rough[:, 3 * k + 2] = rng.choice(NASTY[:9], count)
     return list(np.concatenate([plain, rough], axis=1))
-
-
-@pytest.fixture(scope="module", autouse=True)
-def cache_folder(tmp_path_factory: pytest.TempPathFactory):
-    """A cache of the tests' own; what other tests compiled in this process is made again."""
-    folder = tmp_path_factory.mktemp("cache")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(folder))
-        _forget()
-        yield folder
-        _forget()
-
-
-def _forget() -> None:
-    functions._made.cache_clear()
-    modules._made.cache_clear()
 
 
 class _Interpreted:
@@ -117,13 +94,13 @@ def test_every_emitted_function_becomes_the_same_operations(name) -> None:
 def test_the_modules_that_are_not_compiled_are_those_of_the_list() -> None:
     """A new kind of module has to be thought of here."""
     for name in NOT_COMPILED:
-        module = _emitted(name)
+        module = emitted(name)
         for own in module.RETURNS:
             with pytest.raises(BadInput, match="expected elementwise arithmetic of an emitted"):
                 loop_of(getattr(module, own))
         with pytest.raises(BadInput, match="algebra of the caller"):
             compiled_module(module)
-    families = {_emitted(name).FAMILY for name in MODULES}
+    families = {emitted(name).FAMILY for name in MODULES}
     assert families == {"closed_form", "constrained", "linear_periodic"}
 
 
@@ -163,10 +140,10 @@ SAMPLE = (
 )
 
 
-@needs_numba
+@NEEDS_NUMBA
 @pytest.mark.parametrize(("module", "name"), SAMPLE)
 def test_compiled_functions_give_the_same_values(module, name) -> None:
-    function = getattr(_emitted(module), name)
+    function = getattr(emitted(module), name)
     _same(function, _arguments(function, 200))
 
 
@@ -181,7 +158,7 @@ def _different() -> set[tuple[str, str]]:
     return set(found.values())
 
 
-@needs_numba
+@NEEDS_NUMBA
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMPILED)
 def test_every_compiled_function_gives_the_same_values(name) -> None:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import inspect
 import pickle
 import subprocess
 import sys
-import types
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
@@ -16,13 +13,12 @@ import elastolink as el
 import elastolink.generated
 import numpy as np
 import pytest
+from compiled_loops import NEEDS_NUMBA, emitted
 from elastolink.runtime.compiled import (
     CompiledFunction,
     compiled,
     compiled_function,
     compiled_module,
-    functions,
-    modules,
 )
 from elastolink.runtime.errors import BadInput
 from elastolink.runtime.families import MATRICES, VECTORS
@@ -30,33 +26,11 @@ from elastolink.runtime.systems.modal_damping import with_modal_damping
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning"),
-    pytest.mark.skipif(
-        importlib.util.find_spec("numba") is None,
-        reason="numba, of the extra fast, is not installed",
-    ),
+    pytest.mark.usefixtures("loop_cache"),
+    NEEDS_NUMBA,
 ]
 
 SCENE = "smith_1972_5152_sixteenth_inch"
-
-
-def _emitted(name: str) -> types.ModuleType:
-    return importlib.import_module(f"elastolink.generated.{name}")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def cache_folder(tmp_path_factory: pytest.TempPathFactory):
-    """A cache of the tests' own; what other tests compiled in this process is made again."""
-    folder = tmp_path_factory.mktemp("cache")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(folder))
-        _forget()
-        yield folder
-        _forget()
-
-
-def _forget() -> None:
-    functions._made.cache_clear()
-    modules._made.cache_clear()
 
 
 AGAIN = """
@@ -225,7 +199,7 @@ def test_a_constrained_motion_is_the_same() -> None:
 
 def test_a_module_can_be_assembled_compiled() -> None:
     """A view of an emitted module, for systems of one's own."""
-    module = _emitted("four_bar_coupler_reduced")
+    module = emitted("four_bar_coupler_reduced")
     view = compiled_module(module)
     assert compiled_module(view) is view
     assert view.FAMILY == module.FAMILY
@@ -233,7 +207,7 @@ def test_a_module_can_be_assembled_compiled() -> None:
     assert view.angle_functions is compiled_function(module.angle_functions)
     with pytest.raises(AttributeError):
         _ = view.nothing
-    element = _emitted("beam_element_cubic")
+    element = emitted("beam_element_cubic")
     names = inspect.signature(element.element).parameters
     numbers = dict(zip(names, np.linspace(0.5, 2.0, len(names)), strict=True))
     wanted = el.array_function(element, "element")(**numbers)

@@ -54,7 +54,7 @@ def test_a_name_loads_its_own_module_alone():
         "print(sorted(n for n in sys.modules if n.startswith('elastolink.runtime.')))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "['elastolink.runtime.errors']"
+    assert done.stdout.strip() == "['elastolink.runtime.core', 'elastolink.runtime.core.errors']"
 
 
 def test_the_response_of_a_coupler_loads_nothing_of_beams():
@@ -84,7 +84,7 @@ def test_each_package_lists_what_it_makes_public(package):
     own = [
         node
         for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.level and node.module != "lazy"
+        if isinstance(node, ast.ImportFrom) and node.level and node.module != "core.lazy"
     ]
     names = {alias.asname or alias.name for node in own if node.module for alias in node.names}
     if not own:

@@ -16,7 +16,7 @@ import elastolink.generated
 import numpy as np
 import pytest
 from elastolink.derive.spec import read_manifest
-from elastolink.runtime.dynamics import force_modules, forces
+from elastolink.runtime.rigid import force_modules, forces
 from elastolink.runtime.skipping import read_cost
 from elastolink.runtime.systems import assembly
 

@@ -9,7 +9,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad
 
 
 def is_finite(value: object) -> bool:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from ..errors import BadInput, LinearRangeWarning, Problem, bad
-from ..families import LinearPeriodic
-from ..results import Check
+from ..core.errors import BadInput, LinearRangeWarning, Problem, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from .assembly import Array
 from .element_forms import required_structure
 

@@ -10,10 +10,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..deferred import DeferredField, DeferredGroup
-from ..errors import LinearRangeWarning, bad
-from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result, provenance
 from ..simulation.trajectory import LINEAR_RANGE
 from .assembly import Array
 from .beam_motion import BeamMotion, chunks

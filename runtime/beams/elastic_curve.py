@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..deferred import DeferredField, DeferredGroup
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Result
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Result
 from ._checks import is_finite
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
@@ -80,7 +80,7 @@ class ElasticCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both curves, the rigid one dashed."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for values, style, label in ((self.rigid, "--", "rigid"), (self.elastic, "-", "elastic")):

@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import bad
-from ..families import LinearPeriodic, Term
+from ..core.errors import bad
+from ..core.families import LinearPeriodic, Term
 from .assembly import AngleArrays, Array
 from .axial_forces import AxialForces
 from .elements import ElementArrays

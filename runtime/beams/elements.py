@@ -16,8 +16,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families.emitted import array_function
+from ..core.errors import bad
+from ..core.families.emitted import array_function
 from ._checks import is_finite, numbers_in_a_row
 
 Array: TypeAlias = NDArray[np.float64]

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import BadInput
-from ..families import MATRICES, LinearPeriodic
+from ..core.errors import BadInput
+from ..core.families import MATRICES, LinearPeriodic
 from .assembly import Array
 from .beam_motion import BeamMotion, standing
 from .structure import Beam, Structure

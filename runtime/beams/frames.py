@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, Problem
-from ..mechanisms.linkage import LinkMotion
+from ..core.errors import BadInput, Problem
+from ..linkages.linkage import LinkMotion
 from ._checks import are_finite, names_problems, require_mapping
 from .assembly import Array
 from .section import Section

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..systems.modal_damping import with_modal_damping
 from .frames import frame
 from .inextensible import without_stretching

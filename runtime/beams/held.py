@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..errors import BadInput, bad
+from ..core.errors import BadInput, bad
 from .assembly import AngleArrays, Array
 from .sliding import Slide
 from .turning import rotation

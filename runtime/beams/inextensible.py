@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..families import MATRICES, LinearPeriodic, Term
+from ..core.errors import bad
+from ..core.families import MATRICES, LinearPeriodic, Term
 from .assembly import Array
 from .structure import Structure
 

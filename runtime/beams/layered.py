@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import beam_section_sandwich
-from ..errors import BadInput, Problem, bad
-from ..results import Result, provenance
+from ..core.errors import BadInput, Problem, bad
+from ..core.results import Result, provenance
 from ._checks import is_finite, numbers_in_a_row, require_kind, sign_problems
 from .section import Section
 
@@ -270,7 +270,7 @@ class SandwichStudy(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw lines of equal loss factor over both thicknesses [mm]."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         axes = axes_or_new(ax)
         lines = axes.contour(

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import BadInput, Problem, bad
-from ..families import LinearPeriodic, Term
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic, Term
 from ._checks import are_finite
 from .assembly import AngleArrays, Array
 from .axial_forces import AxialForces

@@ -8,10 +8,10 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from ..errors import BadInput, Problem, bad
-from ..families import LinearPeriodic
-from ..mechanisms import FourBar, Linkage, QuickReturn, SliderCrank
-from ..mechanisms.linkage import LinkMotion
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic
+from ..linkages import FourBar, Linkage, QuickReturn, SliderCrank
+from ..linkages.linkage import LinkMotion
 from ._checks import require_kind, require_mapping
 from .assembly import Array
 from .linear import linear_system

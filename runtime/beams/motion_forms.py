@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from .assembly import Array
 from .beam_motion import BeamMotion, chunks
 from .element_forms import ElementForms

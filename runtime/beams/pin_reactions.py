@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..deferred import DeferredGroup
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Check
+from ..core.deferred import DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion
 from .beam_result import BeamResult, in_motion
@@ -104,7 +104,7 @@ class PinReactions(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the sizes of the forces of the ground and of the pins over the crank angle."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..deferred import DeferredGroup
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.deferred import DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import StationResult, in_motion, stations_on
@@ -80,7 +80,7 @@ class BeamForces(StationResult):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw one quantity along each beam, between its extremes over the angles."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for link in dict.fromkeys(self.links):

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import BadInput, Problem, bad
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic
 from ..floquet.first_order import numbers
 from .assembly import Array
 from .element_forms import ElementForms, required_structure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad
 from ._checks import is_finite, positive, sign_problems
 
 

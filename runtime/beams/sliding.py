@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..families import Term
+from ..core.families import Term
 from .placed_shapes import placed_shapes
 
 if TYPE_CHECKING:

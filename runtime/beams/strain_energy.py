@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..deferred import DeferredGroup
-from ..families import LinearPeriodic
-from ..results import Check
+from ..core.deferred import DeferredGroup
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, in_motion
@@ -95,7 +95,7 @@ class BeamEnergies(BeamResult):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the strain energy of each beam and of all over the crank angle."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         degrees = np.degrees(self.theta)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..deferred import DeferredField, DeferredGroup
-from ..errors import BadInput, Problem, bad
-from ..families import LinearPeriodic
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic
 from ._checks import is_finite
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion

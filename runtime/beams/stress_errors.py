@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import BadInput, Problem
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, Problem
+from ..core.families import LinearPeriodic
 from .assembly import Array
 from .beam_motion import BeamMotion, chunks
 from .element_forms import ElementForms, required_structure

@@ -21,7 +21,7 @@ def draw(result: StressResult, ax: Axes | None = None) -> Axes:
 
     Of one angle alone, the largest stress along the beams.
     """
-    from ..plotting import axes_or_new
+    from ..core.plotting import axes_or_new
 
     ax = axes_or_new(ax)
     if len(result.theta) == 1:

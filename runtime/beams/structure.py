@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput, Problem, bad
-from ..mechanisms.linkage import LinkMotion
+from ..core.errors import BadInput, Problem, bad
+from ..linkages.linkage import LinkMotion
 from ._checks import are_finite, is_finite, names_problems
 from .freedoms import Freedoms, PlacedElement, number_freedoms
 from .section import Section

@@ -10,8 +10,8 @@ from math import ceil, log2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.periodic_function import PeriodicFunction
 from ..hill.exact.matrix import hill_boundaries
-from ..series.periodic import PeriodicFunction
 from .chart import batched_heyoka, one_half_trace
 from .records import Contender, Row, missing
 

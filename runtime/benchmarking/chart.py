@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core import chebyshev
+from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check
 from ..hill.half_trace import discriminant_grid
-from ..results import Check
-from ..series import chebyshev
-from ..series.periodic import PeriodicFunction
 from .records import Benchmark, Contender, Row, compare, functions, missing, one_thread
 from .reference import half_traces
 

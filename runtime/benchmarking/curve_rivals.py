@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..floquet.first_order import even_angles
 from ..reduction.stress_rows import fibres, peaks
 from ..reduction.trigonometric import differentiated

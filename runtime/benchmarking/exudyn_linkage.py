@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics import Machine
+from ..rigid import Machine
 
 Array = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check
 from ..hill.exact.matrix import hill_boundaries
-from ..results import Check
-from ..series.periodic import PeriodicFunction
 from .records import Benchmark, Contender, Row, compare, one_thread
 
 Array = NDArray[np.float64]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check
 from ..hill.exact.matrix import Boundaries, hill_boundaries
 from ..hill.perturbation.boundaries import perturbation_boundaries
-from ..results import Check
-from ..series.periodic import PeriodicFunction
 from .records import Benchmark, Contender, Row, compare, functions, one_thread
 from .slices import reference_ends
 

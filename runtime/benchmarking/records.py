@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..results import Result
-from ..series.periodic import PeriodicFunction
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Result
 
 Array = NDArray[np.float64]
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -209,7 +209,7 @@ def functions() -> dict[str, PeriodicFunction]:
 
     f3 is ``-alpha4 / sin(theta3 - theta4)``, Smith (6.16).
     """
-    from ..mechanisms import FourBar
+    from ..linkages import FourBar
 
     out = {}
     rng = np.random.default_rng(1972)

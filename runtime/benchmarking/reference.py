@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..series.periodic import PeriodicFunction
+from ..core.periodic_function import PeriodicFunction
 
 Real = np.longdouble
 Reals = NDArray[np.longdouble]

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from ..charts import StabilityChart, stability_chart
 from ..charts.invariants import characteristic
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Check
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from ..systems.rod import OverhangBasis, PolynomialBasis, rod_system
 from .records import Benchmark, Contender, Row, compare, missing, one_thread
 from .rod_reference import (

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LinearRangeWarning, bad
+from ..core.errors import LinearRangeWarning, bad
 from ..sweeps import process_pool, sweep
 from ..sweeps.workers import check_workers
 from .records import Benchmark, Row
@@ -84,7 +84,7 @@ def benchmark_scaling(workers: int = 2, *, rounds: int = 3, scale: float = 1.0) 
 
 
 def _benchmark(rows: list[Row], checks: dict[str, tuple[float, float]], workers: int) -> Benchmark:
-    from ..results import Check
+    from ..core.results import Check
 
     return Benchmark(
         method="interleaved timing of process pools",

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eig_banded
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check
 from ..hill.exact.certified import certified_boundaries
 from ..hill.exact.matrix import Boundaries, hill_boundaries
-from ..results import Check
-from ..series.periodic import PeriodicFunction
 from .bisection import bisections
 from .records import Benchmark, Contender, Row, compare, functions, one_thread
 

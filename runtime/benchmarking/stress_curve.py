@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from ..reduction import StressCurve, stress_curve
-from ..results import Check
 from ..scenes import load_scene
 from .curve_rivals import SecondOrder, StressMaxima, collocated, marched, newmark_march
 from .records import Benchmark, Contender, Row, compare, missing, one_thread

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic
+from ..core.periodic_function import PeriodicFunction
 from ..hill.exact.matrix import hill_boundaries
 from ..hill.form import HillForm, hill_form, is_stiffness, leaves_function_alone
-from ..series.periodic import PeriodicFunction
 from .damped_speeds import exact_speeds
 from .overlay import overlay_ends
 from .structure import is_damped

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Array
+from ..core.families import Array
 
 _EPS = float(np.finfo(float).eps)
 # Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues do

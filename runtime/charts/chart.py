@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import Array, LinearPeriodic
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
+from ..core.inputs import numbers
+from ..core.results import Check, Result
 from ..hill.form import is_hill
 from ..hill.perturbation.boundaries import check_order
-from ..inputs import numbers
-from ..results import Check, Result
 from .boundaries import BoundaryCurves, boundary_curves
 from .edge_rows import EdgeCurves, edge_curves
 from .line_series import series_by_lines

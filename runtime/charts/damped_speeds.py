@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..families import Array
+from ..core.families import Array
+from ..core.periodic_function import PeriodicFunction
 from ..hill.exact.layout import layout, stacked, truncation
 from ..hill.exact.matrix import hill_boundaries
-from ..series.periodic import PeriodicFunction
 
 _EPS = float(np.finfo(float).eps)
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic
+from ..core.results import Check
 from ..floquet.edges.tracing import StabilityEdges, stability_edges
-from ..results import Check
 
 # Rows at which regions are traced: each takes a second or so.
 _ROWS = 9

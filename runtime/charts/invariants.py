@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Array
+from ..core.families import Array
 from ..hill.form import HillForm, leaves_function_alone
 from ..hill.half_trace import discriminant
 from .characteristic import characteristic as characteristic

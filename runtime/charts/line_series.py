@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..families import Array
-from ..progress import bar
-from ..series import chebyshev
+from ..core import chebyshev
+from ..core.families import Array
+from ..core.progress import bar
 from .lines import Line, Lines, State
 from .sampling import Sampler, Series, relative_error
 

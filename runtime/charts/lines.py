@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..families import DAMPING, Array
+from ..core.families import DAMPING, Array
 from ..floquet.first_order import SPEED_POWER, CanonicalForm, canonical_form
 from ..floquet.turn_series import Turn, TurnSeries, mirrored_sums
 from .characteristic import weighed_characteristic

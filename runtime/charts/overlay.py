@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..families import Array
+from ..core.families import Array
+from ..core.periodic_function import PeriodicFunction
 from ..hill.form import HillForm
 from ..hill.perturbation.boundaries import perturbation_boundaries
-from ..series.periodic import PeriodicFunction
 
 # More functions than this cost more together than row by row.
 _MOST_FUNCTIONS = 2

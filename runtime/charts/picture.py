@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..families import Array
-from ..plotting import axes_or_new
+from ..core.families import Array
+from ..core.plotting import axes_or_new
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import bad
-from ..families import Array, LinearPeriodic
+from ..core import chebyshev
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
+from ..core.progress import bar
 from ..floquet.first_order import canonical_form
 from ..hill.form import hill_form, is_hill, leaves_function_alone, plain_axes
 from ..hill.half_trace import discriminant_grid
-from ..progress import bar
-from ..series import chebyshev
 from ..sweeps.workers import Workers, check_executor
 from .invariants import half_trace_rows, half_traces
 from .structure import Axes, Names, at_speed, is_damped, is_symplectic

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import bad
-from ..families import DAMPING, Array, LinearPeriodic, Term
+from ..core.errors import bad
+from ..core.families import DAMPING, Array, LinearPeriodic, Term
 from ..floquet.first_order import SPEED_POWER
 from ..hill.form import is_hill
 

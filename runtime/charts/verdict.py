@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic
+from ..core.results import Check
 from ..floquet.monodromy_matrix import floquet_multipliers
-from ..results import Check
 from ..sweeps.workers import Workers
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 from .sampling import Sampler, Series

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
-from ..errors import BadInput, ElastolinkError, ElastolinkWarning, bad
+from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from . import (
     balancing,
     beams,

@@ -6,13 +6,12 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import drive_of, drive_options
 
 if TYPE_CHECKING:
-    from ..balancing import Balancing, Counterweight
-    from ..dynamics import Machine
+    from ..rigid import Balancing, Counterweight, Machine
 
 
 _POINTS = 13
@@ -95,14 +94,14 @@ def _balance(options: argparse.Namespace) -> int:
     if options.case is not None:
         return _case(options, machine, drive, offset)
 
-    from ..balancing import Bounds
+    from ..rigid import Bounds
 
     bounds = Bounds(mass=mass, offset=offset)
     links = None if options.links is None else [name.strip() for name in options.links.split(",")]
     if options.trade_off is not None:
         return _trade_off(options, machine, drive, {"links": links, "bounds": bounds}, offset)
 
-    from ..balancing import balance
+    from ..rigid import balance
 
     found = balance(
         machine,
@@ -135,7 +134,7 @@ def _case(
     drive: tuple[float, float],
     offset: float | None,
 ) -> int:
-    from ..balancing import compare_case
+    from ..rigid import compare_case
 
     found = compare_case(machine, options.case, drive[0], offset, acceleration=drive[1])
     return opt.finish(options, found, _lines(found))
@@ -152,7 +151,7 @@ def _trade_off(
     if len(names) != 2:
         fix = "write --trade-off shaking_force,torque"
         raise bad("--trade-off", repr(options.trade_off), "two forces", fix)
-    from ..balancing import trade_off
+    from ..rigid import trade_off
 
     first, second = names
     points = _POINTS if options.points is None else options.points

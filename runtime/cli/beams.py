@@ -8,13 +8,13 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import refuse_frame, speed_of
 
 if TYPE_CHECKING:
     from ..beams.stress import StressResult
-    from ..families import LinearPeriodic
+    from ..core.families import LinearPeriodic
     from ..reduction.stress_curve import StressCurve
     from ..scenes import Scene
 
@@ -204,7 +204,7 @@ def _critical(options: argparse.Namespace) -> int:
 def _campbell(options: argparse.Namespace) -> int:
     import numpy as np
 
-    from ..frequencies.campbell import campbell
+    from ..frequencies.campbell_diagram import campbell
 
     opt.picture(options)
     scene = opt.load(options)

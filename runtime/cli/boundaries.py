@@ -7,7 +7,7 @@ import re
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import speed_of
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ..core.periodic_function import PeriodicFunction
     from ..hill.exact.matrix import Boundaries
     from ..hill.form import HillForm
     from ..hill.perturbation.boundaries import Form, PerturbationBoundaries
     from ..hill.perturbation.coefficients import BoundarySeries
     from ..scenes import Scene
-    from ..series.periodic import PeriodicFunction
 
     Array = NDArray[np.float64]
 
@@ -307,7 +307,7 @@ def _perturb(options: argparse.Namespace) -> int:
     regions = _regions(options.regions)
     if options.latex:
         return _formulas(options)
-    from ..errors import BadInput
+    from ..core.errors import BadInput
     from ..hill.perturbation.coefficients import boundary_series
 
     f, ratio, remarks = _function(options, opt.load(options))

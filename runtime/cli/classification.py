@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 
 
@@ -43,9 +43,9 @@ def add(commands: Any) -> None:
 
 
 def _classify(options: argparse.Namespace) -> int:
-    from ..kinematics.classification import Classification, classify
-    from ..kinematics.transmission import transmission_angle
-    from ..mechanisms import FourBar
+    from ..linkages import FourBar
+    from ..linkages.classification import Classification, classify
+    from ..linkages.transmission import transmission_angle
 
     opt.picture(options)
     if options.plot is None:
@@ -71,8 +71,8 @@ def _linkage(options: argparse.Namespace) -> Any:
         raise bad("classify", "both or neither", expected, "give one of them")
     if options.scene is not None:
         return opt.load(options).mechanism()
-    from ..kinematics.classification import classify
-    from ..mechanisms import FourBar
+    from ..linkages import FourBar
+    from ..linkages.classification import classify
 
     try:
         lengths = [float(text) for text in options.lengths.split(",")]

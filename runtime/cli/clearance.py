@@ -7,13 +7,13 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..kinematics.clearance import ClearanceRange
+    from ..linkages.clearance import ClearanceRange
 
 _JOINTS = ("12", "23", "34", "41")
 _ROWS = 13
@@ -60,7 +60,7 @@ def add(commands: Any) -> None:
 def _clearance(options: argparse.Namespace) -> int:
     import numpy as np
 
-    from ..kinematics.clearance import clearance_range
+    from ..linkages.clearance import clearance_range
 
     opt.picture(options)
     cases = _cases(options)

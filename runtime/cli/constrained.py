@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import speed_of
 
 if TYPE_CHECKING:
-    from ..kinematics.coupler_curve import CouplerCurve
-    from ..kinematics.harmonics import Harmonics, Source
-    from ..mechanisms.linkage import Linkage
+    from ..linkages.curves import CouplerCurve
+    from ..linkages.harmonic_analysis import Harmonics, Source
+    from ..linkages.linkage import Linkage
     from ..scenes import Scene
 
 
@@ -103,19 +103,19 @@ def _add_harmonics(commands: Any) -> None:
 def _curve(options: argparse.Namespace) -> int:
     opt.picture(options)
     if options.animate is not None:
-        from ..kinematics.animation import check_animation_path
+        from ..linkages.animation import check_animation_path
 
         check_animation_path(options.animate)
     linkage = opt.load(options).mechanism()
     link = options.link or ("coupler" if "coupler" in linkage.links else linkage.links[-1])
     along, across = _point(options.point, linkage, link)
-    from ..kinematics.coupler_curve import coupler_curve
+    from ..linkages.curves import coupler_curve
 
     curve = coupler_curve(
         linkage, along, across, link=link, points=options.points, circuit=options.circuit
     )
     if options.animate is not None:
-        from ..kinematics.animation import animate
+        from ..linkages.animation import animate
 
         animate(linkage, options.animate, curves=(curve,), circuit=options.circuit)
     return opt.finish(options, curve, _described(curve))
@@ -182,13 +182,13 @@ def _harmonics(options: argparse.Namespace) -> int:
     if options.method != "simpson":
         opt.refuse_unused(options, ("stop",), "--method simpson beside it")
     if options.method == "simpson":
-        from ..kinematics.simpson import simpson_harmonics
+        from ..linkages.simpson import simpson_harmonics
 
         found = simpson_harmonics(
             source, order=options.order, stop=options.stop or "printed", **given
         )
     else:
-        from ..kinematics.harmonics import harmonics
+        from ..linkages.harmonic_analysis import harmonics
 
         found = harmonics(source, order=options.order, **given)
     rows = [

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..dynamics import RunUp, TorqueLine
+    from ..rigid import RunUp, TorqueLine
     from ..scenes import Scene
 
 _REVOLUTIONS = 10.0
@@ -51,7 +51,7 @@ def add(commands: Any) -> None:
 
 
 def _run_up(options: argparse.Namespace) -> int:
-    from ..dynamics import run_up
+    from ..rigid import run_up
     from ..scenes.rigid import flywheel
 
     opt.picture(options)
@@ -88,7 +88,7 @@ def _torque(options: argparse.Namespace, scene: Scene) -> TorqueLine | float:
     BadInput
         If both kinds are given, or no motor is known.
     """
-    from ..dynamics import TorqueLine
+    from ..rigid import TorqueLine
 
     constant = _given(options, "torque", "moment")
     stall = _given(options, "stall-torque", "moment")

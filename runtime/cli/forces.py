@@ -8,16 +8,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import drive_of, drive_options
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..balancing import ForcePeak
-    from ..dynamics import Machine
-    from ..results import Result
+    from ..core.results import Result
+    from ..rigid import ForcePeak, Machine
 
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
 _WHOLE_TURN = "0:360:721deg"
@@ -58,7 +57,7 @@ def add(commands: Any) -> None:
 def _forces(options: argparse.Namespace) -> int:
     import numpy as np
 
-    from ..dynamics import rigid_forces
+    from ..rigid import rigid_forces
 
     opt.picture(options)
     if options.plot is None:
@@ -69,7 +68,7 @@ def _forces(options: argparse.Namespace) -> int:
     theta = np.array(_angles(options, machine))
     found = rigid_forces(machine, theta, speed, acceleration)
     even = _evenness(machine, speed, options.fluctuation)
-    from ..balancing import force_peaks
+    from ..rigid import force_peaks
 
     peaks = force_peaks(machine, (float(theta[0]), float(theta[-1])), speed, acceleration)
     lines = [*_table(peaks), "", *even.lines]
@@ -123,7 +122,7 @@ class _Evenness:
 
 def _evenness(machine: Machine, speed: float, wanted: float | None) -> _Evenness:
     """Return mean torque, energy fluctuation and flywheel."""
-    from ..dynamics import flywheel_inertia, torque_fluctuation
+    from ..rigid import flywheel_inertia, torque_fluctuation
 
     for lacking, words, expected, fix in (
         (

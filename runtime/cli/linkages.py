@@ -8,12 +8,12 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..errors import BadInput, bad
+from ..core.errors import BadInput, bad
 from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..mechanisms import Motion
+    from ..linkages import Motion
     from ..scenes import Scene
 
 _ROWS = 13
@@ -97,7 +97,7 @@ def _kinematics(options: argparse.Namespace) -> int:
 
     opt.picture(options)
     if options.animate is not None:
-        from ..kinematics.animation import animate, check_animation_path
+        from ..linkages.animation import animate, check_animation_path
 
         check_animation_path(options.animate)
     theta = np.array(opt.values(options.angles, "angle", "--angles"))

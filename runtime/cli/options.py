@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ..results import Check, Result
+    from ..core.results import Check, Result
     from ..scenes import Scene
 
 _SELF_CHECK_FAILED = 1
@@ -121,7 +121,7 @@ def settings(pairs: Sequence[str]) -> dict[str, Any]:
 
 def quantity(text: str, dimension: str, where: str) -> float:
     """Return one quantity of the command line in SI units."""
-    from ..units import to_si
+    from ..core.units import to_si
 
     return to_si(text, dimension, where)
 
@@ -165,7 +165,7 @@ def picture(options: argparse.Namespace) -> Path | None:
     """
     if options.plot is None:
         return None
-    from ..plotting import check_picture_path
+    from ..core.plotting import check_picture_path
 
     return check_picture_path(options.plot)
 
@@ -234,7 +234,7 @@ def draw_into(options: argparse.Namespace, draw: Callable[[Axes], Any]) -> None:
     """Write the picture that was asked for, if any."""
     path = picture(options)
     if path is not None:
-        from ..plotting import new_figure
+        from ..core.plotting import new_figure
 
         figure = new_figure()
         draw(figure.add_subplot())
@@ -252,7 +252,7 @@ def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]
 
 def save(figure: Figure, path: Path) -> None:
     """Write a figure, whole or not at all."""
-    from ..plotting import save_figure
+    from ..core.plotting import save_figure
 
     save_figure(figure, path)
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 
 _REPORTS = (

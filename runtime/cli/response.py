@@ -6,12 +6,12 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import refuse_frame, speed_of
 
 if TYPE_CHECKING:
-    from ..families import Array, LinearPeriodic
+    from ..core.families import Array, LinearPeriodic
     from ..response import SteadyPeaks, SteadyState
 
 _PLACES = 41

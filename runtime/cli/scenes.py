@@ -41,7 +41,7 @@ def _scenes(options: argparse.Namespace) -> int:
 
     path = opt.picture(options)
     if path is not None:
-        from ..plotting import new_figure
+        from ..core.plotting import new_figure
 
         names = list_scenes()
         rows = -(-len(names) // 3)
@@ -65,7 +65,7 @@ def _show(options: argparse.Namespace) -> int:
     path = opt.picture(options)
     scene = opt.load(options)
     if path is not None:
-        from ..plotting import new_figure
+        from ..core.plotting import new_figure
 
         figure = new_figure()
         draw_scene(scene, figure.add_subplot())
@@ -78,7 +78,7 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _lines(scene: Scene) -> list[str]:
-    from ..units import describe
+    from ..core.units import describe
 
     lines = [scene.title, f"source: {scene.source}", f"module: {scene.model_spec().name()}"]
     for name, layout, table in _all_tables(scene):
@@ -109,7 +109,7 @@ def _all_tables(scene: Scene) -> Iterator[tuple[str, Table | None, Mapping[str, 
 
 
 def _several(numbers: tuple[float, ...], dimension: str) -> str:
-    from ..units import DIMENSIONS
+    from ..core.units import DIMENSIONS
 
     listed = ", ".join(f"{number:.6g}" for number in numbers)
     return f"[{listed}] {DIMENSIONS[dimension].si}".rstrip()

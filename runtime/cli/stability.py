@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import constrained, stored_chart
 from . import options as opt
 from .linkages import speed_of
@@ -124,7 +124,7 @@ def _multiplier_lines(result: FloquetMultipliers, scene: Scene) -> list[str]:
 def _crank(speed: float, scene: Scene) -> str:
     if scene.model["mechanism"] == "hill":
         return f"{speed:g}"
-    from ..units import describe
+    from ..core.units import describe
 
     return describe(speed, "frequency")
 
@@ -239,7 +239,7 @@ def _end(value: float, dimension: str) -> str:
 
 def _brief(value: float, dimension: str) -> str:
     """Return a value with its unit; a crank speed in rpm alone, as in the picture."""
-    from ..units import describe
+    from ..core.units import describe
 
     text = describe(float(value), dimension)
     return text.partition("(")[2].rstrip(")") or text

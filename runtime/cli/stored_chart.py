@@ -8,13 +8,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..families import LinearPeriodic
+    from ..core.families import LinearPeriodic
     from ..sweeps import Sweep
 
 Axis = tuple[str, list[float]]

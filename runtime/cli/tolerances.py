@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 from . import options as opt
 from .linkages import speed_of
 
 if TYPE_CHECKING:
-    from ..kinematics.tolerance_result import Tolerances
-    from ..kinematics.tolerance_trial import ToleranceTrial
-    from ..mechanisms.linkage import Linkage
+    from ..linkages.linkage import Linkage
+    from ..linkages.tolerance_result import Tolerances
+    from ..linkages.tolerance_trial import ToleranceTrial
     from ..scenes import Scene
 
 _WHOLE_TURN = "0:360:721deg"
@@ -83,7 +83,7 @@ def add(commands: Any) -> None:
 def _tolerances(options: argparse.Namespace) -> int:
     import numpy as np
 
-    from ..kinematics.tolerances import tolerances
+    from ..linkages.length_tolerances import tolerances
 
     opt.picture(options)
     scene = opt.load(options)

@@ -8,7 +8,7 @@ import sys
 from types import ModuleType
 from typing import Any
 
-from ..errors import bad
+from ..core.errors import bad
 from .functions import compiled_function
 from .rewriting import is_emitted
 from .store import require_numba

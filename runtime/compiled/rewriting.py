@@ -15,7 +15,7 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NoReturn
 
-from ..errors import bad
+from ..core.errors import bad
 
 # Functions of the array namespace, and those of one number.
 _OF_ONE = {

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..._files import write_whole
 from ...derive.spec import cache_folder
-from ..errors import bad
+from ..core.errors import bad
 from .rewriting import Loop
 
 # Number of points, where arguments and outputs lie, and the two.

@@ -8,8 +8,8 @@ from functools import partial
 from types import ModuleType
 from typing import Any, TypeVar
 
-from ..errors import bad
-from ..families import Constrained, LinearPeriodic
+from ..core.errors import bad
+from ..core.families import Constrained, LinearPeriodic
 from .functions import compiled_function
 from .modules import CompiledModule, compiled_module
 from .rewriting import is_emitted

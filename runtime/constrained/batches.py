@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..families.multipliers import kkt_matrix
+from ..core.families.multipliers import kkt_matrix
 from .equations import Array, Equations, NoConvergence, State
 
 _EPS = float(np.finfo(float).eps)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import Problem, RedundantConstraints, bad
-from ..families import Constrained
-from ..families.multipliers import check_rank, kkt_matrix, scaling
-from ..results import Check, Result, provenance
+from ..core.errors import Problem, RedundantConstraints, bad
+from ..core.families import Constrained
+from ..core.families.multipliers import check_rank, kkt_matrix, scaling
+from ..core.results import Check, Result, provenance
 from .equations import Array
 from .norms import constraint_norms
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Constrained
-from ..families.multipliers import kkt_matrix, scaling
+from ..core.families import Constrained
+from ..core.families.multipliers import kkt_matrix, scaling
 
 Array = NDArray[np.float64]
 

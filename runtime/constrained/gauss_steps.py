@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..families import Constrained
+from ..core.families import Constrained
 from ..integrators.tableau import GaussTableau, gauss_tableau
 from .variational import Array, Linearised, Scale, linearised
 

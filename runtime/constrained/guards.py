@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import bad
+from ..core.errors import bad
 from .equations import Array, Equations, NoConvergence, State
 from .steppers.protocol import Step
 

@@ -10,9 +10,9 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import LinearRangeWarning, bad
-from ..families import Constrained
-from ..results import Check, provenance
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import Constrained
+from ..core.results import Check, provenance
 from .batches import nearest_states
 from .consistent import consistent_state
 from .equations import Array, Equations, NoConvergence, State
@@ -226,7 +226,7 @@ class _Reached:
 
 
 def _march(run: _Run, progress: bool = False) -> _Made:
-    from ..progress import bar
+    from ..core.progress import bar
 
     start, times, method = run.start, run.times, METHODS[run.method]
     equations = Equations(run.system, start.q, start.qd, start.t)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..results import Check, Result, provenance
+from ..core.errors import bad
+from ..core.results import Check, Result, provenance
 from .gauss_steps import Ring
 from .orbits import OrbitSource, PeriodicOrbit
 from .shooting import Shot, junctions
@@ -108,7 +108,7 @@ class ConstrainedMultipliers(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw physical and constraint multipliers and the unit circle; return the axes."""
-        from ..plotting import multiplier_plane
+        from ..core.plotting import multiplier_plane
 
         ax = multiplier_plane(ax)
         ax.plot(self.physical.real, self.physical.imag, "o", markersize=4, label="physical")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Constrained
-from ..families.multipliers import scaling
+from ..core.families import Constrained
+from ..core.families.multipliers import scaling
 
 Array = NDArray[np.float64]
 

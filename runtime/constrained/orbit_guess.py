@@ -8,9 +8,9 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import BadInput, bad
-from ..families import Constrained
-from ..families.multipliers import check_rank, scaling
+from ..core.errors import BadInput, bad
+from ..core.families import Constrained
+from ..core.families.multipliers import check_rank, scaling
 from .gauss_steps import STAGES, Ring
 from .variational import (
     Array,

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import SelfCheckFailed, bad
-from ..families import Constrained
-from ..results import Check, Result, provenance
+from ..core.errors import SelfCheckFailed, bad
+from ..core.families import Constrained
+from ..core.results import Check, Result, provenance
 from .gauss_steps import STAGES
 from .norms import constraint_norms
 from .orbit_guess import Guess, checked_guess, first_ring, scale_for
@@ -134,7 +134,7 @@ class PeriodicOrbit(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over one period, each less its mean, and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         t = np.linspace(0.0, self.period, 1001)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from ..results import Result
+from ..core.results import Result
 from .equations import Array
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class ConstrainedMotion(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over time and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         names = self.labels or tuple(f"q{i + 1}" for i in range(self.q.shape[1]))

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput
-from ..families import Constrained
+from ..core.errors import BadInput
+from ..core.families import Constrained
 from .gauss_steps import Ring, Sweep, sweep
 from .variational import Array, Scale, Tangent, linearised, onto_manifold, tangent
 

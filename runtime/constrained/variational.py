@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..families import Constrained
-from ..families.multipliers import kkt_matrix
+from ..core.errors import bad
+from ..core.families import Constrained
+from ..core.families.multipliers import kkt_matrix
 
 Array = NDArray[np.float64]
 

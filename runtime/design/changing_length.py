@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ..beams.element_forms import required_structure
 from ..beams.turning import products
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
 from .speed_profile import Array, SpeedProfile
 from .unsteady import Drive, arrays_of
 

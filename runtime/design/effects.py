@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
-from ..errors import BadInput, Problem, bad
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result, provenance
 from ..floquet.first_order import numbers
-from ..kinematics import transmission_angle
-from ..mechanisms import FourBar
+from ..linkages import FourBar, transmission_angle
 from ..reduction.stress_curve import stress_curve
-from ..results import Check, Result, provenance
 from .speed_profile import Array
 
 if TYPE_CHECKING:
@@ -96,7 +95,7 @@ class StressEffect(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of all links over the speed, a line for each value."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for value, rows in zip(self.values, self.maximum, strict=True):

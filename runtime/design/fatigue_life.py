@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..beams.stress import FIBRES, StressResult
-from ..errors import BadInput, ElastolinkError, Problem
-from ..results import Result
+from ..core.errors import BadInput, ElastolinkError, Problem
+from ..core.results import Result
 
 Array = NDArray[np.float64]
 # Cycles beyond which a life is called endless.

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..errors import BadInput, bad
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result
 from ..floquet.first_order import numbers
 from ..reduction import stress_curve
-from ..results import Check, Result
 from .effects import StressEffect, damping_effect, length_effect
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array

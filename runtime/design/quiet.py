@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..errors import BadInput, Problem
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, Problem
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result
 from ..floquet.first_order import numbers
 from ..reduction.stress_curve import StressCurve, shade_unstable, stress_curve
-from ..results import Check, Result
 from .speed_profile import Array
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ class QuietSpeeds(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the ratios over the speed, the limit, the bands, and what is unstable."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for link, values in zip(self.links, self.ratio.T, strict=True):

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
 from ..beams.stress import stress_operator
-from ..errors import BadInput, Problem
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, Problem
+from ..core.families import LinearPeriodic
+from ..core.results import Result, provenance
 from ..floquet.first_order import numbers
 from ..frequencies import natural_frequencies
-from ..results import Result, provenance
 from .speed_profile import Array
 
 _ANGLES = 256

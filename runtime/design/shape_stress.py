@@ -9,8 +9,8 @@ import numpy as np
 from ..beams.element_forms import required_structure
 from ..beams.placed_shapes import placed_rotation, placed_shapes
 from ..beams.turning import in_own_axes, products
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
 from .speed_profile import Array
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput, Problem
+from ..core.errors import BadInput, Problem
 
 Array = NDArray[np.float64]
 

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..errors import BadInput, LinearRangeWarning, Problem, bad
-from ..families import LinearPeriodic
-from ..inputs import is_whole, require_whole
+from ..core.errors import BadInput, LinearRangeWarning, Problem, bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import is_whole, require_whole
+from ..core.results import Check, Result, provenance
 from ..reduction import ReducedSystem, reduced_system
 from ..response import steady_state
-from ..results import Check, Result, provenance
 from ..simulation.trajectory import LINEAR_RANGE
 from .changing_length import ChangingLength
 from .shape_stress import largest_by_shape
@@ -109,7 +109,7 @@ class Transient(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the time, and the crank speed."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for link, values in zip(self.links, self.stress.T, strict=True):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..families import DAMPING, LinearPeriodic
+from ..core.families import DAMPING, LinearPeriodic
 from ..integrators.tableau import GaussTableau, gauss_tableau
 from .speed_profile import Array, SpeedProfile
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..lazy import on_first_use
+from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
     from .boundary_speeds import SpeedBoundaries, speed_boundaries

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import LinearPeriodic
-from ..results import Check
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from .first_order import canonical_form
 from .monodromy_matrix import Monodromy, monodromy
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result, provenance
 from .boundary_checks import at_boundaries, parity
 from .first_order import canonical_form, numbers
 from .fourier_matrices import Wave, real_matrices, waves
@@ -81,7 +81,7 @@ class SpeedBoundaries(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the boundaries as lines over the speed and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for sign, colour in ((1, "C0"), (-1, "C1")):

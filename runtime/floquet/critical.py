@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Result, provenance
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Result, provenance
 from .boundary_speeds import speed_span
 from .decoupled.exponents import SlowModes, SlowMultipliers
 from .first_order import numbers
@@ -75,7 +75,7 @@ class MarkedSpeeds(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the speeds as lines from 0 to their value, a colour to a mode."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for mode in np.unique(self.mode).tolist():

@@ -14,10 +14,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import BadInput, bad
-from ..families import DAMPING, LinearPeriodic, Term
-from ..inputs import numbers as numbers
-from ..namespaces import BlockMatrices, in_numpy, namespace_of, to_numpy
+from ..core.errors import BadInput, bad
+from ..core.families import DAMPING, LinearPeriodic, Term
+from ..core.inputs import numbers as numbers
+from ..core.namespaces import BlockMatrices, in_numpy, namespace_of, to_numpy
 
 Array = NDArray[np.float64]
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic, Term
+from ..core.errors import bad
+from ..core.families import LinearPeriodic, Term
 from .first_order import even_angles
 
 Array = NDArray[np.float64]

@@ -17,8 +17,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..results import Check, Result
+from ..core.errors import bad
+from ..core.results import Check, Result
 from .eigenvalues import conditions, multiplier_order
 
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result, provenance
 from .eigenvalues import eigenvalues
 from .first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from .krein import SignatureSource
@@ -256,7 +256,7 @@ class FloquetMultipliers(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the multipliers and the unit circle into ``ax`` and return the axes."""
-        from ..plotting import multiplier_plane
+        from ..core.plotting import multiplier_plane
 
         ax = multiplier_plane(ax)
         values = self.multipliers.ravel()

@@ -15,13 +15,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..inputs import is_whole
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import is_whole
+from ..core.namespaces import carried, common_array, is_foreign, namespace_of, to_numpy
+from ..core.results import Check, DeferredChecks, Result, provenance
 from ..integrators import METHODS
 from ..integrators.protocol import OneStep
-from ..namespaces import carried, common_array, is_foreign, namespace_of, to_numpy
-from ..results import Check, DeferredChecks, Result, provenance
 from .first_order import CanonicalForm, at_geometry, canonical_form
 from .monodromy_matrix import monodromy_checks, trace_integral
 from .period_products import period_product

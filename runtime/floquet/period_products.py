@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.namespaces import carried, in_numpy, namespace_of, to_numpy
 from ..integrators.gauss_legendre import gauss_legendre, gauss_maps
 from ..integrators.protocol import OneStep
-from ..namespaces import carried, in_numpy, namespace_of, to_numpy
 from .first_order import CanonicalForm
 
 Array = NDArray[np.float64]

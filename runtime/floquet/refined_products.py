@@ -12,10 +12,10 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.namespaces import any_entry
 from ..integrators import METHODS
 from ..integrators.protocol import OneStep
-from ..namespaces import any_entry
 from .first_order import CanonicalForm
 from .period_products import GAUSS, period_product
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import MATRICES, LinearPeriodic
+from ..core.families import MATRICES, LinearPeriodic
 from .first_order import SPEED_POWER, CanonicalForm, even_angles
 
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import DAMPING, LinearPeriodic
-from ..results import Check, Result, provenance
+from ..core.errors import bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.results import Check, Result, provenance
 from .edges.over_geometry import checked_values, followed, foot_of
 from .first_order import numbers
 from .tongues.resonances import MeanSystem, Resonance
@@ -81,7 +81,7 @@ class SlowTongues(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative widths over the order."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for pair, rows in zip(self.modes.tolist(), self.relative_width, strict=True):

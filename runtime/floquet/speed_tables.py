@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import BadInput
-from ..families import LinearPeriodic, Term
+from ..core.errors import BadInput
+from ..core.families import LinearPeriodic, Term
 from .first_order import CanonicalForm, canonical_form
 from .period_products import period_product
 from .refined_products import Refined, distance, gathered, refined_products, rounding_error

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from .first_order import CanonicalForm, even_angles
 
 Array = NDArray[np.float64]

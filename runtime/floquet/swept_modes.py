@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput
-from ..families import LinearPeriodic
+from ..core.errors import BadInput
+from ..core.families import LinearPeriodic
 from .decoupled.frames import held_modes
 from .first_order import canonical_form, even_angles
 from .monodromy_matrix import monodromy

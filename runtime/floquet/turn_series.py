@@ -13,7 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from ..stretches import Equation, Tabulated, solved
 from ..stretches.solving import MOST_STRETCHES
 from .first_order import CanonicalForm, even_angles

@@ -1,32 +1,89 @@
-"""Natural frequencies over the crank angle, critical speeds and what they depend on."""
+"""Natural frequencies and critical speeds, of finite elements and of exact members.
+
+The names load on first use.
+"""
 
 from __future__ import annotations
 
-from .buckling import Buckling, buckling_speed
-from .campbell import Campbell, campbell
-from .comparison import CriticalComparison, compare_critical_speeds
-from .critical import critical_speeds
-from .critical_result import CriticalSpeeds
-from .encounters import Encounter
-from .link_study import (
-    FrequencyExponents,
-    LinkFrequencies,
-    frequency_exponents,
-    link_frequencies,
-    pinned_frequency,
-)
-from .mode_pictures import draw_mode, draw_modes
-from .models import ModelComparison, compare_models, exact_frequencies
-from .natural import NaturalFrequencies, natural_frequencies
+from typing import TYPE_CHECKING
+
+from ..core.lazy import on_first_use
+
+if TYPE_CHECKING:
+    from .buckling import Buckling, buckling_speed
+    from .campbell_diagram import Campbell, campbell
+    from .comparison import CriticalComparison, compare_critical_speeds
+    from .critical import critical_speeds
+    from .critical_result import CriticalSpeeds
+    from .determinant import log_determinant
+    from .elements import element_matrices
+    from .encounters import Encounter
+    from .frames import DynamicStiffness, dynamic_stiffness
+    from .frequency_count import wittrick_williams
+    from .hybrid import HybridMatrices, hybrid_matrices
+    from .link_study import (
+        FrequencyExponents,
+        LinkFrequencies,
+        frequency_exponents,
+        link_frequencies,
+        pinned_frequency,
+    )
+    from .members import member_matrices
+    from .mode_pictures import draw_mode, draw_modes
+    from .models import ModelComparison, compare_models, exact_frequencies
+    from .natural import NaturalFrequencies, natural_frequencies
+    from .result import FrameFrequencies
+    from .shapes import MemberShape
+    from .solutions import Mode
+
+_PUBLIC = {
+    "Buckling": "buckling",
+    "Campbell": "campbell_diagram",
+    "CriticalComparison": "comparison",
+    "CriticalSpeeds": "critical_result",
+    "DynamicStiffness": "frames",
+    "Encounter": "encounters",
+    "FrameFrequencies": "result",
+    "FrequencyExponents": "link_study",
+    "HybridMatrices": "hybrid",
+    "LinkFrequencies": "link_study",
+    "MemberShape": "shapes",
+    "Mode": "solutions",
+    "ModelComparison": "models",
+    "NaturalFrequencies": "natural",
+    "buckling_speed": "buckling",
+    "campbell": "campbell_diagram",
+    "compare_critical_speeds": "comparison",
+    "compare_models": "models",
+    "critical_speeds": "critical",
+    "draw_mode": "mode_pictures",
+    "draw_modes": "mode_pictures",
+    "dynamic_stiffness": "frames",
+    "element_matrices": "elements",
+    "exact_frequencies": "models",
+    "frequency_exponents": "link_study",
+    "hybrid_matrices": "hybrid",
+    "link_frequencies": "link_study",
+    "log_determinant": "determinant",
+    "member_matrices": "members",
+    "natural_frequencies": "natural",
+    "pinned_frequency": "link_study",
+    "wittrick_williams": "frequency_count",
+}
 
 __all__ = [
     "Buckling",
     "Campbell",
     "CriticalComparison",
     "CriticalSpeeds",
+    "DynamicStiffness",
     "Encounter",
+    "FrameFrequencies",
     "FrequencyExponents",
+    "HybridMatrices",
     "LinkFrequencies",
+    "MemberShape",
+    "Mode",
     "ModelComparison",
     "NaturalFrequencies",
     "buckling_speed",
@@ -36,9 +93,17 @@ __all__ = [
     "critical_speeds",
     "draw_mode",
     "draw_modes",
+    "dynamic_stiffness",
+    "element_matrices",
     "exact_frequencies",
     "frequency_exponents",
+    "hybrid_matrices",
     "link_frequencies",
+    "log_determinant",
+    "member_matrices",
     "natural_frequencies",
     "pinned_frequency",
+    "wittrick_williams",
 ]
+
+__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..floquet.first_order import even_angles
 from .eigenproblem import held_arrays, require_system
 

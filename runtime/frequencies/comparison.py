@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Result, provenance
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Result, provenance
 from .critical import METHODS, critical_speeds
 from .critical_result import CriticalSpeeds
 from .eigenproblem import require_system
@@ -67,7 +67,7 @@ class CriticalComparison(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the speeds of each method on a line of its own, labels that agree joined."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         height = np.arange(len(self.methods), dtype=float)

@@ -8,10 +8,10 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
 from ..floquet.first_order import numbers
-from ..inputs import require_whole
 from .critical_floquet import by_meissner, by_multipliers
 from .critical_means import by_mean_frequency, by_running_mean
 from .critical_response import by_response

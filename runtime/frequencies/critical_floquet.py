@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.results import provenance
 from ..floquet import MarkedSpeeds, meissner_speeds, multiplier_maxima
 from ..floquet.first_order import even_angles
-from ..results import provenance
 from .critical_result import Array, CriticalSpeeds, Request
 from .eigenproblem import held_frequencies
 from .natural import natural_frequencies

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import bad
+from ..core.errors import bad
 from .buckling import buckling_speed
 from .critical_result import CriticalSpeeds, Request, listed
 from .natural import natural_frequencies

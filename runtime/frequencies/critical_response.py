@@ -7,10 +7,10 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning, bad
-from ..families import DAMPING, LinearPeriodic
-from ..progress import bar
-from ..results import Check, provenance
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.progress import bar
+from ..core.results import Check, provenance
 from .critical_result import CriticalSpeeds, Measure, Request
 from .critical_scan import scanned_deflections
 from .labels import label_speeds

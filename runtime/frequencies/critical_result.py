@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import LinearPeriodic
-from ..results import Result, provenance
+from ..core.families import LinearPeriodic
+from ..core.results import Result, provenance
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,7 +75,7 @@ class CriticalSpeeds(Result):
 
         Where nothing was scanned, the order n of each speed, mode by mode.
         """
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         ax.set_xlabel("crank speed [rad/s]")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput
-from ..families import LinearPeriodic
+from ..core.errors import BadInput
+from ..core.families import LinearPeriodic
 
 Array = NDArray[np.float64]
 

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams._checks import positive, require_kind
 from ..beams.section import Section
 from ..beams.structure import Beam, Structure
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
+from ..core.progress import bar
+from ..core.results import Check, Result, provenance
 from ..floquet.first_order import numbers
-from ..inputs import require_whole
-from ..progress import bar
-from ..results import Check, Result, provenance
 from .eigenproblem import held_frequencies, require_system
 from .means import cycle_mean
 
@@ -77,7 +77,7 @@ class LinkFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the means with their ranges, and the pinned links dashed (Fig. 9.1)."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for k in range(self.mean.shape[1]):

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ..beams._checks import is_finite
 from ..beams.placed_shapes import placed_shapes
 from ..beams.structure import Structure
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..inputs import require_whole
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
 from .eigenproblem import crank_angles, require_system
 from .natural import NaturalFrequencies, natural_frequencies
 
@@ -98,7 +98,7 @@ def draw_mode(
     BadInput
         If the system has no beams, or the mode or the angle is not there.
     """
-    from ..plotting import axes_or_new
+    from ..core.plotting import axes_or_new
 
     structure = _structure(system)
     require_whole("mode", mode, 1, system.size)
@@ -150,7 +150,7 @@ def draw_modes(
     BadInput
         As :func:`draw_mode`.
     """
-    from ..plotting import new_figure
+    from ..core.plotting import new_figure
 
     _structure(system)
     if theta is None:

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..beams._checks import numbers_in_a_row, require_kind, require_mapping
 from ..beams.structure import Structure
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
+from ..core.progress import bar
+from ..core.results import Result, provenance
 from ..floquet.first_order import even_angles
-from ..inputs import require_whole
-from ..progress import bar
-from ..results import Result, provenance
 from .eigenproblem import crank_angles, held_frequencies, require_system
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class ModelComparison(Result):
 
     def plot_mode(self, mode: int = 1, ax: Axes | None = None) -> Axes:
         """Draw one natural frequency of all models over the crank angle (Figs. 4.6, 5.3)."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for name, size, values in zip(self.names, self.size, self.frequency, strict=True):
@@ -185,7 +185,7 @@ def exact_frequencies(
     BadInput
         If the structure is none, an angle is unusable, or the count no whole number from 1 to 1000.
     """
-    from ..dynamic_stiffness import dynamic_stiffness, wittrick_williams
+    from . import dynamic_stiffness, wittrick_williams
 
     require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
     angles = numbers_in_a_row("theta", theta, " [rad]")

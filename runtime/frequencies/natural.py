@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..inputs import require_whole
-from ..results import Check, Result, provenance
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
+from ..core.results import Check, Result, provenance
 from .curves import Curves, followed_shapes
 from .eigenproblem import (
     assurance,
@@ -141,7 +141,7 @@ class NaturalFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curves over the crank angle, crossings and veerings marked."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for k in range(self.tracked.shape[1]):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..floquet.decoupled.exponents import SlowModes, SlowMonodromy
 from ..floquet.first_order import even_angles
 from .eigenproblem import HeldModes, held_modes

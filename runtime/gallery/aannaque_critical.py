@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..families import Array
+from ..core.families import Array
 from .aannaque_models import (
     CRITICAL,
     FORM_NOTE,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..families import Array
+from ..core.families import Array
 from .aannaque_models import FULL, beams
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, crank_axis, legend_below, panel_title
@@ -85,7 +85,7 @@ def _portal(column: str = "1 element") -> Structure:
 
 
 def _problem(pieces: int = 1) -> Any:
-    from ..dynamic_stiffness import dynamic_stiffness
+    from ..frequencies import dynamic_stiffness
 
     shares = (1.0 / pieces,) * pieces
     cut = dict.fromkeys(("left", "beam", "right"), shares) if pieces > 1 else None
@@ -95,7 +95,7 @@ def _problem(pieces: int = 1) -> Any:
 @lru_cache(maxsize=2)
 def _exact(pieces: int = 1) -> Array:
     """Return the first 21 frequencies [rad/s]."""
-    from ..dynamic_stiffness import wittrick_williams
+    from ..frequencies import wittrick_williams
 
     return np.asarray(_FACTOR * wittrick_williams(_problem(pieces), count=21).frequencies)
 
@@ -105,7 +105,7 @@ def _elements(column: str) -> Array:
     """Return all frequencies of a column's elements [rad/s]."""
     from scipy.linalg import eigh
 
-    from ..dynamic_stiffness import element_matrices
+    from ..frequencies import element_matrices
 
     mass, stiffness, _ = element_matrices(_portal(column), inextensible=True)
     return np.asarray(_FACTOR * np.sqrt(eigh(stiffness, mass, eigvals_only=True)))
@@ -113,7 +113,7 @@ def _elements(column: str) -> Array:
 
 def figure_5_1(axes: Sequence[Axes]) -> Drawn:
     """Draw the logarithm of the determinant of D over the frequency, bars whole and halved."""
-    from ..dynamic_stiffness import log_determinant
+    from ..frequencies import log_determinant
 
     known = _exact()
     inside = known[known < _SPAN[1]]
@@ -147,7 +147,7 @@ def figure_5_1(axes: Sequence[Axes]) -> Drawn:
 
 
 def _determinant_rows() -> list[Quoted]:
-    from ..dynamic_stiffness import log_determinant
+    from ..frequencies import log_determinant
 
     fourth = _exact()[3] / _FACTOR
     slopes = []

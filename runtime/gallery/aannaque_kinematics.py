@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..kinematics.coupler_curve import CouplerCurve, coupler_curve
-from ..kinematics.transmission import TransmissionAngle, transmission_angle
-from ..mechanisms import FourBar, FourBarMotion
+from ..linkages import FourBar, FourBarMotion
+from ..linkages.curves import CouplerCurve, coupler_curve
+from ..linkages.transmission import TransmissionAngle, transmission_angle
 from .records import Drawn, Quoted
 from .sketches import Array, arc, bar, canvas, four_bar, pin, pivot, write
 from .smith_linkages import four_bar_of

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import LinearRangeWarning
-from ..families import Array, LinearPeriodic
+from ..core.errors import LinearRangeWarning
+from ..core.families import Array, LinearPeriodic
 from .aannaque_models import (
     CRITICAL,
     FORM_NOTE,

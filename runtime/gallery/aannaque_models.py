@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning
-from ..families import Array, LinearPeriodic
+from ..core.errors import LinearRangeWarning
+from ..core.families import Array, LinearPeriodic
 from ..scenes import load_scene
 
 if TYPE_CHECKING:

@@ -7,12 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..response.operation_counts import (
-    TABLE_6_2,
-    TABLE_6_3,
-    operation_count,
-    printed_count,
-)
+from ..response.operation_counts import TABLE_6_2, TABLE_6_3, operation_count, printed_count
 from .aannaque_steady_state import march
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, legend_below, panel_title

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning, bad
-from ..families import LinearPeriodic
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import LinearPeriodic
 from ..scenes import load_scene
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..kinematics.base_planes import BasePlane, base_plane
-from ..kinematics.classification import SYMBOLS, classify_many
+from ..linkages.base_planes import BasePlane, base_plane
+from ..linkages.classification import SYMBOLS, classify_many
 from .records import Drawn, Quoted, Table
 from .sketches import Array, write
 from .style import COLOURS, panel_title

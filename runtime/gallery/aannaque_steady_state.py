@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning
-from ..families import Array, LinearPeriodic
+from ..core.errors import LinearRangeWarning
+from ..core.families import Array, LinearPeriodic
 from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, periodic, rms
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, crank_axis, legend_below, panel_title

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import Array, LinearPeriodic, Term
+from ..core.families import Array, LinearPeriodic, Term
 from .aannaque_lengths import bending_at_midpoint
 from .aannaque_models import (
     FORM_NOTE,
@@ -29,7 +29,7 @@ from .style import COLOURS, crank_axis, legend_below
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..dynamic_stiffness import HybridMatrices
+    from ..frequencies import HybridMatrices
 
 _SPEEDS = np.linspace(5.0, 70.0, 326)
 _FEWER = np.linspace(10.0, 70.0, 121)
@@ -42,7 +42,7 @@ _ANGLES = 128
 
 @lru_cache(maxsize=2)
 def _hybrid(rtol: float) -> HybridMatrices:
-    from ..dynamic_stiffness import hybrid_matrices
+    from ..frequencies import hybrid_matrices
 
     structure = beams(1).structure
     assert structure is not None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..charts.chart import StabilityChart, stability_chart
-from ..families import Array
+from ..core.families import Array
 from ..floquet.monodromy_matrix import floquet_multipliers
 from ..response.frozen import frozen_frequencies
 from .beale_tip import FLEXIBLE, rod

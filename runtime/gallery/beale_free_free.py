@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..constrained import ConstrainedMotion, constrained_motion
-from ..errors import LinearRangeWarning
-from ..families import Array
+from ..core.errors import LinearRangeWarning
+from ..core.families import Array
 from ..scenes import load_scene
 from ..systems.rod.constrained import FreeFreeRod, rigid_state, tip_deflection
 from .beale_tip import (

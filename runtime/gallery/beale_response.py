@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..floquet.monodromy_matrix import floquet_multipliers
 from ..response.frozen import frozen_frequencies
 from ..response.resonances import ResonanceCurve, resonance_curve

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..families import Array
-from ..mechanisms import QuickReturn
+from ..core.families import Array
+from ..linkages import QuickReturn
 from ..scenes import load_scene
 from .beale_tip import (
     HEAVY,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from ..floquet.first_order import canonical_form
 from ..integrators import METHODS
 from ..scenes import load_scene

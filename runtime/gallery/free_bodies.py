@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dynamics import Machine, RigidForces, rigid_forces
+from ..rigid import Machine, RigidForces, rigid_forces
 from .sketches import LINK_COLOURS, Array, arrow, bar, pin, turning_arrow, write
 from .style import COLOURS
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..results import Check, Result
+from ..core.results import Check, Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -265,7 +265,7 @@ class Gallery(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deviation of each quoted number over its tolerance and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         rows = self.rows

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import bad
-from ..progress import bar
-from ..results import Check
+from ..core.errors import bad
+from ..core.progress import bar
+from ..core.results import Check
 from . import registry
 from .records import Drawn, FigureEntry, Gallery, Shown
 
@@ -128,7 +128,7 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Drawn, bytes | 
     """
     import matplotlib as mpl
 
-    from ..plotting import new_figure
+    from ..core.plotting import new_figure
     from .style import SETTINGS
 
     with mpl.rc_context():

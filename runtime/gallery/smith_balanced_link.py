@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..balancing import balanced_link_inertia, density_number, offset_function, optimal_offset
+from ..rigid import balanced_link_inertia, density_number, offset_function, optimal_offset
 from .records import Drawn, Quoted, Table
 from .sketches import Array, write
 from .style import COLOURS, legend_below

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..balancing import Counterweight, balance_case, case_counterweights
-from ..balancing.cases import CASES, Case
-from ..dynamics import RigidForces, rigid_forces
-from ..mechanisms import Motion
+from ..linkages import Motion
+from ..rigid import Counterweight, RigidForces, balance_case, case_counterweights, rigid_forces
+from ..rigid.cases import CASES, Case
 from .records import Drawn, Quoted, Table
 from .sketches import INK, LINK_COLOURS, Array, bar, canvas, four_bar, write
 from .smith_forces import INCH, TURN, example, example_forces, peak, polar_look

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..core.periodic_function import PeriodicFunction
 from ..hill.exact.matrix import Boundaries, hill_boundaries
 from ..hill.half_trace import discriminant
 from ..hill.perturbation.boundaries import perturbation_boundaries
 from ..hill.perturbation.thresholds import least_parameter
-from ..mechanisms import FourBar
-from ..series.periodic import PeriodicFunction
+from ..linkages import FourBar
 from .records import Drawn, Quoted
 from .smith_linkages import Array, end_load, f3_series
 from .style import COLOURS, legend_below, panel_title

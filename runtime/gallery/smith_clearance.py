@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import BadInput
-from ..kinematics.clearance import clearance_range
-from ..kinematics.transmission import transmission_angle
-from ..mechanisms import FourBar
+from ..core.errors import BadInput
+from ..linkages import FourBar
+from ..linkages.clearance import clearance_range
+from ..linkages.transmission import transmission_angle
 from .records import Drawn, Quoted
 from .sketches import GROUND, LINK_COLOURS, Array, arc, bar, canvas, pin, pivot, write
 from .smith_linkages import four_bar_of

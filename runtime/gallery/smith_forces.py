@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..dynamics import Machine, MassDistribution, RigidForces, rigid_forces
-from ..mechanisms import FourBar
+from ..linkages import FourBar
+from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
 from ..scenes import load_scene
 from .free_bodies import draw_body, free_bodies, round_force, scale_bar
 from .records import Drawn, Quoted, Table

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..mechanisms import FourBar, FourBarMotion
-from ..series.periodic import PeriodicFunction
+from ..core.periodic_function import PeriodicFunction
+from ..linkages import FourBar, FourBarMotion
 from .records import Drawn, Quoted
 from .smith_linkages import PROPORTIONS, Array, EndLoad, end_load, linkage_of
 from .style import COLOURS, crank_axis, legend_below

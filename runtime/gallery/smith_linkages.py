@@ -10,13 +10,13 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.periodic_function import PeriodicFunction
 from ..hill.exact.matrix import hill_boundaries
 from ..hill.form import HillForm, hill_form
-from ..mechanisms import FourBar
+from ..linkages import FourBar
 from ..scenes import load_scene
-from ..series.periodic import PeriodicFunction
 
 Array = NDArray[np.float64]
 

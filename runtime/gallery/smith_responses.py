@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning
-from ..families import LinearPeriodic
+from ..core.errors import LinearRangeWarning
+from ..core.families import LinearPeriodic
 from ..scenes import load_scene
 from .records import Drawn, Quoted
 from .smith_linkages import LBF_IN_S2, RIG, RPM, Array, Rig

@@ -25,7 +25,7 @@ from .style import COLOURS, panel_title
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..families import LinearPeriodic
+    from ..core.families import LinearPeriodic
 
 # Charts of the 1/16 in coupler, and the least and greatest inertia [lbf in s^2].
 _CHARTS = ("84", "87")

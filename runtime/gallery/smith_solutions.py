@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import StepTooLongWarning
-from ..families import LinearPeriodic
+from ..core.errors import StepTooLongWarning
+from ..core.families import LinearPeriodic
 from ..hill.half_trace import discriminant
 from ..scenes import load_scene
 from ..simulation.trajectory import Trajectory, simulate

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import LinearRangeWarning
-from ..families import LinearPeriodic
+from ..core.errors import LinearRangeWarning
+from ..core.families import LinearPeriodic
 from ..hill.half_trace import discriminant
 from ..scenes import load_scene
 from ..simulation.trajectory import simulate

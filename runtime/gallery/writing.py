@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..errors import bad
+from ..core.errors import bad
 
 
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:

@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from ..errors import bad
-from ..families import Array, LinearPeriodic, Term
-from ..series.periodic import PeriodicFunction
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic, Term
+from ..core.periodic_function import PeriodicFunction
 
 
 @dataclass(frozen=True)

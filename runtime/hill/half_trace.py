@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..results import BROADCAST, Check, Result, provenance
-from ..series import chebyshev
-from ..series.periodic import PeriodicFunction
+from ..core import chebyshev
+from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import BROADCAST, Check, Result, provenance
 from .transfer import EPS, Transfer, transfer
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class HalfTrace(Result):
         BadInput
             If the values are neither a grid of lam2 by mu nor a line.
         """
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         lam2, mu = np.squeeze(self.lam2), np.squeeze(self.mu)

@@ -17,8 +17,8 @@ from math import ceil, lgamma, log, log2, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..series.periodic import PeriodicFunction, segment_values
+from ..core.errors import bad
+from ..core.periodic_function import PeriodicFunction, segment_values
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]

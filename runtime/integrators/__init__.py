@@ -5,15 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import (
-    commutator_free,
-    de_vogelaere,
-    gauss_legendre,
-    kutta_merson,
-    magnus,
-    nystroem,
-    rk4,
-)
+from . import commutator_free, de_vogelaere, gauss_legendre, kutta_merson, magnus, nystroem, rk4
 from .commutators import ExponentialProduct, MagnusExponent
 from .expm import expm
 from .newmark import SECOND_ORDER

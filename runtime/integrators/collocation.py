@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import SelfCheckFailed
+from ..core.errors import SelfCheckFailed
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ digits.
 
 from __future__ import annotations
 
-from ..namespaces import carried, namespace_of
+from ..core.namespaces import carried, namespace_of
 from .commutators import ExponentialProduct, combination, moments_of
 from .expm import expm
 from .protocol import Array, Generator, OneStep

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import SelfCheckFailed
-from ..namespaces import carried, namespace_of
+from ..core.errors import SelfCheckFailed
+from ..core.namespaces import carried, namespace_of
 from .lie_series import LieSeries, legendre_flow, letters, one
 from .protocol import Array, Generator, at_nodes
 from .tableau import gauss_tableau

@@ -87,7 +87,7 @@ def work_against_error(
     repeats : int
         Runs of each, of which the shortest counts.
     """
-    from ..errors import BadInput
+    from ..core.errors import BadInput
 
     size = np.max(np.abs(exact), axis=(-2, -1))
     rows = []

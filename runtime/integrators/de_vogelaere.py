@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..namespaces import identity, namespace_of
+from ..core.namespaces import identity, namespace_of
 from .protocol import Array, Generator, OneStep, at_nodes
 
 ORDER = 4

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..namespaces import identity, namespace_of
+from ..core.namespaces import identity, namespace_of
 from .protocol import Array, Generator, at_nodes
 from .tableau import ExplicitTableau
 

@@ -15,8 +15,8 @@ from math import factorial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..namespaces import identity, namespace_of
+from ..core.errors import bad
+from ..core.namespaces import identity, namespace_of
 
 Array = NDArray[np.float64]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import bad
-from ..namespaces import any_entry, carried, identity, in_numpy, namespace_of, weighted_sum
+from ..core.errors import bad
+from ..core.namespaces import any_entry, carried, identity, in_numpy, namespace_of, weighted_sum
 from .protocol import Array, Generator, OneStep, at_nodes
 from .tableau import GaussTableau, gauss_tableau
 

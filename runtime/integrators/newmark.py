@@ -21,7 +21,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from .protocol import Generator, OneStep
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import newmark_stability as _emitted
-from ..errors import bad
+from ..core.errors import bad
 
 Array = NDArray[np.float64]
 

@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import SelfCheckFailed, bad
-from ..namespaces import any_entry, carried, identity, namespace_of, weighted_sum
+from ..core.errors import SelfCheckFailed, bad
+from ..core.namespaces import any_entry, carried, identity, namespace_of, weighted_sum
 from .lie_series import LieSeries, letters, one
 from .protocol import Array, Generator, OneStep, at_nodes
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..namespaces import namespace_of
+from ..core.namespaces import namespace_of
 
 Array = NDArray[np.float64]
 Generator = Callable[[Array], Array]

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..errors import SelfCheckFailed
+from ..core.errors import SelfCheckFailed
 from .collocation import Array, CollocationTableau
 
 Tree = tuple["Tree", ...]

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from ..response.checks import largest_deflection
-from ..results import Check
 from ..simulation.trajectory import LINEAR_RANGE
 from .table import Array
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import bad
+from ..core.errors import bad
 from .table import Array, Table
 
 

@@ -11,12 +11,12 @@ from math import ceil, log
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, DeferredChecks, provenance
 from ..floquet.first_order import at_geometry, canonical_form, even_angles, numbers
 from ..floquet.monodromy_matrix import Monodromy
 from ..response.result import SteadyState
-from ..results import Check, DeferredChecks, provenance
 from ..simulation.trajectory import Trajectory
 from .checks import motion_checks
 from .compiled import CompiledTable, require_numba

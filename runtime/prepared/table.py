@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from ..floquet.first_order import SPEED_POWER, CanonicalForm, canonical_form, even_angles
 from ..stretches import Equation, Tabulated, mixed, solved
 

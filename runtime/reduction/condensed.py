@@ -11,17 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from .expressions import (
-    Arrays,
-    Expression,
-    constant_part,
-    equation,
-    plus,
-    sampled_arrays,
-    times,
-)
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from .expressions import Arrays, Expression, constant_part, equation, plus, sampled_arrays, times
 from .subspaces import MovingBasis
 from .trigonometric import Array
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..beams.recovery_forms import LinearForm
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..floquet.first_order import SPEED_POWER
 from .trigonometric import Array, differentiated
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..floquet.eigenvalues import conditions, spectrum
 from ..floquet.period_products import ordered_product
 from ..floquet.refined_products import distance

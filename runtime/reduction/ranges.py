@@ -9,9 +9,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput, bad
-from ..families import LinearPeriodic
-from ..inputs import require_whole
+from ..core.errors import BadInput, bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
 from .balance import Balance, balance
 from .condensed import Condensed, condense
 from .expressions import sampled_arrays

@@ -8,7 +8,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..families import LinearPeriodic, Term
+from ..core.families import LinearPeriodic, Term
 from ..floquet.first_order import even_angles
 from .subspaces import MovingBasis, moving_basis
 from .trigonometric import Array, interpolated, tail

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..beams.element_forms import required_structure
 from ..beams.recovery import METHODS
-from ..errors import bad
-from ..families import DAMPING, LinearPeriodic
+from ..core.errors import bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.results import Check, Result, provenance
 from ..floquet.first_order import numbers
-from ..results import Check, Result, provenance
 from ..simulation.trajectory import LINEAR_RANGE
 from .balance import Balance
 from .condensed import Condensed
@@ -165,7 +165,7 @@ class StressCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the speed, unstable ranges shaded."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         order = np.argsort(self.speed)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.recovery import Recovery, recovery
 from ..beams.recovery_forms import RIGID, LinearForm
 from ..beams.stress_errors import fibre_factors
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from .balance import Balance, samples_table
 from .condensed import Condensed
 from .expressions import Expression, constant_part, recovered

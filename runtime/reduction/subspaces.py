@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
 from ..floquet.first_order import even_angles
-from ..inputs import require_whole
 from .trigonometric import Array, PeriodicArray, differentiated, interpolated, tail
 
 _FEWEST, _MOST = 64, 2048

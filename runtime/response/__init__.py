@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..lazy import on_first_use
+from ..core.lazy import on_first_use
 from .result import SteadyState
 from .steady_state import steady_state
 

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning, bad
-from ..families import LinearPeriodic
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm
 from ..floquet.monodromy_matrix import FloquetMultipliers
-from ..results import Check
 from ..simulation.trajectory import LINEAR_RANGE
 from .request import Found
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..families import LinearPeriodic
-from ..results import Check, Result, provenance
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result, provenance
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +52,7 @@ class FrozenFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the first natural frequency over the crank angle and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         ax.plot(np.degrees(self.theta), self.frequency[:, 0])

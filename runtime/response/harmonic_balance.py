@@ -14,10 +14,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import Series, even_count, series_of
-from ..results import Check
 from .balance_matrix import real_matrix
 from .checks import check_memory
 from .request import Found, Request, peaks, whole_option

@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import even_count, second_order
 from ..integrators.expm import expm
-from ..results import Check
 from .cyclic import solve_ring
 from .harmonic_balance import by_harmonic_balance
 from .request import Found, Request, peaks, resampled, whole_option

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from ..errors import bad
+from ..core.errors import bad
 
 ALGORITHMS = ("time_marching", "transition_matrix", "closed_form", "cyclic", "harmonic_balance")
 

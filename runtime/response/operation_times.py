@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..families import LinearPeriodic
+from ..core.families import LinearPeriodic
 from ..floquet.first_order import canonical_form
 from ..integrators.newmark import newmark_rule
 from .closed_form import printed_closing

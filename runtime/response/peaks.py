@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import LinearRangeWarning, bad
-from ..families import LinearPeriodic
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import LinearPeriodic
+from ..core.progress import bar
+from ..core.results import Check, Result, provenance
 from ..floquet.first_order import canonical_form, numbers
-from ..progress import bar
-from ..results import Check, Result, provenance
 from .checks import warn_beyond
 from .result import SteadyState
 from .shooting import first_segments
@@ -66,7 +66,7 @@ class SteadyPeaks(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peaks over the speed, unstable motions dotted, and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         rpm = self.speed * 30.0 / np.pi

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.inputs import require_whole
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm
 from ..floquet.monodromy_matrix import FloquetMultipliers
-from ..inputs import require_whole
-from ..results import Check
 
 Array = NDArray[np.float64]
 

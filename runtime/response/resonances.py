@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Result, provenance
 from ..floquet.first_order import numbers
-from ..results import Result, provenance
 from .frozen import frozen_frequencies
 from .peaks import peak_error, quiet_state, require_shapes
 
@@ -99,7 +99,7 @@ class ResonanceCurve(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curve with its maxima labelled by n and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         ax.semilogy(*self.joined, linewidth=0.9)

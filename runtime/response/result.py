@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..deferred import DeferredField
-from ..errors import bad
+from ..core.deferred import DeferredField
+from ..core.errors import bad
+from ..core.results import Result
 from ..floquet.first_order import numbers
-from ..results import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -148,7 +148,7 @@ class SteadyState(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over the crank angle and return the axes; the first of a batch."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         first = self.q.reshape(-1, *self.q.shape[-2:])[0]

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, numbers
 from ..floquet.second_order import even_count, second_order
 from ..integrators.newmark import StepRule, acceleration
-from ..results import Check
 from .request import Found, Request, number_option, peaks, whole_option
 from .stepped import Item, joined, period_maps, refined, ring_closing, rule_from
 

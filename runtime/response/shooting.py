@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import STAGES
 from ..integrators.gauss_legendre import gauss_maps

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
-from ..results import Check
 from .checks import check_memory, nearness
 from .request import Found, Request, resampled
 from .shooting import Orbit, first_segments, periodic_orbits

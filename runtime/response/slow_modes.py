@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import BadInput
+from ..core.errors import BadInput
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import keep
 from .speed_parts import SpeedParts

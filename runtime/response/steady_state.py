@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..deferred import DeferredGroup
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.deferred import DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.progress import bar
+from ..core.results import Check, provenance
 from ..floquet.decoupled.exponents import SlowMultipliers, characteristic_exponents
 from ..floquet.first_order import CanonicalForm, canonical_form, numbers
 from ..floquet.monodromy_matrix import FloquetMultipliers, floquet_multipliers
-from ..progress import bar
-from ..results import Check, provenance
 from ..simulation.trajectory import LINEAR_RANGE
 from .checks import (
     check_forcing,

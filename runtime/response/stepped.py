@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import even_count, second_order
 from ..integrators.newmark import StepRule, generalized_alpha_rule, newmark_rule, step_maps
-from ..results import Check
 from .cyclic import solve_ring
 from .request import Found, Request, number_option, peaks, resampled, whole_option, word_option
 

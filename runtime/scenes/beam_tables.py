@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..errors import BadInput, Problem
+from ..core.errors import BadInput, Problem
 from .schema import Key, Table
 
 # Terms of the moving beams that a scene may leave out, and names for sets of them.

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..errors import BadInput, Problem
-from ..units import describe, to_si
+from ..core.errors import BadInput, Problem
+from ..core.units import describe, to_si
 from .linkage_tables import LINKS
 from .schema import Layout
 

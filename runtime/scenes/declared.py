@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..errors import Problem
-from ..units import DIMENSIONS
+from ..core.errors import Problem
+from ..core.units import DIMENSIONS
 from .linkage_tables import chart_table
 from .schema import Key, Layout, Table
 

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS
-from ..errors import BadInput, Problem
+from ..core.errors import BadInput, Problem
 from .beam_tables import complete_beams
 from .checks import body_problems
 from .rod_tables import complete_crank, complete_rod

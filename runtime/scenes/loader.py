@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..errors import BadInput, Problem, bad
+from ..core.errors import BadInput, Problem, bad
 from .derived import complete
 from .scene import ReadOnlyTable, Scene
 from .validation import find_layout, nearest, show, validate

@@ -7,8 +7,8 @@ from collections import Counter
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from ..errors import BadInput, Problem
-from ..families import LinearPeriodic
+from ..core.errors import BadInput, Problem
+from ..core.families import LinearPeriodic
 
 if TYPE_CHECKING:
     from .scene import Scene

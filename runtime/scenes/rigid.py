@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..errors import bad
+from ..core.errors import bad
 
 if TYPE_CHECKING:
-    from ..dynamics import Load, Machine, MassDistribution, Spring, TorqueLine, TorsionSpring
+    from ..rigid import Load, Machine, MassDistribution, Spring, TorqueLine, TorsionSpring
     from .scene import Scene
 
 _MASS = ("mass", "first_moment", "transverse_moment", "inertia")
@@ -28,7 +28,7 @@ def machine(scene: Scene) -> Machine:
     BadInput
         If the scene has no linkage, or none of its links has a mass.
     """
-    from ..dynamics import Machine
+    from ..rigid import Machine
 
     linkage = scene.mechanism()
     masses = {link: _mass(scene[link]) for link in linkage.links if _known(scene, link)}
@@ -53,7 +53,7 @@ def machine(scene: Scene) -> Machine:
 
 def motor(scene: Scene) -> TorqueLine | None:
     """Return the torque line of the scene's motor, or None where it has none."""
-    from ..dynamics import TorqueLine
+    from ..rigid import TorqueLine
 
     table = scene.get("motor", {})
     if not {"stall_torque", "no_load_speed"} <= set(table):
@@ -71,13 +71,13 @@ def _known(scene: Scene, link: str) -> bool:
 
 
 def _mass(table: Mapping[str, Any]) -> MassDistribution:
-    from ..dynamics import MassDistribution
+    from ..rigid import MassDistribution
 
     return MassDistribution(*(table.get(key, 0.0) for key in _MASS))
 
 
 def _load(table: Mapping[str, Any]) -> Load:
-    from ..dynamics import Load
+    from ..rigid import Load
 
     return Load(
         table["link"],
@@ -90,7 +90,7 @@ def _load(table: Mapping[str, Any]) -> Load:
 
 
 def _spring(table: Mapping[str, Any]) -> Spring:
-    from ..dynamics import Spring
+    from ..rigid import Spring
 
     ends = [(table[end], *table.get(f"{end}_at", (0.0, 0.0))) for end in ("first", "second")]
     given = ("stiffness", "free_length", "damping", "preload")
@@ -99,7 +99,7 @@ def _spring(table: Mapping[str, Any]) -> Spring:
 
 
 def _torsion(table: Mapping[str, Any]) -> TorsionSpring:
-    from ..dynamics import TorsionSpring
+    from ..rigid import TorsionSpring
 
     given = ("stiffness", "free_angle", "damping", "preload")
     present = {key: table[key] for key in given if key in table}

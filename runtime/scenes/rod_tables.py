@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..errors import BadInput, Problem
+from ..core.errors import BadInput, Problem
 from .schema import Key, Table
 
 ROD_LINKS = Table(

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS, ModelSpec
-from ..errors import bad
+from ..core.errors import bad
 from .schema import Layout
 from .validation import nearest
 
 if TYPE_CHECKING:
-    from ..dynamics import Machine
-    from ..families import Constrained, LinearPeriodic
-    from ..mechanisms import Linkage
+    from ..core.families import Constrained, LinearPeriodic
+    from ..linkages import Linkage
+    from ..rigid import Machine
 
 # Where each mechanism's equations become a family object; imported when one is asked for.
 _BUILDERS = {
@@ -251,7 +251,7 @@ class Scene:
         BadInput
             As :meth:`system`, and if the scene's formulation is constrained.
         """
-        from ..families import LinearPeriodic
+        from ..core.families import LinearPeriodic
 
         found = self.system()
         if not isinstance(found, LinearPeriodic):
@@ -280,7 +280,7 @@ class Scene:
                 f"a linkage: one of {sorted(LINKAGES)}",
                 "choose a scene with a [links] table",
             )
-        from .. import mechanisms
+        from .. import linkages as mechanisms
 
         made = getattr(mechanisms, kind)
         lengths = inspect.signature(made).parameters

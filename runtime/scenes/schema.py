@@ -24,7 +24,7 @@ class Key:
         ``"quantity"`` (a float), ``"quantities"`` (a list of them), ``"count"`` (a whole number),
         ``"counts"``, ``"text"`` or ``"texts"``.
     dimension : str
-        One of :data:`elastolink.runtime.units.DIMENSIONS`; matters for quantities alone.
+        One of :data:`elastolink.runtime.core.units.DIMENSIONS`; matters for quantities alone.
     required : bool
         Whether it must be given.
     default : object

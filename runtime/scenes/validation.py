@@ -9,8 +9,8 @@ from functools import partial
 from itertools import pairwise
 from typing import Any
 
-from ..errors import BadInput, Problem
-from ..units import DIMENSIONS, expected, to_si
+from ..core.errors import BadInput, Problem
+from ..core.units import DIMENSIONS, expected, to_si
 from .checks import chart_problems, geometry_problems, measured_problems, series_problems
 from .declared import declared_layout
 from .layouts import LAYOUTS

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from ..floquet.first_order import CanonicalForm, numbers
 from ..integrators import METHODS, SCIPY_METHODS, SECOND_ORDER
 from .automatic import POWER_SERIES

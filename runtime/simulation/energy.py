@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..errors import BadInput
+from ..core.errors import BadInput
+from ..core.results import Check
 from ..floquet.first_order import CanonicalForm
 from ..floquet.spring_form import periodic_derivative
 from ..integrators.tableau import gauss_tableau
-from ..results import Check
 from .marching import cyclic
 
 Array = NDArray[np.float64]

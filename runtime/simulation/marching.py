@@ -10,7 +10,7 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import ordered_product
 from ..floquet.second_order import second_order_at

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LinearRangeWarning
-from ..families import LinearPeriodic
+from ..core.errors import LinearRangeWarning
+from ..core.families import LinearPeriodic
+from ..core.results import Check, DeferredChecks
 from ..floquet.first_order import CanonicalForm, even_angles
-from ..results import Check, DeferredChecks
 from .energy import energy_balance
 from .marching import March
 

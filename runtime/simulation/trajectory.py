@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import StepTooLongWarning, bad
-from ..families import LinearPeriodic
+from ..core.errors import StepTooLongWarning, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Result, provenance
 from ..floquet.first_order import CanonicalForm, canonical_form
 from ..floquet.spring_form import spring_generator
 from ..integrators import METHODS, SCIPY_METHODS, SECOND_ORDER, OneStep
-from ..results import Result, provenance
 from .adaptive import adaptive_march
 from .arguments import check_arguments, scalar, start_of
 from .automatic import FALLBACK, POWER_SERIES, default_phase
@@ -98,7 +98,7 @@ class Trajectory(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the coordinates over the revolutions of the crank and return the axes."""
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         for label, values in zip(self.labels, self.q.T, strict=True):
@@ -250,7 +250,7 @@ def _power_series(
     run: _Request, rtol: float | None, *, required: bool
 ) -> tuple[_Raw, Array] | None:
     """Return a motion by power series and its error; None where coefficients are not smooth."""
-    from ..progress import bar
+    from ..core.progress import bar
 
     grid = make_grid(run.start, run.revolutions, run.samples, run.samples)
     for fineness in (1.0, 2.0, 4.0):
@@ -292,7 +292,7 @@ def _fixed(
 
 
 def _raw(run: _Request, method: OneStep, grid: Grid) -> _Raw:
-    from ..progress import bar
+    from ..core.progress import bar
 
     with bar(run.progress, grid.intervals) as tick:
         result = march(method, run.form, grid, run.q, run.slope, run.bound, tick)
@@ -315,7 +315,7 @@ def _passed(run: _Request, theta: float) -> str:
 
 
 def _adaptive(run: _Request, method: str, rtol: float) -> tuple[_Raw, Array]:
-    from ..progress import bar
+    from ..core.progress import bar
 
     grid = make_grid(run.start, run.revolutions, run.samples, run.samples)
     # A quarter of a wave sets the scale of the motion before growth can inflate it.

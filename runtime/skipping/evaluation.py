@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..families import MATRICES, VECTORS, LinearPeriodic
+from ..core.families import MATRICES, VECTORS, LinearPeriodic
 from ..floquet.first_order import SPEED_POWER, canonical_form
 from ..floquet.second_order import even_count
 from .emitted import EmittedCost

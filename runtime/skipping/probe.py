@@ -32,7 +32,7 @@ class Counter:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Count what happens inside under a name; a refusal of the toolkit ends the stage."""
-        from ..errors import ElastolinkError
+        from ..core.errors import ElastolinkError
 
         self._calls, refused = {}, ""
         sys.setprofile(self._watch)
@@ -139,7 +139,7 @@ def _rigid(scene: Any) -> Iterator[tuple[str, Callable[[], object]]]:
 
     def ask(*outputs: str) -> Callable[[], object]:
         def act() -> object:
-            from ..dynamics import rigid_forces
+            from ..rigid import rigid_forces
 
             return rigid_forces(machine, theta, speed, outputs=outputs)  # type: ignore[arg-type]
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from ...derive.spec import BEAM_FORMULATIONS, Entry, ModelSpec, read_manifest
-from ..errors import ElastolinkError, bad
-from ..families import LinearPeriodic
-from ..results import Check, provenance
+from ..core.errors import ElastolinkError, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, provenance
 from ..scenes import Scene, load_scene
 from ..systems.modules import search_path
 from .emitted import EmittedCost, read_cost

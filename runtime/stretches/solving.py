@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..series import chebyshev
+from ..core import chebyshev
+from ..core.errors import bad
 from .power_series import ENDED, MOST_TERMS, stretch_maps
 from .tabulated import coefficients, nodes, running_products
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import chebyshev
 from ..floquet.period_products import ordered_product
-from ..series import chebyshev
 
 Array = NDArray[np.float64]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..lazy import on_first_use
+from ..core.lazy import on_first_use
 
 _PUBLIC = {
     "Sweep": "result",

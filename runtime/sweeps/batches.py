@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..progress import bar
-from ..results import Result, provenance
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.progress import bar
+from ..core.results import Result, provenance
 from .tasks import worst
 from .workers import Workers
 

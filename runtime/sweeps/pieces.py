@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
+from ..core.errors import bad
 
 Array = NDArray[np.float64]
 _MOST_POINTS = 10**12

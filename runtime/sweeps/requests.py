@@ -14,8 +14,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..errors import bad
-from ..families import LinearPeriodic
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
 from .pieces import Grid
 
 FORMAT = 1

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..results import Result
+from ..core.errors import bad
+from ..core.results import Result
 
 if TYPE_CHECKING:
     import xarray
@@ -112,7 +112,7 @@ class Sweep(Result):
         BadInput
             If there are more than two axes, or no such output.
         """
-        from ..plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         if len(self.axes) > 2:
             raise bad("Sweep.plot", f"{len(self.axes)} axes", "one or two", "use the outputs")

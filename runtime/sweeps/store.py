@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..._files import whole_file
-from ..errors import bad
-from ..results import write_whole
+from ..core.errors import bad
+from ..core.results import write_whole
 from .pieces import Grid
 from .requests import digest_of_request
 from .tasks import Piece

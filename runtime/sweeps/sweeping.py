@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..progress import bar
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.progress import bar
+from ..core.results import Check, provenance
 from ..response.checks import warn_beyond
-from ..results import Check, provenance
 from ..scenes import Scene
 from .pieces import Grid, check_chunk, grid_of
 from .requests import request_of

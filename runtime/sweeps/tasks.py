@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import bad
-from ..families import LinearPeriodic
-from ..results import Check, Result
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result
 
 Array = NDArray[np.float64]
 AnyArray = NDArray[Any]

@@ -12,9 +12,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import MATRICES, LinearPeriodic, Term
-from ..families.emitted import check_module
+from ..core.errors import bad
+from ..core.families import MATRICES, LinearPeriodic, Term
+from ..core.families.emitted import check_module
 
 Array = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def assemble(
     forcing : bool
         Whether the forcing terms are taken along.
     **attributes
-        Further attributes of :class:`~elastolink.runtime.families.LinearPeriodic`.
+        Further attributes of :class:`~elastolink.runtime.core.families.LinearPeriodic`.
 
     Raises
     ------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..families import Array, LinearPeriodic
+from ..core.families import Array, LinearPeriodic
 from .assembly import assemble
 from .modules import find_module
 

@@ -10,9 +10,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import bad
-from ..families import Array, LinearPeriodic, Term
-from ..inputs import require_whole
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic, Term
+from ..core.inputs import require_whole
 
 ComplexArray = NDArray[np.complex128]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..families import LinearPeriodic
-from ..series.periodic import PeriodicFunction
+from ..core.families import LinearPeriodic
+from ..core.periodic_function import PeriodicFunction
 from .assembly import assemble
 from .modules import find_module
 

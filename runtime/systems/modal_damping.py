@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import bad
-from ..families import Array, LinearPeriodic, Term
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic, Term
 from ..floquet.second_order import keep
 
 # Angles up to which the matrices are kept for the next solver.

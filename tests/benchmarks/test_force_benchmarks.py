@@ -12,7 +12,7 @@ from elastolink.runtime.benchmarking.rigid_by_hand import (
     forces_in_blocks,
     reference,
 )
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 
 LENGTHS = np.array([12.0, 6.0, 12.0, 12.0])
 MASSES = np.array([0.6, 1.2, 1.3])
@@ -120,7 +120,7 @@ def test_exudyn_converges_to_the_pin_forces_in_second_order():
     from elastolink.runtime.scenes import load_scene
 
     machine = load_scene("smith_1972_12_6_12_12").machine()
-    from elastolink.runtime.dynamics import rigid_forces
+    from elastolink.runtime.rigid import rigid_forces
 
     errors = []
     for steps in (1000, 2000, 4000):

@@ -13,10 +13,10 @@ from elastolink.runtime.benchmarking.mathieu import _remark
 from elastolink.runtime.benchmarking.records import Contender, compare, functions, one_thread
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.benchmarking.slices import banded_boundaries
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant
-from elastolink.runtime.series.periodic import PeriodicFunction
 
 PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 

@@ -7,7 +7,7 @@ from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.benchmarking import benchmark_perturbation
 from elastolink.runtime.benchmarking.perturbation import matrix_ends
 from elastolink.runtime.benchmarking.records import functions
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.perturbation.effective import effective_operator
 

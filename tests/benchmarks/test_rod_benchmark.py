@@ -13,7 +13,7 @@ from elastolink.runtime.benchmarking.rod_reference import (
     solve_once,
 )
 from elastolink.runtime.charts.invariants import characteristic
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 
 SPEEDS = np.array([700.0, 1500.0, 4000.0])
 

@@ -12,7 +12,7 @@ from elastolink.runtime.benchmarking.curve_rivals import (
 )
 from elastolink.runtime.benchmarking.records import Row
 from elastolink.runtime.benchmarking.stress_curve import _to_our_error, benchmark_stress_curve
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 
 
 @pytest.fixture(scope="module")

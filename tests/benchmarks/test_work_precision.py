@@ -11,7 +11,7 @@ from elastolink.runtime.benchmarking import work_precision as work
 from elastolink.runtime.benchmarking.work_precision import method, peers, reference
 from elastolink.runtime.benchmarking.work_precision.method import Point
 from elastolink.runtime.benchmarking.work_precision.systems import case
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.floquet import monodromy
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from elastolink.runtime.mechanisms import FourBar, QuickReturn
+from elastolink.runtime.linkages import FourBar, QuickReturn
 
 _STEP = 1e-30
 # Central differences of order 8, and how far apart.

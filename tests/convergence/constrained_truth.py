@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import mpmath
 import numpy as np
-from elastolink.runtime.families import Constrained
+from elastolink.runtime.core.families import Constrained
 
 
 @dataclass(frozen=True)

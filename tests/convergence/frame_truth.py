@@ -6,7 +6,7 @@ import frequency_truth
 import mpmath
 import numpy as np
 from elastolink.runtime.beams import Section, frame
-from elastolink.runtime.dynamic_stiffness import dynamic_stiffness
+from elastolink.runtime.frequencies import dynamic_stiffness
 
 CLAMPED = ("x", "y", "rotation")
 DIGITS = 60

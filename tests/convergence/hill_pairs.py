@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 from elastolink.runtime.benchmarking.reference import half_traces
-from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.series.periodic import PeriodicFunction
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.periodic_function import PeriodicFunction
 
 
 class HillPair:

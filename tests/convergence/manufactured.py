@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 
 
 class Series:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet import floquet_multipliers
 from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.response.request import resampled

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from elastolink.runtime.floquet import floquet_multipliers
 from elastolink.runtime.floquet.first_order import canonical_form, even_angles
-from elastolink.runtime.mechanisms import QuickReturn
+from elastolink.runtime.linkages import QuickReturn
 from elastolink.runtime.systems.rod import (
     FreeFreeBasis,
     OverhangBasis,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from elastolink.runtime.families import LinearPeriodic
+from elastolink.runtime.core.families import LinearPeriodic
 
 # Where neighbouring frequencies nearly meet, modes turn into each other within a small angle.
 _MOST = 4096

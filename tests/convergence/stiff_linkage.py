@@ -1,8 +1,8 @@
 """A four-bar linkage of bending bars, put together by hand: a stiff system for Floquet analysis."""
 
 import numpy as np
-from elastolink.runtime.families import LinearPeriodic, Term
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.linkages import FourBar
 
 # Aannaque's Table 4.1: metres, square metres, metres to the fourth.
 LENGTHS = {"crank": 0.170, "coupler": 0.328, "follower": 0.525}

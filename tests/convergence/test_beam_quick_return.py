@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, beam_linkage, linear_system
 from elastolink.runtime.floquet.first_order import canonical_form
-from elastolink.runtime.mechanisms import QuickReturn
+from elastolink.runtime.linkages import QuickReturn
 from rod_reference import _A, _C, CASES
 from rod_tip_deflections import TIPS
 

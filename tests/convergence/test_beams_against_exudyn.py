@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, beam_linkage, linear_system
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.response import steady_state
 from exudyn_beams import displacements, simulate, start_of
 

@@ -18,7 +18,7 @@ from elastolink.runtime.constrained.steppers import (
 )
 from elastolink.runtime.constrained.steppers.lobatto_tableau import lobatto_pair
 from elastolink.runtime.constrained.steppers.protocol import Control, natural_scales
-from elastolink.runtime.errors import SelfCheckFailed
+from elastolink.runtime.core.errors import SelfCheckFailed
 
 SPAN = 1.5
 CIRCLE = Circle(

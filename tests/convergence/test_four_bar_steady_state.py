@@ -4,14 +4,14 @@ import warnings
 
 import numpy as np
 import pytest
-from elastolink.runtime.errors import LinearRangeWarning
+from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.response import steady_state
 from elastolink.runtime.response.request import resampled
 from four_bar_beams import four_bar
 from periodic_systems import peak_gap
 
 # Deflections leave the linear range at these speeds; the methods solve the linear equations.
-pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 SPEED = 62.0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import frame_truth
 import numpy as np
 import pytest
-from elastolink.runtime.dynamic_stiffness import (
+from elastolink.runtime.frequencies import (
     dynamic_stiffness,
     element_matrices,
     wittrick_williams,

@@ -8,7 +8,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.curve_rivals import SecondOrder, collocated
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.reduction import moving_basis, reduced_system
 from elastolink.runtime.reduction.balance import balance, samples_table
 from elastolink.runtime.reduction.condensed import condense

@@ -30,7 +30,7 @@ def reference():
 ORDERS = {("cubic", "equilibrium"): 4.0, ("cubic", "shape"): 2.0, ("internal_node", "shape"): 4.0}
 
 
-@pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 @pytest.mark.parametrize(("kind", "method"), ORDERS)
 def test_order_by_slope(kind, method, reference):
     meshes = np.array([2, 4, 8] if kind == "cubic" else [1, 2, 3])
@@ -41,7 +41,7 @@ def test_order_by_slope(kind, method, reference):
     assert expected - 0.4 <= slopes[-1] <= expected + 0.5
 
 
-@pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 @pytest.mark.parametrize("kind", ["internal_node", "curvature"])
 def test_one_quintic_element_is_enough(kind, reference):
     # What is left on finer meshes is the linear displacement along the beam: some 1e-7.
@@ -50,7 +50,7 @@ def test_one_quintic_element_is_enough(kind, reference):
     assert np.max(np.abs(moment(1, kind, "shape") - reference)) >= 1e-4 * size
 
 
-@pytest.mark.filterwarnings("ignore::elastolink.runtime.errors.LinearRangeWarning")
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 def test_equilibrium_is_ahead_on_a_coarse_mesh(reference):
     wrong = {
         method: np.max(np.abs(moment(2, "cubic", method) - reference))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.floquet.tongues.resonances import resonances
 from elastolink.runtime.floquet.tongues.series import tongue
 from elastolink.runtime.systems.geometry_series import taylor_in_geometry

@@ -7,7 +7,7 @@ centrifugal and stiffness terms, and multipliers and boundaries that are known.
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 
 
 class Wavy:

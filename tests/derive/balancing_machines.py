@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import balancing_truth as truth
 import numpy as np
-from elastolink.runtime.balancing import Bounds, balance
-from elastolink.runtime.dynamics import MassDistribution
-from elastolink.runtime.dynamics.machine import Machine
-from elastolink.runtime.errors import BadInput
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.rigid import Bounds, MassDistribution, balance
+from elastolink.runtime.rigid.machine import Machine
 
 
 def smith():

@@ -73,7 +73,8 @@ def emitted_functions() -> dict[tuple[str, str], tuple[str, ...]]:
     """Return the names of what each function of each packaged module returns.
 
     Without the recursions: their functions take an algebra, not numbers.  What they compute in
-    double precision is compared with exact fractions in ``tests/runtime/test_hill_effective.py``.
+    double precision is compared with exact fractions in
+    ``tests/runtime/hill/test_hill_effective.py``.
     """
     entries = json.loads(MANIFEST.read_text())["modules"].values()
     modules = [importlib.import_module(f"{generated.__name__}.{e['module']}") for e in entries]
@@ -347,7 +348,7 @@ def _page(found: tuple[Row, ...]) -> str:
         "`hill_recursion` is generic: its functions take the operations of an algebra.  With words",
         "for an algebra they return the derived words; with doubles, the coefficients of Hill's",
         "equation are within 8 u of exact fractions, relative to the sum of the sizes of the terms",
-        "(`tests/derive/test_bloch_emission.py`, `tests/runtime/test_hill_effective.py`).",
+        "(`tests/derive/test_bloch_emission.py`, `tests/runtime/hill/test_hill_effective.py`).",
     ]
     return "\n".join(lines) + "\n"
 

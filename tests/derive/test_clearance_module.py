@@ -11,8 +11,8 @@ import pytest
 import sympy as sp
 from elastolink.derive.models import four_bar_clearance as model
 from elastolink.generated import four_bar_clearance
-from elastolink.runtime.kinematics.clearance import clearance_range
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.linkages.clearance import clearance_range
 from linkage_truth import LENGTHS, random_points
 
 NAMES = four_bar_clearance.RETURNS["extremes"]

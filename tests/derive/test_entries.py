@@ -21,7 +21,7 @@ from elastolink.derive.external import external_values
 from elastolink.derive.ir import ModuleSpec
 from elastolink.derive.lowering import CannotPrint
 from elastolink.derive.pipeline import Model, module_text
-from elastolink.runtime.families.emitted import array_function
+from elastolink.runtime.core.families.emitted import array_function
 
 t, m, k = sp.symbols("t m k", real=True)
 a, b = sp.symbols("a b", real=True)

@@ -20,8 +20,8 @@ from elastolink.derive.perturbation.modified import (
 from elastolink.derive.perturbation.second_order import a, b, centre_and_coupling, m, n
 from elastolink.derive.perturbation.strained import strained_boundaries
 from elastolink.derive.perturbation.surd import ExactHarmonics, combine
+from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries
-from elastolink.runtime.series import PeriodicFunction
 from strained_truth import random_function
 
 F = Fraction

@@ -9,7 +9,7 @@ from elastolink.derive.models import beam_frequency_functions as ff
 from elastolink.derive.models.beam_frequency_problem import Z
 from elastolink.derive.series import taylor
 from elastolink.runtime.beams import Section, frame
-from elastolink.runtime.dynamic_stiffness import (
+from elastolink.runtime.frequencies import (
     dynamic_stiffness,
     element_matrices,
     wittrick_williams,

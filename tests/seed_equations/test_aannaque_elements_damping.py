@@ -5,7 +5,7 @@ import pytest
 import scipy.linalg
 import sympy as sp
 from elastolink.runtime.beams.elements import element_arrays
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.linkages import FourBar
 from seed_elements import L, arrays, integral, letters, same, shape_rows, symmetric
 from seed_ledger import establishes
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.floquet import meissner_function
 from scipy.integrate import solve_ivp
 from seed_ledger import establishes

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.response import (
     cycles_to_settle,
     operation_count,

@@ -8,7 +8,7 @@ from elastolink.derive.models import flexible_rod as rod
 from elastolink.derive.models.quick_return import crank, frame, kinematics, theta2
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton, linearise, quadratic_action
-from elastolink.runtime.mechanisms import QuickReturn
+from elastolink.runtime.linkages import QuickReturn
 from elastolink.runtime.systems.rod import OverhangBasis, rod_system
 from rod_newton import PlainBasis
 from seed_ledger import establishes

@@ -12,7 +12,7 @@ from elastolink.runtime.beams.elements import (
     shape_functions,
 )
 from elastolink.runtime.beams.layered import ElasticLayer, ViscoelasticLayer, sandwich_section
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

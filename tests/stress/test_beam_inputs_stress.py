@@ -10,10 +10,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from elastolink.runtime import beams, dynamic_stiffness, frequencies
-from elastolink.runtime.errors import BadInput
-from elastolink.runtime.families import Transcendental
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime import beams, frequencies
+from elastolink.runtime import frequencies as dynamic_stiffness
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import Transcendental
+from elastolink.runtime.linkages import FourBar
 
 # The longest line of a refusal that can still be read at a glance.
 _LONGEST = 450

@@ -11,7 +11,7 @@ from elastolink.runtime.charts.invariants import instability_kind, largest_modul
 from elastolink.runtime.charts.lines import Lines
 from elastolink.runtime.charts.sampling import Sampler, Series
 from elastolink.runtime.charts.verdict import undecided, verdict
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 
 

@@ -7,9 +7,9 @@ import math
 from fractions import Fraction
 
 import pytest
-from elastolink.runtime.errors import BadInput
-from elastolink.runtime.kinematics.barker import LINKS
-from elastolink.runtime.kinematics.classification import SYMBOLS, classify, classify_many
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages.barker import LINKS
+from elastolink.runtime.linkages.classification import SYMBOLS, classify, classify_many
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

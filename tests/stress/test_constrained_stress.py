@@ -18,8 +18,8 @@ from elastolink.runtime.constrained import (
 from elastolink.runtime.constrained.equations import Equations, State
 from elastolink.runtime.constrained.steppers import lobatto, projection, unprojected
 from elastolink.runtime.constrained.steppers.protocol import Control, natural_scales
-from elastolink.runtime.errors import BadInput, RedundantConstraints
-from elastolink.runtime.families import Constrained
+from elastolink.runtime.core.errors import BadInput, RedundantConstraints
+from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems.rod.constrained import free_free_rod, rigid_state
 
 REVOLUTIONS = 10_000

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from elastolink.runtime.errors import BadInput
-from elastolink.runtime.kinematics.cognates import cognates
-from elastolink.runtime.kinematics.coupler_curve import coupler_curve
-from elastolink.runtime.kinematics.harmonics import harmonics
-from elastolink.runtime.mechanisms import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.cognate_linkages import cognates
+from elastolink.runtime.linkages.curves import coupler_curve
+from elastolink.runtime.linkages.harmonic_analysis import harmonics
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
 from elastolink.runtime.simulation.trajectory import simulate

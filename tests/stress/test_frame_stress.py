@@ -6,7 +6,7 @@ import frame_truth
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame
-from elastolink.runtime.dynamic_stiffness import (
+from elastolink.runtime.frequencies import (
     dynamic_stiffness,
     element_matrices,
     wittrick_williams,

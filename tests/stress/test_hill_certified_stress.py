@@ -5,11 +5,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from boundary_cases import rough
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.derivatives import boundary_derivatives
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.exact.quasi import bloch_bands
-from elastolink.runtime.series.periodic import PeriodicFunction
 
 COSINE = PeriodicFunction([0.0, 1.0])
 

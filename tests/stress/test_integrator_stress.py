@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.errors import BadInput
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.integrators import METHODS
 from elastolink.runtime.simulation import simulate
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from elastolink.derive.checks import judge, worst
 from elastolink.generated import four_bar_coupler_complete, four_bar_kinematics
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.linkages import FourBar
 from linkage_truth import OUTPUTS, Linkage, exact_near
 
 TURN = 2.0 * np.pi

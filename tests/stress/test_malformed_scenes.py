@@ -5,7 +5,7 @@ import tomllib
 from importlib import resources
 
 import pytest
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.scenes import list_scenes, load_scene, scene_from_document
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st

@@ -4,12 +4,12 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
 from elastolink.runtime.hill.perturbation.coefficients import boundary_series
 from elastolink.runtime.hill.perturbation.effective import effective_operator
-from elastolink.runtime.series.periodic import PeriodicFunction
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

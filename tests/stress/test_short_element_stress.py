@@ -12,9 +12,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
-from elastolink.runtime.errors import BadInput
+from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.frequencies import natural_frequencies
-from elastolink.runtime.mechanisms import FourBar
+from elastolink.runtime.linkages import FourBar
 
 pytestmark = pytest.mark.filterwarnings("error")
 BAR = Section.rectangle(0.02, 0.005, modulus=2e11, density=7850.0, poisson=0.3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from elastolink.derive.checks import exact_at, judge, worst
 from elastolink.generated import quick_return_kinematics, slider_crank_kinematics
-from elastolink.runtime.mechanisms import QuickReturn, SliderCrank
+from elastolink.runtime.linkages import QuickReturn, SliderCrank
 from sliding_truth import ROD, SLIDER, Slider, rod_motion, rod_point, slider_motion
 
 TURN = 2.0 * np.pi

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from elastolink.runtime.families import LinearPeriodic, Term
+from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet import floquet_multipliers, relative_multipliers
 
 FREQUENCIES = np.array([3.0, 5.0, 40.0])

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.dynamics import Machine, MassDistribution
-from elastolink.runtime.errors import BadInput
-from elastolink.runtime.kinematics.tolerances import tolerances
-from elastolink.runtime.mechanisms import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.length_tolerances import tolerances
+from elastolink.runtime.rigid import Machine, MassDistribution
 
 
 def drawn(random, size):

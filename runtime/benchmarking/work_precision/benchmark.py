@@ -5,9 +5,9 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 
-from ...errors import ElastolinkWarning, bad
+from ...core.errors import ElastolinkWarning, bad
+from ...core.results import Check
 from ...integrators import METHODS, SECOND_ORDER
-from ...results import Check
 from ..records import one_thread
 from . import constrained
 from .method import Point, Problem, measured

@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from ...constrained import constrained_motion
-from ...families import Constrained
+from ...core.families import Constrained
 from .equation import Array
 from .exudyn_peer import Slope, integrated
 from .method import Method, Problem, Work, patient

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ...floquet.first_order import CanonicalForm, canonical_form, even_angles
 
 Array = NDArray[np.float64]

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from ...errors import bad
-from ...results import Check, write_whole
+from ...core.errors import bad
+from ...core.results import Check, write_whole
 from .result import WorkPrecision, ratios
 
 Ratios = Mapping[str, Mapping[str, float]]

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import BadInput
-from ...progress import bar
+from ...core.errors import BadInput
+from ...core.progress import bar
 
 Array = NDArray[np.float64]
 Work = Callable[[], Any]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...charts import stability_chart
 from ...charts.invariants import characteristic
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ...floquet import monodromy
 from ...floquet.first_order import CanonicalForm, canonical_form, even_angles
 from ...floquet.period_products import ordered_product

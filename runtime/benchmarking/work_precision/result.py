@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...results import Result
+from ...core.results import Result
 from ..records import padded
 from .method import Point, fastest
 
@@ -127,7 +127,7 @@ class WorkPrecision(Result):
 
         Given axes take the first problem alone.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         if ax is None and len(self.titles) > 1:
             from matplotlib.figure import Figure

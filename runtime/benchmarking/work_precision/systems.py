@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ..rod import rod_of
 from .equation import Array, Equation
 

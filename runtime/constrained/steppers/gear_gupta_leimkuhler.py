@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import bad
+from ...core.errors import bad
 from ..equations import Array, Equations, NoConvergence, State
 from .protocol import Control, Step, StoppedEarly
 

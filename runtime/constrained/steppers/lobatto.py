@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...errors import bad
+from ...core.errors import bad
 from ..equations import Array, Equations, NoConvergence, State
 from .lobatto_tableau import LobattoPair, lobatto_pair
 from .protocol import STAGES, Control, Step, StoppedEarly, first_step

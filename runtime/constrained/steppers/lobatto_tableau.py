@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from ...errors import SelfCheckFailed
+from ...core.errors import SelfCheckFailed
 from ..equations import Array
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...errors import bad
-from ...families import Constrained
+from ...core.errors import bad
+from ...core.families import Constrained
 from ..equations import Array, Equations, NoConvergence, State
 from .lobatto import Stages, solve_stages, stage_matrix
 from .lobatto_tableau import LobattoPair, lobatto_pair

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...families import DAMPING, LinearPeriodic
-from ...results import Check, provenance
+from ...core.errors import bad
+from ...core.families import DAMPING, LinearPeriodic
+from ...core.results import Check, provenance
 from ..boundary_speeds import speed_span
 from ..edges.checks import contradictions, edge_checks
 from ..edges.damped_edges import damped_regions

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import BadInput, bad
-from ...families import LinearPeriodic
+from ...core.errors import BadInput, bad
+from ...core.families import LinearPeriodic
+from ...core.results import Check, provenance
 from ...integrators.gauss_legendre import gauss_maps
-from ...results import Check, provenance
 from ..eigenvalues import conditions, spectrum
 from ..first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from ..krein import krein_signatures

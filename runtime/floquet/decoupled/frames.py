@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
+from ...core.errors import bad
 from ..first_order import CanonicalForm, even_angles
 
 Array = NDArray[np.float64]

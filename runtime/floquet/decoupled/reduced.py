@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import BadInput, bad
-from ...families import DAMPING, LinearPeriodic, Term
+from ...core.errors import BadInput, bad
+from ...core.families import DAMPING, LinearPeriodic, Term
 from ..boundary_speeds import speed_span
 from ..first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from .blocks import modal_arrays, slow_part

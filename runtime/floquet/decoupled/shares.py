@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ..edges.mode_labels import Modes
 from ..first_order import canonical_form, even_angles
 from ..monodromy_matrix import monodromy

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
-from ...results import Check
+from ...core.families import LinearPeriodic
+from ...core.results import Check
 from ..monodromy_matrix import FloquetMultipliers, floquet_multipliers
 from .regions import Regions
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ..eigenvalues import conditions
 from ..monodromy_matrix import monodromy
 from .pair_roots import bracketed_roots, perturbation_size

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ..eigenvalues import conditions
 from ..monodromy_matrix import monodromy
 from .crossings import Crossings, Span

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from .crossings import Crossings, Span
 from .damped_edges import labelled
 from .phase_events import phase_grid

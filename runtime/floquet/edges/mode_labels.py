@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ..boundary_speeds import SpeedBoundaries
 from ..first_order import canonical_form
 from ..krein import form_matrix

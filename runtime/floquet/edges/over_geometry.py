@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...families import DAMPING, LinearPeriodic
-from ...results import Check, Result, provenance
+from ...core.errors import bad
+from ...core.families import DAMPING, LinearPeriodic
+from ...core.results import Check, Result, provenance
 from ..first_order import numbers
 from ..tongues.resonances import Resonance, resonances
 from .pair_roots import PairFunction, refined_edges
@@ -90,7 +90,7 @@ class TongueCurves(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tongues, speeds in rpm to the right, each named where it ends."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         rpm = 30.0 / np.pi

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...families import LinearPeriodic
-from ...results import Check, Result, provenance
+from ...core.errors import bad
+from ...core.families import LinearPeriodic
+from ...core.results import Check, Result, provenance
 from ..first_order import numbers
 from .tracing import StabilityEdges, stability_edges
 
@@ -62,7 +62,7 @@ class TongueTrace(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both ends over the parameter, the region between them shaded; speeds in rpm."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         rpm = 30.0 / np.pi

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import LinearPeriodic
+from ...core.families import LinearPeriodic
 from ..eigenvalues import conditions
 from ..krein import form_matrix
 from ..monodromy_matrix import monodromy

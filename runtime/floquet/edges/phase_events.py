@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...families import LinearPeriodic
+from ...core.errors import bad
+from ...core.families import LinearPeriodic
 from ..first_order import canonical_form
 from ..krein import krein_signatures
 from ..monodromy_matrix import monodromy

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...plotting import axes_or_new
+from ...core.plotting import axes_or_new
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

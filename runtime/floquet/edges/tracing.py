@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...families import DAMPING, LinearPeriodic
-from ...results import Result, provenance
+from ...core.errors import bad
+from ...core.families import DAMPING, LinearPeriodic
+from ...core.results import Result, provenance
 from ..boundary_speeds import SpeedBoundaries, speed_boundaries, speed_span
 from ..first_order import at_geometry, canonical_form, numbers
 from ..monodromy_matrix import floquet_multipliers

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...families import DAMPING, LinearPeriodic, Term
-from ...results import Check
+from ...core.families import DAMPING, LinearPeriodic, Term
+from ...core.results import Check
 from ..monodromy_matrix import floquet_multipliers
 from .ends import expected
 from .operator import ResonantOperator

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...families import DAMPING, LinearPeriodic, Term
+from ...core.errors import bad
+from ...core.families import DAMPING, LinearPeriodic, Term
 from ..first_order import SPEED_POWER, even_angles
 
 Array = NDArray[np.float64]

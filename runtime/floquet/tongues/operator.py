@@ -15,18 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....generated import hill_recursion
-from ...errors import bad
+from ...core.errors import bad
 from ..krein import form_matrix
-from .expansion import (
-    ZERO,
-    Index,
-    Point,
-    RealSeries,
-    Series,
-    add,
-    degree,
-    generator_series,
-)
+from .expansion import ZERO, Index, Point, RealSeries, Series, add, degree, generator_series
 from .resonances import Resonance
 
 Array = NDArray[np.float64]

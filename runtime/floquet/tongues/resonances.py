@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...families import LinearPeriodic
+from ...core.errors import bad
+from ...core.families import LinearPeriodic
 from ..first_order import SPEED_POWER, canonical_form, even_angles, numbers
 from ..krein import form_matrix
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...families import LinearPeriodic
-from ...inputs import require_whole
-from ...results import DeferredChecks, Result, provenance
+from ...core.errors import bad
+from ...core.families import LinearPeriodic
+from ...core.inputs import require_whole
+from ...core.results import DeferredChecks, Result, provenance
 from ..first_order import canonical_form, numbers
 from .checks import Places, TongueChecks
 from .ends import (
@@ -118,7 +118,7 @@ class Tongue(Result):
 
         Ranges without an end are left out.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         speed = self.resonance.detuning == "speed"

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....generated import hill_meissner
-from ...errors import bad
-from ...results import Check, provenance
+from ...core.errors import bad
+from ...core.results import Check, provenance
 from ..exact.matrix import Boundaries, check_regions
 from ..half_trace import arguments, finite
 from ..transfer import EPS

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...inputs import is_whole
-from ...results import BROADCAST, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.inputs import is_whole
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import BROADCAST, Result, provenance
 from ..exact.matrix import Boundaries, hill_boundaries
 from ..half_trace import finite
 from ..transfer import EPS
@@ -247,7 +247,7 @@ class MathieuCharacteristic(Result):
         BadInput
             If q is not one-dimensional.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         if self.q.ndim != 1:
             shape = f"q of shape {self.q.shape}"

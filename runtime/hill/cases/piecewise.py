@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...inputs import is_whole
-from ...results import Check, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.inputs import is_whole
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, Result, provenance
 from ..half_trace import HalfTrace, arguments, check_function, discriminant, finite
 from .interval_products import Products
 
@@ -90,7 +90,7 @@ class PiecewiseMonodromy(Result):
         BadInput
             If the result holds more than one equation.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         if self.levels.ndim != 1:
             raise bad(
@@ -235,7 +235,7 @@ class PiecewiseApproximation(Result):
         BadInput
             If the values are no line.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         if self.half_trace.ndim != 1:
             raise bad(

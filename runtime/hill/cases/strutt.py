@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...inputs import is_whole
-from ...results import Check, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.inputs import is_whole
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, Result, provenance
 from ..exact.matrix import hill_boundaries
 from ..half_trace import HalfTrace, check_function, discriminant_grid, finite
 
@@ -95,7 +95,7 @@ class StruttChart(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the unstable regions over (d, eps) between their exact boundaries."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         lowest = float(self.d[0])

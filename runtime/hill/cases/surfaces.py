@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...results import Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Result, provenance
 from ..exact.matrix import hill_boundaries
 from ..half_trace import check_function, discriminant, finite
 from ..transfer import EPS
@@ -84,7 +84,7 @@ class MultiplierSurfaces(Result):
         """
         from matplotlib import colormaps
 
-        from ...plotting import new_figure
+        from ...core.plotting import new_figure
 
         if which not in ("first", "second"):
             raise bad("which", repr(which), "'first' or 'second'", "correct it")

@@ -11,9 +11,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...results import Check, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, provenance
 from .damped_certified import DampedProblem, RealPairs, damped_ends
 from .enclosure import Ball, enclosures, refusal
 from .integer_products import HillOperator

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.periodic_function import PeriodicFunction
 from ..transfer import EPS
 from .layout import layout, stacked, truncation
 from .strong import strong_ends

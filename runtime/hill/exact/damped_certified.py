@@ -15,7 +15,7 @@ from math import inf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ...series.periodic import PeriodicFunction
+from ...core.periodic_function import PeriodicFunction
 from .damped import left_and_right
 from .enclosure import Ball
 from .integer_products import (

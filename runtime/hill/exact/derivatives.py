@@ -10,9 +10,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import BadInput, bad
-from ...results import Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import BadInput, bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Result, provenance
 from ..half_trace import arguments, check_function
 from ..transfer import EPS
 from .damped import left_and_right

@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import BadInput, bad
+from ...core.errors import BadInput, bad
 from .integer_products import (
     FUNCTION_BITS,
     PRODUCT_UNIT,

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.polynomial import chebyshev as series
 from numpy.typing import NDArray
 
-from ...series.chebyshev import analysis, nodes
-from ...series.periodic import PeriodicFunction
+from ...core.chebyshev import analysis, nodes
+from ...core.periodic_function import PeriodicFunction
 from ..half_trace import discriminant
 from ..transfer import EPS
 

@@ -14,7 +14,7 @@ from math import isqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ...series.periodic import PeriodicFunction
+from ...core.periodic_function import PeriodicFunction
 
 Array = NDArray[np.float64]
 Integers = list[int]

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import BadInput, bad
-from ...series.periodic import PeriodicFunction
+from ...core.errors import BadInput, bad
+from ...core.periodic_function import PeriodicFunction
 from .layout import Truncation, layout, stacked, truncation
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ from math import ceil, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import BadInput, bad
-from ...series.periodic import PeriodicFunction
+from ...core.errors import BadInput, bad
+from ...core.periodic_function import PeriodicFunction
 from ..transfer import EPS
 
 Array = NDArray[np.float64]

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...results import DeferredChecks, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import DeferredChecks, Result, provenance
 from ..half_trace import arguments, check_function
 from ..transfer import EPS
 from .damped import damped
@@ -83,7 +83,7 @@ class Boundaries(Result):
         BadInput
             If mu is not one-dimensional.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         if self.mu.ndim != 1:
             raise bad("Boundaries.plot", f"mu of shape {self.mu.shape}", "a line of mu", "slice it")

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import BadInput, bad
-from ...results import BROADCAST, Check, DeferredChecks, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import BadInput, bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from ..half_trace import arguments, check_function, discriminant
 from ..transfer import EPS
 from .layout import LARGEST, truncation
@@ -66,7 +66,7 @@ class BlochBands(Result):
         BadInput
             If nu is not a line.
         """
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         if self.nu.ndim != 1:
             raise bad("BlochBands.plot", f"nu of shape {self.nu.shape}", "a line", "slice it")

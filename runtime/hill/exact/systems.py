@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...results import Check, Result, provenance
+from ...core.errors import bad
+from ...core.results import Check, Result, provenance
 from ..transfer import EPS
 from .damped import left_and_right
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ...families import LinearPeriodic
+    from ...core.families import LinearPeriodic
     from ...floquet.fourier_matrices import Wave
 
 Array = NDArray[np.float64]

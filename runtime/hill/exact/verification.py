@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import BadInput
-from ...results import Check
-from ...series.periodic import PeriodicFunction
+from ...core.errors import BadInput
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check
 from ..half_trace import HalfTrace, discriminant
 
 Array = NDArray[np.float64]

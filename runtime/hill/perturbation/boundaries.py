@@ -13,10 +13,10 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...inputs import is_whole
-from ...results import Check, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.inputs import is_whole
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, provenance
 from ..exact.matrix import Boundaries, check_regions
 from ..half_trace import arguments, check_function
 from ..transfer import EPS

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...series.periodic import PeriodicFunction
+from ...core.periodic_function import PeriodicFunction
 from ..exact.extremum import largest
 from ..exact.matrix import hill_boundaries
 from ..transfer import EPS

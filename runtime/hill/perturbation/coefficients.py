@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
-from ...inputs import is_whole
-from ...results import Check, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.inputs import is_whole
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, Result, provenance
 from ..exact.matrix import check_regions, hill_boundaries
 from ..half_trace import check_function
 from ..transfer import EPS
@@ -72,7 +72,7 @@ class BoundarySeries(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw partial sums of every order and the exact boundaries, mu upwards."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         mu = np.linspace(0.0, 1.0, 101)

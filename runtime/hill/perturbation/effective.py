@@ -39,9 +39,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....generated import hill_recursion
-from ...errors import bad
-from ...inputs import is_whole
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.inputs import is_whole
+from ...core.periodic_function import PeriodicFunction
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ....generated import hill_recursion
-from ...errors import bad
-from ...inputs import is_whole
+from ...core.errors import bad
+from ...core.inputs import is_whole
 from .effective import check_region
 
 HIGHEST_FORMULA = max(hill_recursion.WORDS)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...series.periodic import PeriodicFunction
+from ...core.periodic_function import PeriodicFunction
 from ..transfer import EPS
 
 Array = NDArray[np.float64]

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...results import Check, Result, provenance
-from ...series.periodic import PeriodicFunction
-from ...series.sampling import finite_angles
+from ...core.errors import bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, Result, provenance
+from ...core.sampling import finite_angles
 from ..exact.layout import LARGEST, layout, stacked
 from ..exact.matrix import check_regions, hill_boundaries
 from ..transfer import EPS
@@ -104,7 +104,7 @@ class BoundarySolution(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the solution over a period."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         theta = np.linspace(0.0, self.period, 721)

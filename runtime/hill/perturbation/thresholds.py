@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...results import Check, DeferredChecks, Result, provenance
-from ...series.periodic import PeriodicFunction
+from ...core.errors import bad
+from ...core.periodic_function import PeriodicFunction
+from ...core.results import Check, DeferredChecks, Result, provenance
 from ..exact.matrix import check_regions, hill_boundaries
 from ..half_trace import arguments, check_function
 from .boundaries import HIGHEST, check_order
@@ -142,7 +142,7 @@ def _lines(
     across: tuple[Array, str],
     up: tuple[Array, str],
 ) -> Axes:
-    from ...plotting import axes_or_new
+    from ...core.plotting import axes_or_new
 
     if across[0].ndim != 1:
         name = type(result).__name__

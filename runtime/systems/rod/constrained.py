@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....derive.spec import ModelSpec
-from ...errors import bad
-from ...families import Array, Constrained
-from ...mechanisms import QuickReturn
+from ...core.errors import bad
+from ...core.families import Array, Constrained
+from ...linkages import QuickReturn
 from ..modules import find_module
 from .free_free import FreeFreeModes
 from .inputs import require_drop, require_numbers, require_points

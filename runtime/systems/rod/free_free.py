@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....generated import beam_free_free_modes as emitted
-from ...errors import bad
+from ...core.errors import bad
 from .inputs import require_modes, require_places, require_points
 
 Array = NDArray[np.float64]

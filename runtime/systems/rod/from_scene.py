@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ...errors import bad
-from ...families import Constrained, LinearPeriodic
+from ...core.errors import bad
+from ...core.families import Constrained, LinearPeriodic
 from ..modal_damping import with_modal_damping
 from .basis import MovingBasis
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import bad
-from ...mechanisms import QuickReturn
-from ...results import Check, DeferredChecks, Result, provenance
+from ...core.errors import bad
+from ...core.results import Check, DeferredChecks, Result, provenance
+from ...linkages import QuickReturn
 from .inputs import as_floats, require_numbers
 from .overhang import OverhangBasis
 
@@ -69,7 +69,7 @@ class GalerkinIntegrals(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the entries of ``a_bar`` and ``b_bar`` over the crank angle."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         n = self.roots.shape[1]

@@ -11,7 +11,7 @@ from typing import TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...errors import BadInput, Problem, bad
+from ...core.errors import BadInput, Problem, bad
 from .basis import Array
 
 # Closer to the pin the integrals of some shapes leave the range of a double.

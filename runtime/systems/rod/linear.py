@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 
 from ....derive.spec import ModelSpec
-from ...families import LinearPeriodic
-from ...mechanisms import QuickReturn
+from ...core.families import LinearPeriodic
+from ...linkages import QuickReturn
 from ..assembly import assemble
 from ..modules import EmittedModule, find_module
 from .basis import Array, MovingBasis

@@ -6,7 +6,7 @@ from functools import partial
 from numbers import Real
 
 from ...constrained import ConstrainedMotion, Guard, constrained_motion
-from ...errors import bad
+from ...core.errors import bad
 from .constrained import FreeFreeRod, largest_deflection, place_of_block, rigid_state
 
 # Deflections over the length beyond which the equations mean nothing any more.

@@ -9,8 +9,8 @@ from numbers import Real
 import numpy as np
 
 from ...constrained.orbits import PeriodicOrbit, periodic_orbit
-from ...errors import bad
-from ...results import Check
+from ...core.errors import bad
+from ...core.results import Check
 from .constrained import FreeFreeRod, largest_deflection, rigid_state
 
 _MOST_SAMPLES = 2**16

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
-from ...errors import bad
+from ...core.errors import bad
 from .inputs import require_modes, require_places, require_points
 from .overhang_spectrum import (
     MOST,

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
-from ...errors import bad
-from ...results import Check, DeferredChecks, Result, provenance
+from ...core.errors import bad
+from ...core.results import Check, DeferredChecks, Result, provenance
 from .inputs import as_floats, require_modes, require_numbers, require_places
 
 if TYPE_CHECKING:
@@ -185,7 +185,7 @@ class OverhangFrequencies(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies against the block's place."""
-        from ...plotting import axes_or_new
+        from ...core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         order = np.argsort(self.place)

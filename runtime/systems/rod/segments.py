@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import bad
+from ...core.errors import bad
 from .basis import MATRIX_ARRAYS, VECTOR_ARRAYS
 from .inputs import require_places, require_points
 from .jacobi import jacobi

@@ -12,18 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....generated import quick_return_rod_polynomials as emitted
-from ...errors import bad
+from ...core.errors import bad
 from .inputs import require_modes, require_places
 from .jacobi import jacobi
-from .segments import (
-    LEFT,
-    RIGHT,
-    Samples,
-    joined,
-    nodes,
-    products,
-    require_array,
-)
+from .segments import LEFT, RIGHT, Samples, joined, nodes, products, require_array
 
 Array = NDArray[np.float64]
 _Kernel = Callable[..., tuple[Array, ...]]

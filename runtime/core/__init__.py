@@ -1,0 +1,1 @@
+"""What every room shares: families, results, errors, units, inputs, series, pictures."""

@@ -1,0 +1,493 @@
+"""Linear systems with periodic coefficients, from a quadratic Lagrangian."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import bad
+from ..namespaces import in_numpy_if_foreign
+from .spectrum import term_spectrum
+
+if TYPE_CHECKING:
+    from ...beams.structure import Structure
+
+Array = NDArray[np.float64]
+MATRICES = ("M", "A", "B", "S", "C", "D", "K", "Kg")
+VECTORS = ("f", "h", "g", "p")
+# Those through which forces without a potential act: drag on the rates, and on what a moving
+# basis carries along.
+DAMPING = ("C", "D")
+# What a limit of a parameter's values allows.
+_LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
+    "positive": lambda values: values > 0.0,
+    "non-negative": lambda values: values >= 0.0,
+}
+
+
+@dataclass(frozen=True)
+class Term:
+    """One separated term ``scale * speed**power * function(theta)`` of a linear-periodic system.
+
+    Attributes
+    ----------
+    array : str
+        Which array of the quadratic Lagrangian or of the forcing it belongs to:
+        ``M A B S C D K Kg`` (matrices) or ``f h g p`` (vectors).
+    power : int
+        Extra power of the crank speed, beyond the one that the array itself carries.
+    scale : str or None
+        Name of the parameter monomial that multiplies it; None means 1.
+    function : callable or ndarray
+        Array of shape ``(n, n)`` (or ``(n,)``) where the term is constant, else a function of the
+        crank angle: theta ``(nt,)`` [rad] to ``(nt, n, n)`` (or ``(nt, n)``).
+    """
+
+    array: str
+    scale: str | None
+    function: Callable[[Array], Array] | Array
+    power: int = 0
+
+    @property
+    def constant(self) -> bool:
+        """True where the term does not depend on the crank angle."""
+        return not callable(self.function)
+
+    def __call__(self, theta: Array) -> Array:
+        """Evaluate at crank angles ``(nt,)``; a constant term is broadcast, not copied."""
+        if callable(self.function):
+            return self.function(theta)
+        return np.broadcast_to(self.function, (*theta.shape, *self.function.shape))
+
+
+@dataclass(frozen=True)
+class LinearPeriodic:
+    """A linear system with periodic coefficients, from a quadratic Lagrangian.
+
+    With the prescribed crank angle theta(t), td = d theta/dt and tdd = d2 theta/dt2,
+
+        L2 = 1/2 qd^T M qd + td qd^T A q + 1/2 td^2 q^T B q + 1/2 tdd q^T S q
+             - 1/2 q^T (K + Kg) q
+
+    and generalised forces ``-C qd - td D q + td^2 f + td h + tdd g + p``, D where damping acts on
+    a motion that the coordinates share with their basis.  The equation of motion is
+
+        M qdd + (C + td G) qd + (K + Kg + td D + td^2 H + tdd E) q = td^2 f + td h + tdd g + p,
+        G = M' + A - A^T,  H = A' - B,  E = A - S,  ' = d/d theta.
+
+    At constant speed w, with theta as independent variable and p = M q' + A q,
+
+        q' = M^-1 (p - A q)
+        p' = A^T q' + B q - (K + Kg) q / w^2 - C q' / w - D q / w + f + h / w + p_ext / w^2.
+
+    Attributes
+    ----------
+    size : int
+        Number n of degrees of freedom.
+    terms : tuple of Term
+        The separated terms.
+    parameters : mapping
+        Values of the named parameters, in SI units.
+    scales : callable
+        From parameter values (floats or arrays that broadcast) to the values of the monomials
+        that the terms name.
+    period : float
+        Period of the coefficients in theta [rad].
+    labels : tuple of str
+        One name per degree of freedom.
+    reference_length : float
+        Length [m] that turns the coordinates into deflections; 1 where they are lengths.
+    shape : callable or None
+        Mode shapes for plotting: x/length ``(nx,)`` to ``(nx, n)``.
+    moving_shape : callable or None
+        Where the shapes depend on the crank angle: x/length ``(nx,)`` and theta ``(nt,)`` [rad] to
+        ``(nt, nx, n)``.
+    provenance : mapping
+        Scene, module and options that the system was made from.
+    geometry : mapping
+        Values of the named lengths and ratios that its functions of angle are made for, where the
+        system can be made anew for others; else empty.
+    rebuild : callable or None
+        From a full geometry to the system made for it, parameters and further terms aside.
+    limits : mapping
+        Of parameters that must be finite and ``positive`` or ``non-negative``, which of the two.
+    relative_deflection : callable or None
+        Crank angles ``(nt,)`` [rad] to what turns coordinates into deflections over the length of
+        their link, ``(nt, k, n)``, at k watched places; None where the shapes tell.
+    structure : object or None
+        Beams and nodes that the system was made from.
+    remesh : callable or None
+        From a change of the structure to its system, further terms made anew, parameters aside.
+    """
+
+    size: int
+    terms: tuple[Term, ...]
+    parameters: Mapping[str, float]
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]]
+    period: float = 2.0 * np.pi
+    labels: tuple[str, ...] = ()
+    reference_length: float = 1.0
+    shape: Callable[[Array], Array] | None = None
+    moving_shape: Callable[[Array, Array], Array] | None = None
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    geometry: Mapping[str, float] = field(default_factory=dict)
+    rebuild: Callable[[Mapping[str, float]], LinearPeriodic] | None = None
+    limits: Mapping[str, str] = field(default_factory=dict)
+    relative_deflection: Callable[[Array], Array] | None = None
+    structure: Structure | None = None
+    remesh: Callable[[Callable[[Structure], Structure]], LinearPeriodic] | None = None
+
+    def __post_init__(self) -> None:
+        """Check that every term names a known array and has the system's size."""
+        for term in self.terms:
+            if term.array not in MATRICES + VECTORS:
+                raise bad(
+                    "Term.array", repr(term.array), f"one of {MATRICES + VECTORS}", "rename it"
+                )
+            sample = term(np.zeros(1))
+            expected = (1,) + (self.size,) * (2 if term.array in MATRICES else 1)
+            if sample.shape != expected:
+                raise bad(
+                    f"term {term.array} ({term.scale})",
+                    f"shape {sample.shape} at one angle",
+                    f"{expected}",
+                    "make the function return one array per angle",
+                )
+        unknown = sorted(set(self.limits.values()) - set(_LIMITS))
+        if unknown:
+            raise bad("limits", unknown, f"some of {sorted(_LIMITS)}", "correct them")
+        if not self.labels:
+            object.__setattr__(self, "labels", tuple(f"q{i + 1}" for i in range(self.size)))
+
+    def shapes(self, x: Array, theta: Array) -> Array | None:
+        """Return the mode shapes at places x/length ``(nx,)`` and crank angles ``(nt,)`` [rad].
+
+        Returns
+        -------
+        ndarray or None
+            Shape ``(nt, nx, n)``; None where the system has none.
+        """
+        if self.moving_shape is not None:
+            return np.asarray(self.moving_shape(x, theta), dtype=float)
+        if self.shape is None:
+            return None
+        fixed = np.asarray(self.shape(x), dtype=float)
+        return np.broadcast_to(fixed, (len(theta), *fixed.shape))
+
+    def has(self, array: str) -> bool:
+        """Return True where some term belongs to ``array``."""
+        return any(term.array == array for term in self.terms)
+
+    def is_constant(self, array: str) -> bool:
+        """Return True where no term of ``array`` depends on the crank angle."""
+        return all(term.constant for term in self.terms if term.array == array)
+
+    @cached_property
+    def spectra(self) -> tuple[Array, ...]:
+        """Largest Fourier amplitude of an entry of each term, per harmonic of the period.
+
+        One array per term: of length 1 where it is constant, else as long as it takes.
+
+        Raises
+        ------
+        BadInput
+            If a term is not finite at a sample, or returns a wrong shape for many angles.
+        """
+        return tuple(self.spectrum(row) for row in range(len(self.terms)))
+
+    def spectrum(self, row: int) -> Array:
+        """Return one of the :attr:`spectra`; a term that nobody asks about is never sampled.
+
+        Parameters
+        ----------
+        row : int
+            Place of the term among :attr:`terms`.
+        """
+        known = self._spectrum_of.get(row)
+        if known is None:
+            term = self.terms[row]
+            shape = (self.size,) * (2 if term.array in MATRICES else 1)
+            known = self._spectrum_of[row] = term_spectrum(term, shape, self.period)
+        return known
+
+    @cached_property
+    def _spectrum_of(self) -> dict[int, Array]:
+        return {}
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled: not the samples, which are made again where they are needed."""
+        return {name: value for name, value in vars(self).items() if name != "kept"}
+
+    @cached_property
+    def kept(self) -> dict[object, tuple[Array, ...]]:
+        """Samples of the terms that one solver leaves for the next, by what they are for."""
+        return {}
+
+    def is_damped(self, **axes: ArrayLike) -> bool:
+        """Return True where some damping term is not zero at every angle and parameter value.
+
+        Parameters
+        ----------
+        **axes : float or array_like
+            Parameter values that replace the system's own; arrays broadcast.
+
+        Raises
+        ------
+        BadInput
+            If a name is not one of the system's parameters, or a term is not finite.
+        """
+        scales = self.scale_values(**axes)
+        return any(
+            term.array in DAMPING
+            and (term.scale is None or bool(np.any(scales[term.scale])))
+            and bool(np.any(self.spectrum(row)))
+            for row, term in enumerate(self.terms)
+        )
+
+    def changed_provenance(self, **changes: ArrayLike) -> dict[str, str]:
+        """Return the provenance with parameter changes recorded under ``changed``.
+
+        Parameters
+        ----------
+        **changes : float or array_like
+            Parameter values that replace the system's own; of an array its range is told.
+        """
+        found = dict(self.provenance)
+        told = [found["changed"]] if "changed" in found else []
+        told += [f"{name}={_told(value)}" for name, value in changes.items()]
+        if told:
+            found["changed"] = ", ".join(told)
+        return found
+
+    def scale_values(self, **changes: ArrayLike) -> Mapping[str, Array]:
+        """Return the parameter monomials at the system's parameters, some of them changed.
+
+        Parameters
+        ----------
+        **changes : float or array_like
+            New values by parameter name; arrays broadcast.
+
+        Raises
+        ------
+        BadInput
+            If a name is not one of the system's parameters, or a value is not a number or not
+            within the parameter's limits.
+        """
+        unknown = sorted(set(changes) - set(self.parameters))
+        if unknown:
+            raise bad(
+                "parameters", unknown, f"some of {sorted(self.parameters)}", "correct the name"
+            )
+        changes = {name: in_numpy_if_foreign(value) for name, value in changes.items()}
+        for name, value in changes.items():
+            self._within_limits(name, value)
+        return self.scales({**self.parameters, **changes})
+
+    def _within_limits(self, name: str, value: ArrayLike) -> None:
+        """Refuse values of a parameter that it cannot have."""
+        limit = self.limits.get(name)
+        expected = f"finite numbers, {limit}" if limit else "numbers"
+        try:
+            values = np.asarray(value, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            raise bad(name, repr(value), expected, "correct it") from None
+        if limit:
+            usable = np.isfinite(values) & _LIMITS[limit](values)
+            if not np.all(usable):
+                raise bad(name, values[~usable].flat[0], expected, "correct it")
+
+    def array(self, name: str, theta: ArrayLike, speed: float = 1.0, **changes: float) -> Array:
+        """Evaluate one array at crank angles.
+
+        Parameters
+        ----------
+        name : str
+            ``M A B S C D K Kg f h g p``.
+        theta : array_like
+            Crank angles [rad], shape ``(nt,)``.
+        speed : float
+            Crank speed [rad/s]; matters only for terms with an extra power of it.
+        **changes : float
+            Parameter values that replace the system's own.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(nt, n, n)``, or ``(nt, n)`` for a vector; zeros where no term belongs to it.
+        """
+        angles = np.atleast_1d(np.asarray(theta, dtype=float))
+        shape = (self.size,) * (2 if name in MATRICES else 1)
+        total = np.zeros((*angles.shape, *shape))
+        scales = self.scale_values(**changes)
+        for term in self.terms:
+            if term.array == name:
+                factor = 1.0 if term.scale is None else scales[term.scale]
+                total = total + factor * speed**term.power * term(angles)
+        return total
+
+    def with_parameters(self, **changes: float) -> LinearPeriodic:
+        """Return the same system with other parameter values."""
+        self.scale_values(**changes)
+        changes = {name: in_numpy_if_foreign(value) for name, value in changes.items()}
+        return replace(
+            self,
+            parameters={**self.parameters, **changes},
+            provenance=self.changed_provenance(**changes),
+        )
+
+    def with_terms(self, *terms: Term, scales: Mapping[str, float] | None = None) -> LinearPeriodic:
+        """Return the system with more terms, for example modal damping.
+
+        Parameters
+        ----------
+        *terms : Term
+            Terms to add.
+        scales : mapping, optional
+            Values of monomials that the new terms name and the system does not know; they become
+            parameters of the new system.
+
+        Notes
+        -----
+        :meth:`with_geometry` takes the new terms along as they are.
+        """
+        extra = dict(scales or {})
+        merged = partial(_merged, self.scales, tuple(self.parameters), tuple(extra))
+        return replace(
+            self,
+            terms=self.terms + terms,
+            parameters={**self.parameters, **extra},
+            scales=merged if extra else self.scales,
+            rebuild=_then(self.rebuild, partial(_with_terms, terms, extra)),
+            remesh=_then(self.remesh, partial(_with_terms, terms, extra)),
+        )
+
+    def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
+        """Return the system with each term changed, for example scaled.
+
+        Parameters
+        ----------
+        change : callable
+            From each term to the one in its place.
+
+        Notes
+        -----
+        :meth:`with_geometry` changes the terms of the other geometry alike.
+        """
+        return replace(
+            self,
+            terms=tuple(change(term) for term in self.terms),
+            rebuild=_then(self.rebuild, partial(_with_changed_terms, change)),
+            remesh=_then(self.remesh, partial(_with_changed_terms, change)),
+        )
+
+    def without(self, *arrays: str) -> LinearPeriodic:
+        """Return the system without the terms of some arrays, for example ``*DAMPING``."""
+        return replace(
+            self,
+            terms=tuple(term for term in self.terms if term.array not in arrays),
+            rebuild=_then(self.rebuild, partial(_without, arrays)),
+            remesh=_then(self.remesh, partial(_without, arrays)),
+        )
+
+    @cached_property
+    def _rebuilds_itself(self) -> bool:
+        """Whether made anew for its own geometry it has its own terms, and not replaced ones."""
+        made = self.rebuild(self.geometry) if self.rebuild else self
+        theta = self.period * np.array([0.1, 0.45, 0.8])
+        return len(made.terms) == len(self.terms) and all(
+            (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
+            and (new.function is own.function or np.allclose(new(theta), own(theta), rtol=1e-6))
+            for new, own in zip(made.terms, self.terms, strict=True)
+        )
+
+    def with_geometry(self, **changes: float) -> LinearPeriodic:
+        """Return the same system with other lengths or ratios, its functions of angle made anew.
+
+        Parameters
+        ----------
+        **changes : float
+            New values by geometry name.
+
+        Raises
+        ------
+        BadInput
+            If the system has no geometry to change, a name is not one of it, its terms were
+            replaced by other means than its own methods, or the mechanism is impossible.
+        """
+        if self.rebuild is None:
+            raise bad(
+                "with_geometry",
+                "a system that is made for one geometry",
+                "one with named geometry, as rod_system makes",
+                "make it anew from its own numbers",
+            )
+        unknown = sorted(set(changes) - set(self.geometry))
+        if unknown:
+            raise bad("geometry", unknown, f"some of {sorted(self.geometry)}", "correct the name")
+        if not self._rebuilds_itself:
+            raise bad(
+                "with_geometry",
+                "terms that are not those that its geometry gives",
+                "a system whose terms only its own methods changed",
+                "use with_changed_terms, or set rebuild=None too",
+            )
+        made = self.rebuild({**self.geometry, **changes})
+        return replace(
+            made, parameters=dict(self.parameters), provenance=self.changed_provenance(**changes)
+        )
+
+
+def _merged(
+    scales: Callable[[Mapping[str, ArrayLike]], Mapping[str, Array]],
+    own: tuple[str, ...],
+    extra: tuple[str, ...],
+    values: Mapping[str, ArrayLike],
+) -> Mapping[str, Array]:
+    """Return a system's monomials and those that are parameters themselves."""
+    new = {name: np.asarray(values[name], dtype=float) for name in extra}
+    return {**scales({name: values[name] for name in own}), **new}
+
+
+def _then(
+    make: Callable[[Any], LinearPeriodic] | None,
+    change: Callable[[LinearPeriodic], LinearPeriodic],
+) -> Callable[[Any], LinearPeriodic] | None:
+    """Return what makes a system anew and changes it as this one is changed."""
+    return None if make is None else partial(_made_then, make, change)
+
+
+def _made_then(
+    make: Callable[[Any], LinearPeriodic],
+    change: Callable[[LinearPeriodic], LinearPeriodic],
+    given: object,
+) -> LinearPeriodic:
+    return change(make(given))
+
+
+def _with_terms(
+    terms: tuple[Term, ...], extra: Mapping[str, float], system: LinearPeriodic
+) -> LinearPeriodic:
+    return system.with_terms(*terms, scales=extra)
+
+
+def _with_changed_terms(change: Callable[[Term], Term], system: LinearPeriodic) -> LinearPeriodic:
+    return system.with_changed_terms(change)
+
+
+def _without(arrays: tuple[str, ...], system: LinearPeriodic) -> LinearPeriodic:
+    return system.without(*arrays)
+
+
+def _told(value: ArrayLike) -> str:
+    """Return a parameter value as text: a number, or how many from where to where."""
+    values = np.asarray(in_numpy_if_foreign(value), dtype=float)
+    if values.size == 1:
+        return repr(float(values.flat[0]))
+    if values.size == 0:
+        return "none"
+    return f"{values.size} values from {float(values.min())!r} to {float(values.max())!r}"

@@ -1,0 +1,351 @@
+"""What every solver returns: values, method, error figure, self-checks, provenance."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+
+from ..._files import write_whole as _write_whole
+from .errors import SelfCheckFailed, bad
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+ErrorKind = Literal["bound", "estimate"]
+
+# The dimensions of arrays that broadcast with each other, whatever their shapes.
+BROADCAST = ("...",)
+
+
+@dataclass(frozen=True)
+class Check:
+    """One self-check of a result.
+
+    Attributes
+    ----------
+    value : float
+        What was measured, for example ``|det(monodromy) - 1|``.
+    limit : float
+        The largest value that passes.
+    """
+
+    value: float
+    limit: float
+
+    @property
+    def passed(self) -> bool:
+        """True where the value is a number within the limit."""
+        return bool(self.value <= self.limit)
+
+
+class DeferredChecks(Mapping[str, Check]):
+    """Self-checks that are made when they are first looked at, and then kept.
+
+    For results so quick that a check would take longer than the work.  ``checks``, ``passed``,
+    ``require``, ``to_dict`` and ``save`` to JSON look at them.
+
+    Parameters
+    ----------
+    make : callable
+        Makes the checks by name; it and what it holds must bear pickling where the result should.
+    """
+
+    def __init__(self, make: Callable[[], Mapping[str, Check]]) -> None:
+        self._make = make
+        self._made: Mapping[str, Check] | None = None
+
+    @property
+    def _checks(self) -> Mapping[str, Check]:
+        if self._made is None:
+            self._made = self._make()
+        return self._made
+
+    def __getitem__(self, name: str) -> Check:
+        """Return one check by name."""
+        return self._checks[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        return iter(self._checks)
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self._checks)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """Base of every result.
+
+    Attributes
+    ----------
+    method : str
+        Name of the method that was used.
+    error : float or ndarray
+        Error figure of the main values, in the norm that ``error_norm`` names.
+    error_norm : str
+        In words: which quantity, absolute or relative, largest or entrywise.
+    error_kind : {"estimate", "bound"}
+        Whether the figure is proved or estimated.
+    checks : mapping of str to Check
+        Self-checks by name.
+    provenance : mapping of str to str
+        Scene, module hash, versions.
+
+    Notes
+    -----
+    A class names the dimensions of its arrays in ``dimensions`` (extra axes count up: ``mu``,
+    ``mu_1``; :data:`BROADCAST` for arrays that broadcast with each other), and in ``exported`` the
+    properties that leave with the fields: to JSON, CSV, NPZ.
+    """
+
+    method: str
+    error: Any
+    error_norm: str
+    error_kind: ErrorKind = "estimate"
+    checks: Mapping[str, Check] = field(default_factory=dict)
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    exported: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def passed(self) -> bool:
+        """True where no self-check failed; a result without any (``checks`` is empty) passes.
+
+        Such a result rests on its error figure alone.
+        """
+        return all(check.passed for check in self.checks.values())
+
+    def require(self) -> None:
+        """Raise :class:`SelfCheckFailed` where a self-check failed."""
+        failed = [
+            f"{name}: {check.value:.3g} exceeds {check.limit:.3g}"
+            for name, check in self.checks.items()
+            if not check.passed
+        ]
+        if failed:
+            raise SelfCheckFailed(f"{type(self).__name__}: " + "; ".join(failed))
+
+    def arrays(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Return the numeric fields and exported properties by name.
+
+        A tuple of numbers is among them where ``dimensions`` names its axis.
+        """
+        found: dict[str, np.ndarray[Any, Any]] = {}
+        for name in (*(item.name for item in fields(self)), *self.exported):
+            value = getattr(self, name)
+            listed = isinstance(value, tuple) and name in self.dimensions
+            if listed or isinstance(value, (bool, int, float, complex, np.ndarray, np.generic)):
+                found[name] = np.asarray(value)
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain lists, numbers and strings, ready for JSON; NaN becomes None."""
+        out: dict[str, Any] = {}
+        for name in (*(item.name for item in fields(self)), *self.exported):
+            value = _jsonable(getattr(self, name))
+            if value is not None:
+                out[name] = value
+        out["checks"] = {
+            name: {"value": _plain(np.asarray(c.value)), "limit": c.limit, "passed": c.passed}
+            for name, c in self.checks.items()
+        }
+        out["provenance"] = dict(self.provenance)
+        out["passed"] = self.passed
+        return out
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the result into ``ax`` (a new one by default) and return the axes."""
+        raise bad(
+            type(self).__name__, "plot()", "a result with a picture", "use its arrays instead"
+        )
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the result; the ending chooses npz, json, csv or nc (NetCDF).
+
+        The file appears whole or not at all.  A CSV file has long form: one row for each point,
+        arrays of fewer dimensions repeated, the columns of an axis that no array gives counted
+        from 0.  Arrays that do not fit together stand in blocks, an empty line between them, each
+        with a header of its own.  In NetCDF a complex array stands as two, ``name_real`` and
+        ``name_imag``.
+
+        Raises
+        ------
+        BadInput
+            If the ending is unknown or the folder cannot be written.
+        """
+        target = Path(path)
+        writers = {".npz": _npz, ".json": _json, ".csv": _csv, ".nc": _netcdf}
+        if target.suffix not in writers:
+            raise bad(
+                "save", repr(target.suffix), f"an ending of {sorted(writers)}", "rename the file"
+            )
+        return write_whole(target, writers[target.suffix](self))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the numeric fields as an :class:`xarray.Dataset` (extra ``data``)."""
+        return _dataset(self, split=False)
+
+
+def write_whole(path: Path, content: bytes) -> Path:
+    """Write a file so that it appears whole or not at all.
+
+    Raises
+    ------
+    BadInput
+        If the folder does not exist or cannot be written.
+    """
+    try:
+        return _write_whole(path, content)
+    except OSError as refusal:
+        raise bad(
+            str(path), refusal.strerror or "an error", "a writable place", "choose another path"
+        ) from refusal
+
+
+def _jsonable(value: object) -> Any:
+    """Return a field as JSON would have it; None for what has no such form."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool | int | float | complex | np.ndarray | np.generic):
+        return _plain(np.asarray(value))
+    if isinstance(value, tuple) and all(isinstance(v, str | int | float) for v in value):
+        return [v if isinstance(v, str) else _plain(np.asarray(v)) for v in value]
+    if isinstance(value, Mapping):
+        return {str(key): _jsonable(item) for key, item in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {item.name: _jsonable(getattr(value, item.name)) for item in fields(value)}
+    return None
+
+
+def _plain(value: np.ndarray[Any, Any]) -> Any:
+    if np.iscomplexobj(value):
+        return {"real": _plain(value.real), "imag": _plain(value.imag)}
+    if value.dtype.kind != "f":
+        return value.tolist()
+    nested = value.astype(object)
+    nested[~np.isfinite(value)] = None
+    return nested.tolist()
+
+
+def _npz(result: Result) -> bytes:
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **result.arrays())  # type: ignore[arg-type]
+    return buffer.getvalue()
+
+
+def _json(result: Result) -> bytes:
+    return (json.dumps(result.to_dict(), indent=1, sort_keys=True) + "\n").encode()
+
+
+def _csv(result: Result) -> bytes:
+    arrays = result.arrays()
+    axes = _axes(arrays, result.dimensions)
+    wholes: list[dict[str, int]] = []
+    for own in sorted(axes.values(), key=len, reverse=True):
+        if not any(own.items() <= whole.items() for whole in wholes):
+            wholes.append(own)
+    blocks = []
+    for whole in wholes:
+        members = {name: arrays[name] for name in arrays if axes[name].items() <= whole.items()}
+        blocks.append(_block(members, axes, whole))
+    return "\n".join(blocks).encode()
+
+
+def _axes(
+    arrays: Mapping[str, np.ndarray[Any, Any]], dimensions: Mapping[str, tuple[str, ...]]
+) -> dict[str, dict[str, int]]:
+    """Return label and length of the axes of each array, less those of length 1.
+
+    Arrays without declared dimensions belong together where their shapes are the same.
+    """
+    joined = [array.ndim for name, array in arrays.items() if dimensions.get(name) == BROADCAST]
+    depth = max(joined, default=0)
+    found = {}
+    for name, array in arrays.items():
+        n, names = array.ndim, dimensions.get(name, ())
+        if names == BROADCAST:
+            labels = tuple(f"axis_{depth - n + i}" for i in range(n))
+        elif names:
+            extra = tuple(f"{names[-1]}_{i}" for i in range(1, n - len(names) + 1))
+            labels = (*names, *extra)[:n]
+        else:
+            shape = "x".join(map(str, array.shape))
+            labels = tuple(f"axis_{i}_of_{shape}" for i in range(n))
+        found[name] = {k: size for k, size in zip(labels, array.shape, strict=True) if size != 1}
+    return found
+
+
+def _block(
+    arrays: Mapping[str, np.ndarray[Any, Any]],
+    axes: Mapping[str, Mapping[str, int]],
+    whole: Mapping[str, int],
+) -> str:
+    """Return header and rows of arrays that broadcast to the axes of one of them."""
+    shape = tuple(whole.values())
+    columns: dict[str, np.ndarray[Any, Any]] = {}
+    for place, label in enumerate(whole):
+        if not any(list(axes[name]) == [label] for name in arrays):
+            columns[label] = np.indices(shape)[place].ravel()
+    for name, array in arrays.items():
+        own = [label for label in whole if label in axes[name]]
+        # The order of an array's own axes may be another than that of the block.
+        turned = array.squeeze().transpose([list(axes[name]).index(label) for label in own])
+        spread = turned.reshape([whole[label] if label in own else 1 for label in whole])
+        columns[name] = np.broadcast_to(spread, shape).ravel()
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+    return "\n".join(lines) + "\n"
+
+
+def _dataset(result: Result, *, split: bool) -> xarray.Dataset:
+    """Return the arrays with their dimensions; complex ones as two where they are to be split."""
+    try:
+        import xarray as xr
+    except ImportError as missing:
+        raise bad(
+            "to_xarray", "no xarray", "xarray installed", "pip install 'elastolink[data]'"
+        ) from missing
+    data = {}
+    for name, value in result.arrays().items():
+        dims = result.dimensions.get(name)
+        if dims is None or len(dims) != value.ndim or dims == BROADCAST:
+            dims = tuple(f"{name}_{i}" for i in range(value.ndim))
+        if split and np.iscomplexobj(value):
+            data[f"{name}_real"], data[f"{name}_imag"] = (dims, value.real), (dims, value.imag)
+        else:
+            data[name] = (dims, value)
+    attributes = {"method": result.method, "error_norm": result.error_norm}
+    return xr.Dataset(data, attrs={**attributes, **result.provenance})
+
+
+def _netcdf(result: Result) -> bytes:
+    # The file format knows no complex numbers.
+    data = _dataset(result, split=True)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "result.nc"
+        data.to_netcdf(path)
+        return path.read_bytes()
+
+
+def provenance(extra: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the provenance of a result: what is known of its input, and the versions in use.
+
+    Parameters
+    ----------
+    extra : mapping of str to str, optional
+        Scene, module hash, changed parameters, lengths.
+    """
+    from ... import __version__
+
+    return {**(extra or {}), "elastolink": __version__, "numpy": np.__version__}

@@ -1,0 +1,68 @@
+"""Angles, and values of a function of the crank angle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import bad
+
+Array = NDArray[np.float64]
+
+
+def finite_angles(theta: ArrayLike) -> Array:
+    """Return angles as an array of any shape.
+
+    Raises
+    ------
+    BadInput
+        If one of them is not finite.
+    """
+    angles = np.asarray(theta, dtype=float)
+    if not np.all(np.isfinite(angles)):
+        raise bad("theta", "an angle that is not finite", "finite angles", "correct the input")
+    return angles
+
+
+def values_at(f: Callable[[Array], ArrayLike], theta: Array, name: str) -> Array:
+    """Return values of a function, one for each angle.
+
+    Parameters
+    ----------
+    f : callable
+        From angles ``(nt,)`` to as many values, or to one for all.
+    theta : ndarray, shape (nt,)
+        Angles [rad].
+    name : str
+        Of the function, for messages.
+
+    Returns
+    -------
+    ndarray, shape (nt,)
+        The caller's own.
+
+    Raises
+    ------
+    BadInput
+        If there is not one finite value for each angle.
+    """
+    values = np.array(f(theta), dtype=float)
+    if values.shape == ():
+        values = np.full(theta.shape, float(values))
+    if values.shape != theta.shape:
+        raise bad(
+            f"function {name!r}",
+            f"values of shape {values.shape} for angles of shape {theta.shape}",
+            "one value per angle",
+            "vectorise the function",
+        )
+    if not np.all(np.isfinite(values)):
+        raise bad(
+            f"function {name!r}",
+            f"a value that is not finite at theta = {theta[~np.isfinite(values)][0]:.6g} rad",
+            "finite values over the whole turn",
+            "check the geometry",
+        )
+    return values

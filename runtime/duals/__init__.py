@@ -1,1 +1,0 @@
-"""Exact derivatives of emitted functions: dual numbers, and what they are taken by."""

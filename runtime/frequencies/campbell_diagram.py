@@ -1,0 +1,279 @@
+"""Campbell's diagram: frequencies against the crank speed, with the lines of its multiples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import require_whole
+from ..core.progress import bar
+from ..core.results import Check, Result, provenance
+from ..floquet.first_order import numbers
+from .buckling import buckling_speed
+from .eigenproblem import held_frequencies, require_system
+from .means import cycle_mean
+from .running import Running, running_frequencies
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_MODES = 4
+# Means end this far before the held mechanism buckles.
+_SHORT = 0.999
+_ENOUGH = 1e-9
+# A frequency this close to a multiple of the speed, over the speed, is locked to it.
+_LOCKED = 1e-7
+# Rows to either side of a crossing that tell how uneven its curve is.
+_BESIDE = 2
+# Distance between the names of orders in a picture, over its width.
+_ROOM = 0.03
+
+
+@dataclass(frozen=True, kw_only=True)
+class Campbell(Result):
+    """Frequencies of a mechanism against its crank speed.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], rising, ``(ns,)``.
+    held : ndarray
+        Mean natural frequencies over the period, crank held under the axial forces of the speed
+        [rad/s], ``(ns, modes)``; NaN from ``buckling`` on, where there are none.
+    running : ndarray
+        Frequencies of the running mechanism [rad/s], ``(ns, modes)``: the imaginary parts of the
+        characteristic exponents, all terms with them (axial forces, Coriolis, centripetal, Euler),
+        each with that multiple of the speed added that brings it to its mode; NaN where they were
+        not asked for.  A motion is named by its shape, taken apart along the turn into the modes of
+        the mechanism held still: names do not depend on the other speeds.
+    growth : ndarray
+        Their real parts [1/s], ``(ns, modes)``: positive where the motion grows.
+    share : ndarray
+        Share of each motion's action that is its own mode's, ``(ns, modes)``.  Where the exponents
+        of two modes meet and their motions mix it drops to about a half, and the names change
+        hands there.
+    buckling : float
+        Least crank speed [rad/s] at which the held mechanism buckles at some angle; inf if none.
+    crossing_speed : ndarray
+        Speeds at which a frequency is n times the speed, ``(nc,)`` [rad/s]: of ``running`` where
+        it is there, else of ``held``.
+    crossing_mode, crossing_order : ndarray of int
+        Mode (from 1) and n of each, ``(nc,)``.
+    crossing_error : ndarray
+        Error of each [rad/s], ``(nc,)``: of interpolating between the speeds, as uneven as the
+        frequencies are there; half a locked range where the frequency is n times the speed over a
+        range of it.
+    error : ndarray
+        Error of ``held`` [rad/s], ``(ns, modes)``; NaN with it.
+    """
+
+    speed: Array
+    held: Array
+    running: Array
+    growth: Array
+    share: Array
+    buckling: float
+    crossing_speed: Array
+    crossing_mode: Indices
+    crossing_order: Indices
+    crossing_error: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "speed": ("speed",),
+        **dict.fromkeys(("held", "running", "growth", "share", "error"), ("speed", "mode")),
+        **dict.fromkeys(
+            ("crossing_speed", "crossing_mode", "crossing_order", "crossing_error"), ("crossing",)
+        ),
+    }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the diagram and return the axes."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        shown = np.where(np.isfinite(self.running), self.running, self.held)
+        top = 1.1 * float(np.nanmax(shown))
+        last = int(self.crossing_order.max(initial=1))
+        named, room = np.inf, _ROOM * float(self.speed[-1] - self.speed[0])
+        for n in range(1, last + 1):
+            ax.plot(self.speed, n * self.speed, color="0.8", lw=0.6, zorder=0)
+            x = min(float(self.speed[-1]), top / n)
+            # Where the lines are close only some are named.
+            if x == self.speed[-1] or named - x >= room:
+                named = x
+                ax.annotate(f"{n}", (x, n * x), fontsize=6, color="0.5", ha="right", va="bottom")
+        for k in range(self.held.shape[1]):
+            colour = f"C{k % 10}"
+            ax.plot(self.speed, self.held[:, k], "--", color=colour, lw=0.9)
+            ax.plot(self.speed, self.running[:, k], color=colour, lw=1.3)
+            grown = self.growth[:, k] > 1e-6 * shown[:, k]
+            ax.plot(self.speed[grown], self.running[grown, k], ".", color="r", ms=5)
+        height = self.crossing_order * self.crossing_speed
+        ax.plot(self.crossing_speed, height, "ko", ms=3, mfc="none", mew=0.7)
+        if self.buckling < self.speed[-1]:
+            ax.axvline(self.buckling, color="0.5", lw=0.8, ls=":")
+        ax.set_xlim(self.speed[0], self.speed[-1])
+        ax.set_ylim(0.0, 1.05 * top)
+        ax.set_xlabel("crank speed [rad/s]")
+        ax.set_ylabel("frequency [rad/s]")
+        return ax
+
+
+def campbell(
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    *,
+    modes: int | None = None,
+    exponents: bool = True,
+    progress: bool = False,
+) -> Campbell:
+    """Return the frequencies of a mechanism against its crank speed, and where orders meet them.
+
+    A mechanism is forced at every multiple n w of its speed: where one meets a frequency the
+    response may peak.  Frequencies that differ by a multiple of the speed are the same exponent;
+    each is shown next to the mean natural frequency of its mode.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system, damped or not.
+    speed : array_like
+        Crank speeds [rad/s], rising, ``(ns,)``, at least 4.
+    modes : int, optional
+        Number of modes, 4 by default.
+    exponents : bool
+        Whether the frequencies of the running mechanism are found too.
+    progress : bool
+        Whether to show a progress bar (extra ``progress``).
+
+    Returns
+    -------
+    Campbell
+        Its check ``near``: the largest distance of a running frequency from the held one or, where
+        there is none, from that at the speed before, over half the speed; from 1 on its multiple
+        of the speed would be open.
+
+    Raises
+    ------
+    BadInput
+        If the speeds or the number of modes are unusable.
+    """
+    require_system(system)
+    speeds = numbers("speed", speed)
+    if speeds.ndim != 1 or len(speeds) < 4 or not np.all(np.diff(speeds) > 0) or speeds[0] <= 0:
+        raise bad("speed", speed, "at least four rising speeds [rad/s]", "use numpy.linspace")
+    wanted = min(_MODES, system.size) if modes is None else modes
+    count = require_whole("modes", wanted, 1, system.size)
+    limit = buckling_speed(system).speed
+    held, error = _held(system, speeds, count, limit, progress)
+    nothing = np.full(held.shape, np.nan)
+    found = Running(nothing, nothing, nothing, 0.0)
+    if exponents:
+        rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
+        found = running_frequencies(system, speeds, held, rest)
+    told = found.frequency if exponents else held
+    crossing = [row for k in range(count) for row in _crossings(speeds, told[:, k], k + 1)]
+    crossing.sort()
+    return Campbell(
+        method="means of held frequencies" + "; characteristic exponents" * exponents,
+        error=error,
+        error_norm="absolute, of each held mean [rad/s]",
+        checks={"near": Check(found.away, 0.8)},
+        provenance=provenance(system.provenance),
+        speed=speeds,
+        held=held,
+        running=found.frequency,
+        growth=found.growth,
+        share=found.share,
+        buckling=limit,
+        crossing_speed=np.array([row[0] for row in crossing]),
+        crossing_mode=np.array([row[1] for row in crossing], dtype=np.int64),
+        crossing_order=np.array([row[2] for row in crossing], dtype=np.int64),
+        crossing_error=np.array([row[3] for row in crossing]),
+    )
+
+
+def _held(
+    system: LinearPeriodic, speeds: Array, count: int, limit: float, progress: bool
+) -> tuple[Array, Array]:
+    """Return the means with the crank held under the axial forces of each speed."""
+    out, error = np.full((2, len(speeds), count), np.nan)
+    with bar(progress, len(speeds)) as tick:
+        for k, speed in enumerate(speeds):
+            if speed >= _SHORT * limit:
+                break
+            values = partial(_lowest, system, float(speed), count)
+            out[k], error[k] = cycle_mean(values, system.period, enough=_ENOUGH)
+            if tick is not None:
+                tick(k + 1)
+    return out, error
+
+
+def _lowest(system: LinearPeriodic, speed: float, count: int, theta: Array) -> tuple[Array, Array]:
+    frequency, error = held_frequencies(system, theta, {}, speed)
+    return frequency[:, :count], error[:, :count]
+
+
+def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int, int, float]]:
+    """Return speed, mode, order and error where a frequency is a whole multiple of the speed."""
+    from scipy.interpolate import PchipInterpolator
+
+    there = np.isfinite(values)
+    w, f = speeds[there], values[there]
+    if len(w) < 4:
+        return []
+    ratio = f / w
+    # The frequency changes little with the speed; its ratio to the speed does.
+    curves = [PchipInterpolator(w[rows], f[rows]) for rows in (slice(None), _every_other(len(w)))]
+    out = []
+    for n in range(max(1, int(np.ceil(ratio.min()))), int(np.floor(ratio.max())) + 1):
+        side = np.where(np.abs(ratio - n) <= _LOCKED, 0.0, np.sign(ratio - n))
+        known = np.flatnonzero(side)
+        for i, j in pairwise(known):
+            if side[i] == side[j]:
+                continue
+            if j > i + 1:
+                out.append((float(0.5 * (w[i] + w[j])), mode, n, float(0.5 * (w[j] - w[i]))))
+                continue
+            fine = _root(curves[0], n, w[i], w[j])
+            coarse = _root(curves[1], n, w[i], w[j])
+            unseen = _unevenness(w, f, int(i)) / abs(n - (f[j] - f[i]) / (w[j] - w[i]))
+            out.append((fine, mode, n, abs(fine - coarse) + unseen + 1e-12 * fine))
+    return out
+
+
+def _unevenness(speeds: Array, values: Array, first: int) -> float:
+    """Return how far the rows beside an interval lie off the chord through its ends.
+
+    What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
+    """
+    w, f = speeds[first : first + 2], values[first : first + 2]
+    near = slice(max(0, first - _BESIDE), first + 2 + _BESIDE)
+    chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
+    return float(np.max(np.abs(values[near] - chord)))
+
+
+def _every_other(count: int) -> Indices:
+    """Return every other row, the last one among them."""
+    return np.unique(np.append(np.arange(0, count, 2), count - 1))
+
+
+def _root(curve: Any, order: int, low: float, high: float) -> float:
+    """Return where a curve crosses a multiple of the speed within a bracket, or its nearer end."""
+    from scipy.optimize import brentq
+
+    ends = [float(curve(w)) - order * w for w in (low, high)]
+    if ends[0] * ends[1] >= 0.0:
+        return float(low if abs(ends[0]) <= abs(ends[1]) else high)
+    return float(brentq(lambda w: float(curve(w)) - order * w, low, high, xtol=1e-13 * high))

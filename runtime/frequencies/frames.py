@@ -1,0 +1,305 @@
+"""The transcendental eigenproblem of a structure of beams held in one position."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..beams._checks import is_finite, names_problems, require_kind, require_mapping
+from ..beams.freedoms import Freedoms, PlacedElement, number_freedoms
+from ..beams.linear import lumped_values
+from ..beams.structure import Structure
+from ..core.errors import bad
+from ..core.families import Transcendental
+from .members import member_inertias, member_matrices, phases, poles_below
+
+Array = NDArray[np.float64]
+Pieces = Mapping[str, tuple[float, ...]]
+
+# A constraint whose size is below this, over the largest, repeats the others.
+_REPEATED = 1e-9
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Members, what joins them, and the coordinates left.
+
+    Attributes
+    ----------
+    pieces : tuple of PlacedElement
+        Members, or parts of members, each one exact element.
+    axial_stiffness : ndarray, shape (n,)
+        EA [N] of each; infinite where it cannot stretch.
+    local : ndarray, shape (n, 6, size)
+        Displacements of the ends along and across each piece by the coordinates that are left.
+    reduction : ndarray, shape (free, size)
+        The free coordinates by those that are left.
+    lumped_mass, springs : ndarray, shape (free,)
+        On the free coordinates [kg, kg m^2, N/m, N m/rad].
+    labels : tuple of str
+        Names of the free coordinates.
+    """
+
+    pieces: tuple[PlacedElement, ...]
+    axial_stiffness: Array
+    angles: Array
+    local: Array
+    reduction: Array
+    lumped_mass: Array
+    springs: Array
+    labels: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self.reduction.shape[1])
+
+    @property
+    def data(self) -> tuple[Array, Array, Array, Array]:
+        """Length, EI, EA and mass per length of the pieces, shape (n,) each."""
+        sections = [piece.beam.section for piece in self.pieces]
+        return (
+            np.array([piece.length for piece in self.pieces]),
+            np.array([section.bending_stiffness for section in sections]),
+            self.axial_stiffness,
+            np.array([section.mass_per_length for section in sections]),
+        )
+
+    def local_matrices(self, omega: ArrayLike) -> tuple[Array, Array]:
+        """Return D and M of the pieces in their own axes, ``(..., n, 6, 6)``."""
+        return member_matrices(omega, *self.data)
+
+    def local_inertias(self, omega: float) -> Array:
+        """Return ``(D(0) - D(omega)) / omega^2`` of the pieces, ``(n, 6, 6)``."""
+        return np.asarray(member_inertias(omega, *self.data))
+
+    def assembled(self, matrices: Array, diagonal: Array) -> Array:
+        """Return ``(..., size, size)`` from local matrices and values on the free coordinates."""
+        size = self.size
+        turned = np.matmul(matrices, self.local)
+        rows = turned.reshape(*turned.shape[:-3], -1, size)
+        total = np.matmul(self.local.reshape(-1, size).T, rows)
+        lumps = np.matmul(self.reduction.T, diagonal[..., :, None] * self.reduction)
+        return np.asarray(total + lumps)
+
+    def stiffness(self, omega: ArrayLike) -> Array:
+        """Return D at frequencies ``(...)`` [rad/s]: ``(..., size, size)``."""
+        rate = np.asarray(omega, dtype=float)
+        lumps = self.springs - rate[..., None] ** 2 * self.lumped_mass
+        return self.assembled(self.local_matrices(rate)[0], lumps)
+
+    def mass(self, omega: ArrayLike) -> Array:
+        """Return ``M = -dD/d(omega^2)`` at frequencies ``(...)``: ``(..., size, size)``."""
+        rate = np.asarray(omega, dtype=float)
+        lumps = np.broadcast_to(self.lumped_mass, (*rate.shape, len(self.lumped_mass)))
+        return self.assembled(self.local_matrices(rate)[1], lumps)
+
+    def poles(self, omega: ArrayLike) -> Array:
+        """Return how many frequencies lie below with every node held, ``(...)``."""
+        z, b = phases(np.asarray(omega, dtype=float), *self.data)
+        bending, axial = poles_below(z, b)
+        return np.asarray(np.sum(bending + axial, axis=-1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicStiffness(Transcendental):
+    """``D(Omega) q = 0`` of a structure of beams, each one exact element (Aannaque (5.20)).
+
+    Attributes
+    ----------
+    structure : Structure
+        The structure.
+    theta : float
+        Crank angle at which it is held [rad].
+    assembly : Assembly
+        Members and coordinates.
+    inextensible : tuple of str
+        Beams that cannot stretch.
+    """
+
+    structure: Structure
+    theta: float
+    assembly: Assembly
+    inextensible: tuple[str, ...] = ()
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the free coordinates of the nodes; see ``assembly.reduction``."""
+        return self.assembly.labels
+
+    def mass(self, omega: ArrayLike) -> Array:
+        """Return ``-dD/d(Omega^2)`` at frequencies ``(...)`` [rad/s] (Aannaque (5.16))."""
+        return self.assembly.mass(omega)
+
+    def divided(self, pieces: Pieces) -> DynamicStiffness:
+        """Return the same structure with beams in several exact pieces: shares by beam."""
+        return dynamic_stiffness(
+            self.structure, self.theta, inextensible=self.inextensible, pieces=pieces
+        )
+
+
+def dynamic_stiffness(
+    structure: Structure,
+    theta: float = 0.0,
+    *,
+    inextensible: bool | tuple[str, ...] = False,
+    pieces: Pieces | None = None,
+) -> DynamicStiffness:
+    """Return the exact eigenproblem of a structure held in one position.
+
+    Every beam is one exact element whatever its ``elements`` and ``kind``: bending without shear
+    and rotary inertia, and the motion along it.  Dampers and retarded materials are left out.
+
+    Parameters
+    ----------
+    structure : Structure
+        Frame, or linkage held at a crank angle.
+    theta : float
+        Crank angle [rad].
+    inextensible : bool or tuple of str
+        Beams that cannot stretch: True for all.
+    pieces : mapping of str to tuple of float, optional
+        Shares of the length of the pieces of a beam; the frequencies stay what they are.
+
+    Returns
+    -------
+    DynamicStiffness
+
+    Raises
+    ------
+    BadInput
+        If the angle is no number, a beam is unknown, or nothing is left that moves.
+
+    References
+    ----------
+    Aannaque (5.12)-(5.20).
+    """
+    rigid = rigid_beams("dynamic_stiffness", structure, theta, inextensible)
+    if pieces is not None:
+        require_mapping("pieces", pieces, 'say {"crank": (0.5, 0.5)}')
+    names = tuple(beam.name for beam in structure.beams)
+    for name in sorted(set(pieces or {}) - set(names)):
+        raise bad("beam", repr(name), f"one of {', '.join(names)}", "correct the name")
+    freedoms = _numbered(structure, pieces or {})
+    assembly = _assembly(structure, float(theta), freedoms, rigid)
+    return DynamicStiffness(
+        size=assembly.size,
+        stiffness=assembly.stiffness,
+        poles=assembly.poles,
+        provenance={
+            **structure.provenance,
+            "theta": repr(float(theta)),
+            "inextensible": ", ".join(rigid),
+        },
+        structure=structure,
+        theta=float(theta),
+        assembly=assembly,
+        inextensible=rigid,
+    )
+
+
+def rigid_beams(
+    what: str, structure: Structure, theta: float, inextensible: bool | tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the names of the beams that cannot stretch, all arguments checked.
+
+    Raises
+    ------
+    BadInput
+        If one is unusable, or the structure has a sliding pin.
+    """
+    require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
+    if not is_finite(theta):
+        raise bad("theta", repr(theta), "one number", "hold the linkage at one angle")
+    structure.require_pinned(what)
+    names = tuple(beam.name for beam in structure.beams)
+    if isinstance(inextensible, bool):
+        return names if inextensible else ()
+    if names_problems("", inextensible):
+        fix = "say True for all"
+        raise bad("inextensible", repr(inextensible), "True, False or names of beams", fix)
+    for name in sorted(set(inextensible) - set(names)):
+        raise bad("beam", repr(name), f"one of {', '.join(names)}", "correct the name")
+    return tuple(inextensible)
+
+
+def _numbered(structure: Structure, pieces: Pieces) -> Freedoms:
+    """Return the coordinates with one element for each beam, or the pieces that are asked for."""
+    held = all({"x", "y", "rotation"} <= set(node.held) for node in structure.nodes)
+    usual: tuple[float, ...] = (0.5, 0.5) if held else (1.0,)
+    beams = [
+        replace(beam, elements=tuple(pieces.get(beam.name, usual)), kind="cubic")
+        for beam in structure.beams
+    ]
+    return number_freedoms(beams, structure.nodes)
+
+
+def _assembly(
+    structure: Structure, theta: float, freedoms: Freedoms, rigid: tuple[str, ...]
+) -> Assembly:
+    motion = structure.configuration(np.array([theta]))
+    elements, free = freedoms.elements, freedoms.free
+    place = np.full(len(freedoms.all), -1)
+    place[free] = np.arange(len(free))
+    local = np.zeros((len(elements), 6, len(free)))
+    angles = np.array([float(motion[e.beam.name].angle[0]) for e in elements])
+    for k, element in enumerate(elements):
+        turn = turning_matrix(angles[k])
+        for column, index in enumerate(element.indices):
+            if place[index] >= 0:
+                local[k, :, place[index]] += turn[:, column]
+    stiff = np.array(
+        [np.inf if e.beam.name in rigid else e.beam.section.axial_stiffness for e in elements]
+    )
+    reduction = without_stretch(local, np.isinf(stiff))
+    mass, springs, _ = lumped_values(structure, freedoms)
+    return Assembly(
+        pieces=elements,
+        axial_stiffness=stiff,
+        angles=angles,
+        local=np.asarray(local @ reduction),
+        reduction=reduction,
+        lumped_mass=mass[free],
+        springs=springs[free],
+        labels=freedoms.free_labels,
+    )
+
+
+def turning_matrix(angle: float) -> Array:
+    """Return the matrix from ground to local axes of both ends."""
+    c, s = np.cos(angle), np.sin(angle)
+    one = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.kron(np.eye(2), one)
+
+
+def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
+    """Return a basis of the displacements that stretch no inextensible piece, ``(free, size)``.
+
+    Raises
+    ------
+    BadInput
+        If there are none.
+    """
+    count = local.shape[-1]
+    if not rigid.any():
+        return np.eye(count)
+    constraints = local[rigid, 3] - local[rigid, 0]
+    # Rotations stretch nothing: they stay as they are, unmixed.
+    bound = np.any(constraints != 0.0, axis=0)
+    _, sizes, turned = np.linalg.svd(constraints[:, bound])
+    rank = int(np.sum(sizes > _REPEATED * sizes.max(initial=0.0)))
+    if rank == count:
+        raise bad(
+            "inextensible",
+            "beams that leave no node free to move",
+            "at least one coordinate",
+            "let a beam stretch, or divide one into pieces",
+        )
+    basis = np.zeros((count, count - rank))
+    moving = int(np.sum(bound)) - rank
+    basis[bound, :moving] = turned[rank:].T
+    basis[~bound, moving:] = np.eye(count - rank - moving)
+    return basis

@@ -1,0 +1,179 @@
+"""Matrices of a uniform beam that vibrates harmonically, exact at every frequency."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import beam_dynamic_stiffness
+from ..core.errors import BadInput, Problem, bad
+
+Array: TypeAlias = NDArray[Any]
+
+functions: Any = beam_dynamic_stiffness
+
+# Phases are kept above these; the functions are at their static values long before.
+_SMALLEST_Z, _SMALLEST_B = 1e-30, 1e-100
+# Places in the local matrix (row, column, sign, number of the function, power of the length);
+# coordinates u1, v1, r1, u2, v2, r2.
+_BENDING = (
+    (1, 1, 1, 5, 0),
+    (1, 2, -1, 3, 1),
+    (1, 4, 1, 4, 0),
+    (1, 5, 1, 2, 1),
+    (2, 2, 1, 1, 2),
+    (2, 4, -1, 2, 1),
+    (2, 5, 1, 0, 2),
+    (4, 4, 1, 5, 0),
+    (4, 5, 1, 3, 1),
+    (5, 5, 1, 1, 2),
+)
+_AXIAL = ((0, 0, 0), (0, 3, 1), (3, 3, 0))
+_LOWER = np.tril_indices(6, -1)
+
+
+def phases(
+    omega: ArrayLike,
+    length: ArrayLike,
+    bending_stiffness: ArrayLike,
+    axial_stiffness: ArrayLike,
+    mass_per_length: ArrayLike,
+) -> tuple[Array, Array]:
+    """Return ``z = lambda L`` (Aannaque (5.4)) and ``b = beta L`` (5.9) of beams.
+
+    Parameters
+    ----------
+    omega : array_like, shape (...)
+        Frequency [rad/s].
+    length, bending_stiffness, axial_stiffness, mass_per_length : array_like, shape (n,)
+        L [m], EI [N m^2], EA [N] (infinite: inextensible), rho A [kg/m].
+
+    Returns
+    -------
+    z, b : ndarray, shape (..., n)
+        Complex where a stiffness is.
+    """
+    rate = np.asarray(omega)[..., None]
+    mass, span = np.asarray(mass_per_length), np.asarray(length)
+    z = np.sqrt(rate) * (span * np.sqrt(np.sqrt(mass / np.asarray(bending_stiffness))))
+    b = rate * (span * np.sqrt(mass / np.asarray(axial_stiffness)))
+    return _above(z, _SMALLEST_Z), _above(b, _SMALLEST_B)
+
+
+def _above(values: Array, least: float) -> Array:
+    return np.where(np.abs(values) < least, least, values)
+
+
+def member_matrices(
+    omega: ArrayLike,
+    length: ArrayLike,
+    bending_stiffness: ArrayLike,
+    axial_stiffness: ArrayLike,
+    mass_per_length: ArrayLike,
+) -> tuple[Array, Array]:
+    """Return dynamic stiffness and mass of uniform beams in their own axes.
+
+    Aannaque (5.18) and (5.19): ``D(omega)`` gives the end forces of a harmonic motion, and
+    ``M = -dD/d(omega^2)`` its generalised mass; ``K = D + omega^2 M`` (5.17).
+
+    Parameters
+    ----------
+    omega : array_like, shape (...)
+        Frequency [rad/s].
+    length, bending_stiffness, axial_stiffness, mass_per_length : array_like, shape (n,)
+        L [m], EI [N m^2], EA [N], rho A [kg/m].  Complex stiffnesses stand for sections that lose
+        energy.  An infinite EA gives an inextensible beam: of the axial part the mass alone is
+        left, for displacements that are equal at both ends.
+
+    Returns
+    -------
+    stiffness, mass : ndarray, shape (..., n, 6, 6)
+        For u1, v1, r1, u2, v2, r2: displacement along and across the beam, rotation, of either end.
+
+    Raises
+    ------
+    BadInput
+        If a frequency is not finite, or a length, stiffness or mass not positive.
+    """
+    rates = np.asarray(omega)
+    if rates.dtype.kind not in "fciu" or not rates.size or not np.all(np.isfinite(rates)):
+        raise bad("omega", repr(omega), "finite frequencies [rad/s]", "correct them")
+    names = ("length", "bending_stiffness", "axial_stiffness", "mass_per_length")
+    given = (length, bending_stiffness, axial_stiffness, mass_per_length)
+    _require_positive(dict(zip(names, given, strict=True)))
+    span, ei, ea, m = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v)) for v in given))
+    z, b = phases(omega, span, ei, ea, m)
+    weight = m * span
+    stretch, stretch_rates = np.array(functions.axial(b)), np.array(functions.axial_rates(b))
+    rigid = np.isinf(ea)
+    square = np.asarray(omega)[..., None] ** 2
+    elastic = np.where(rigid, 1.0, ea) / span * stretch
+    along = np.where(rigid, -square * weight * stretch_rates, elastic)
+    shape = (*z.shape, 6, 6)
+    kind = np.result_type(z, b, along, ei)
+    stiffness, mass = np.zeros(shape, kind), np.zeros(shape, kind)
+    bend, bend_rates = functions.bending(z), functions.bending_rates(z)
+    for row, column, sign, which, power in _BENDING:
+        factor = sign * span**power
+        stiffness[..., row, column] = factor * (ei / span**3) * bend[which]
+        mass[..., row, column] = factor * weight * bend_rates[which]
+    for row, column, which in _AXIAL:
+        stiffness[..., row, column] = along[which]
+        mass[..., row, column] = weight * stretch_rates[which]
+    return _mirrored(stiffness), _mirrored(mass)
+
+
+def member_inertias(
+    omega: float,
+    length: Array,
+    bending_stiffness: Array,
+    axial_stiffness: Array,
+    mass_per_length: Array,
+) -> Array:
+    """Return ``H = (D(0) - D(omega)) / omega^2`` of beams, no difference of large numbers.
+
+    Parameters
+    ----------
+    omega, length, bending_stiffness, axial_stiffness, mass_per_length
+        As :func:`member_matrices` takes them, the frequency a single one.
+
+    Returns
+    -------
+    ndarray, shape (n, 6, 6)
+    """
+    given = (length, bending_stiffness, axial_stiffness, mass_per_length)
+    z, b = phases(omega, *given)
+    weight = mass_per_length * length
+    found = np.zeros((len(z), 6, 6))
+    bend, along = functions.bending_inertias(z), functions.axial_inertias(b)
+    for row, column, sign, which, power in _BENDING:
+        found[:, row, column] = sign * length**power * weight * bend[which]
+    for row, column, which in _AXIAL:
+        found[:, row, column] = weight * along[which]
+    return _mirrored(found)
+
+
+def _mirrored(upper: Array) -> Array:
+    """Fill the lower half of matrices from the upper one."""
+    row, column = _LOWER
+    upper[..., row, column] = upper[..., column, row]
+    return upper
+
+
+def poles_below(z: Array, b: Array) -> tuple[Array, Array]:
+    """Return how many bending and axial frequencies of held beams lie below: shapes of z, b."""
+    return functions.bending_poles(z), functions.axial_poles(b)
+
+
+def _require_positive(values: dict[str, ArrayLike]) -> None:
+    problems = []
+    for name, value in values.items():
+        array = np.asarray(value)
+        usable = array.dtype.kind in "fciu" and array.size
+        if not usable or not bool(np.all(array.real > 0)):
+            fix = "give SI units; a beam of no length joins its nodes"
+            problems.append(Problem(name, repr(value), "positive numbers", fix))
+    if problems:
+        raise BadInput(*problems)

@@ -1,0 +1,248 @@
+"""A linkage's whole closed motion by one regular parameter, through dead centres of the crank too.
+
+The crank angle is no parameter where the crank comes to rest: speeds grow without bound there.
+With ``q = sin^2(psi/2)``, psi the crank angle from the frame line (from the downward normal of the
+guide for a slider-crank), the loop closes where ``(q - q1)(q2 - q)`` is not negative, and the two
+assemblies differ in the sign of its root.  A parameter s that makes the root an analytic function
+of s - a multiple of cos s - runs out on one assembly and back on the other without a break.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi, sqrt
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import bad
+from ._taylor import Array, Complex, Taylor, cosine_sine
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Where the loop can close: ``q1 <= q <= q2``, each with its exact complement to 1."""
+
+    q1: float
+    one_less_q1: float
+    q2: float
+    one_less_q2: float
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A moving link along the circuit: place of its first joint and the unit vector along it."""
+
+    origin: Taylor
+    direction: Taylor
+
+
+@dataclass(frozen=True, eq=False)
+class Circuit:
+    """One closed motion of a linkage, parameter s of period 2 pi.
+
+    Lengths are scaled by a power of two (``scale``), so that their squares are safe.
+
+    Parameters
+    ----------
+    linkage : FourBar, SliderCrank or QuickReturn
+        The linkage.
+    number : int
+        0 or 1.  Where the crank turns fully: 0 the linkage's own assembly, 1 the other one.  Where
+        the crank swings in two separate ranges: 0 the upper one (psi from 0 to pi), 1 the lower
+        one.  Where it swings in one range there is one circuit, through both assemblies.
+    """
+
+    linkage: Any
+    number: int = 0
+
+    @cached_property
+    def kind(self) -> str:
+        """The mechanism: four_bar, slider_crank or quick_return."""
+        names = tuple(self.linkage.names)
+        kinds = {"follower": "four_bar", "rod": "quick_return", "offset": "slider_crank"}
+        return next(kind for name, kind in kinds.items() if name in names)
+
+    @cached_property
+    def scale(self) -> float:
+        """The power of two by which the lengths are divided."""
+        return float(2.0 ** np.frexp(max(abs(v) for v in self.linkage.lengths.values()))[1])
+
+    @cached_property
+    def sizes(self) -> Mapping[str, float]:
+        """The lengths over ``scale``."""
+        return {name: float(v) / self.scale for name, v in self.linkage.lengths.items()}
+
+    @cached_property
+    def limits(self) -> Limits:
+        """Where the loop can close."""
+        size = self.sizes
+        if self.kind == "four_bar":
+            f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
+            near, far, folded, straight = f - c, f + c, m - n, m + n
+            pairs = ((folded, near), (far, folded), (straight, near), (far, straight))
+            low, low_rest, high, high_rest = ((a - b) * (a + b) / (4 * f * c) for a, b in pairs)
+            return Limits(low, low_rest, high, high_rest)
+        c = size["crank"]
+        if self.kind == "slider_crank":
+            m, e = size["coupler"], size["offset"]
+            ends = (c + e - m, c - e + m, c + e + m, c - e - m)
+            return Limits(*(end / (2 * c) for end in ends))
+        return Limits(-1.0, 2.0, 2.0, -1.0)
+
+    @cached_property
+    def swings(self) -> tuple[bool, bool]:
+        """Whether the crank is stopped by the lower limit, and by the upper one."""
+        return self.limits.q1 > 0, self.limits.one_less_q2 > 0
+
+    @property
+    def turns(self) -> bool:
+        """True where the crank turns fully."""
+        return not any(self.swings)
+
+    @property
+    def count(self) -> int:
+        """How many circuits the linkage has: one or two."""
+        if self.kind == "quick_return":
+            return 1
+        return 1 if self.swings[0] != self.swings[1] else 2
+
+    def check(self) -> None:
+        """Raise BadInput for a change point or a circuit that the linkage has not."""
+        limits = self.limits
+        if self.kind == "quick_return":
+            # A block that leaves the rod has no closed motion.
+            self.linkage.require_full_turn()
+        if limits.q1 == 0 or limits.one_less_q2 == 0:
+            raise bad(
+                type(self.linkage).__name__,
+                "a change point: the links come into one line and may leave it two ways",
+                "a linkage whose circuits do not meet",
+                "change a length by a little",
+            )
+        if self.number not in range(self.count):
+            has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
+            raise bad("circuit", self.number, has, "choose another circuit")
+
+    @cached_property
+    def base(self) -> float:
+        """Crank angle at psi = 0 [rad]."""
+        return -pi / 2 if self.kind == "slider_crank" else 0.0
+
+    @property
+    def _branch(self) -> float:
+        own = float(self.linkage.branch)
+        return own if self.number == 0 else -own
+
+    def _drive(self, s: Array, order: int) -> tuple[Taylor, Taylor, Taylor]:
+        """Return cos(psi/2), sin(psi/2) and the signed root of (q - q1)(q2 - q)."""
+        lim = self.limits
+        lower, upper = self.swings
+        if not (lower or upper):
+            half_cos, half_sin = cosine_sine(s, order, 0.5)
+            above = half_sin * half_sin - lim.q1
+            below = half_cos * half_cos - lim.one_less_q2
+            return half_cos, half_sin, self._branch * (above * below).sqrt()
+        cos, sin = cosine_sine(s, order)
+        if lower and upper:
+            # 1 + sin s without cancellation at the lower end, 1 - sin s at the upper one.
+            rise_cos, rise_sin = cosine_sine(s + pi / 2, order, 0.5)
+            width = lim.q2 - lim.q1
+            sine = (lim.q1 + width * (rise_sin * rise_sin)).sqrt()
+            cosine = (lim.one_less_q2 + width * (rise_cos * rise_cos)).sqrt()
+            side = 1.0 if self.number == 0 else -1.0
+            return cosine, side * sine, 0.5 * width * cos
+        if lower:
+            k = sqrt(lim.one_less_q1)
+            cosine = -k * sin
+            sine = (lim.q1 + (k * cos) * (k * cos)).sqrt()
+            return cosine, sine, k * cos * (cosine * cosine - lim.one_less_q2).sqrt()
+        k = sqrt(lim.q2)
+        sine = k * sin
+        cosine = (lim.one_less_q2 + (k * cos) * (k * cos)).sqrt()
+        return cosine, sine, k * cos * (sine * sine - lim.q1).sqrt()
+
+    def crank_angle(self, s: Array) -> Array:
+        """Return the crank angle [rad]; s itself, where the crank turns."""
+        if self.turns:
+            return s + self.base
+        cosine, sine, _ = self._drive(s, 0)
+        return np.asarray(self.base + 2.0 * np.arctan2(sine.c[0].real, cosine.c[0].real))
+
+    def branch(self, s: Array) -> Array:
+        """Return +1 where the assembly is open, -1 where it is crossed."""
+        if self.turns:
+            return np.full(s.shape, self._branch)
+        return np.where(np.cos(s) >= 0, 1.0, -1.0)
+
+    def links(self, s: Array, order: int) -> dict[str, Placed]:
+        """Return the moving links along the circuit; lengths are over ``scale``."""
+        size = self.sizes
+        cosine, sine, root = self._drive(s, order)
+        crank = (cosine + 1j * sine) * (cosine + 1j * sine) * complex(np.exp(1j * self.base))
+        if self.kind == "slider_crank":
+            # exp(-i pi/2) has no exact cosine.
+            crank = (cosine + 1j * sine) * (cosine + 1j * sine) * (-1j)
+        zero = Taylor(np.zeros_like(crank.c))
+        pin = size["crank"] * crank
+        found = {"crank": Placed(zero, crank)}
+        if self.kind == "quick_return":
+            return found | self._rod(cosine, sine, pin)
+        if self.kind == "slider_crank":
+            c, m, e = size["crank"], size["coupler"], size["offset"]
+            raised = e - c * (sine * sine - cosine * cosine)
+            along = 2.0 * c * root
+            level = _real(pin) + along
+            found["coupler"] = Placed(pin, (along + 1j * raised) / m)
+            found["slider"] = Placed(level + 1j * e, zero + 1.0)
+            return found
+        f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
+        near, far = f - c, f + c
+        square = near**2 * (cosine * cosine) + far**2 * (sine * sine)
+        # D - B, each part without cancellation.
+        to_pivot = (near * (cosine * cosine) + far * (sine * sine)) - 1j * _imag(pin)
+        beside = 2.0 * f * c * root
+        middle = 0.5 * (square + (m - n) * (m + n))
+        opposite = 0.5 * (square - (m - n) * (m + n))
+        found["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
+        found["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
+        return found
+
+    def _rod(self, cosine: Taylor, sine: Taylor, pin: Taylor) -> dict[str, Placed]:
+        f, c = self.sizes["frame"], self.sizes["crank"]
+        near, far = f - c, f + c
+        square = far**2 * (cosine * cosine) + near**2 * (sine * sine)
+        from_pivot = (far * (cosine * cosine) + near * (sine * sine)) + 1j * _imag(pin)
+        rod = from_pivot / square.sqrt()
+        return {"block": Placed(pin, rod), "rod": Placed(Taylor(0 * pin.c) - f, rod)}
+
+    def path(self, s: Array, link: str, place: complex, order: int) -> Taylor:
+        """Return the path of a point of a link, ``place`` in the link's frame over ``scale``."""
+        at = self.links(s, order)[link]
+        return at.origin + place * at.direction
+
+    def joints(self, s: Array) -> dict[str, Complex]:
+        """Return the places of the joints A, B, C, D (where there are such) in true lengths."""
+        size, links = self.sizes, self.links(s, 0)
+        places = {"A": 0 * s + 0j, "B": size["crank"] * links["crank"].direction.c[0]}
+        if self.kind == "four_bar":
+            coupler = links["coupler"]
+            places["C"] = (coupler.origin + size["coupler"] * coupler.direction).c[0]
+            places["D"] = 0 * s + 0j + size["frame"]
+        elif self.kind == "slider_crank":
+            places["C"] = links["slider"].origin.c[0]
+        else:
+            rod = links["rod"]
+            places["C"] = (rod.origin + size["rod"] * rod.direction).c[0]
+            places["D"] = 0 * s + 0j - size["frame"]
+        return {name: self.scale * place for name, place in places.items()}
+
+
+def _real(series: Taylor) -> Taylor:
+    return Taylor(series.c.real.astype(complex))
+
+
+def _imag(series: Taylor) -> Taylor:
+    return Taylor(series.c.imag.astype(complex))

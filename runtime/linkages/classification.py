@@ -1,0 +1,443 @@
+"""Which links of a linkage turn fully: Grashof's theorem, Barker's classes, change points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import BadInput, Problem, bad
+from ..core.results import Result, provenance
+from . import FourBar, QuickReturn, SliderCrank
+from .barker import CLASSES, LINKS, Category, class_numbers, exact_sums, number_of_signs, turning
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Input = Literal["crank", "follower"]
+SYMBOLS = ("", *(row.symbol for row in CLASSES))
+
+_CONDITIONS = tuple(
+    f"frame + {beside} = {' + '.join(link for link in LINKS[1:] if link != beside)}"
+    for beside in LINKS[1:]
+)
+_ROUNDED = 2.0**-53
+_NORM = "distances over the sum of lengths, absolute, worst"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Classification(Result):
+    """Class of a four-bar linkage, what turns in it, and how far it is from another class.
+
+    A distance is divided by the sum of the four lengths.  Its magnitude is then the least relative
+    tolerance which, given to every length at once, reaches the surface; its sign says on which
+    side the linkage lies.  ``error`` is the figure of the distances.
+
+    Attributes
+    ----------
+    frame, crank, coupler, follower : float
+        Lengths, as given.
+    input : {"crank", "follower"}
+        The driven link; in Barker's words the other one is the output.
+    number, class_number : int
+        Row of Barker's table, 1 to 14, and his class within the category.
+    category : {"Grashof", "non-Grashof", "change point"}
+        s + l below, above or equal to p + q.
+    name, symbol, also : str
+        Barker's name and symbol, and a common one.
+    characteristic : str
+        The link that marks the class, in the words of Barker's table.
+    turns : mapping of str to bool
+        For crank, coupler and follower: turns fully against the frame.  At a change point: turns
+        when it is led through the positions where all links lie in one line.
+    relative_turns : mapping of str to bool
+        The same for every pair of links, such as ``"crank-coupler"``.
+    inversions : mapping of str to str
+        Symbol of the linkage that has this link as its frame, input being the next link in the
+        order frame, crank, coupler, follower, frame.
+    distance : float
+        (s + l - p - q)/(s + l + p + q): negative for Grashof linkages.
+    change_distances : mapping of str to float
+        Signed distance to each of the three change surfaces, left side less right side.
+    nearest_change : str
+        Condition of the nearest of them.
+    closing_distances : mapping of str to float
+        Signed distance to the zero-mobility planes (Aannaque 3.2), each link less the other three:
+        all negative, and zero where the linkage is stretched and cannot move.
+    tolerance : float
+        Relative tolerance of every length within which a change point counts as reached.
+    """
+
+    frame: float
+    crank: float
+    coupler: float
+    follower: float
+    input: Input
+    number: int
+    class_number: int
+    category: Category
+    name: str
+    symbol: str
+    also: str
+    characteristic: str
+    turns: Mapping[str, bool]
+    relative_turns: Mapping[str, bool]
+    inversions: Mapping[str, str]
+    distance: float
+    change_distances: Mapping[str, float]
+    nearest_change: str
+    closing_distances: Mapping[str, float]
+    tolerance: float
+
+    @property
+    def lengths(self) -> dict[str, float]:
+        """Lengths by name."""
+        return {name: getattr(self, name) for name in LINKS}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the base plane of Barker's solution space with this linkage in it."""
+        from .base_planes import base_plane
+
+        frame, crank, coupler, follower = self.lengths.values()
+        if self.input == "follower":
+            crank, follower = follower, crank
+        ratios = (coupler / crank, follower / crank, frame / crank)
+        return base_plane(sum(ratios) / 3.0**0.5).plot(ax, mark=ratios)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlidingClassification(Result):
+    """Class of a slider-crank or quick-return linkage.
+
+    Distances are divided by the sum of the lengths, as those of :class:`Classification`.
+
+    Attributes
+    ----------
+    mechanism : {"slider-crank", "quick-return"}
+        Which of the two.
+    lengths : mapping of str to float
+        Those that decide, as given; an offset with its sign.
+    category : {"Grashof", "non-Grashof", "change point"}
+        As that of the four-bar linkage of which it is the limit.
+    name : str
+        What it is called.
+    turns : mapping of str to bool
+        For each moving link: turns fully against the frame.
+    distance : float
+        To the nearest change surface.  Slider-crank: shorter link + abs(offset) - longer link,
+        negative for Grashof linkages.  Quick return: crank - frame, negative where the rod
+        oscillates.
+    change_distances : mapping of str to float
+        Signed distance to each change condition, left side less right side.
+    nearest_change : str
+        Condition of the nearest of them.
+    closing_distance : float or None
+        Signed distance to where a slider-crank cannot close; None where there is no such limit.
+    tolerance : float
+        Relative tolerance of every length within which a change point counts as reached.
+    """
+
+    mechanism: Literal["slider-crank", "quick-return"]
+    lengths: Mapping[str, float]
+    category: Category
+    name: str
+    turns: Mapping[str, bool]
+    distance: float
+    change_distances: Mapping[str, float]
+    nearest_change: str
+    closing_distance: float | None
+    tolerance: float
+
+
+@overload
+def classify(
+    linkage: FourBar | Sequence[float], *, input: Input = "crank", tolerance: float = 0.0
+) -> Classification: ...
+
+
+@overload
+def classify(
+    linkage: SliderCrank | QuickReturn, *, input: Input = "crank", tolerance: float = 0.0
+) -> SlidingClassification: ...
+
+
+def classify(
+    linkage: FourBar | SliderCrank | QuickReturn | Sequence[float],
+    *,
+    input: Input = "crank",
+    tolerance: float = 0.0,
+) -> Classification | SlidingClassification:
+    """Return the class of a linkage by Grashof's theorem (Aannaque 3.4, Barker 1985).
+
+    Lengths are taken as doubles, and the class is exact for them: no round-off can change it.
+    With equal lengths nothing is left to choose: where s + l differs from p + q, the shortest link
+    of a Grashof linkage and the longest of another are always alone, and where it does not, two
+    links can only be equally short if the other two are equally long, which is a class of its own.
+    Only a tolerance may leave two links equally short; then the first one of frame, crank, coupler
+    and follower counts.
+
+    Parameters
+    ----------
+    linkage : FourBar, SliderCrank, QuickReturn or sequence of 4 floats
+        The linkage, or lengths of frame, crank, coupler and follower in one unit.
+    input : {"crank", "follower"}
+        The driven link; of a four-bar linkage it decides between crank rocker and rocker crank.
+    tolerance : float
+        Relative tolerance of every length, at least 0 and below 1.  The linkage counts as a change
+        point where some lengths within the tolerance make it one; of several such classes the
+        most degenerate counts: CP3X, then CP2X.
+
+    Raises
+    ------
+    BadInput
+        If a length is not a positive number, the links cannot close or cannot move, or the
+        tolerance or the input has no meaning.
+    """
+    if not (isinstance(tolerance, Real) and 0 <= tolerance < 1):
+        expected = "a relative tolerance of at least 0 and below 1"
+        raise bad("tolerance", repr(tolerance), expected, "0 asks for exact change points")
+    if input not in ("crank", "follower"):
+        raise bad("input", repr(input), "'crank' or 'follower'", "choose one")
+    if isinstance(linkage, (SliderCrank, QuickReturn)):
+        if input != "crank":
+            found, expected = f"the follower of a {type(linkage).__name__}", "'crank'"
+            raise bad("input", found, expected, "leave it out")
+        kind = _slider_crank if isinstance(linkage, SliderCrank) else _quick_return
+        return kind(linkage.lengths, Fraction(tolerance))
+    lengths = linkage.lengths.values() if isinstance(linkage, FourBar) else linkage
+    return _four_bar(_checked(lengths), input, Fraction(tolerance))
+
+
+def classify_many(lengths: ArrayLike) -> NDArray[np.int64]:
+    """Return the rows of Barker's table for many four-bar linkages at once, exactly.
+
+    Parameters
+    ----------
+    lengths : array_like, shape (..., 4)
+        Lengths of frame, crank (the input), coupler and follower.
+
+    Returns
+    -------
+    ndarray of int, shape (...)
+        1 to 14, and 0 where the four cannot close or cannot move; ``SYMBOLS[...]`` names them.
+
+    Raises
+    ------
+    BadInput
+        If a length is not a positive finite number, or the last axis does not hold four.
+    """
+    try:
+        array = np.asarray(lengths, dtype=float)
+    except (TypeError, ValueError) as refusal:
+        raise bad("lengths", repr(lengths)[:60], "an array of lengths", "correct it") from refusal
+    if array.ndim == 0 or array.shape[-1] != 4:
+        raise bad("lengths", f"shape {array.shape}", "shape (..., 4)", "put the four links last")
+    if not np.all((array > 0) & (array < np.inf)):
+        raise bad("lengths", "a value that is none", "positive finite lengths", "correct it")
+    return class_numbers(array)
+
+
+def _checked(lengths: Iterable[float]) -> tuple[float, float, float, float]:
+    """Return four positive doubles that close, or raise BadInput."""
+    try:
+        found = [*lengths]
+    except TypeError as refusal:
+        wanted = "a linkage, or lengths of frame, crank, coupler, follower"
+        raise bad("lengths", repr(lengths)[:60], wanted, "give four lengths") from refusal
+    if len(found) != 4:
+        wanted = "4 lengths: frame, crank, coupler, follower"
+        raise bad("lengths", f"{len(found)} of them", wanted, "give four lengths")
+    values = [_double(value) for value in found]
+    problems = [
+        Problem(name, repr(was)[:60], "a positive finite length", "correct it")
+        for name, was, value in zip(LINKS, found, values, strict=True)
+        if not 0 < value < np.inf
+    ]
+    if problems:
+        raise BadInput(*problems)
+    excess = 2 * max(map(Fraction, values)) - sum(map(Fraction, values))
+    if excess >= 0:
+        longest = values.index(max(values))
+        rest = ", ".join(f"{value:g}" for i, value in enumerate(values) if i != longest)
+        why = "the linkage cannot close" if excess else "the linkage is stretched and cannot move"
+        raise bad(
+            LINKS[longest],
+            f"{values[longest]:g}",
+            f"less than the sum of {rest}",
+            f"{why}; shorten this link or lengthen another",
+        )
+    return values[0], values[1], values[2], values[3]
+
+
+def _double(value: object) -> float:
+    """Return a real number as a double, NaN where it is none."""
+    try:
+        return float(value) if isinstance(value, Real) else np.nan
+    except (OverflowError, ValueError):
+        return np.nan
+
+
+def _four_bar(
+    lengths: tuple[float, float, float, float], driven: Input, tolerance: Fraction
+) -> Classification:
+    exact = [Fraction(value) for value in lengths]
+    perimeter = sum(exact)
+    sums = exact_sums(exact)
+    signs, least = _signs(exact, sums, tolerance)
+    pairs = turning(signs)
+    # Input, coupler and output in this order: the other way round where the follower is driven.
+    seen = signs if driven == "crank" else signs[::-1]
+    order = LINKS if driven == "crank" else (LINKS[0], *LINKS[:0:-1])
+    row = CLASSES[number_of_signs(seen) - 1]
+    return Classification(
+        frame=lengths[0],
+        crank=lengths[1],
+        coupler=lengths[2],
+        follower=lengths[3],
+        input=driven,
+        number=row.number,
+        class_number=row.class_number,
+        category=row.category,
+        name=row.name,
+        symbol=row.symbol,
+        also=_pairs_called(signs) if row.symbol == "CP2X" else row.also,
+        characteristic=row.characteristic,
+        turns={link: pairs["frame", link] for link in LINKS[1:]},
+        relative_turns={"-".join(pair): turns for pair, turns in sorted(pairs.items())},
+        inversions=dict(zip(order, _inversions(seen), strict=True)),
+        distance=float(_grashof_excess(exact) / perimeter),
+        change_distances={
+            name: float(value / perimeter) for name, value in zip(_CONDITIONS, sums, strict=True)
+        },
+        nearest_change=_CONDITIONS[least],
+        closing_distances={
+            link: float((2 * value - perimeter) / perimeter)
+            for link, value in zip(LINKS, exact, strict=True)
+        },
+        tolerance=float(tolerance),
+        method="signs of three sums of links, in exact arithmetic",
+        error=_ROUNDED,
+        error_norm=_NORM,
+        error_kind="bound",
+        provenance=provenance({f"links.{k}": repr(v) for k, v in zip(LINKS, lengths, strict=True)}),
+    )
+
+
+def _grashof_excess(exact: Sequence[Fraction]) -> Fraction:
+    """Return s + l - p - q."""
+    s, p, q, longest = sorted(exact)
+    return s + longest - p - q
+
+
+def _signs(
+    exact: Sequence[Fraction], sums: Sequence[Fraction], tolerance: Fraction
+) -> tuple[list[int], int]:
+    """Return the signs of the three sums, zero where the tolerance lets them be, and the least.
+
+    The least in magnitude is the one with the shortest and the longest link on one side.
+    """
+    shortest, longest = exact.index(min(exact)), exact.index(max(exact))
+    beside = shortest + longest if 0 in (shortest, longest) else 6 - shortest - longest
+    least = beside - 1 if shortest != longest else 0
+    signs = [(value > 0) - (value < 0) for value in sums]
+    one, two, three, four = sorted(exact)
+    if four - one <= tolerance * (four + one):
+        return [0, 0, 0], least
+    if two - one <= tolerance * (two + one) and four - three <= tolerance * (four + three):
+        # Two pairs: only the sum that has a whole pair on one side keeps its sign.
+        largest = max(range(3), key=lambda i: abs(sums[i]))
+        return [sign if i == largest else 0 for i, sign in enumerate(signs)], least
+    if abs(sums[least]) <= tolerance * sum(exact):
+        signs[least] = 0
+    return signs, least
+
+
+def _pairs_called(signs: Sequence[int]) -> str:
+    """Return the common name of a linkage of two pairs of equal links."""
+    return "parallelogram linkage" if signs[1] else "kite linkage"
+
+
+def _inversions(signs: Sequence[int]) -> tuple[str, str, str, str]:
+    """Return the symbols of the four inversions, the frame going round in the order of the links.
+
+    The sums of an inversion are those of the linkage in another order, some with their sign turned.
+    """
+    two, three, four = signs
+    turned = (signs, (-four, -three, two), (-two, three, -four), (four, -three, -two))
+    one, other, third, last = (SYMBOLS[number_of_signs(each)] for each in turned)
+    return one, other, third, last
+
+
+def _slider_crank(sizes: Mapping[str, float], tolerance: Fraction) -> SlidingClassification:
+    """Classify as a four-bar linkage whose frame and follower are endless, and differ by offset."""
+    crank, coupler, offset = (Fraction(float(sizes[k])) for k in ("crank", "coupler", "offset"))
+    offset = abs(offset)
+    total = crank + coupler + offset
+    sums = {
+        "crank + offset = coupler": crank + offset - coupler,
+        "coupler + offset = crank": coupler + offset - crank,
+    }
+    nearest = min(sums, key=lambda name: sums[name])
+    reached = abs(sums[nearest]) <= tolerance * total
+    turns = {
+        link: excess <= 0 or (reached and excess <= tolerance * total)
+        for link, excess in zip(("crank", "coupler"), sums.values(), strict=True)
+    }
+    who = " and ".join(link for link, full in turns.items() if full)
+    kind = "offset" if offset else "in-line"
+    return SlidingClassification(
+        mechanism="slider-crank",
+        lengths={name: float(size) for name, size in sizes.items()},
+        category=_category(sums[nearest], reached),
+        name=f"{kind} slider-crank, " + (f"{who} turning" if who else "no link turning"),
+        turns={**turns, "slider": False},
+        distance=float(sums[nearest] / total),
+        change_distances={name: float(value / total) for name, value in sums.items()},
+        nearest_change=nearest,
+        closing_distance=float((offset - crank - coupler) / total),
+        tolerance=float(tolerance),
+        **_SLIDING,
+        provenance=provenance({f"links.{name}": repr(size) for name, size in sizes.items()}),
+    )
+
+
+def _quick_return(sizes: Mapping[str, float], tolerance: Fraction) -> SlidingClassification:
+    """Classify by Beale and Scott's eps = crank/frame: the rod turns where it is above 1."""
+    frame, crank = (Fraction(float(sizes[k])) for k in ("frame", "crank"))
+    excess, total = crank - frame, crank + frame
+    reached = abs(excess) <= tolerance * total
+    turns = reached or excess > 0
+    name = "Whitworth quick return, rod turning" if turns else "quick return, rod oscillating"
+    return SlidingClassification(
+        mechanism="quick-return",
+        lengths={name: float(size) for name, size in sizes.items()},
+        category="change point" if reached else "Grashof",
+        name="quick return at its change point" if reached else name,
+        turns={"crank": True, "block": turns, "rod": turns},
+        distance=float(excess / total),
+        change_distances={"crank = frame": float(excess / total)},
+        nearest_change="crank = frame",
+        closing_distance=None,
+        tolerance=float(tolerance),
+        **_SLIDING,
+        provenance=provenance({f"links.{name}": repr(size) for name, size in sizes.items()}),
+    )
+
+
+def _category(excess: Fraction, reached: bool) -> Category:
+    if reached:
+        return "change point"
+    return "Grashof" if excess < 0 else "non-Grashof"
+
+
+_SLIDING: dict[str, Any] = {
+    "method": "signs of sums of lengths, in exact arithmetic",
+    "error": _ROUNDED,
+    "error_norm": _NORM,
+    "error_kind": "bound",
+}

@@ -1,0 +1,410 @@
+"""Clearance at the joints: the exact range over which it lets the output of a linkage move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import BadInput, Problem, bad
+from ..core.results import BROADCAST, DeferredChecks, Result, provenance
+from . import FourBar, QuickReturn, SliderCrank, _joint_play
+from ._joint_play import Play, Route
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+_EPS = float(np.finfo(float).eps)
+_JOINTS = ("12", "23", "34", "41")
+_OUTPUTS: Mapping[type, tuple[str, ...]] = {
+    FourBar: ("follower", "coupler"),
+    SliderCrank: ("slider", "coupler"),
+    QuickReturn: ("rod",),
+}
+# The joint that slides, and does not turn: its clearance is across its guide.
+_SLIDING: Mapping[type, str] = {SliderCrank: "41", QuickReturn: "34"}
+
+
+@dataclass(frozen=True)
+class WidthExtreme:
+    """An extreme of the output's free movement over all that the crank can reach.
+
+    Attributes
+    ----------
+    theta2 : float
+        Crank angle [rad].  For the four-bar and the quick-return from 0 to pi, and the same at the
+        opposite angle; for the slider-crank from -pi/2 to pi/2, and the same at pi less it.
+    width : float
+        Movement there [rad, or m for a slider].
+    """
+
+    theta2: float
+    width: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClearanceRange(Result):
+    """Range of the output that clearances leave at given crank angles.
+
+    Arrays have the shape of the crank angles; places are angles [rad], or for a slider lengths in
+    the unit of the linkage's.  ``error`` is the figure of ``below``, ``above`` and ``width``, which
+    stay accurate to their own size however small the clearance; ``nominal``, and with it ``lower``
+    and ``upper``, carry ``nominal_error`` as well.
+
+    Attributes
+    ----------
+    linkage : FourBar, SliderCrank or QuickReturn
+        What moves.
+    link : str
+        The link whose place is ranged: follower, slider, rod, or coupler.
+    clearances : mapping of str to float
+        Diametral clearance by joint, or the clearance across the guide of a joint that slides.
+    theta2 : ndarray
+        Crank angles [rad].
+    nominal : ndarray
+        Place without clearance.
+    lower, upper : ndarray
+        Least and greatest place.
+    below, above : ndarray
+        ``nominal - lower`` and ``upper - nominal``, without cancellation.
+    width : ndarray
+        The whole movement, ``below + above``.
+    small : ndarray
+        The same to the first order (Smith 3.3); infinite where the linkage folds.
+    folds : ndarray of bool
+        True where the clearance lets the linkage pass its dead position: the range runs on through
+        the other assembly to the end of that.
+    free : ndarray of bool
+        True where it passes both ways: an angle is not limited at all, and its width 2 pi.
+    nominal_error : ndarray
+        Figure of ``nominal``.
+    greatest, least : WidthExtreme
+        Extremes of the width over the crank's whole range, its ends included.
+    """
+
+    linkage: FourBar | SliderCrank | QuickReturn
+    link: str
+    clearances: Mapping[str, float]
+    theta2: Array
+    nominal: Array
+    lower: Array
+    upper: Array
+    below: Array
+    above: Array
+    width: Array
+    small: Array
+    folds: NDArray[np.bool_]
+    free: NDArray[np.bool_]
+    nominal_error: Array
+    greatest: WidthExtreme
+    least: WidthExtreme
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        (
+            *("theta2", "nominal", "lower", "upper", "below", "above", "width", "small"),
+            *("folds", "free", "nominal_error", "error"),
+        ),
+        BROADCAST,
+    )
+
+    @property
+    def worst(self) -> WidthExtreme:
+        """The greatest movement over the crank's range."""
+        return self.greatest
+
+    @property
+    def unit(self) -> str:
+        """Unit of the places: rad, or m for a slider."""
+        return "m" if self.link == "slider" else "rad"
+
+    def plot(self, ax: Axes | None = None, *, label: str | None = None) -> Axes:
+        """Draw the width against the crank angle, as in Smith's Fig. 10.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Those of another clearance, for several curves.
+        label : str, optional
+            By default the clearances.
+        """
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        if label is None:
+            label = ", ".join(f"c{joint} = {c:.4g}" for joint, c in self.clearances.items())
+        to_shown = np.degrees if self.unit == "rad" else np.asarray
+        order = np.argsort(self.theta2, axis=None, kind="stable")
+        degrees = np.degrees(np.ravel(self.theta2)[order])
+        width, small = (np.ravel(part)[order] for part in (self.width, self.small))
+        small = np.where(small < 2.0 * np.max(width, initial=0.0), small, np.nan)
+        # The curve breaks where the crank cannot go, and jumps where a fold begins.
+        breaks = np.flatnonzero(np.diff(self._pieces()[order])) + 1
+        color = None
+        for part in np.split(np.arange(order.size), breaks):
+            curve = degrees[part], to_shown(width[part])
+            dot = "." if part.size == 1 else ""
+            (line,) = ax.plot(*curve, dot or "-", color=color, label=None if color else label)
+            color = line.get_color()
+            ax.plot(degrees[part], to_shown(small[part]), ls=":", lw=1.0, color=color)
+        at = np.degrees(self.greatest.theta2)
+        if order.size and degrees[0] <= at <= degrees[-1]:
+            ax.plot(at, to_shown(self.greatest.width), "o", ms=4.0, color=color)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel(f"free movement of the {self.link} [{'m' if self.unit == 'm' else 'deg'}]")
+        ax.set_title("exact; dotted: small clearance; dot: greatest", fontsize="medium")
+        ax.legend()
+        return ax
+
+    def _pieces(self) -> NDArray[np.int64]:
+        """Return a number for each crank angle, the same for those that one curve joins."""
+        theta = np.ravel(self.theta2)
+        pieces = np.ravel(self.folds).astype(np.int64)
+        if not self.linkage.crank_turns:
+            for k, (low, high) in enumerate(self.linkage.crank_ranges()):
+                turns = np.round((theta - (low + high) / 2.0) / math.tau)
+                inside = np.abs(theta - math.tau * turns - (low + high) / 2.0)
+                here = inside <= (high - low) / 2.0 + 1e-6
+                pieces += np.where(here, 2 * (k + 1) + 6 * turns.astype(np.int64), 0)
+        return pieces
+
+
+def clearance_range(
+    linkage: FourBar | SliderCrank | QuickReturn,
+    clearances: float | Mapping[str, float],
+    theta: ArrayLike | None = None,
+    *,
+    joint: str | None = None,
+    link: str | None = None,
+) -> ClearanceRange:
+    """Return the exact range of the output that clearances leave (Smith 3.1, 3.2).
+
+    A pin is free within a disc of half the diametral clearance about the centre of its hole; crank
+    angles are those of the crank itself.  The vectors of all pins add up to one disc, whose radius
+    r is half the sum of the clearances: at whichever joint they are, they act as a coupler between
+    ``coupler - r`` and ``coupler + r``.  The joint that slides (41 of the slider-crank, 34 of the
+    quick-return) has its clearance across the guide, and does not tilt.
+
+    Parameters
+    ----------
+    linkage : FourBar, SliderCrank or QuickReturn
+        The linkage.
+    clearances : float or mapping of str to float
+        Diametral clearance, in the unit of the lengths, of one joint or by joint: "12" (crank's
+        pivot), "23", "34", "41" (output's pivot).
+    theta : array_like, optional
+        Crank angles [rad], any shape; a dead position is allowed.  By default 361 over a turn, or
+        181 over each range that the crank reaches, its ends included.
+    joint : str, optional
+        The joint that one clearance is at; "34" by default.
+    link : str, optional
+        The link to be ranged: "follower", "slider" or "rod" by default, or "coupler".
+
+    Returns
+    -------
+    ClearanceRange
+        Checks: the loop closes at both ends of the range with all clearances taken up; a small
+        part of these clearances moves the output as the first order says.
+
+    Raises
+    ------
+    BadInput
+        If a clearance is negative, not finite or longer than the longest link, a joint or link
+        is not among those named, or the linkage cannot reach a crank angle.
+
+    Notes
+    -----
+    Half-angles of the triangle BCD, and differences of its angles from those of their squared
+    sines: for a vanishing clearance full relative accuracy remains.  The angle of the coupler does
+    not depend on the joint either; its points do.
+
+    Examples
+    --------
+    >>> from elastolink import FourBar
+    >>> found = clearance_range(FourBar(10, 8, 10, 10), 0.1, 0.0)
+    >>> round(float(found.width), 4), round(float(found.small), 4)
+    (0.0503, 0.0503)
+    """
+    task = Task.of(linkage, clearances, theta, joint, link)
+    play = task.play()
+    place = partial(_lengthened, exponent=task.exponent if task.link == "slider" else 0)
+    nominal, below, above = (place(part) for part in (play.nominal, play.below, play.above))
+    least, greatest = _extremes(task)
+    told = {f"clearances.{name}": repr(c) for name, c in task.clearances.items()}
+    unit = "m" if task.link == "slider" else "rad"
+    return ClearanceRange(
+        linkage=linkage,
+        link=task.link,
+        clearances=task.clearances,
+        theta2=task.theta,
+        nominal=nominal,
+        lower=nominal - below,
+        upper=nominal + above,
+        below=below,
+        above=above,
+        width=below + above,
+        small=place(play.small),
+        folds=play.folds,
+        free=play.free,
+        nominal_error=place(play.nominal_error),
+        greatest=greatest,
+        least=least,
+        method="differences of half-angles, from those of their squared sines",
+        error=place(2.0 * play.error),
+        error_norm=f"below, above and width [{unit}], absolute, entrywise",
+        checks=DeferredChecks(partial(_checks, task, play)),
+        provenance=provenance({**linkage._told(), **told}),
+    )
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked for, checked; radius, guide and sizes below 1 by a power of two."""
+
+    linkage: FourBar | SliderCrank | QuickReturn
+    link: str
+    clearances: Mapping[str, float]
+    theta: Array
+    radius: float
+    guide: float
+    exponent: int
+
+    @classmethod
+    def of(
+        cls,
+        linkage: FourBar | SliderCrank | QuickReturn,
+        clearances: float | Mapping[str, float],
+        theta: ArrayLike | None,
+        joint: str | None,
+        link: str | None,
+    ) -> Task:
+        """Return it, or raise BadInput."""
+        kind = next((kind for kind in _OUTPUTS if isinstance(linkage, kind)), None)
+        if kind is None:
+            expected = "FourBar, SliderCrank or QuickReturn"
+            raise bad("linkage", repr(linkage)[:60], expected, "give one of them")
+        outputs = _OUTPUTS[kind]
+        link = outputs[0] if link is None else link
+        if link not in outputs:
+            raise bad("link", repr(link)[:60], f"one of {', '.join(outputs)}", "choose one")
+        plays = _checked(linkage, clearances, joint)
+        exponent = -linkage._scale
+        halves = {name: math.ldexp(c / 2.0, -exponent) for name, c in plays.items()}
+        guide = halves.pop(_SLIDING.get(kind, ""), 0.0)
+        angles = _angles(linkage, theta)
+        return cls(linkage, link, plays, angles, math.fsum(halves.values()), guide, exponent)
+
+    @property
+    def route(self) -> Route:
+        """The way to the play of this output."""
+        linkage, sizes = self.linkage, self.linkage._unit_lengths
+        if isinstance(linkage, FourBar):
+            return _joint_play.four_bar(sizes, linkage.branch, self.link)
+        if isinstance(linkage, SliderCrank):
+            return _joint_play.slider_crank(sizes, linkage.branch, self.link)
+
+        def nominal(theta: ArrayLike) -> tuple[Array, Array]:
+            motion = linkage.motion(theta)
+            return motion.theta4, motion.error
+
+        return _joint_play.quick_return(sizes, nominal)
+
+    def play(self) -> Play:
+        """Return the play at the crank angles, or raise BadInput where the linkage cannot be."""
+        found = self.route.at(self.theta, self.radius, self.guide)
+        reached = found.margin >= -found.blur
+        if isinstance(self.linkage, FourBar):
+            # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
+            reached &= found.place > found.blur
+        self.linkage._require(reached, self.theta, self.linkage._reachable())
+        return found
+
+
+def _lengthened(value: Array, exponent: int) -> Array:
+    return np.asarray(np.ldexp(value, exponent))
+
+
+def _angles(linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike | None) -> Array:
+    if theta is None:
+        if linkage.crank_turns:
+            return np.linspace(0.0, math.tau, 361)
+        return np.concatenate([np.linspace(*ends, 181) for ends in linkage.crank_ranges()])
+    try:
+        angles = np.array(theta, dtype=float)
+    except (TypeError, ValueError) as refusal:
+        found = repr(theta)[:60]
+        raise bad("theta", found, "an array of angles [rad]", "correct it") from refusal
+    if not np.all(np.isfinite(angles)):
+        raise bad("theta", "a value that is not finite", "finite angles [rad]", "remove it")
+    return angles
+
+
+def _checked(
+    linkage: FourBar | SliderCrank | QuickReturn,
+    clearances: float | Mapping[str, float],
+    joint: str | None,
+) -> dict[str, float]:
+    """Return the clearances by joint, or raise BadInput."""
+    if isinstance(clearances, Mapping):
+        if joint is not None:
+            raise bad("joint", repr(joint)[:60], "none beside clearances by joint", "leave it out")
+        given = dict(clearances)
+    else:
+        given = {"34" if joint is None else joint: clearances}
+    longest = max(abs(size) for size in linkage.lengths.values())
+    problems = []
+    for name, value in given.items():
+        where = f"clearances[{name!r}]"
+        if name not in _JOINTS:
+            fix = "name the joint by its two links"
+            problems.append(Problem(where, repr(name)[:60], f"one of {', '.join(_JOINTS)}", fix))
+        usable = isinstance(value, Real) and not isinstance(value, bool)
+        if not (usable and 0.0 <= float(value) <= longest):
+            expected = f"a clearance from 0 to the longest length, {longest:g}"
+            problems.append(Problem(where, repr(value)[:60], expected, "correct it"))
+    if problems:
+        raise BadInput(*problems)
+    return {name: float(given[name]) for name in _JOINTS if name in given}
+
+
+def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
+    """Return least and greatest width over the crank's range.
+
+    The width depends on one variable, the diagonal, the gap or the slide, and can be extreme where
+    its derivative vanishes, where the play begins to fold, and at the ends.
+    """
+    route = task.route
+    low, high = route.interval
+    if isinstance(task.linkage, FourBar):
+        # A diagonal of no length has no angle.
+        low = max(low, 64.0 * _EPS * high)
+    places = [low, high]
+    for place in route.candidates(task.radius, task.guide):
+        # The width jumps where a fold begins, so that both sides of the place count.
+        nudge = 16.0 * _EPS * max(abs(low), abs(high))
+        places += [place - nudge, place, place + nudge]
+    inside = np.unique([place for place in places if low <= place <= high])
+    play = route.measure(inside, task.radius, task.guide)
+    width = play.below + play.above
+    found = []
+    for i in (int(np.argmin(width)), int(np.argmax(width))):
+        size = float(width[i])
+        if task.link == "slider":
+            size = math.ldexp(size, task.exponent)
+        found.append(WidthExtreme(route.crank(float(inside[i])), size))
+    return found[0], found[1]
+
+
+def _checks(task: Task, play: Play) -> Mapping[str, Any]:
+    from ._play_checks import checks
+
+    return checks(task, play)
+
+
+__all__ = ["ClearanceRange", "WidthExtreme", "clearance_range"]

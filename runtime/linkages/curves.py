@@ -1,0 +1,459 @@
+"""Coupler curves: the path of a point of a moving link, with cusps, double points and length."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from math import pi
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..core.errors import BadInput, bad
+from ..core.inputs import require_whole
+from ..core.results import Check, DeferredChecks, Result, provenance
+from ._arc_length import integrate_turn
+from ._circuits import Circuit
+from ._singular_points import Doubles, Slow, double_points, slowest
+from ._taylor import Array, Taylor
+from .coupler_sextic import sextic_residual
+from .linkage import Linkage, planar
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_EPS = float(np.finfo(float).eps)
+_MOST_POINTS = 10**6
+
+
+@dataclass(frozen=True, kw_only=True)
+class CouplerCurve(Result):
+    """Path of a point of a moving link over one whole circuit of the linkage.
+
+    ``error``, shape (n,), is the distance of each position [m] from the exact one at the same
+    ``parameter``.
+
+    Attributes
+    ----------
+    linkage : Linkage
+        What moves.
+    circuit : int
+        Which of its closed motions (see :func:`coupler_curve`).
+    link : str
+        The moving link.
+    along, across : float
+        Place of the point in the link's own axes [m].
+    parameter : ndarray, shape (n,)
+        Regular parameter of the circuit, period 2 pi: the crank angle itself where the crank turns
+        (for a slider-crank from the downward normal of the guide), else an angle in which the
+        motion runs out on the open assembly (cosine positive) and back on the crossed one.
+    theta2 : ndarray, shape (n,)
+        Crank angle [rad].
+    branch : ndarray, shape (n,)
+        +1 open, -1 crossed.
+    position, velocity, acceleration : ndarray, shape (n, 2)
+        Place [m] and its derivatives by the crank angle [m/rad, m/rad^2]; these grow without bound
+        towards a dead centre of the crank, on which no sample lies.
+    curvature : ndarray, shape (n,)
+        Curvature [1/m], positive to the left of increasing parameter; infinite on a cusp.
+    centre : ndarray, shape (n, 2)
+        Centre of curvature [m]; on a cusp the cusp itself, infinite where the path is straight.
+    length, area : float
+        Length run in one circuit [m], and area enclosed [m^2], positive when run anticlockwise.
+    length_error, area_error : float
+        Their error figures.
+    slowest : float
+        Least speed over the largest, both by the parameter: how near the path is to a cusp.
+    cusp_parameter, cusp_theta2, cusp_branch : ndarray, shape (k,)
+        Where the point stops; also the ends of an arc that is run out and back.
+    cusp_position : ndarray, shape (k, 2)
+        The cusps [m].
+    double_parameter, double_theta2, double_branch : ndarray, shape (m, 2)
+        The two passages through each double point.
+    double_position : ndarray, shape (m, 2)
+        The double points [m].
+    crossing_angle : ndarray, shape (m,)
+        Angle between the two branches [rad], 0 to pi/2; near a tacnode two double points lie close
+        together and both angles are small.
+    """
+
+    linkage: Linkage
+    circuit: int
+    link: str
+    along: float
+    across: float
+    parameter: Array
+    theta2: Array
+    branch: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    curvature: Array
+    centre: Array
+    length: float
+    length_error: float
+    area: float
+    area_error: float
+    slowest: float
+    cusp_parameter: Array
+    cusp_theta2: Array
+    cusp_branch: Array
+    cusp_position: Array
+    double_parameter: Array
+    double_theta2: Array
+    double_branch: Array
+    double_position: Array
+    crossing_angle: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("parameter", "theta2", "branch", "curvature", "error"), ("point",)),
+        **dict.fromkeys(("position", "velocity", "acceleration", "centre"), ("point", "axis")),
+        **dict.fromkeys(("cusp_parameter", "cusp_theta2", "cusp_branch"), ("cusp",)),
+        "cusp_position": ("cusp", "axis"),
+        **dict.fromkeys(
+            ("double_parameter", "double_theta2", "double_branch"), ("double_point", "passage")
+        ),
+        "double_position": ("double_point", "axis"),
+        "crossing_angle": ("double_point",),
+    }
+
+    @property
+    def tacnodes(self) -> tuple[tuple[int, int], ...]:
+        """Pairs of double points so close that the branches all but touch there.
+
+        Closer than a hundredth of the path's extent, both crossing at less than 0.1 rad.
+        """
+        extent = float(np.max(np.ptp(self.position, axis=0)))
+        flat = np.flatnonzero(self.crossing_angle < 0.1)
+        return tuple(
+            (int(i), int(j))
+            for place, i in enumerate(flat)
+            for j in flat[place + 1 :]
+            if np.linalg.norm(self.double_position[i] - self.double_position[j]) < 0.01 * extent
+        )
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw path and linkage at some positions, cusps and double points marked."""
+        from ..core.plotting import axes_or_new
+        from ._drawing import draw_curve
+
+        ax = axes_or_new(ax)
+        draw_curve(ax, self)
+        return ax
+
+
+def coupler_curve(
+    linkage: Linkage,
+    along: float,
+    across: float = 0.0,
+    *,
+    link: str = "coupler",
+    points: int = 720,
+    circuit: int = 0,
+) -> CouplerCurve:
+    """Return the path of a point of a moving link over the linkage's whole motion.
+
+    Parameters
+    ----------
+    linkage : FourBar, SliderCrank or QuickReturn
+        The linkage.
+    along, across : float
+        Place of the point in the link's own axes [m]: origin at the link's first joint, x along
+        the link.
+    link : str
+        One of ``linkage.links``.
+    points : int
+        Positions along the path, 16 to 1000000; everything else is found apart from them.
+    circuit : int
+        Which closed motion.  A crank that turns: 0 the linkage's own assembly, 1 the other one.  A
+        crank that swings in one range has circuit 0 alone, out on the open assembly and back on
+        the crossed one.  A crank with two ranges: 0 the upper one (for a slider-crank the right
+        one), 1 the other, each through both assemblies.
+
+    Returns
+    -------
+    CouplerCurve
+        Checks: for a coupler point of a four-bar, its places satisfy the implicit equation of
+        sixth degree, and there are at most three double points; for a crank that turns, places
+        and velocities agree with :meth:`Linkage.motion`.
+
+    Raises
+    ------
+    BadInput
+        If this is no linkage, the link, the circuit or a number is impossible, the linkage is at a
+        change point (its circuits meet there), or the point stands still.
+
+    Notes
+    -----
+    Aannaque 3.6.  A path run out and back (a point of the slider, or of a link that swings about a
+    pivot) has its ends among the cusps, and no double points are listed: it consists of them.
+    """
+    require_linkage(linkage)
+    motion = Circuit(linkage, circuit)
+    place = _place(linkage, link, along, across)
+    require_whole("points", points, 16, _MOST_POINTS)
+    motion.check()
+    trace = _Trace(motion, link, place / motion.scale)
+    trace.require_motion()
+    slow = slowest(trace.series, trace.sharp)
+    doubles = trace.doubles(slow)
+    s = _parameters(motion, int(points))
+    at = trace.series(s, 2)
+    figure = trace.figure(s)
+    return CouplerCurve(
+        linkage=linkage,
+        circuit=circuit,
+        link=link,
+        along=float(along),
+        across=float(across),
+        parameter=s,
+        theta2=motion.crank_angle(s),
+        branch=motion.branch(s),
+        **trace.local(s, at),
+        **trace.sizes(slow.parameter),
+        slowest=float(np.min(slow.speed / slow.fastest, initial=1.0)),
+        **trace.marked(slow.stops, doubles),
+        method="Taylor series of the closed form; cusps and double points by Newton",
+        error=figure,
+        error_norm="distance of each position [m] from that at the same parameter",
+        checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
+        provenance=provenance(linkage._told()),
+    )
+
+
+def require_linkage(linkage: object) -> None:
+    """Raise BadInput for what is no linkage."""
+    if not isinstance(linkage, Linkage):
+        found = type(linkage).__name__
+        raise bad("linkage", found, "FourBar, SliderCrank or QuickReturn", "give one")
+
+
+def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:
+    """Return the place in the link as a complex number [m], or raise BadInput."""
+    if link not in linkage.links:
+        raise bad("link", repr(link), f"one of {', '.join(linkage.links)}", "choose a moving link")
+    try:
+        place = complex(float(along), float(across))
+    except (TypeError, ValueError) as refusal:
+        found = f"{along!r}, {across!r}"[:60]
+        raise bad("along, across", found, "two lengths", "correct it") from refusal
+    if not np.isfinite(place) or abs(place) > 1e6 * max(map(abs, linkage.lengths.values())):
+        found = f"{place.real:g}, {place.imag:g}"
+        raise bad("along, across", found, "lengths up to 1e6 of the linkage's", "correct it")
+    return place
+
+
+def _parameters(motion: Circuit, points: int) -> Array:
+    """Return samples around the circuit, none of them on a dead centre of the crank."""
+    steps = 2.0 * pi / points
+    if motion.turns:
+        return np.asarray(np.arange(points) * steps)
+    # Dead centres lie at +-pi/2; a quarter of a step off, none is met for any number of points.
+    return np.asarray((np.arange(points) + 0.375) * steps)
+
+
+@dataclass(frozen=True, eq=False)
+class _Trace:
+    """The path of one point: a circuit, a link, and the place in it over the circuit's scale."""
+
+    motion: Circuit
+    link: str
+    place: complex
+
+    def series(self, s: Array, order: int) -> Taylor:
+        return self.motion.path(s, self.link, self.place, order)
+
+    @property
+    def sharp(self) -> Array:
+        """Parameters about which the motion may change quickly: near a change point."""
+        quarters = np.array([0.0, pi])
+        return quarters if self.motion.turns else quarters + pi / 2
+
+    @property
+    def size(self) -> float:
+        return float(sum(map(abs, self.motion.sizes.values())) + abs(self.place))
+
+    def require_motion(self) -> None:
+        s = np.linspace(0.1, 6.2, 64)
+        moved = np.max(np.abs(self.series(s, 1).derivative(1)))
+        if moved <= 8 * _EPS * self.size:
+            raise bad(
+                "along, across", "the pivot of the link", "a point that moves", "choose another"
+            )
+
+    @property
+    def runs_back(self) -> bool:
+        """True where the path is a line or an arc, or a circle: nothing crosses on it."""
+        s = np.linspace(0.0, 2.0 * pi, 257)
+        pivoted = {"crank", "follower", "rod", "slider"}
+        if self.link in pivoted:
+            return True
+        at = self.motion.links(s, 0)
+        z = at[self.link].origin.c[0] + self.place * at[self.link].direction.c[0]
+        ends = [self.motion.sizes["crank"] * at["crank"].direction.c[0]]
+        if self.motion.kind != "quick_return":
+            joint = at[self.link]
+            ends.append(joint.origin.c[0] + self.motion.sizes["coupler"] * joint.direction.c[0])
+        return any(np.max(np.abs(z - end)) <= 64 * _EPS * self.size for end in ends)
+
+    def doubles(self, slow: Slow) -> Doubles:
+        if self.runs_back:
+            return Doubles(np.zeros((0, 2)), np.zeros(0, dtype=complex), np.zeros(0))
+        return double_points(self.series, slow, self.sharp, self.size)
+
+    def local(self, s: Array, at: Taylor) -> dict[str, Any]:
+        """Return place, velocity, acceleration, curvature and its centre at samples."""
+        scale = self.motion.scale
+        crank = self.motion.links(s, 2)["crank"].direction
+        turn = [(crank.derivative(k) * crank.c[0].conj()).imag for k in (1, 2)]
+        first, second = at.derivative(1), at.derivative(2)
+        velocity = first / turn[0]
+        acceleration = (second - velocity * turn[1]) / turn[0] ** 2
+        curvature, centre = self._curvature(s, at)
+        return {
+            "position": scale * planar(at.c[0]),
+            "velocity": scale * planar(velocity),
+            "acceleration": scale * planar(acceleration),
+            "curvature": curvature / scale,
+            "centre": scale * centre,
+        }
+
+    def _curvature(self, s: Array, at: Taylor) -> tuple[Array, Array]:
+        """Return curvature and its centre, (n, 2), safe on cusps and where the path is straight."""
+        z, first, second = (at.derivative(k) for k in range(3))
+        speed, bend = np.abs(first), (first.conj() * second).imag
+        if self.link in ("crank", "follower", "rod"):
+            # A circle about the pivot, even where the point stops to turn back.
+            pivot = self.motion.links(s, 0)[self.link].origin.c[0]
+            turning = np.where((first * (z - pivot).conj()).imag >= 0, 1.0, -1.0)
+            return turning / abs(self.place), planar(pivot)
+        stopped = speed <= 16 * _EPS * self.size
+        straight = np.abs(bend) <= 4 * _EPS * speed * np.abs(second)
+        straight |= self.link == "slider"
+        with np.errstate(divide="ignore", invalid="ignore"):
+            curvature = np.where(straight, 0.0, bend / speed**3)
+            radius = np.where(straight, np.inf, speed**3 / bend)
+            toward = np.where(stopped, 0.0, 1j * first / speed)
+            offset_x = np.where(toward.real == 0, 0.0, toward.real * radius)
+            offset_y = np.where(toward.imag == 0, 0.0, toward.imag * radius)
+        cusp = stopped & ~straight
+        offset = np.stack([np.where(cusp, 0.0, part) for part in (offset_x, offset_y)], axis=-1)
+        return np.where(cusp, np.inf, curvature), planar(z) + offset
+
+    def sizes(self, breaks: Array) -> dict[str, Any]:
+        """Return length and area with their errors."""
+
+        def integrands(s: Array) -> Array:
+            at = self.series(s, 1)
+            z, first = at.c[0] - middle, at.derivative(1)
+            return np.stack([np.abs(first), 0.5 * (z.conj() * first).imag])
+
+        middle = complex(np.mean(self.series(np.linspace(0, 2 * pi, 64), 0).c[0]))
+        total, error = integrate_turn(integrands, np.concatenate([breaks, self.sharp]))
+        scale = self.motion.scale
+        return {
+            "length": float(total[0]) * scale,
+            "length_error": float(error[0]) * scale,
+            "area": float(total[1]) * scale**2,
+            "area_error": float(error[1]) * scale**2,
+        }
+
+    def marked(self, cusps: Array, doubles: Doubles) -> dict[str, Any]:
+        """Return cusps and double points as the fields of the result."""
+        cusps = np.sort(cusps)
+        pairs = doubles.parameter
+        flat = pairs.ravel()
+        scale = self.motion.scale
+        return {
+            "cusp_parameter": cusps,
+            "cusp_theta2": self.motion.crank_angle(cusps),
+            "cusp_branch": self.motion.branch(cusps),
+            "cusp_position": scale * planar(self.series(cusps, 0).c[0]),
+            "double_parameter": pairs,
+            "double_theta2": self.motion.crank_angle(flat).reshape(pairs.shape),
+            "double_branch": self.motion.branch(flat).reshape(pairs.shape),
+            "double_position": scale * planar(doubles.place),
+            "crossing_angle": np.arcsin(np.minimum(doubles.sine, 1.0)),
+        }
+
+    def figure(self, s: Array) -> Array:
+        """Return three times what a round-off of parameter and lengths does to the place."""
+        at = self.series(s, 1)
+        moved = np.abs(s) * np.abs(at.derivative(1))
+        turned = abs(self.place) * self._blur(s)
+        size = self.size
+        return np.asarray(1.5 * _EPS * (moved + turned + size) * self.motion.scale)
+
+    def _blur(self, s: Array) -> Array:
+        """Return the error of the direction of the link in units of round-off."""
+        size, lim = self.motion.sizes, self.motion.limits
+        if self.link in ("crank", "slider"):
+            return np.ones(s.shape)
+        if self.motion.kind == "quick_return":
+            reach = np.abs(self.motion.joints(s)["B"] / self.motion.scale + size["frame"])
+            return 2.0 + (size["frame"] + size["crank"]) / reach
+        psi = self.motion.crank_angle(s) - self.motion.base
+        q = np.sin(psi / 2) ** 2
+        # The root passes on the round-off of its factors.
+        root = _root_blur(q, lim.q1, lim.q2, *self.motion.swings)
+        if self.motion.kind == "slider_crank":
+            return 3.0 + 2.0 * size["crank"] * root / size["coupler"]
+        f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
+        reach = np.sqrt((f - c) ** 2 + 4 * f * c * q)
+        own = n if self.link == "follower" else m
+        base = (f + c) / reach + (reach**2 + m**2 + n**2) / (reach * own)
+        return np.asarray(base + 2.0 * f * c * root / (reach * own))
+
+
+def _root_blur(q: Array, q1: float, q2: float, lower: bool, upper: bool) -> Array:
+    """Return the error of the root of (q - q1)(q2 - q), each end uncertain by its round-off."""
+    ends = (np.maximum(q - q1, 0.0), np.maximum(q2 - q, 0.0))
+    parts = []
+    for end, other, limit, stops in ((*ends, q1, lower), (*ends[::-1], q2, upper)):
+        if stops:
+            # cos s factors out: the width alone is uncertain.
+            parts.append(np.sqrt(end * other) + 0 * q)
+        else:
+            parts.append((np.abs(q) + abs(limit)) * np.sqrt(other / np.maximum(end, 1e-300)))
+    return np.asarray(parts[0] + parts[1])
+
+
+def _own_motion(motion: Circuit, s: Array) -> Any:
+    """Return the mechanism's motion, or None where it has none to compare with."""
+    if motion.number != 0 or not (motion.turns and motion.linkage.crank_turns):
+        return None
+    try:
+        return motion.linkage.motion(motion.crank_angle(s))
+    except BadInput:
+        # A hair from a change point it declines positions that this circuit passes.
+        return None
+
+
+def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
+    """Compare with the mechanism's own motion, and with the equation of the curve."""
+    motion = trace.motion
+    found: dict[str, Check] = {}
+    at = trace.series(s, 1)
+    place, scale = trace.place * motion.scale, motion.scale
+    own = _own_motion(motion, s)
+    if own is not None:
+        point = own.point(trace.link, place.real, place.imag)
+        blur = 2 * (trace.figure(s) / scale + 4 * _EPS * trace.size * (1 + own.error / _EPS))
+        for name, there, here in (
+            ("places", point.position, at.c[0]),
+            ("velocities", point.velocity, at.derivative(1)),
+        ):
+            gap = np.hypot(*(there / scale - planar(here)).T)
+            if name == "velocities":
+                blur = blur * (1 + np.abs(at.derivative(1)) / trace.size)
+            worst = float(np.max(gap / blur))
+            found[f"{name} against the mechanism's motion, over their round-off"] = Check(worst, 1)
+    if motion.kind == "four_bar" and trace.link == "coupler":
+        residual = sextic_residual(motion.sizes, trace.place, at.c[0])
+        found["equation of sixth degree, over its terms"] = Check(float(np.max(residual)), 1e-12)
+        found["double points"] = Check(float(crossings), 3.0)
+    return found
+
+
+__all__ = ["CouplerCurve", "coupler_curve"]

@@ -1,0 +1,323 @@
+"""The four-bar linkage: lengths and assembly, and the motion that they have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...generated import four_bar_kinematics
+from ..core.errors import BadInput, Problem, bad
+from .inputs import (
+    Array,
+    Assembly,
+    assembly_problems,
+    by_name,
+    drive_of,
+    length_problems,
+    rates_of,
+    spread,
+)
+from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Round-offs of the square of BD and of the area of the triangle BCD, thrice a unit each.
+_SQUARE = 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class FourBarMotion(Motion):
+    """Motion of a four-bar linkage at given crank angles; every array has their shape.
+
+    ``error`` has it too: the figure for the worse of theta3 and theta4 [rad], from the round-off of
+    crank angle and lengths that the position passes on; it grows near a dead centre.
+
+    Attributes
+    ----------
+    theta3, theta4 : ndarray
+        Angles of coupler and follower [rad], continuous over any number of turns.
+    omega3, omega4 : ndarray
+        Angular speeds [rad/s]; without a crank speed, over the crank's.
+    alpha3, alpha4 : ndarray
+        Angular accelerations [rad/s^2]; without a crank speed, over its square and at constant
+        crank speed.
+    transmission_angle : ndarray
+        Angle between coupler and follower [rad], from 0 to pi.
+    """
+
+    theta3: Array
+    theta4: Array
+    omega3: Array
+    omega4: Array
+    alpha3: Array
+    alpha4: Array
+    transmission_angle: Array
+
+    places: ClassVar[Mapping[str, str]] = {
+        "theta3": "rad",
+        "theta4": "rad",
+        "transmission_angle": "rad",
+    }
+    rates: ClassVar[Mapping[str, str]] = {
+        "omega3": "rad/s",
+        "omega4": "rad/s",
+        "alpha3": "rad/s^2",
+        "alpha4": "rad/s^2",
+    }
+
+    @property
+    def joints(self) -> Mapping[str, Array]:
+        """Places of the joints A, B, C, D, each of shape (..., 2)."""
+        start = planar(np.zeros(self.theta2.shape))
+        frame = self.linkage.lengths["frame"]
+        return {
+            "A": start,
+            "B": self.link("coupler").origin,
+            "C": self.point("follower", self.linkage.lengths["follower"]).position,
+            "D": start + np.array([frame, 0.0]),
+        }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw follower angle, speed and acceleration against the crank angle."""
+        over, square = (r"/\omega_2", r"/\omega_2^2") if self.relative else ("", "")
+        curves = (
+            ("theta4", r"$\theta_4$"),
+            ("omega4", rf"$\omega_4{over}$"),
+            ("alpha4", rf"$\alpha_4{square}$"),
+            ("omega3", rf"$\omega_3{over}$"),
+        )
+        drawn: Axes = plot_against_crank(self, curves, ax)
+        return drawn
+
+    def _other_link(self, name: str) -> LinkMotion:
+        if name == "coupler":
+            return self._at_crank_pin(self.theta3, self.omega3, self.alpha3)
+        still = np.zeros(self.theta2.shape)
+        pivot = still + self.linkage.lengths["frame"]
+        return self._link(pivot, still, still, self.theta4, self.omega4, self.alpha4)
+
+    def _at_far_joint(self, name: str) -> LinkMotion | None:
+        if name != "coupler":
+            return None
+        at = self.link("follower").point(self.linkage.lengths["follower"])
+        return LinkMotion(
+            at.position, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
+        )
+
+
+@dataclass(frozen=True)
+class FourBar(Linkage):
+    """Four-bar linkage ABCD: frame AD, crank AB, coupler BC, follower DC (Smith Fig. 1).
+
+    Parameters
+    ----------
+    frame, crank, coupler, follower : float
+        Lengths, all in one unit; with flexible links in metres.
+    assembly : {"open", "crossed"}
+        Which of the two closures: C to the left or to the right of the line from B to D.
+
+    Raises
+    ------
+    BadInput
+        If a length is not a positive number or the four cannot close.
+    """
+
+    frame: float
+    crank: float
+    coupler: float
+    follower: float
+    assembly: Assembly = "open"
+
+    names: ClassVar[tuple[str, ...]] = ("frame", "crank", "coupler", "follower")
+    links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "follower")
+    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "crank": ("A", "B"),
+        "coupler": ("B", "C"),
+        "follower": ("D", "C"),
+    }
+
+    def __post_init__(self) -> None:
+        """Check the lengths."""
+        problems = length_problems("FourBar", self.lengths)
+        problems += assembly_problems("FourBar", self.assembly)
+        if not problems:
+            longest = max(self.lengths, key=lambda name: self.lengths[name])
+            rest = sum(self.lengths.values()) - self.lengths[longest]
+            others = [-size for name, size in self._unit_lengths.items() if name != longest]
+            # Correctly rounded, as the class is: a sum in floats may close what cannot close.
+            if math.fsum([self._unit_lengths[longest], *others]) >= 0.0:
+                problems.append(
+                    Problem(
+                        f"FourBar.{longest}",
+                        f"{self.lengths[longest]:g}",
+                        f"less than {rest:g}, the sum of the other three",
+                        "the linkage cannot close; shorten this link or lengthen another",
+                    )
+                )
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Shortest and longest diagonal BD that coupler and follower allow."""
+        return abs(self.coupler - self.follower), self.coupler + self.follower
+
+    @property
+    def crank_turns(self) -> bool:
+        """True where the crank can turn fully without passing a change point."""
+        (inner, _), (_, outer) = self._fold_sides
+        return inner < 0.0 and outer < 0.0
+
+    def require_full_turn(self) -> None:
+        """Raise BadInput where the crank cannot turn fully."""
+        if not self.crank_turns:
+            shortest, longest = self.reach
+            raise bad(
+                "FourBar",
+                f"diagonals from {abs(self.frame - self.crank):g} to {self.frame + self.crank:g}",
+                f"diagonals strictly between {shortest:g} and {longest:g}",
+                "the crank cannot turn fully; change a length",
+            )
+
+    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Return the intervals of crank angle [rad] in which the diagonal BD is within reach.
+
+        Returns
+        -------
+        tuple of (float, float)
+            Without their ends, at which coupler and follower come into one line; each up to whole
+            turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
+            folds.
+        """
+        inner, outer = (self._fold(*sides) for sides in self._fold_sides)
+        if inner is None:
+            high = np.pi if outer is None else outer
+            return ((-high, high),)
+        if outer is None:
+            return ((inner, 2.0 * np.pi - inner),)
+        return ((-outer, -inner), (inner, outer))
+
+    @property
+    def _fold_sides(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """How far the shortest and the longest BD are above its least and below its greatest.
+
+        Those of coupler and follower, those of frame and crank; each sum is correctly rounded, so
+        that no round-off can change its sign.
+        """
+        frame, crank, coupler, follower = self._unit_lengths.values()
+        thick, thin = max(coupler, follower), min(coupler, follower)
+        far, near = max(frame, crank), min(frame, crank)
+        return (
+            (math.fsum((thick, -thin, near, -far)), math.fsum((far, near, thin, -thick))),
+            (math.fsum((thick, thin, near, -far)), math.fsum((far, near, -thin, -thick))),
+        )
+
+    def _fold(self, above: float, below: float) -> float | None:
+        """Return the crank angle between 0 and pi at which BD is so far within its limits."""
+        if above < 0.0 or below < 0.0:
+            return None
+        frame, crank, *_ = self._unit_lengths.values()
+        near, far = abs(frame - crank), frame + crank
+        sine2, cosine2 = above * (above + 2.0 * near), below * (2.0 * far - below)
+        return float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
+
+    def motion(
+        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
+    ) -> FourBarMotion:
+        """Return the motion of coupler and follower (Smith 2.2, 2.7, 2.10).
+
+        At ``theta = 0`` theta3 and theta4 lie between -pi and pi; from there they are continuous
+        over any number of turns.
+
+        Parameters
+        ----------
+        theta : array_like
+            Crank angle [rad], any shape.
+        speed, acceleration : array_like
+            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
+
+        Returns
+        -------
+        FourBarMotion
+            Every array has the shape to which the three broadcast.  The check "folds within the
+            angles" fails where coupler and follower come into one line between the least and the
+            greatest angle: the motion is not continuous there, or it may leave by the other branch.
+
+        Raises
+        ------
+        BadInput
+            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
+            together, or the linkage cannot reach an angle or folds there.
+        """
+        angles, drive = drive_of(theta, speed, acceleration)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            values = _MOTION(
+                angles,
+                **self._unit_lengths,
+                assembly=self.branch,
+                winding=float(self.crank > self.frame),
+            )
+        m = by_name(angles, _OUTPUTS, values)
+        shortest, longest = self.reach
+        self._require_reached(
+            m, f"a diagonal BD between {shortest:g} and {longest:g}, {self._reachable()}"
+        )
+        omega3, alpha3 = rates_of(drive, m["omega3"], m["alpha3"])
+        omega4, alpha4 = rates_of(drive, m["omega4"], m["alpha4"])
+        return FourBarMotion(
+            theta3=spread(m["theta3"], drive),
+            theta4=spread(m["theta4"], drive),
+            omega3=omega3,
+            omega4=omega4,
+            alpha3=alpha3,
+            alpha4=alpha4,
+            transmission_angle=spread(m["transmission_angle"], drive),
+            **self._common(m, drive, "worse of theta3 and theta4 [rad], absolute, entrywise"),
+        )
+
+    def _figure(self, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of the angle and of each length does, three times.
+
+        A change of a length moves the closure along that link; seen along coupler or follower it
+        turns the other one, the more the closer the two are to one line.  The triangle BCD comes
+        from the square of BD: its round-off moves C, seen from a short link most.
+        """
+        frame, crank, coupler, follower = self._unit_lengths.values()
+        theta2 = m["theta2"]
+        aligned = np.abs(np.cos(m["theta4"] - m["theta3"]))
+        sine = np.abs(np.sin(m["transmission_angle"]))
+        square = (frame - crank) ** 2 + 4.0 * frame * crank * np.sin(theta2 / 2.0) ** 2
+        leaning = np.sqrt(square) * aligned
+        lying = (1.0 + abs(coupler - follower) * (coupler + follower) / square) * sine**2 / 2.0
+        figures = []
+        for link, other, own, opposite in (
+            ("3", "4", coupler, follower),
+            ("4", "3", follower, coupler),
+        ):
+            beside = m["theta" + other]
+            moved = crank * np.abs(np.cos(theta2 - beside)) + frame * np.abs(np.cos(beside))
+            moved += own * aligned + opposite + _SQUARE * (leaning + opposite * lying)
+            turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
+            figures.append(turned + moved / (own * sine))
+        return np.asarray(1.5 * np.finfo(float).eps * np.maximum(*figures))
+
+    def _loop(self, m: Mapping[str, Array]) -> Terms:
+        frame, crank, coupler, follower = self._unit_lengths.values()
+        terms = zip(
+            turning(crank, m["theta2"], 1.0, 0.0),
+            turning(coupler, m["theta3"], m["omega3"], m["alpha3"]),
+            turning(-follower, m["theta4"], m["omega4"], m["alpha4"]),
+            strict=True,
+        )
+        places, speeds, changes = (list(item) for item in terms)
+        return [*places, -frame], speeds, changes
+
+
+_MOTION: Callable[..., tuple[Array, ...]] = four_bar_kinematics.motion
+_OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")

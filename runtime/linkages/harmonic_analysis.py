@@ -1,0 +1,384 @@
+"""Harmonics of any function of the crank angle by FFT, with an aliasing check and an accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.errors import bad
+from ..core.inputs import require_whole
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check, Result, provenance
+from ..core.sampling import values_at
+from ._taylor import Array
+from .linkage import Linkage, Motion
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..rigid import Machine
+
+Function = Callable[[Array], ArrayLike]
+Source: TypeAlias = "Function | tuple[Linkage, str] | tuple[Machine, str, float]"
+
+_EPS = float(np.finfo(float).eps)
+_TURN = 2.0 * pi
+_FEWEST, _MOST = 64, 2**17
+_GOLDEN = 0.6180339887498949
+_PROBES = 257
+_HIGHEST = 4096
+# A gap over one turn up to this part of the function's size is noise, and enters the error.
+_SAME = 1e-5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Harmonics(Result):
+    """Harmonics of a function of the crank angle.
+
+    The function is ``secular theta + a[0] + sum_m (a[m] cos m theta + b[m] sin m theta)`` and what
+    lies beyond the order.  ``error`` is the figure of every coefficient, absolute.
+
+    Attributes
+    ----------
+    name : str
+        What was analysed.
+    a, b : ndarray, shape (order + 1,)
+        Cosine and sine coefficients; ``a[0]`` is the mean of the periodic part, ``b[0]`` is zero.
+    secular : float
+        Growth per radian of crank angle: the whole number of turns that an angle makes in each
+        turn of the crank (theta4 of a drag link: 1), else 0.
+    largest : float
+        Largest size of the periodic part that was met.
+    remainder : float
+        Estimate of the largest deviation of the harmonics up to the order from the function.
+    evaluations : int
+        Angles at which the function was asked for.
+
+    Notes
+    -----
+    No set of samples shows a feature that is narrower than their spacing.  A function that seems
+    constant is therefore asked for at 131072 angles and more, and ``error`` then admits a pulse
+    between two of them, as high as the constant or as 1, whichever is more.  Of other functions
+    it is assumed that nothing hides in less than 1/64 of a turn.
+    """
+
+    name: str
+    a: Array
+    b: Array
+    secular: float
+    largest: float
+    remainder: float
+    evaluations: int
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("a", "b", "amplitude", "phase"), ("harmonic",))
+    }
+    exported: ClassVar[tuple[str, ...]] = ("amplitude", "phase")
+
+    @property
+    def order(self) -> int:
+        """The highest harmonic."""
+        return len(self.a) - 1
+
+    @property
+    def amplitude(self) -> Array:
+        """Amplitude of each harmonic, ``|a[0]|`` the first, shape (order + 1,)."""
+        return np.hypot(self.a, self.b)
+
+    @property
+    def phase(self) -> Array:
+        """Phase [rad] in ``amplitude cos(m theta - phase)``, shape (order + 1,)."""
+        return np.arctan2(self.b, self.a)
+
+    @property
+    def series(self) -> PeriodicFunction:
+        """The periodic part up to the order; its error is ``remainder``."""
+        return PeriodicFunction(self.a, self.b, error=self.remainder)
+
+    def __call__(self, theta: ArrayLike) -> Array:
+        """Return secular part and harmonics at angles [rad] of any shape."""
+        return np.asarray(self.secular * np.asarray(theta, dtype=float) + self.series(theta))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw cosine and sine coefficients as bars beside each other (Smith Fig. 7)."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        m = np.arange(1, self.order + 1)
+        ax.bar(m - 0.2, self.a[1:], 0.38, color="tab:blue", label="cosine $a_m$")
+        ax.bar(m + 0.2, self.b[1:], 0.38, color="tab:orange", label="sine $b_m$")
+        ax.axhline(0.0, color="0.4", lw=0.8)
+        growth = f", growing by {self.secular:g} per radian" if self.secular else ""
+        ax.set_title(f"{self.name}: mean {self.a[0]:.6g}{growth}")
+        ax.set_xlabel("harmonic")
+        if self.order <= 24:
+            ax.set_xticks(m)
+        ax.legend()
+        return ax
+
+
+def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Harmonics:
+    """Return the harmonics of a function of the crank angle (Smith 2.6).
+
+    Parameters
+    ----------
+    source : callable, (Linkage, str) or (Machine, str, float)
+        A vectorised function of the crank angle [rad], shape (n,) to shape (n,); or a linkage and
+        the name of a place or rate of its motion (``"theta4"``, ``"omega3"``, ``"position"``); or a
+        machine, the name of a force (``"x34"``, ``"torque"``, ``"shaking_moment"``) and the
+        constant crank speed [rad/s].
+    order : int
+        Highest harmonic wanted, 1 to 4096.
+    accuracy : float
+        Wanted size of the error of each coefficient, over the largest size of the function.
+
+    Returns
+    -------
+    Harmonics
+        Its check "change on doubling" fails where the accuracy is out of reach with 131072
+        angles - a function that jumps, or noise - and the error figure says what was reached.
+
+    Raises
+    ------
+    BadInput
+        If a value is not finite, the function is not periodic (an angle may grow by whole turns
+        in a turn), the linkage's crank cannot turn, or a number is impossible.
+
+    Notes
+    -----
+    The angles are doubled until two doublings in a row change no coefficient by more than the
+    accuracy.  Each set starts at another, irrational part of its spacing: a harmonic of thousands,
+    which regular sets of 64, 128, 256 angles all take for a mean, then shows at once.  Before it
+    ends, the whole series is compared with the function at irregular angles.
+    """
+    name, f = function_of(source)
+    check_order(order, accuracy)
+    periodic, secular, gap = without_growth(f, name)
+    a, b, found = _doubled(periodic, name, int(order), accuracy)
+    scale = max(found.largest, 5e-324)
+    return Harmonics(
+        name=name,
+        a=a,
+        b=b,
+        secular=secular,
+        largest=found.largest,
+        remainder=found.remainder,
+        evaluations=found.evaluations + 2,
+        method="FFT",
+        error=found.error + gap,
+        error_norm="largest error of a coefficient, absolute",
+        checks={
+            "change on doubling over the largest value": Check(found.change / scale, accuracy),
+        },
+        provenance=provenance(source_told(source)),
+    )
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What the doubling met: last change of a coefficient, figures, and what it cost."""
+
+    change: float
+    error: float
+    largest: float
+    remainder: float
+    evaluations: int
+
+
+def _doubled(
+    f: Callable[[Array], Array], name: str, order: int, accuracy: float
+) -> tuple[Array, Array, _Found]:
+    """Double the angles until the coefficients stay."""
+    count = max(_FEWEST, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
+    probes = np.asarray(_TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
+    at_probes = values_at(f, probes, name)
+    largest, asked = float(np.max(np.abs(at_probes))), _PROBES
+    before: np.ndarray[Any, Any] | None = None
+    changes: list[float] = []
+    while True:
+        settled = False
+        theta, values, full = _coefficients(f, count, name)
+        asked += count
+        largest = max(largest, float(np.max(np.abs(values))))
+        # A pulse that one set has met and the next ones miss must not be forgotten.
+        ends = [int(np.argmin(values)), int(np.argmax(values))]
+        probes = np.concatenate([probes, theta[ends]])
+        at_probes = np.concatenate([at_probes, values[ends]])
+        constant = bool(np.ptp(at_probes) <= 4.0 * _EPS * largest)
+        low = full[: order + 1]
+        if before is not None:
+            changes.append(float(np.max(np.abs(low - before))))
+        before = low
+        goal = accuracy * largest
+        if len(changes) > 1 and max(changes[-2:]) <= goal:
+            gap = float(np.max(np.abs(at_probes - _evaluate(full, probes))))
+            # What the samples do not show may be folded into a coefficient whole.
+            settled = gap <= max(1e3 * goal, 1e-11 * largest)
+            # Nothing but a constant: a pulse may lie between the samples.
+            if settled and not constant:
+                break
+        if 2 * count > _MOST:
+            break
+        count *= 2
+    rest = float(np.max(np.abs(at_probes - _evaluate(low, probes))))
+    dropped = float(np.sum(np.abs(full[order + 1 :])))
+    error = 2.0 * _last_change(changes, settled) + 2.0 * _EPS * largest
+    if constant:
+        # A pulse between two samples, of this height or of 1: 2/turn times its area.
+        error += 2.0 * max(largest, 1.0) / count
+    a, b = low.real.copy(), -low.imag
+    b[0] = 0.0
+    remainder = max(2.0 * rest, min(dropped, 4.0 * rest)) + error
+    found = _Found(max(changes[-2:]), error, largest, remainder, asked)
+    return a, b, found
+
+
+def _last_change(changes: list[float], settled: bool) -> float:
+    """Return the last change of a coefficient, or what slow convergence leads one to expect.
+
+    Where the changes fall by less than a thousand a time, or have not settled in the end - a
+    function that jumps, or noise - the last one may be small by chance.
+    """
+    worst = changes[-1]
+    if not settled:
+        # A pulse that few samples meet: the changes it makes halve with the spacing.
+        return float(max(change / 2**back for back, change in enumerate(changes[:-6:-1])))
+    for back, (before, after) in enumerate(zip(changes[-2::-1], changes[:0:-1], strict=True), 1):
+        if after <= 1e-3 * before or back > 2:
+            break
+        worst = max(worst, before / 4**back)
+    return worst
+
+
+def _coefficients(
+    f: Callable[[Array], Array], count: int, name: str
+) -> tuple[Array, Array, np.ndarray[Any, Any]]:
+    """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
+    start = (_GOLDEN * np.log2(count)) % 1.0
+    theta = np.asarray(_TURN * (np.arange(count) + start) / count, dtype=np.float64)
+    values = values_at(f, theta, name)
+    spectrum = np.fft.rfft(values) / count
+    spectrum *= np.exp(-1j * _TURN * start / count * np.arange(len(spectrum)))
+    spectrum[1:] *= 2.0
+    # The highest one is known in part alone.
+    return theta, values, spectrum[:-1]
+
+
+def _evaluate(coefficients: np.ndarray[Any, Any], theta: Array) -> Array:
+    total = np.zeros(theta.shape, dtype=complex)
+    z = np.exp(1j * theta)
+    for c in coefficients[:0:-1]:
+        total = (total + c) * z
+    return np.asarray((total + coefficients[0]).real)
+
+
+def function_of(source: Source) -> tuple[str, Function]:
+    """Return name and function of a source.
+
+    Raises
+    ------
+    BadInput
+        If it is none of the three forms, or the field or force is unknown.
+    """
+    if isinstance(source, tuple):
+        return _field(*source) if len(source) == 2 else _force(*source)
+    if not callable(source):
+        found = type(source).__name__
+        raise bad("source", found, "a callable, (linkage, name) or (machine, name, speed)", _FORMS)
+    return str(getattr(source, "__name__", type(source).__name__)), source
+
+
+_FORMS = "write f, (linkage, 'theta4') or (machine, 'torque', 10.0)"
+
+
+def _field(linkage: Linkage, name: str) -> tuple[str, Function]:
+    if not isinstance(linkage, Linkage):
+        raise bad("source", type(linkage).__name__, "a linkage and a name", _FORMS)
+    linkage.require_full_turn()
+    motion = linkage.motion(np.zeros(1))
+    known = {**motion.places, **motion.rates}
+    if name not in known:
+        known_names = ", ".join(known)
+        raise bad("source", repr(name), f"one of {known_names}", "choose a field of the motion")
+
+    def field(theta: Array) -> Array:
+        moved: Motion = linkage.motion(theta)
+        return np.asarray(getattr(moved, name))
+
+    return name, field
+
+
+def _force(machine: Machine, name: str, speed: float, *more: object) -> tuple[str, Function]:
+    from ..rigid import Machine as MachineClass
+    from ..rigid import rigid_forces
+
+    if more or not isinstance(machine, MachineClass):
+        raise bad("source", type(machine).__name__, "a machine, a name and a speed", _FORMS)
+    machine.linkage.require_full_turn()
+    known = rigid_forces(machine, np.zeros(1), speed).values
+    if name not in known:
+        raise bad("source", repr(name), f"one of {', '.join(known)}", "choose a force")
+    outputs: _Output = next((group for group, own in _OUTPUTS.items() if name in own), "pins")
+
+    def force(theta: Array) -> Array:
+        return rigid_forces(machine, theta, speed, outputs=(outputs,))[name]
+
+    return name, force
+
+
+_Output = Literal["pins", "torque", "shaking_force", "shaking_moment"]
+# What is asked for alone takes a shorter way than all pin forces.
+_OUTPUTS: Mapping[_Output, tuple[str, ...]] = {
+    "torque": ("torque",),
+    "shaking_force": ("shaking_x", "shaking_y"),
+    "shaking_moment": ("shaking_moment",),
+}
+
+
+def source_told(source: Source) -> dict[str, str]:
+    """Return what the provenance says of a source."""
+    if not isinstance(source, tuple):
+        return {}
+    if len(source) == 2:
+        return source[0]._told()
+    return {**source[0].linkage._told(), "speed": repr(float(source[2]))}
+
+
+def check_order(order: int, accuracy: float) -> None:
+    """Raise BadInput for an impossible order or accuracy."""
+    require_whole("order", order, 1, _HIGHEST)
+    if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
+        raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
+
+
+def without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], float, float]:
+    """Return the function less its whole turns in a turn, how many these are, and what is left.
+
+    Raises
+    ------
+    BadInput
+        If it neither comes back to itself nor differs by whole turns.
+    """
+    ends = values_at(f, np.array([0.5, 0.5 + _TURN]), name)
+    growth = float(ends[1] - ends[0])
+    turns = float(np.rint(growth / _TURN))
+    gap = abs(growth - turns * _TURN)
+    if gap > _SAME * max(float(np.max(np.abs(ends))), 5e-324):
+        raise bad(
+            f"function {name!r}",
+            f"a change of {growth:.6g} over one turn",
+            "a function of period 2 pi, or an angle that grows by whole turns",
+            "check its period, or take off what grows",
+        )
+
+    def periodic(theta: Array) -> Array:
+        values = values_at(f, theta, name)
+        return np.asarray(values - turns * theta) if turns else values
+
+    # Round-off of the two angles is no gap.
+    return periodic, turns, gap if gap > 1e-11 * float(np.max(np.abs(ends))) else 0.0

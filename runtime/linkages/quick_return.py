@@ -1,0 +1,335 @@
+"""The quick-return mechanism: lengths, and the motion of its rod and sliding block."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...generated import quick_return_kinematics
+from ..core.errors import BadInput, Problem, bad
+from .inputs import Array, by_name, drive_of, length_problems, rates_of, spread
+from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_ROUND = 4.0 * float(np.finfo(float).eps)
+# A position that a round-off of the lengths moves so far [rad] is a change point.
+_UNDECIDED = 0.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuickReturnMotion(Motion):
+    """Motion of a quick-return at given crank angles; every array has their shape.
+
+    ``error`` has it too: the figure for the worse of theta4 [rad] and of the slide over its
+    greatest value, from the round-off of crank angle and lengths that the place passes on; it grows
+    where the block comes near the rod's pivot.
+
+    Attributes
+    ----------
+    theta4 : ndarray
+        Rod angle from D to B [rad], continuous over any number of turns.
+    slide : ndarray
+        Distance DB of the block along the rod [m].
+    omega4, alpha4 : ndarray
+        Speed and acceleration of the rod [rad/s, rad/s^2]; without a crank speed, over the crank's
+        and its square.
+    slide_velocity, slide_acceleration : ndarray
+        First and second derivative of ``slide`` by time [m/s, m/s^2]; without a crank speed, by the
+        crank angle.
+    """
+
+    theta4: Array
+    slide: Array
+    omega4: Array
+    alpha4: Array
+    slide_velocity: Array
+    slide_acceleration: Array
+
+    places: ClassVar[Mapping[str, str]] = {"theta4": "rad", "slide": "m"}
+    rates: ClassVar[Mapping[str, str]] = {
+        "omega4": "rad/s",
+        "alpha4": "rad/s^2",
+        "slide_velocity": "m/s",
+        "slide_acceleration": "m/s^2",
+    }
+
+    @property
+    def joints(self) -> Mapping[str, Array]:
+        """Places of A, B, D and of the rod's tip C, each of shape (..., 2)."""
+        start = planar(np.zeros(self.theta2.shape))
+        return {
+            "A": start,
+            "B": self.link("block").origin,
+            "C": self.point("rod", self.linkage.lengths["rod"]).position,
+            "D": self.link("rod").origin,
+        }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw angle, speed and acceleration of the rod against the crank angle."""
+        curves = (
+            ("theta4", r"$\theta_4$"),
+            ("omega4", r"$\omega_4$"),
+            ("alpha4", r"$\alpha_4$"),
+        )
+        drawn: Axes = plot_against_crank(self, curves, ax)
+        return drawn
+
+    def _other_link(self, name: str) -> LinkMotion:
+        if name == "block":
+            return self._at_crank_pin(self.theta4, self.omega4, self.alpha4)
+        still = np.zeros(self.theta2.shape)
+        pivot = still - self.linkage.lengths["frame"]
+        return self._link(pivot, still, still, self.theta4, self.omega4, self.alpha4)
+
+
+@dataclass(frozen=True)
+class QuickReturn(Linkage):
+    """Quick-return: crank AB, a block at B, and a rod about D along which the block slides.
+
+    A is the origin and D lies a distance ``frame`` to its left.
+
+    Parameters
+    ----------
+    frame : float
+        Distance DA of the two fixed pivots.
+    crank : float
+        Length AB.
+    rod : float
+        Length of the rod from D to its tip; beyond it the block has no hold.
+
+    Raises
+    ------
+    BadInput
+        If a length is not a positive number or the rod does not reach the block at all.
+    """
+
+    frame: float
+    crank: float
+    rod: float
+
+    names: ClassVar[tuple[str, ...]] = ("frame", "crank", "rod")
+    links: ClassVar[tuple[str, str, str]] = ("crank", "block", "rod")
+    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "crank": ("A", "B"),
+        "block": ("B",),
+        "rod": ("D", "C"),
+    }
+
+    def __post_init__(self) -> None:
+        """Check the lengths."""
+        problems = length_problems("QuickReturn", self.lengths)
+        if not problems and self._ends[0] <= 0.0:
+            problems.append(
+                Problem(
+                    "QuickReturn.rod",
+                    f"{self.rod:g}",
+                    f"more than {abs(self.frame - self.crank):g}, the least distance DB",
+                    "the rod never reaches the block; lengthen it",
+                )
+            )
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def geometry(self) -> Mapping[str, float]:
+        """Frame and crank, as the emitted modules take them."""
+        return {"frame": self.frame, "crank": self.crank}
+
+    @property
+    def eps(self) -> float:
+        """Crank over frame: below 1 the rod swings, above 1 it turns with the crank."""
+        return self.crank / self.frame
+
+    @property
+    def crank_turns(self) -> bool:
+        """True where the crank can turn fully: the rod is long enough and eps is not 1."""
+        return self._long_enough and self.frame != self.crank
+
+    @property
+    def _long_enough(self) -> bool:
+        frame, crank, _ = self._unit_lengths.values()
+        # A rod given as the sum of the two, rounded, is long enough.
+        return self._ends[1] <= _ROUND * (frame + crank)
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        """By how much the rod is longer than the least, and shorter than the greatest DB.
+
+        Correctly rounded, so that no round-off can change their signs.
+        """
+        frame, crank, rod = self._unit_lengths.values()
+        far, near = max(frame, crank), min(frame, crank)
+        return math.fsum((rod, near, -far)), math.fsum((far, near, -rod))
+
+    def require_full_turn(self) -> None:
+        """Raise BadInput where the crank cannot turn fully."""
+        if self.frame == self.crank:
+            raise bad(
+                "QuickReturn.crank",
+                f"{self.crank:g}, as long as the frame (eps = 1)",
+                "another length",
+                "the block passes the rod's pivot, where the rod's angle is not defined; change it",
+            )
+        if not self._long_enough:
+            raise bad(
+                "QuickReturn.rod",
+                f"{self.rod:g}",
+                f"at least {self.frame + self.crank:g}, frame and crank",
+                "the block leaves the rod; lengthen it",
+            )
+
+    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Return the intervals of crank angle [rad] in which the block is on the rod.
+
+        Returns
+        -------
+        tuple of (float, float)
+            At their ends the block is at the tip, or with eps = 1 on the rod's pivot; each up to
+            whole turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
+            ends.
+        """
+        frame, crank, rod = self._unit_lengths.values()
+        if self._long_enough:
+            return ((-np.pi, np.pi),)
+        longer, shorter = self._ends
+        cosine2 = longer * (rod + abs(frame - crank))
+        sine2 = shorter * (frame + crank + rod)
+        least = float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
+        if frame == crank:
+            return ((least, np.pi), (np.pi, 2.0 * np.pi - least))
+        return ((least, 2.0 * np.pi - least),)
+
+    @property
+    def dead_centres(self) -> tuple[float, float]:
+        """Crank angles [rad] at which the rod is farthest to the left and to the right.
+
+        There the crank stands at right angles to the rod, ``cos(theta2) = -eps``.
+
+        Raises
+        ------
+        BadInput
+            If eps is 1 or more: the rod turns, and never stops.
+        """
+        half = self._return_half("dead_centres")
+        return np.pi - half, half - np.pi
+
+    @property
+    def stroke(self) -> float:
+        """Angle through which the rod swings, 2 asin(eps) [rad].
+
+        Raises
+        ------
+        BadInput
+            If eps is 1 or more: the rod turns.
+        """
+        return np.pi - 2.0 * self._return_half("stroke")
+
+    @property
+    def time_ratio(self) -> float:
+        """Time of the forward stroke of the rod over that of its return, at steady speed.
+
+        Raises
+        ------
+        BadInput
+            If eps is 1 or more: the rod turns.
+        """
+        half = self._return_half("time_ratio")
+        return (np.pi - half) / half
+
+    def _return_half(self, asked: str) -> float:
+        """Return half of the crank's angle during the quick return, acos(eps)."""
+        if self.crank >= self.frame:
+            raise bad(
+                f"QuickReturn.{asked}",
+                f"eps {self.eps:.6g}",
+                "eps = crank/frame below 1",
+                "the rod does not swing to and fro; shorten the crank",
+            )
+        frame, crank, _ = self._unit_lengths.values()
+        return float(2.0 * np.arctan2(np.sqrt(frame - crank), np.sqrt(frame + crank)))
+
+    def motion(
+        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
+    ) -> QuickReturnMotion:
+        """Return the motion of rod and block, from the closure of the loop.
+
+        At ``theta = 0`` theta4 is 0; from there it is continuous over any number of turns.
+
+        Parameters
+        ----------
+        theta : array_like
+            Crank angle [rad], any shape.
+        speed, acceleration : array_like
+            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
+
+        Returns
+        -------
+        QuickReturnMotion
+            Every array has the shape to which the three broadcast.  The check "folds within the
+            angles" fails where the block leaves the rod, or with eps = 1 passes its pivot, between
+            the least and the greatest angle.
+
+        Raises
+        ------
+        BadInput
+            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
+            together, the block is beyond the tip of the rod or, with eps = 1, on its pivot.
+        """
+        angles, drive = drive_of(theta, speed, acceleration)
+        frame, crank, rod = self._unit_lengths.values()
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            values = _MOTION(angles, frame, crank, winding=float(crank > frame))
+        m = by_name(angles, _OUTPUTS, values)
+        self._require_reached(m, self._reachable())
+        decided = (m["slide"] <= rod * (1.0 + _ROUND)) & (self._blur(m) < _UNDECIDED)
+        self._require(decided, angles, self._reachable())
+        omega4, alpha4 = rates_of(drive, m["omega4"], m["alpha4"])
+        velocity, change = rates_of(drive, m["slide_velocity"], m["slide_acceleration"])
+        norm = "worse of theta4 [rad] and slide over its greatest value, absolute, entrywise"
+        return QuickReturnMotion(
+            theta4=spread(m["theta4"], drive),
+            slide=np.ldexp(spread(m["slide"], drive), -self._scale),
+            omega4=omega4,
+            alpha4=alpha4,
+            slide_velocity=np.ldexp(velocity, -self._scale),
+            slide_acceleration=np.ldexp(change, -self._scale),
+            **self._common(m, drive, norm),
+        )
+
+    def _blur(self, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of each length does to theta4 [rad], three times."""
+        frame, crank, _ = self._unit_lengths.values()
+        moved = frame * np.abs(np.sin(m["theta4"]))
+        moved = moved + crank * np.abs(np.sin(m["theta2"] - m["theta4"]))
+        return np.asarray(1.5 * np.finfo(float).eps * moved / m["slide"])
+
+    def _figure(self, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of the angle and of each length does, three times."""
+        frame, crank, _ = self._unit_lengths.values()
+        theta2, theta4 = m["theta2"], m["theta4"]
+        unit = 1.5 * np.finfo(float).eps
+        turned = unit * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)
+        moved = np.abs(theta2 * m["slide_velocity"]) + m["slide"] + frame * np.abs(np.cos(theta4))
+        moved = moved + crank * np.abs(np.cos(theta2 - theta4))
+        return np.asarray(np.maximum(turned, unit * moved / (frame + crank)))
+
+    def _loop(self, m: Mapping[str, Array]) -> Terms:
+        frame, crank, _ = self._unit_lengths.values()
+        ahead, w, a = np.exp(1j * m["theta4"]), m["omega4"], m["alpha4"]
+        pin = turning(-crank, m["theta2"], 1.0, 0.0)
+        x, v = m["slide"] * ahead, m["slide_velocity"] * ahead
+        speeds = [v, 1j * w * x, pin[1]]
+        # Sliding, Coriolis, tangential and centripetal parts.
+        changes = [m["slide_acceleration"] * ahead, 2j * w * v, 1j * a * x, -(w**2) * x, pin[2]]
+        return [x, pin[0], -frame], speeds, changes
+
+
+_MOTION: Callable[..., tuple[Array, ...]] = quick_return_kinematics.motion
+_OUTPUTS = quick_return_kinematics.RETURNS["motion"]

@@ -1,0 +1,364 @@
+"""The slider-crank: lengths, offset and assembly, and the motion that they have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...generated import slider_crank_kinematics
+from ..core.errors import BadInput, Problem, bad
+from .inputs import (
+    Array,
+    Assembly,
+    assembly_problems,
+    by_name,
+    drive_of,
+    length_problems,
+    rates_of,
+    spread,
+)
+from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# A position that a round-off of the lengths moves so far [rad] is a change point.
+_UNDECIDED = 0.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class SliderCrankMotion(Motion):
+    """Motion of a slider-crank at given crank angles; every array has their shape.
+
+    ``error`` has it too: the figure for the worse of theta3 [rad] and of the position over the
+    longest length, from the round-off of crank angle and lengths that the place passes on; it grows
+    where the coupler nearly stands across the guide.
+
+    Attributes
+    ----------
+    theta3 : ndarray
+        Coupler angle from B to C [rad]: between -pi/2 and pi/2 in the open assembly, between pi/2
+        and 3 pi/2 in the crossed one.
+    position : ndarray
+        Place of the slider's pin C along the guide [m].
+    omega3, alpha3 : ndarray
+        Speed and acceleration of the coupler [rad/s, rad/s^2]; without a crank speed, over the
+        crank's and its square.
+    slider_velocity, slider_acceleration : ndarray
+        Of the slider along the guide [m/s, m/s^2]; without a crank speed, over the crank's and its
+        square.
+    transmission_angle : ndarray
+        Angle between the coupler and the normal of the guide [rad], from 0 to pi; the pull of the
+        coupler turns into that of the slider best at pi/2.
+    """
+
+    theta3: Array
+    position: Array
+    omega3: Array
+    alpha3: Array
+    slider_velocity: Array
+    slider_acceleration: Array
+    transmission_angle: Array
+
+    places: ClassVar[Mapping[str, str]] = {
+        "theta3": "rad",
+        "position": "m",
+        "transmission_angle": "rad",
+    }
+    rates: ClassVar[Mapping[str, str]] = {
+        "omega3": "rad/s",
+        "alpha3": "rad/s^2",
+        "slider_velocity": "m/s",
+        "slider_acceleration": "m/s^2",
+    }
+
+    @property
+    def joints(self) -> Mapping[str, Array]:
+        """Places of the joints A, B, C, each of shape (..., 2)."""
+        start = planar(np.zeros(self.theta2.shape))
+        pins = {"B": self.link("coupler").origin, "C": self.link("slider").origin}
+        return {"A": start, **pins}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the slider's place, velocity and acceleration against the crank angle."""
+        curves = (
+            ("position", "position"),
+            ("slider_velocity", "velocity"),
+            ("slider_acceleration", "acceleration"),
+        )
+        drawn: Axes = plot_against_crank(self, curves, ax)
+        return drawn
+
+    def _other_link(self, name: str) -> LinkMotion:
+        if name == "coupler":
+            return self._at_crank_pin(self.theta3, self.omega3, self.alpha3)
+        still = np.zeros(self.theta2.shape)
+        pin = self.position + 1j * self.linkage.lengths["offset"]
+        moving = self.slider_velocity, self.slider_acceleration
+        return self._link(pin, *moving, still, still, still)
+
+    def _at_far_joint(self, name: str) -> LinkMotion | None:
+        if name != "coupler":
+            return None
+        at = self.link("slider")
+        return LinkMotion(
+            at.origin, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
+        )
+
+
+@dataclass(frozen=True)
+class SliderCrank(Linkage):
+    """Slider-crank ABC: crank AB, coupler BC, and a slider whose pin C moves along ``y = offset``.
+
+    Parameters
+    ----------
+    crank, coupler : float
+        Lengths, in one unit.
+    offset : float
+        Height of the guide over the crank's pivot A; negative below it.
+    assembly : {"open", "crossed"}
+        The slider to the right or to the left of B.
+
+    Raises
+    ------
+    BadInput
+        If a length is not a positive number, or crank and coupler cannot reach the guide.
+    """
+
+    crank: float
+    coupler: float
+    offset: float = 0.0
+    assembly: Assembly = "open"
+
+    names: ClassVar[tuple[str, ...]] = ("crank", "coupler", "offset")
+    links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "slider")
+    bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "crank": ("A", "B"),
+        "coupler": ("B", "C"),
+        "slider": ("C",),
+    }
+
+    def __post_init__(self) -> None:
+        """Check the lengths."""
+        positive = {"crank": self.crank, "coupler": self.coupler}
+        problems = length_problems("SliderCrank", positive)
+        if not (isinstance(self.offset, Real) and abs(float(self.offset)) < np.inf):
+            problems.append(
+                Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
+            )
+        problems += assembly_problems("SliderCrank", self.assembly)
+        if not problems and self._spare(1.0) <= 0.0:
+            problems.append(
+                Problem(
+                    "SliderCrank.offset",
+                    f"{self.offset:g}",
+                    f"less than {self.crank + self.coupler:g} in magnitude, crank and coupler",
+                    "they cannot reach the guide; bring it nearer or lengthen one of them",
+                )
+            )
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def crank_turns(self) -> bool:
+        """True where the crank can turn fully without passing a change point."""
+        return self._spare(-1.0) > 0.0
+
+    def _spare(self, side: float) -> float:
+        """Return by how much coupler plus (+1) or minus (-1) crank exceeds the offset.
+
+        Correctly rounded, so that no round-off can change its sign.
+        """
+        crank, coupler, offset = self._unit_lengths.values()
+        return math.fsum((coupler, side * crank, -abs(offset)))
+
+    def require_full_turn(self) -> None:
+        """Raise BadInput where the crank cannot turn fully."""
+        if not self.crank_turns:
+            raise bad(
+                "SliderCrank",
+                f"coupler {self.coupler:g} for crank {self.crank:g} and offset {self.offset:g}",
+                f"a coupler above {self.crank + abs(self.offset):g}",
+                "the crank cannot turn fully; change a length",
+            )
+
+    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Return the intervals of crank angle [rad] in which the coupler reaches the guide.
+
+        Returns
+        -------
+        tuple of (float, float)
+            Without their ends, at which the coupler stands across the guide; each up to whole
+            turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
+            folds.
+        """
+        offset = self._unit_lengths["offset"]
+        upper, lower = self._beyond(offset), self._beyond(-offset)
+        quarter = np.pi / 2.0
+        if upper is None:
+            if lower is None:
+                return ((-np.pi, np.pi),)
+            return ((lower - quarter, 3.0 * quarter - lower),)
+        if lower is None:
+            return ((upper - 3.0 * quarter, quarter - upper),)
+        return (
+            (lower - quarter, quarter - upper),
+            (quarter + upper, 3.0 * quarter - lower),
+        )
+
+    def _beyond(self, offset: float) -> float | None:
+        """Return how far from upright, on the guide's other side, the crank is held up, if it is.
+
+        There ``crank cos(beyond) = coupler + offset``.
+        """
+        crank, coupler, _ = self._unit_lengths.values()
+        least, most = math.fsum((crank, -coupler, -offset)), math.fsum((crank, coupler, offset))
+        if least < 0.0 or most < 0.0:
+            return None
+        return float(2.0 * np.arctan2(np.sqrt(least), np.sqrt(most)))
+
+    @property
+    def _ways(self) -> tuple[float, float]:
+        """Distances of the slider from A along the guide, at the outer and the inner dead centre.
+
+        For a crank that turns fully.
+        """
+        crank, coupler, offset = self._unit_lengths.values()
+        outer = math.sqrt(self._spare(1.0) * (coupler + crank + abs(offset)))
+        return outer, math.sqrt(self._spare(-1.0) * (coupler - crank + abs(offset)))
+
+    @property
+    def dead_centres(self) -> tuple[float, float]:
+        """Crank angles [rad] of the outer and the inner dead centre, where the slider reverses.
+
+        Crank and coupler lie in one line: one after the other, and one over the other.
+
+        Raises
+        ------
+        BadInput
+            If the crank cannot turn fully.
+        """
+        self.require_full_turn()
+        offset = self._unit_lengths["offset"]
+        stretched, folded = (float(np.arctan2(offset, way)) for way in self._ways)
+        if self.assembly == "open":
+            return stretched, np.pi + folded
+        return np.pi - stretched, 2.0 * np.pi - folded
+
+    @property
+    def stroke(self) -> float:
+        """Way of the slider between its dead centres [m].
+
+        Raises
+        ------
+        BadInput
+            If the crank cannot turn fully.
+        """
+        self.require_full_turn()
+        crank, coupler, _ = self._unit_lengths.values()
+        outer, inner = self._ways
+        return float(np.ldexp(4.0 * crank * coupler / (outer + inner), -self._scale))
+
+    @property
+    def time_ratio(self) -> float:
+        """Time of the stroke from the outer to the inner dead centre over that of the way back.
+
+        At steady speed, the crank turning anticlockwise; with the guide through A it is 1.
+
+        Raises
+        ------
+        BadInput
+            If the crank cannot turn fully.
+        """
+        outer, inner = self.dead_centres
+        return (inner - outer) / (2.0 * np.pi - (inner - outer))
+
+    def motion(
+        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
+    ) -> SliderCrankMotion:
+        """Return the motion of coupler and slider, from the closure of the loop.
+
+        Parameters
+        ----------
+        theta : array_like
+            Crank angle [rad], any shape.
+        speed, acceleration : array_like
+            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
+
+        Returns
+        -------
+        SliderCrankMotion
+            Every array has the shape to which the three broadcast.  The check "folds within the
+            angles" fails where the coupler comes to stand across the guide between the least and
+            the greatest angle: the motion is not continuous there, or it may leave by the other
+            branch.
+
+        Raises
+        ------
+        BadInput
+            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
+            together, or the linkage cannot reach an angle or folds there.
+        """
+        angles, drive = drive_of(theta, speed, acceleration)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            values = _MOTION(angles, **self._unit_lengths, assembly=self.branch)
+        m = by_name(angles, _OUTPUTS, values)
+        self._require_reached(m, self._reachable())
+        self._require(self._blur(m) < _UNDECIDED, angles, self._reachable())
+        omega3, alpha3 = rates_of(drive, m["omega3"], m["alpha3"])
+        velocity, change = rates_of(drive, m["slider_velocity"], m["slider_acceleration"])
+        norm = "worse of theta3 [rad] and position over the longest length, absolute, entrywise"
+        return SliderCrankMotion(
+            theta3=spread(m["theta3"], drive),
+            position=np.ldexp(spread(m["position"], drive), -self._scale),
+            omega3=omega3,
+            alpha3=alpha3,
+            slider_velocity=np.ldexp(velocity, -self._scale),
+            slider_acceleration=np.ldexp(change, -self._scale),
+            transmission_angle=spread(m["transmission_angle"], drive),
+            **self._common(m, drive, norm),
+        )
+
+    def _blur(self, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of each length does to theta3 [rad], three times."""
+        crank, coupler, offset = self._unit_lengths.values()
+        sine = np.abs(np.cos(m["transmission_angle"]))
+        moved = abs(offset) + crank * np.abs(np.sin(m["theta2"])) + coupler * sine
+        across = np.abs(np.sin(m["transmission_angle"]))
+        return np.asarray(1.5 * np.finfo(float).eps * moved / (coupler * across))
+
+    def _figure(self, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of the angle and of each length does, three times.
+
+        A change of a length across the guide moves the slider by its product with the tangent.
+        """
+        crank, coupler, offset = self._unit_lengths.values()
+        theta2, blur = m["theta2"], self._blur(m)
+        unit = 1.5 * np.finfo(float).eps
+        turned = unit * (np.abs(theta2 * m["omega3"]) + np.abs(m["theta3"])) + blur
+        along = crank * np.abs(np.cos(theta2)) + coupler * np.abs(np.cos(m["theta3"]))
+        moved = np.abs(theta2 * m["slider_velocity"]) + np.abs(m["position"]) + along
+        moved = unit * moved + blur * coupler * np.abs(np.cos(m["transmission_angle"]))
+        longest = max(crank, coupler, abs(offset))
+        return np.asarray(np.maximum(turned, moved / longest))
+
+    def _loop(self, m: Mapping[str, Array]) -> Terms:
+        crank, coupler, offset = self._unit_lengths.values()
+        terms = zip(
+            turning(crank, m["theta2"], 1.0, 0.0),
+            turning(coupler, m["theta3"], m["omega3"], m["alpha3"]),
+            (-m["position"], -m["slider_velocity"], -m["slider_acceleration"]),
+            strict=True,
+        )
+        places, speeds, changes = (list(item) for item in terms)
+        return [*places, -1j * offset], speeds, changes
+
+
+_MOTION: Callable[..., tuple[Array, ...]] = slider_crank_kinematics.motion
+_OUTPUTS = slider_crank_kinematics.RETURNS["motion"]

@@ -1,0 +1,436 @@
+"""Torque fluctuation over a revolution, and the flywheel that keeps the speed even."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..core.errors import bad
+from ..core.results import Check, DeferredChecks, Result, provenance
+from .blocks import Array
+from .forces import described, driving_torque
+from .loads import not_finite
+from .machine import Machine
+from .one_freedom import OneFreedom
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TURN = 2.0 * np.pi
+_EPS = float(np.finfo(float).eps)
+_FEWEST, _MOST = 1024, 2**15
+# The tail of the torque's harmonics is taken as round-off below this share of the largest one.
+_TAIL = 1e-12
+# Forward dynamics confirm the coefficient of fluctuation to this share of it.
+_CONFIRMED = 1e-5
+_ITERATIONS = 60
+_WILD = 10.0
+# The speeds have settled where they move by no more, relative; the check allows for jitter.
+_SETTLED, _UNSETTLED = 16.0 * _EPS, 1e-12
+# Flywheels tried from the lightest up, so that the least of all that will do is found.
+_TRIED, _LIGHTEST = 33, 1e-4
+# Turns between which a torque must repeat, and angles that no regular pattern meets twice.
+_TURNS = np.array([0.0, 1.0, 2.0, 3.0, 7.0])
+_SCATTERED = _TURN * np.mod(np.sqrt(2.0) * np.arange(1.0, 32.0), 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueFluctuation(Result):
+    """Driving torque over a revolution at constant speed, and the energy that it stores.
+
+    ``error`` is that of the energy fluctuation [J].
+
+    Attributes
+    ----------
+    theta, torque : ndarray, shape (n,)
+        Crank angles of one revolution, the end not repeated [rad], and driving torque [N m].
+    speed : float
+        Crank speed [rad/s].
+    mean_torque : float
+        Its mean [N m]; mean power over speed.
+    energy : ndarray, shape (n,)
+        Integral of torque less mean [J], of zero mean.
+    energy_fluctuation : float
+        Its greatest less its least value [J].
+    slowest, fastest : float
+        Crank angles [rad] where a machine under constant torque runs slowest and fastest.
+    """
+
+    theta: Array
+    torque: Array
+    speed: float
+    mean_torque: float
+    energy: Array
+    energy_fluctuation: float
+    slowest: float
+    fastest: float
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("theta", "torque", "energy"), ("theta",)
+    )
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the torque and its mean against the crank angle."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        degrees = np.degrees(np.append(self.theta, self.theta[0] + _TURN))
+        ax.plot(degrees, np.append(self.torque, self.torque[0]))
+        ax.axhline(self.mean_torque, color="0.5", linestyle="--", label="mean")
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("driving torque [N m]")
+        ax.legend()
+        return ax
+
+
+def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
+    """Return how the driving torque varies over a revolution at constant crank speed.
+
+    Parameters
+    ----------
+    machine : Machine
+        Linkage, masses, gravity, loads, springs.
+    speed : float
+        Crank speed [rad/s].
+
+    Returns
+    -------
+    TorqueFluctuation
+        The integral is taken harmonic by harmonic; samples are doubled until the harmonics end in
+        round-off.  Where a load jumps they do not, and ``error`` says what is left.
+
+    Raises
+    ------
+    BadInput
+        If the crank cannot turn fully, the speed is zero or not finite, or the torque does not
+        repeat after a revolution.
+
+    Notes
+    -----
+    Aannaque section 3.7: with a flywheel the motor need give the mean torque only.
+    """
+    _require(machine, speed)
+    theta, torque, tail = _sampled(machine, speed)
+    mean, energy = float(np.mean(torque)), _integral(torque)
+    (low, slowest), (high, fastest) = _extreme(-energy), _extreme(energy)
+    size = float(np.max(np.abs(torque)))
+    return TorqueFluctuation(
+        theta=theta,
+        torque=torque,
+        speed=float(speed),
+        mean_torque=mean,
+        energy=energy,
+        energy_fluctuation=high + low,
+        # Where the machine has taken up most energy beyond the motor's, it is slowest.
+        slowest=fastest,
+        fastest=slowest,
+        method=f"{theta.size} samples, integrated by harmonics",
+        error=tail + 32.0 * _EPS * size + _polish_error(energy),
+        error_norm="energy fluctuation [J]",
+        checks=DeferredChecks(partial(_mean_check, machine, speed, mean, size)),
+        provenance=provenance(described(machine)),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flywheel(Result):
+    """The flywheel that a machine needs, under a constant motor torque.
+
+    ``error`` is that of the inertia [kg m^2].
+
+    Attributes
+    ----------
+    machine : Machine
+        Without the flywheel.
+    inertia : float
+        Inertia to be added to the crank [kg m^2], the least of those that will do; zero where the
+        machine is even enough.
+    first_order : float
+        The textbook's ``energy fluctuation / (fluctuation speed^2)`` [kg m^2], which leaves out
+        what the links themselves store at a varying speed.
+    fluctuation : float
+        Coefficient of speed fluctuation reached, (greatest - least) / mean of the two.
+    motor_torque : float
+        The constant torque [N m] that keeps the speed.
+    theta, speeds : ndarray, shape (n,)
+        Crank angle [rad] and the speed there with the flywheel [rad/s].
+    torque : TorqueFluctuation
+        At constant speed.
+    """
+
+    machine: Machine
+    inertia: float
+    first_order: float
+    fluctuation: float
+    motor_torque: float
+    theta: Array
+    speeds: Array
+    torque: TorqueFluctuation
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("theta", "speeds"), ("theta",)
+    )
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the crank speed with the flywheel against the crank angle."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        ax.plot(np.degrees(self.theta), self.speeds)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("crank speed [rad/s]")
+        return ax
+
+
+def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) -> Flywheel:
+    """Return the flywheel that holds the crank speed within a coefficient of fluctuation.
+
+    Parameters
+    ----------
+    machine : Machine
+        Linkage, masses, gravity, loads, springs.
+    speed : float
+        Mean of greatest and least crank speed [rad/s].
+    fluctuation : float
+        Wanted coefficient, (greatest - least speed) / speed, between 0 and 1.
+
+    Returns
+    -------
+    Flywheel
+        From the balance of energy with the speed as it varies, loads and dampers included.  The
+        checks are a revolution of forward dynamics, to what ``error`` admits, and that the speeds
+        have settled.
+
+    Raises
+    ------
+    BadInput
+        As :func:`torque_fluctuation`, or if the coefficient is not between 0 and 1.
+
+    Examples
+    --------
+    >>> from elastolink import FourBar, MassDistribution
+    >>> bar = MassDistribution.uniform_bar(mass=0.45, length=0.3)
+    >>> machine = Machine(FourBar(0.3, 0.15, 0.3, 0.3), {"coupler": bar, "follower": bar})
+    >>> wheel = flywheel_inertia(machine, speed=10.0, fluctuation=0.02)
+    >>> wheel.inertia > 0 and abs(wheel.fluctuation - 0.02) < 1e-12
+    True
+    """
+    if not_finite("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
+        found = repr(fluctuation)[:60]
+        raise bad("fluctuation", found, "a number between 0 and 1", "0.02 is usual")
+    steady = torque_fluctuation(machine, speed)
+    first_order = steady.energy_fluctuation / (fluctuation * speed**2)
+    balance = _Balance(machine, steady)
+    inertia = balance.inertia_for(fluctuation, first_order)
+    reached, speeds, motor, moved = balance.motion(inertia)
+    slope = (steady.error + 64.0 * _EPS * balance.size) / (fluctuation * speed**2)
+    # The coefficient is known to some last digits and to what the speeds still move.
+    error = slope + (16.0 * _EPS + 8.0 * moved) / fluctuation * inertia
+    # The fluctuation goes with the inverse of the whole inertia; it is off by its error's share.
+    share = error / (inertia + float(np.mean(balance.reduced)))
+    return Flywheel(
+        machine=machine,
+        inertia=inertia,
+        first_order=first_order,
+        fluctuation=reached,
+        motor_torque=motor,
+        theta=steady.theta,
+        speeds=speeds,
+        torque=steady,
+        method="balance of energy",
+        error=error,
+        error_norm="inertia [kg m^2]",
+        checks=DeferredChecks(
+            partial(_confirmed, machine, inertia, motor, float(speeds[0]), reached, share, moved)
+        ),
+        provenance=provenance(described(machine)),
+    )
+
+
+class _Balance:
+    """Speed over a revolution under a constant torque, for any flywheel."""
+
+    def __init__(self, machine: Machine, steady: TorqueFluctuation) -> None:
+        self.theta, self.speed = steady.theta, abs(steady.speed)
+        self.sign = np.sign(steady.speed)
+        self.system = OneFreedom(machine)
+        self.reduced = self.system.coefficients(self.theta)[0]
+        self.size = float(np.max(self.reduced)) * self.speed**2 + steady.energy_fluctuation
+        # Where it does not depend on the speed, once and for all.
+        still = None if self.system.hasty else self.system.load(self.theta, steady.speed)
+        self.still = still
+
+    def motion(self, flywheel: float) -> tuple[float, Array, float, float]:
+        """Return coefficient of fluctuation, speeds, motor's torque, and the last relative move."""
+        speeds: Array = np.full(self.theta.shape, self.speed)
+        motor, moved, inertia = 0.0, 0.0, self.reduced + flywheel
+        for _ in range(_ITERATIONS):
+            load = self.still
+            if load is None:
+                load = self.system.load(self.theta, self.sign * speeds)
+            motor = float(np.mean(load))
+            found = self._speeds(inertia, -_integral(load))
+            if found is None:
+                return _WILD, self.sign * speeds, motor, 0.0
+            moved = float(np.max(np.abs(found - speeds))) / self.speed
+            speeds = found
+            if self.still is not None:
+                moved = 0.0
+            if moved <= _SETTLED:
+                break
+        high, low = _extreme(speeds)[0], -_extreme(-speeds)[0]
+        return (high - low) / self.speed, self.sign * speeds, motor, moved
+
+    def _speeds(self, inertia: Array, stored: Array) -> Array | None:
+        """Return speeds for the stored work, their middle as wanted; None where it stalls."""
+        if not np.min(inertia) > 0:
+            return None
+        middle = np.mean(inertia) * self.speed**2 / 2.0
+        for _ in range(_ITERATIONS):
+            square = 2.0 * (middle + stored) / inertia
+            if not np.min(square) > 0:
+                return None
+            speeds = np.sqrt(square)
+            off = self.speed - (_extreme(speeds)[0] - _extreme(-speeds)[0]) / 2.0
+            if abs(off) <= 4.0 * _EPS * self.speed:
+                break
+            # d(speed)/d(middle) = 1/(inertia speed), here at the mean of the two extremes.
+            places = [int(np.argmax(speeds)), int(np.argmin(speeds))]
+            middle += off / float(np.mean(1.0 / (inertia[places] * speeds[places])))
+        return np.asarray(speeds)
+
+    def inertia_for(self, fluctuation: float, guess: float) -> float:
+        """Return the least flywheel that keeps within a coefficient of fluctuation.
+
+        The coefficient need not fall steadily, for weights and loads may even out what the links
+        store: flywheels are tried from light to heavy, and the first that will do brackets it.
+        """
+        from scipy.optimize import brentq
+
+        def excess(flywheel: float) -> float:
+            return self.motion(flywheel)[0] - fluctuation
+
+        if excess(0.0) <= 0:
+            return 0.0
+        most = max(guess, float(np.max(self.reduced)))
+        while excess(most) > 0:
+            most *= 2.0
+        light = 0.0
+        for heavy in (*np.geomspace(_LIGHTEST * most, most, _TRIED)[:-1], most):
+            if excess(heavy) <= 0:
+                break
+            light = float(heavy)
+        return float(brentq(excess, light, heavy, xtol=1e-15 * most, rtol=4.0 * _EPS))
+
+
+def _sampled(machine: Machine, speed: float) -> tuple[Array, Array, float]:
+    """Return angles, torques, and what the harmonics beyond the samples do to the energy [J]."""
+    count = _FEWEST
+    while True:
+        theta = _TURN * np.arange(count) / count
+        torque = driving_torque(machine, theta, speed).torque
+        size = np.abs(np.fft.rfft(torque)) * (2.0 / count)
+        top = size[-max(1, size.size // 8) :]
+        if float(np.sum(top)) <= _TAIL * float(np.max(np.abs(torque))):
+            return theta, torque, 0.0
+        if count >= _MOST:
+            # Folded down, each is added to a lower harmonic k, and divided by k: a sum of 1/k.
+            return theta, torque, 4.0 * float(np.max(top)) * (1.0 + float(np.log(count)))
+        count *= 2
+
+
+def _integral(values: Array) -> Array:
+    """Return the integral of samples over a turn less their mean, of zero mean itself."""
+    harmonics = np.fft.rfft(values)
+    order = np.arange(harmonics.size, dtype=float)
+    order[0] = 1.0
+    harmonics = harmonics / (1j * order)
+    harmonics[0] = 0.0
+    if values.size % 2 == 0:
+        harmonics[-1] = 0.0  # the highest one has no sine among the samples
+    return np.fft.irfft(harmonics, n=values.size)
+
+
+def _extreme(values: Array) -> tuple[float, float]:
+    """Return the greatest value of a periodic function between its samples, and its angle."""
+    n = values.size
+    top = int(np.argmax(values))
+    # Seven samples about the top; the polynomial through them is off by the eighth power.
+    x = np.arange(-3.0, 4.0)
+    y = values[(top + np.arange(-3, 4)) % n] - values[top]
+    polynomial = np.polynomial.Polynomial(np.linalg.solve(np.vander(x, increasing=True), y))
+    slope = polynomial.deriv()
+    at = 0.0
+    for _ in range(8):
+        bend = slope.deriv()(at)
+        if bend == 0.0:
+            break
+        at = float(np.clip(at - slope(at) / bend, -1.0, 1.0))
+    value = float(values[top] + max(float(polynomial(at)), 0.0))
+    return value, float((top + at) * _TURN / n % _TURN)
+
+
+def _polish_error(energy: Array) -> float:
+    """Return how far half the samples would put the extremes, over what halving gains."""
+    half = energy[::2]
+    gap = _extreme(energy)[0] - _extreme(half)[0]
+    other = _extreme(-energy)[0] - _extreme(-half)[0]
+    return (abs(gap) + abs(other)) / 16.0
+
+
+def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dict[str, Check]:
+    """Take the mean again from the work of loads and dampers over the revolution."""
+    theta = _TURN * np.arange(_MOST // 8) / (_MOST // 8)
+    work = -float(np.mean(machine.power(theta, np.full(theta.shape, speed)))) / speed
+    gap = abs(mean - work) / (size or 1.0)
+    return {"mean torque against the loads' work, relative": Check(gap, 1e-3)}
+
+
+def _confirmed(
+    machine: Machine,
+    inertia: float,
+    motor: float,
+    start: float,
+    reached: float,
+    share: float,
+    moved: float,
+) -> dict[str, Check]:
+    """Run a revolution under the motor's torque."""
+    from .motor_run import run_up
+
+    run = run_up(
+        machine,
+        motor,
+        revolutions=1.0,
+        speed0=start,
+        flywheel=inertia,
+        tolerance=1e-11,
+        samples=4001,
+    )
+    speeds = np.abs(run.speed)
+    middle = (np.max(speeds) + np.min(speeds)) / 2.0
+    found = float((np.max(speeds) - np.min(speeds)) / middle)
+    gap = abs(found - reached) / max(reached, 1e-12)
+    return {
+        "fluctuation by forward dynamics, relative": Check(gap, _CONFIRMED + share),
+        "speeds not settled, relative": Check(moved, _UNSETTLED),
+    }
+
+
+def _require(machine: Any, speed: float) -> None:
+    if not isinstance(machine, Machine):
+        raise bad("machine", type(machine).__name__, "a Machine", "build one")
+    machine.linkage.require_full_turn()
+    if not_finite("speed", {"speed": speed}) or speed == 0:
+        found = repr(speed)[:60]
+        raise bad("speed", found, "a finite crank speed, not zero", "give one in rad/s")
+    turns = _SCATTERED + _TURN * _TURNS[:, np.newaxis]
+    torque = driving_torque(machine, turns, speed).torque
+    size = float(np.max(np.abs(torque)))
+    if not np.allclose(torque, torque[:1], rtol=1e-6, atol=1e-6 * size):
+        fix = "check torsion springs and loads that depend on the angle"
+        raise bad("machine", "a torque that changes turn by turn", "one that repeats", fix)

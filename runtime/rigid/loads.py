@@ -1,0 +1,462 @@
+"""Loads, springs and dampers on the links of a machine, as wrenches at the links' first joints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from numbers import Real
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import BadInput, Problem, bad
+
+Array: TypeAlias = NDArray[np.float64]
+End: TypeAlias = tuple[str, float, float]
+Wrench: TypeAlias = tuple[Array, Array, Array]
+"""Force components in the fixed frame at the first joint [N], and couple [N m]."""
+
+FRAME = "frame"
+
+
+@dataclass(frozen=True)
+class LoadState:
+    """What a load that depends on the motion is given; arrays broadcast with the crank angles.
+
+    Attributes
+    ----------
+    theta : ndarray
+        Crank angle [rad].
+    crank_speed : ndarray
+        Crank speed [rad/s].
+    position, velocity : ndarray, shape (..., 2)
+        Of the point where the load acts [m, m/s], fixed axes.
+    angle, speed : ndarray
+        Angle and angular speed of the loaded link [rad, rad/s].
+    """
+
+    theta: Array
+    crank_speed: Array
+    position: Array
+    velocity: Array
+    angle: Array
+    speed: Array
+
+
+Force: TypeAlias = tuple[float, float] | Callable[[Any], Any]
+Couple: TypeAlias = float | Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class Load:
+    """A force and a couple on a link, from outside the machine.
+
+    Parameters
+    ----------
+    link : str
+        The loaded link, for example ``"follower"``.
+    force : pair of float, or callable
+        Force components [N].  A callable is given the crank angles and returns the pair ``fx, fy``
+        as a tuple, an array of shape (2,), or one of shape (..., 2): the components last.  For as
+        many angles as components it is called once more, at one angle more.
+    couple : float or callable
+        Couple [N m], anticlockwise, in the same way.
+    along, across : float
+        The point of the link where the force acts [m], in the link's frame.
+    axes : {"fixed", "link"}
+        Whether the force components are those along x and y of the frame, or along and across the
+        link.
+    given : {"angle", "motion"}
+        What a callable is given: the crank angles, or a :class:`LoadState`.
+
+    Raises
+    ------
+    BadInput
+        If a number is not finite, or a choice is unknown.
+
+    Examples
+    --------
+    A press whose resistance acts on the slider while it moves to the right:
+
+    >>> press = Load("slider", lambda at: (-500.0 * (at.velocity[..., 0] > 0), 0.0), given="motion")
+    """
+
+    link: str
+    force: Force = (0.0, 0.0)
+    couple: Couple = 0.0
+    along: float = 0.0
+    across: float = 0.0
+    axes: Literal["fixed", "link"] = "fixed"
+    given: Literal["angle", "motion"] = "angle"
+
+    def __post_init__(self) -> None:
+        """Check the numbers and the choices."""
+        force: Any = ((0.0, 0.0),) if callable(self.force) else (self.force,)
+        numbers: dict[str, Any] = {"along": self.along, "across": self.across}
+        if not callable(self.couple):
+            numbers["couple"] = self.couple
+        problems = not_finite("Load", numbers)
+        try:
+            fx, fy = force[0]
+            problems += not_finite("Load", {"force": fx}) or not_finite("Load", {"force": fy})
+        except (TypeError, ValueError):
+            problems.append(
+                Problem("Load.force", repr(self.force)[:60], "a pair of numbers", "give (fx, fy)")
+            )
+        for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
+            if getattr(self, name) not in choices:
+                found = repr(getattr(self, name))[:60]
+                problems.append(Problem(f"Load.{name}", found, f"one of {choices}", "choose one"))
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The links concerned."""
+        return (self.link,)
+
+    def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
+        """Return the wrench on the link.
+
+        Parameters
+        ----------
+        motion : Motion
+            Of the linkage, at the crank speed.
+        crank_speed : ndarray
+            Crank speed [rad/s].
+
+        Raises
+        ------
+        BadInput
+            If a callable returns something else than finite numbers of the right shape.
+        """
+        force, couple = frozen(self, motion, crank_speed)
+        return {self.link: _at_first_joint(self, motion, force, couple)}
+
+
+def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
+    """Return force components (..., 2) along the load's own axes [N], and couple [N m].
+
+    Raises
+    ------
+    BadInput
+        As :meth:`Load.wrenches`.
+    """
+    given: Any = motion.theta2
+    if load.given == "motion" and (callable(load.force) or callable(load.couple)):
+        given = _state(motion, load.link, load.along, load.across, crank_speed)
+    shape = motion.theta2.shape
+    force = evaluated(load.force, given, 2, f"Load.force on {load.link}", shape)
+    return force, evaluated(load.couple, given, 0, f"Load.couple on {load.link}", shape)
+
+
+def _at_first_joint(load: Load, motion: Any, force: Array, couple: Array) -> Wrench:
+    angle = motion.link(load.link).angle
+    cos, sin = np.cos(angle), np.sin(angle)
+    fx, fy = force[..., 0], force[..., 1]
+    if load.axes == "link":
+        fx, fy = cos * fx - sin * fy, sin * fx + cos * fy
+    x, y = cos * load.along - sin * load.across, sin * load.along + cos * load.across
+    return fx, fy, couple + x * fy - y * fx
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring with a damper beside it, between points of two links or of a link and the frame.
+
+    Its tension is ``preload + stiffness (length - free_length) + damping d(length)/dt``, along the
+    line between the points.
+
+    Parameters
+    ----------
+    first, second : (str, float, float)
+        Link and point of it [m], along and across; for ``"frame"`` the point's x and y.
+    stiffness : float
+        Stiffness [N/m].
+    free_length : float
+        Length [m] at which the stiffness gives no force.
+    damping : float
+        Damping [N s/m].
+    preload : float
+        Tension [N] at the free length.
+
+    Raises
+    ------
+    BadInput
+        If a number is not finite or, the preload apart, negative, an end is no point, or both ends
+        are on one link.
+    """
+
+    first: End
+    second: End
+    stiffness: float = 0.0
+    free_length: float = 0.0
+    damping: float = 0.0
+    preload: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the numbers and the ends."""
+        problems = []
+        for name in ("first", "second"):
+            problems += _end_problems(f"Spring.{name}", getattr(self, name))
+        names = ("stiffness", "free_length", "damping")
+        problems += not_finite("Spring", {name: getattr(self, name) for name in names}, least=0.0)
+        problems += not_finite("Spring", {"preload": self.preload})
+        if not problems and self.first[0] == self.second[0]:
+            found = f"both ends on {self.first[0]!r}"
+            problems.append(Problem("Spring", found, "two different links", "move an end"))
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The links concerned, the frame among them."""
+        return self.first[0], self.second[0]
+
+    @property
+    def dampers(self) -> Spring | None:
+        """The damper alone; None where there is none."""
+        return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
+
+    def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
+        """Return the wrench on each of the links; parameters as :meth:`Load.wrenches`.
+
+        Raises
+        ------
+        BadInput
+            If the two points meet while the tension there is not zero.
+        """
+        a, b, span, length = self._span(motion)
+        constant = self.preload - self.stiffness * self.free_length
+        if constant == 0.0 and self.damping == 0.0:
+            pull = self.stiffness * span
+        else:
+            if not np.all(length > 0):
+                found = "points that meet"
+                fix = "move a point, or leave free length, preload and damping zero"
+                raise bad("Spring", found, "points that stay apart", fix)
+            unit = span / length[..., None]
+            rate = np.sum(unit * (b.velocity - a.velocity), axis=-1)
+            pull = self.stiffness * span + (constant + self.damping * rate)[..., None] * unit
+        found_wrenches = {}
+        for end, place, sign in ((self.first, a, 1.0), (self.second, b, -1.0)):
+            if end[0] != FRAME:
+                origin = motion.link(end[0]).origin
+                x, y = np.moveaxis(place.position - origin, -1, 0)
+                fx, fy = sign * pull[..., 0], sign * pull[..., 1]
+                found_wrenches[end[0]] = (fx, fy, x * fy - y * fx)
+        return found_wrenches
+
+    def potential(self, motion: Any) -> Array:
+        """Return the energy stored [J], zero at the free length."""
+        length = self._span(motion)[3]
+        stretch = length - self.free_length
+        return np.asarray(self.stiffness / 2.0 * stretch**2 + self.preload * stretch)
+
+    def _span(self, motion: Any) -> tuple[_Place, _Place, Array, Array]:
+        a, b = (_place(motion, *end) for end in (self.first, self.second))
+        span = b.position - a.position
+        return a, b, span, np.hypot(span[..., 0], span[..., 1])
+
+
+@dataclass(frozen=True)
+class TorsionSpring:
+    """A torsion spring with a damper beside it, between two links or a link and the frame.
+
+    Its couple on the first link is ``preload + stiffness (angle of second - angle of first -
+    free_angle) + damping (their relative speed)``, the opposite on the second.
+
+    Parameters
+    ----------
+    first, second : str
+        Links, or ``"frame"``, whose angle is zero.
+    stiffness : float
+        Stiffness [N m/rad].
+    free_angle : float
+        Relative angle [rad] without a couple; the angles of the links are continuous over turns.
+    damping : float
+        Damping [N m s/rad].
+    preload : float
+        Couple [N m] at the free angle.
+
+    Raises
+    ------
+    BadInput
+        If a number is not finite, stiffness or damping is negative, or both links are the same.
+    """
+
+    first: str
+    second: str
+    stiffness: float = 0.0
+    free_angle: float = 0.0
+    damping: float = 0.0
+    preload: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the numbers and the links."""
+        where = "TorsionSpring"
+        rates = {"stiffness": self.stiffness, "damping": self.damping}
+        problems = not_finite(where, rates, least=0.0)
+        problems += not_finite(where, {"free_angle": self.free_angle, "preload": self.preload})
+        if self.first == self.second:
+            found = f"both ends on {self.first!r}"
+            problems.append(Problem(where, found, "two different links", "name another link"))
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The links concerned, the frame among them."""
+        return self.first, self.second
+
+    @property
+    def dampers(self) -> TorsionSpring | None:
+        """The damper alone; None where there is none."""
+        return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
+
+    def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
+        """Return the wrench on each of the links; parameters as :meth:`Load.wrenches`."""
+        twist, rate = (
+            np.asarray(_turning(motion, self.second)[i] - _turning(motion, self.first)[i])
+            for i in (0, 1)
+        )
+        couple = self.preload + self.stiffness * (twist - self.free_angle) + self.damping * rate
+        none = np.zeros(np.shape(couple))
+        ends = ((self.first, couple), (self.second, -couple))
+        return {link: (none, none, value) for link, value in ends if link != FRAME}
+
+    def potential(self, motion: Any) -> Array:
+        """Return the energy stored [J], zero at the free angle."""
+        twist = _turning(motion, self.second)[0] - _turning(motion, self.first)[0]
+        twist = twist - self.free_angle
+        return np.asarray(self.stiffness / 2.0 * twist**2 + self.preload * twist)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Position and velocity of a point, shape (..., 2)."""
+
+    position: Array
+    velocity: Array
+
+
+def _place(motion: Any, link: str, along: float, across: float) -> _Place:
+    if link == FRAME:
+        return _Place(np.array([along, across]), np.zeros(2))
+    point = motion.point(link, along, across)
+    return _Place(point.position, point.velocity)
+
+
+def _turning(motion: Any, link: str) -> tuple[Array, Array]:
+    if link == FRAME:
+        return np.zeros(()), np.zeros(())
+    moving = motion.link(link)
+    return moving.angle, moving.speed
+
+
+def _state(motion: Any, link: str, along: float, across: float, crank_speed: Array) -> LoadState:
+    point, turning = motion.point(link, along, across), motion.link(link)
+    return LoadState(
+        theta=motion.theta2,
+        crank_speed=crank_speed,
+        position=point.position,
+        velocity=point.velocity,
+        angle=turning.angle,
+        speed=turning.speed,
+    )
+
+
+def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...]) -> Array:
+    """Return a constant, or what a callable returns, as an array of shape ``(..., size)``.
+
+    ``size`` 0 stands for numbers.
+
+    Raises
+    ------
+    BadInput
+        If the callable returns something else than finite numbers of that shape.
+    """
+    expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
+    found = _called(law, given, where, expected) if callable(law) else law
+    if callable(law) and size and _may_be_turned(found, shape):
+        # As many angles as components: at one angle more, the array shows its order.
+        longer = (int(np.prod(shape)) + 1,)
+        evaluated(law, _one_more(given, shape), size, where, longer)
+    try:
+        if size and isinstance(found, Sequence) and len(found) == size:
+            found = np.stack(np.broadcast_arrays(*found), axis=-1)
+        values = np.asarray(found, dtype=float)
+        fits = not size or (values.ndim > 0 and values.shape[-1] == size)
+        own = values.shape[:-1] if size else values.shape
+        fits = fits and np.broadcast_shapes(own, shape) == shape
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise bad(where, f"{found!r}"[:60], expected, "correct what the callable returns")
+    if not np.all(np.isfinite(values)):
+        raise bad(where, "a value that is not finite", expected, "correct the callable")
+    return values
+
+
+def _called(law: Callable[[Any], Any], given: Any, where: str, expected: str) -> Any:
+    """Return what a callable returns; name the load where it mistakes shapes or types.
+
+    Raises
+    ------
+    BadInput
+        From a TypeError, ValueError or IndexError of the callable; other exceptions pass.
+    """
+    try:
+        return law(given)
+    except BadInput:
+        raise
+    except (TypeError, ValueError, IndexError) as refusal:
+        found = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
+        raise bad(where, found, expected, "correct the callable") from refusal
+
+
+def _may_be_turned(found: Any, shape: tuple[int, ...]) -> bool:
+    """Tell whether the components of an array may be along its first axis, or its last one."""
+    return isinstance(found, np.ndarray) and found.shape == (2,) * (len(shape) + 1) and bool(shape)
+
+
+def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
+    """Return what a callable is given, with the first of its places once more at the end."""
+    if isinstance(given, LoadState):
+        pairs = ("position", "velocity")
+        return LoadState(
+            **{
+                item.name: _with_first(
+                    getattr(given, item.name), shape, (2,) if item.name in pairs else ()
+                )
+                for item in fields(given)
+            }
+        )
+    return _with_first(given, shape, ())
+
+
+def _with_first(values: Array, shape: tuple[int, ...], inner: tuple[int, ...]) -> Array:
+    flat = np.broadcast_to(values, (*shape, *inner)).reshape(-1, *inner)
+    return np.concatenate([flat, flat[:1]])
+
+
+def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
+    """Return a problem for each value that is no finite number, or below the least."""
+    wanted = "a finite number" + ("" if least == -math.inf else f", at least {least:g}")
+    return [
+        Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
+        for name, value in values.items()
+        if isinstance(value, bool)
+        or not isinstance(value, Real)
+        or not math.isfinite(value)
+        or value < least
+    ]
+
+
+def _end_problems(where: str, end: object) -> list[Problem]:
+    if not (isinstance(end, tuple) and len(end) == 3 and isinstance(end[0], str)):
+        fix = "write it like ('crank', 0.1, 0.0)"
+        return [Problem(where, repr(end)[:60], "a link and two coordinates", fix)]
+    return not_finite(where, {"along": end[1], "across": end[2]})

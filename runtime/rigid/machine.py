@@ -1,0 +1,283 @@
+"""A machine: a rigid linkage with masses, gravity, loads and springs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.errors import BadInput, Problem, bad
+from ..linkages import Linkage
+from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench, not_finite
+from .masses import MassDistribution
+
+AnySpring: TypeAlias = Spring | TorsionSpring
+Part: TypeAlias = Literal["all", "outside", "springs", "nonconservative"]
+
+_NONE = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A rigid linkage with the masses of its links and what acts on them.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The lengths and the assembly: :class:`FourBar`, :class:`SliderCrank`, :class:`QuickReturn`.
+    masses : mapping of str to MassDistribution
+        By link; a link that is not named has no mass.  A flywheel on the crankshaft belongs to the
+        crank.
+    gravity : pair of float
+        Acceleration of gravity [m/s^2] in the fixed frame; ``(0, -9.81)`` for a vertical plane.
+    loads : sequence of Load
+        Forces and couples from outside.
+    springs : sequence of Spring or TorsionSpring
+        Springs and dampers between links, or between a link and the frame.
+
+    Raises
+    ------
+    BadInput
+        If a link is unknown, or an item is of the wrong kind; every problem is listed.
+
+    Examples
+    --------
+    >>> from elastolink import FourBar
+    >>> flywheel = MassDistribution(inertia=0.01)
+    >>> machine = Machine(FourBar(0.3, 0.15, 0.3, 0.3), {"crank": flywheel})
+    >>> float(machine.kinetic_energy(theta=0.0, speed=10.0))
+    0.5
+    """
+
+    linkage: Linkage
+    masses: Mapping[str, MassDistribution] = field(default_factory=dict)
+    gravity: tuple[float, float] = _NONE
+    loads: tuple[Load, ...] = ()
+    springs: tuple[AnySpring, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check every part, and hold copies that do not change."""
+        if not isinstance(self.linkage, Linkage):
+            found = type(self.linkage).__name__
+            raise bad("Machine.linkage", found, "a linkage", "give a FourBar, for example")
+        problems = _mass_problems(self.masses, self.linkage.links)
+        problems += _gravity_problems(self.gravity)
+        for name, kinds in (("loads", (Load,)), ("springs", (Spring, TorsionSpring))):
+            problems += _item_problems(name, getattr(self, name), kinds, self.linkage.links)
+        if problems:
+            raise BadInput(*problems)
+        object.__setattr__(self, "masses", dict(self.masses))
+        object.__setattr__(self, "gravity", tuple(float(part) for part in self.gravity))
+        object.__setattr__(self, "loads", tuple(self.loads))
+        object.__setattr__(self, "springs", tuple(self.springs))
+
+    def mass(self, link: str) -> MassDistribution:
+        """Return the mass distribution of a link, an empty one where it has no mass."""
+        return self.masses.get(link, MassDistribution())
+
+    def with_mass(self, link: str, added: MassDistribution) -> Machine:
+        """Return the machine with something more fixed to a link: a counterweight, a flywheel.
+
+        Raises
+        ------
+        BadInput
+            If the linkage has no such link.
+        """
+        masses = {**self.masses, link: self.mass(link) + added}
+        return Machine(self.linkage, masses, self.gravity, self.loads, self.springs)
+
+    @property
+    def loaded(self) -> bool:
+        """True where something acts on the links beside their inertia."""
+        return bool(self._heavy or self.loads or self.springs)
+
+    @property
+    def _heavy(self) -> bool:
+        return self.gravity != _NONE and any(mass.mass > 0 for mass in self.masses.values())
+
+    def wrenches(self, motion: Any, speed: ArrayLike, part: Part = "all") -> dict[str, Wrench]:
+        """Return what acts on each loaded link, as force and couple at its first joint.
+
+        Parameters
+        ----------
+        motion : Motion
+            Of the linkage, at the crank speed.
+        speed : array_like
+            Crank speed [rad/s].
+        part : {"all", "outside", "springs", "nonconservative"}
+            Everything; loads and weights; springs and dampers; or what no potential energy
+            accounts for: loads and dampers.
+
+        Returns
+        -------
+        dict of str to (ndarray, ndarray, ndarray)
+            Force components [N] in the fixed frame and couple [N m].
+
+        Raises
+        ------
+        BadInput
+            As :meth:`Load.wrenches` and :meth:`Spring.wrenches`.
+        """
+        crank_speed = np.asarray(speed, dtype=float)
+        sources: list[dict[str, Wrench]] = []
+        if part in ("all", "outside") and self._heavy:
+            sources.append(self._weights(motion))
+        if part != "springs":
+            sources += [load.wrenches(motion, crank_speed) for load in self.loads]
+        if part in ("all", "springs"):
+            sources += [spring.wrenches(motion, crank_speed) for spring in self.springs]
+        elif part == "nonconservative":
+            dampers = (spring.dampers for spring in self.springs)
+            sources += [item.wrenches(motion, crank_speed) for item in dampers if item is not None]
+        total: dict[str, Wrench] = {}
+        for source in sources:
+            for link, wrench in source.items():
+                total[link] = _added(total[link], wrench) if link in total else wrench
+        return total
+
+    def _weights(self, motion: Any) -> dict[str, Wrench]:
+        gx, gy = self.gravity
+        found = {}
+        for link, own in self.masses.items():
+            angle = motion.link(link).angle
+            x, y = _turned(angle, own)
+            none = np.zeros(np.shape(angle))
+            found[link] = (none + own.mass * gx, none + own.mass * gy, x * gy - y * gx)
+        return found
+
+    def kinetic_energy(self, theta: ArrayLike, speed: ArrayLike) -> Array:
+        """Return the kinetic energy [J].
+
+        Parameters
+        ----------
+        theta, speed : array_like
+            Crank angle [rad] and crank speed [rad/s]; they broadcast.
+
+        Raises
+        ------
+        BadInput
+            If the linkage cannot reach an angle.
+        """
+        motion = self.linkage.motion(theta, speed)
+        parts = []
+        for link, own in self.masses.items():
+            moving = motion.link(link)
+            x, y = _turned(moving.angle, own)
+            vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
+            translation = own.mass * (vx * vx + vy * vy) / 2.0
+            mixed = moving.speed * (x * vy - y * vx)
+            parts.append(translation + mixed + own.inertia * moving.speed**2 / 2.0)
+        return _sum(parts, motion)
+
+    def potential_energy(self, theta: ArrayLike) -> Array:
+        """Return the energy [J] of springs (zero at their free lengths) and of the weights.
+
+        That of a weight is zero where its centre is at the height of A.
+
+        Raises
+        ------
+        BadInput
+            If the linkage cannot reach an angle.
+        """
+        motion = self.linkage.motion(theta)
+        parts = [spring.potential(motion) for spring in self.springs]
+        if self._heavy:
+            gx, gy = self.gravity
+            for link, own in self.masses.items():
+                moving = motion.link(link)
+                x, y = _turned(moving.angle, own)
+                ox, oy = np.moveaxis(np.asarray(moving.origin), -1, 0)
+                parts.append(-gx * (own.mass * ox + x) - gy * (own.mass * oy + y))
+        return _sum(parts, motion)
+
+    def power(self, theta: ArrayLike, speed: ArrayLike, part: Part = "nonconservative") -> Array:
+        """Return the power [W] that loads and dampers bring into the machine.
+
+        Parameters
+        ----------
+        theta, speed : array_like
+            Crank angle [rad] and crank speed [rad/s]; they broadcast.
+        part : str
+            Which of the wrenches, as :meth:`wrenches`; by default those that no potential energy
+            accounts for.
+
+        Raises
+        ------
+        BadInput
+            If the linkage cannot reach an angle, or a load's callable is wrong.
+        """
+        motion = self.linkage.motion(theta, speed)
+        parts = []
+        for link, (fx, fy, couple) in self.wrenches(motion, speed, part).items():
+            moving = motion.link(link)
+            vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
+            parts.append(fx * vx + fy * vy + couple * moving.speed)
+        return _sum(parts, motion)
+
+
+def _turned(angle: Array, mass: MassDistribution) -> tuple[Array, Array]:
+    """Return the first moments in the fixed frame."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return cos * mass.along - sin * mass.across, sin * mass.along + cos * mass.across
+
+
+def _added(first: Wrench, second: Wrench) -> Wrench:
+    return first[0] + second[0], first[1] + second[1], first[2] + second[2]
+
+
+def _sum(parts: Iterable[Array], motion: Any) -> Array:
+    none: Array = np.zeros(np.shape(motion.theta2))
+    add: Callable[[Array, Array], Array] = np.add
+    return np.asarray(reduce(add, parts, none))
+
+
+def _mass_problems(masses: object, links: tuple[str, ...]) -> list[Problem]:
+    if not isinstance(masses, Mapping):
+        found = type(masses).__name__
+        return [Problem("Machine.masses", found, "a mapping from link to mass", "correct it")]
+    problems = []
+    for link, own in masses.items():
+        where = f"Machine.masses[{link!r}]"
+        if link not in links:
+            problems.append(Problem(where, repr(link), f"a link of {links}", "correct the name"))
+        if not isinstance(own, MassDistribution):
+            found, fix = type(own).__name__, "build one with MassDistribution.uniform_bar"
+            problems.append(Problem(where, found, "a MassDistribution", fix))
+    return problems
+
+
+def _gravity_problems(gravity: object) -> list[Problem]:
+    if not (isinstance(gravity, (tuple, list, np.ndarray)) and len(gravity) == 2):
+        found = repr(gravity)[:60]
+        return [Problem("Machine.gravity", found, "two components", "write it like (0.0, -9.81)")]
+    return not_finite("Machine", {"gravity": gravity[0]}) or not_finite(
+        "Machine", {"gravity": gravity[1]}
+    )
+
+
+def _item_problems(
+    name: str, items: object, kinds: tuple[type, ...], links: tuple[str, ...]
+) -> list[Problem]:
+    if not isinstance(items, (tuple, list)):
+        found = type(items).__name__
+        return [Problem(f"Machine.{name}", found, "a sequence", "put it into brackets")]
+    problems = []
+    listed: list[Any] = list(items)
+    for place, item in enumerate(listed):
+        where = f"Machine.{name}[{place}]"
+        if not isinstance(item, kinds):
+            wanted = " or ".join(kind.__name__ for kind in kinds)
+            problems.append(Problem(where, type(item).__name__, wanted, "build one"))
+            continue
+        known: Any = item
+        allowed = (*links, FRAME) if name == "springs" else links
+        problems += [
+            Problem(where, repr(link), f"a link of {allowed}", "correct the name")
+            for link in known.links
+            if link not in allowed
+        ]
+    return problems

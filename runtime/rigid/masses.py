@@ -1,0 +1,179 @@
+"""Mass of a rigid link: mass, first moments and inertia in the link's own frame."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+from numbers import Real
+
+from ..core.errors import BadInput, Problem, bad
+
+# Data with ten digits may lie this far beyond what a rigid body can have.
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class MassDistribution:
+    """Mass, first moments and inertia of a link: all that its inertia forces depend on.
+
+    The frame of a link has its origin at the link's first joint (crank: A; coupler and block: B;
+    follower and rod: D; slider: C) and its x axis along the link.  Two distributions on one link
+    add up to a third.
+
+    Attributes
+    ----------
+    mass : float
+        Mass [kg].
+    along, across : float
+        First moments [kg m] along and across the link: mass times the coordinates of the centre.
+    inertia : float
+        Moment of inertia [kg m^2] about the first joint (the I of Smith 4.4-4.6).
+
+    Raises
+    ------
+    BadInput
+        If a value is not a finite number, mass or inertia is negative, or no body has them:
+        ``along^2 + across^2 > mass inertia``.
+
+    Examples
+    --------
+    >>> bar = MassDistribution.uniform_bar(mass=3.0, length=0.5)
+    >>> bar.centre, bar.inertia
+    ((0.25, 0.0), 0.25)
+    >>> (bar + MassDistribution.point(1.0, along=-0.75)).along
+    0.0
+    """
+
+    mass: float = 0.0
+    along: float = 0.0
+    across: float = 0.0
+    inertia: float = 0.0
+
+    def _underflows(self, moment: float) -> bool:
+        """Return True where the least inertia of a first moment is below the normal numbers."""
+        return self.mass > 0.0 and (moment / math.sqrt(self.mass)) ** 2 < sys.float_info.min
+
+    def __post_init__(self) -> None:
+        """Refuse what no body can have."""
+        _require_numbers(mass=self.mass, along=self.along, across=self.across, inertia=self.inertia)
+        problems = [
+            Problem(f"MassDistribution.{name}", f"{value:g}", "zero or more", "correct the sign")
+            for name, value in (("mass", self.mass), ("inertia", self.inertia))
+            if value < 0
+        ]
+        if not problems:
+            moment = math.hypot(self.along, self.across)
+            most = math.sqrt(self.mass) * math.sqrt(self.inertia)
+            if moment > most * (1.0 + _ROUNDING) and not self._underflows(moment):
+                problems = [
+                    Problem(
+                        "MassDistribution",
+                        f"first moment {moment:g} kg m",
+                        f"at most sqrt(mass inertia) = {most:g} kg m",
+                        "no body has these; give the inertia about the first joint of the link",
+                    )
+                ]
+        if problems:
+            raise BadInput(*problems)
+
+    def __add__(self, other: MassDistribution) -> MassDistribution:
+        """Return both together, fixed to one link."""
+        if not isinstance(other, MassDistribution):
+            return NotImplemented
+        return MassDistribution(
+            self.mass + other.mass,
+            self.along + other.along,
+            self.across + other.across,
+            self.inertia + other.inertia,
+        )
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Coordinates [m] of the centre of mass; the first joint where there is no mass."""
+        if self.mass == 0:
+            return 0.0, 0.0
+        return self.along / self.mass, self.across / self.mass
+
+    @property
+    def inertia_about_centre(self) -> float:
+        """Moment of inertia [kg m^2] about the centre of mass, never below zero."""
+        along, across = self.centre
+        return max(self.inertia - along * self.along - across * self.across, 0.0)
+
+    @classmethod
+    def uniform_bar(cls, mass: float, length: float) -> MassDistribution:
+        """Return a thin uniform bar [kg, m] from the first joint along the link.
+
+        Raises
+        ------
+        BadInput
+            If a value is not finite or is negative.
+        """
+        _require_numbers(mass=mass, length=length)
+        if length < 0:
+            raise bad("MassDistribution.length", f"{length:g}", "zero or more", "correct the sign")
+        return cls(mass, mass * length / 2.0, 0.0, mass * length * length / 3.0)
+
+    @classmethod
+    def point(cls, mass: float, along: float, across: float = 0.0) -> MassDistribution:
+        """Return a point mass [kg] at a point [m] of the link's frame.
+
+        Raises
+        ------
+        BadInput
+            If a value is not finite, or the mass is negative.
+        """
+        return cls.about_centre(mass, along, across, 0.0)
+
+    @classmethod
+    def disc(
+        cls, mass: float, radius: float, along: float, across: float = 0.0
+    ) -> MassDistribution:
+        """Return a uniform disc [kg, m] whose centre lies at a point [m] of the link's frame.
+
+        Raises
+        ------
+        BadInput
+            If a value is not finite, or mass or radius is negative.
+        """
+        _require_numbers(mass=mass, radius=radius)
+        if radius < 0:
+            raise bad("MassDistribution.radius", f"{radius:g}", "zero or more", "correct the sign")
+        return cls.about_centre(mass, along, across, mass * radius * radius / 2.0)
+
+    @classmethod
+    def about_centre(
+        cls, mass: float, along_distance: float, across_distance: float, inertia: float
+    ) -> MassDistribution:
+        """Return a body by its centre of mass and the inertia about it.
+
+        Parameters
+        ----------
+        mass : float
+            Mass [kg].
+        along_distance, across_distance : float
+            Centre of mass [m] in the link's frame.
+        inertia : float
+            Moment of inertia [kg m^2] about the centre of mass.
+
+        Raises
+        ------
+        BadInput
+            If a value is not finite, or mass or inertia is negative.
+        """
+        _require_numbers(mass=mass, along=along_distance, across=across_distance, inertia=inertia)
+        if inertia < 0:
+            raise bad("MassDistribution.inertia", f"{inertia:g}", "zero or more", "correct it")
+        square = along_distance * along_distance + across_distance * across_distance
+        return cls(mass, mass * along_distance, mass * across_distance, inertia + mass * square)
+
+
+def _require_numbers(**values: object) -> None:
+    problems = [
+        Problem(f"MassDistribution.{name}", repr(value)[:60], "a finite number", "correct it")
+        for name, value in values.items()
+        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value)
+    ]
+    if problems:
+        raise BadInput(*problems)

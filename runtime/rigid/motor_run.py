@@ -1,0 +1,321 @@
+"""Forward dynamics: how a machine runs under a motor torque."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import is_whole
+from ..core.results import Check, DeferredChecks, Result, provenance
+from .blocks import Array
+from .force_result import RigidForces
+from .forces import described, rigid_forces
+from .loads import not_finite
+from .machine import Machine
+from .motors import TorqueLaw, TorqueLine, torque_law
+from .one_freedom import OneFreedom
+from .stepping import Goals, Run, Status, integrate
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TURN = 2.0 * np.pi
+_LOOSER = 100.0
+# No step is longer than this share of a revolution; the second where torques are callables, which
+# may act over a few degrees only.
+_LONGEST, _LONGEST_CALLED = 1.0 / 12.0, 1.0 / 24.0
+# Share of the largest energy that may be lost, whatever the tolerance.
+_ENERGY_LIMIT = 1e-6
+# Times at which the speeds of the last revolution are taken.
+_LAST = 2001
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunUp(Result):
+    """A run of a machine under a motor torque; arrays over the times.
+
+    ``error`` is that of the crank angle [rad]: how far a run of twice as long steps and a
+    hundredfold tolerance departs, and the angle that the energy gone astray accounts for.
+
+    Attributes
+    ----------
+    machine : Machine
+        What runs.
+    time, angle, speed, acceleration : ndarray, shape (n,)
+        Time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s^2].
+    torque : ndarray, shape (n,)
+        Motor torque [N m].
+    energy : ndarray, shape (n,)
+        Kinetic and potential energy [J], that of the flywheel among them.
+    flywheel : float
+        Inertia [kg m^2] added to the crank.
+    status : {"finished", "stalled", "fold", "step limit"}
+        Finished: the wanted time or number of revolutions is over.  Stalled: the crank came to
+        rest, or the motor cannot start it.  Fold: the crank came to an end of its range.
+    message : str
+        The same in a sentence.
+    steps : int
+        Steps of the integrator.
+    """
+
+    machine: Machine
+    time: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    torque: Array
+    energy: Array
+    flywheel: float
+    status: Status
+    message: str
+    steps: int
+    run: Run = field(repr=False, compare=False)
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("time", "angle", "speed", "acceleration", "torque", "energy"), ("time",)
+    )
+
+    exported: ClassVar[tuple[str, ...]] = ("revolutions", "fluctuation")
+
+    @property
+    def revolutions(self) -> float:
+        """Revolutions made, negative backwards."""
+        return float((self.angle[-1] - self.angle[0]) / (2.0 * np.pi))
+
+    @property
+    def fluctuation(self) -> float | None:
+        """Speed fluctuation in the last revolution, (greatest - least) / mean of the two.
+
+        None where the run made less than a revolution.
+        """
+        last = float(self.angle[-1])
+        nodes = self.run.at(self.run.times)[0]
+        before = np.nonzero(np.abs(nodes - last) >= _TURN * (1.0 - 1e-12))[0]
+        if before.size == 0:
+            return None
+        begin = int(before[-1])
+        time = np.linspace(self.run.times[begin], self.run.end, _LAST)
+        angle, speed, _ = self.run.at(time)
+        speeds = np.abs(speed[np.abs(angle - last) <= _TURN * (1.0 + 1e-12)])
+        high, low = float(np.max(speeds)), float(np.min(speeds))
+        return 2.0 * (high - low) / (high + low)
+
+    def at(self, time: Any) -> tuple[Array, Array]:
+        """Return crank angle [rad] and speed [rad/s] at times [s] within the run.
+
+        Raises
+        ------
+        BadInput
+            If a time is outside.
+        """
+        times = np.asarray(time, dtype=float)
+        if not np.all((times >= self.time[0]) & (times <= self.time[-1])):
+            expected = f"times from {self.time[0]:g} to {self.time[-1]:g} s"
+            raise bad("RunUp.at", "a time outside the run", expected, "correct it")
+        angle, speed, _ = self.run.at(times)
+        return angle, speed
+
+    def forces(self) -> RigidForces:
+        """Return pin forces, shaking force and moment along the run.
+
+        Its torque is that of the links alone; what the motor gives to the flywheel comes in
+        addition.
+        """
+        return rigid_forces(self.machine, self.angle, self.speed, self.acceleration)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the crank speed over time."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        ax.plot(self.time, self.speed)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel("crank speed [rad/s]")
+        return ax
+
+
+def run_up(
+    machine: Machine,
+    torque: TorqueLine | TorqueLaw | float,
+    *,
+    revolutions: float | None = None,
+    duration: float | None = None,
+    speed0: float = 0.0,
+    theta0: float = 0.0,
+    flywheel: float = 0.0,
+    tolerance: float = 1e-9,
+    samples: int = 1001,
+    reversals: bool = False,
+    max_steps: int = 100_000,
+) -> RunUp:
+    """Return how a machine runs under a motor torque: one degree of freedom, integrated.
+
+    Parameters
+    ----------
+    machine : Machine
+        Linkage, masses, gravity, loads, springs.
+    torque : TorqueLine, callable or float
+        Motor torque [N m]; a callable takes speed [rad/s], or also angle [rad], and time [s].
+    revolutions, duration : float, optional
+        Where the run ends, in revolutions of either direction or in seconds; one at least.
+    speed0, theta0 : float
+        Crank speed [rad/s] and angle [rad] at the start.
+    flywheel : float
+        Inertia [kg m^2] added to the crank.
+    tolerance : float
+        Of a step: in the crank angle [rad], and in the energy relative to its largest value so
+        far, 1e-12 to 1e-3.  No step exceeds a twelfth of a revolution, whatever the tolerance.
+    samples : int
+        Number of times in the result, evenly spaced; the run itself takes its own steps.
+    reversals : bool
+        Whether the run goes on where the crank turns back, instead of ending as stalled.
+    max_steps : int
+        The run ends there with status "step limit".
+
+    Returns
+    -------
+    RunUp
+        The checks compare the energy with the work of motor, loads and dampers, and how the run
+        ends with how one of longer steps does.
+
+    Raises
+    ------
+    BadInput
+        If no end is given, a number is unusable, the linkage cannot reach the first angle, the
+        inertia vanishes at a crank angle, the torque law returns no finite number, or the crank
+        runs away.
+
+    Notes
+    -----
+    ``(J + flywheel) alpha + J'/2 omega^2 + load = torque``, with J from the driving torque (Smith
+    4.11) by linearity.  In ``u = sqrt(J + flywheel) omega`` it is ``sqrt(J + flywheel) du/dt =
+    torque - load``: the kinetic energy ``u^2/2`` changes by the power alone.  SciPy's DOP853 with
+    its dense output, twice.
+
+    Examples
+    --------
+    >>> from elastolink import FourBar, MassDistribution
+    >>> bar = MassDistribution.uniform_bar(mass=0.45, length=0.3)
+    >>> linkage = FourBar(0.3, 0.15, 0.3, 0.3)
+    >>> machine = Machine(linkage, dict.fromkeys(linkage.links, bar))
+    >>> run = run_up(machine, TorqueLine(stall=0.5, no_load_speed=40.0), revolutions=2)
+    >>> run.status, round(run.revolutions, 9)
+    ('finished', 2.0)
+    """
+    ends = {"revolutions": revolutions, "duration": duration}
+    _require(machine, ends, {"speed0": speed0, "theta0": theta0}, tolerance)
+    _require_whole(samples, max_steps)
+    law, system = torque_law(torque), OneFreedom(machine, flywheel)
+    system.require_inertia(float(theta0))
+    start = (float(theta0), float(speed0))
+    goals = Goals(revolutions, duration, bool(reversals), int(max_steps))
+    longest = _TURN * _longest(machine, torque)
+    fine = integrate(system, law, start, tolerance, longest, goals)
+    coarse = _compared(fine, law, start, tolerance, longest, goals)
+    time = np.linspace(0.0, fine.end, samples if fine.steps else 1)
+    angle, speed, _ = fine.at(time)
+    gap = np.abs(coarse.at(np.minimum(time, coarse.end))[0] - angle)
+    defect, astray = fine.drift()
+    given = np.array([float(law(*at)) for at in zip(speed, angle, time, strict=True)])
+    energy = system.energy(angle, speed)
+    return RunUp(
+        machine=machine,
+        time=time,
+        angle=angle,
+        speed=speed,
+        acceleration=system.acceleration(angle, speed, given),
+        torque=given,
+        energy=energy,
+        flywheel=float(flywheel),
+        status=fine.status,
+        message=fine.message,
+        steps=fine.steps,
+        run=fine,
+        method=f"DOP853, tolerance {tolerance:g}",
+        error=float(np.max(gap))
+        + astray
+        + 16.0 * np.finfo(float).eps * (1.0 + float(np.max(np.abs(angle)))),
+        error_norm="crank angle [rad], largest over the run",
+        checks=DeferredChecks(partial(_checks, defect, fine.status, coarse.status)),
+        provenance=provenance({**described(machine), "torque": _name(torque)}),
+    )
+
+
+def _compared(
+    fine: Run,
+    law: TorqueLaw,
+    start: tuple[float, float],
+    tolerance: float,
+    longest: float,
+    goals: Goals,
+) -> Run:
+    """Return the same run with longer steps; itself where nothing moves."""
+    if not fine.steps:
+        return fine
+    if fine.status == "step limit":  # no further than the other one came
+        goals = Goals(goals.revolutions, fine.end, goals.reversals, goals.max_steps)
+    looser = min(_LOOSER * tolerance, 1e-2)
+    return integrate(fine.system, law, start, looser, 2.0 * longest, goals)
+
+
+def _longest(machine: Machine, torque: object) -> float:
+    """Return the longest step in revolutions."""
+    called = any(callable(load.force) or callable(load.couple) for load in machine.loads)
+    plain = isinstance(torque, (Real, TorqueLine))
+    return _LONGEST if plain and not called else _LONGEST_CALLED
+
+
+def _checks(defect: float, status: Status, other: Status) -> dict[str, Check]:
+    cut = status == "step limit"
+    return {
+        "energy less work, relative": Check(defect, _ENERGY_LIMIT),
+        "run cut short": Check(float(cut), 0.0),
+        "longer steps end otherwise": Check(float(not cut and status != other), 0.0),
+    }
+
+
+def _name(torque: object) -> str:
+    plain = isinstance(torque, (int, float, TorqueLine))
+    return repr(torque) if plain else str(getattr(torque, "__name__", type(torque).__name__))
+
+
+def _require(
+    machine: object,
+    ends: Mapping[str, object],
+    state: Mapping[str, object],
+    tolerance: object,
+) -> None:
+    if not isinstance(machine, Machine):
+        raise bad("machine", type(machine).__name__, "a Machine", "build one")
+    if all(value is None for value in ends.values()):
+        raise bad("run_up", "no end", "revolutions or duration", "give revolutions=10, for example")
+    problems = []
+    for name, value in ends.items():
+        if value is not None and (not_finite("run_up", {name: value}) or not _positive(value)):
+            found = repr(value)[:60]
+            problems.append(Problem(name, found, "a finite number above 0", "correct it"))
+    for name, value in state.items():
+        if not_finite("run_up", {name: value}):
+            problems.append(Problem(name, repr(value)[:60], "a finite number", "correct it"))
+    if not_finite("run_up", {"tolerance": tolerance}, 1e-12) or not _positive(tolerance, 1e-3):
+        found = repr(tolerance)[:60]
+        problems.append(Problem("tolerance", found, "a number from 1e-12 to 1e-3", "correct it"))
+    if problems:
+        raise BadInput(*problems)
+
+
+def _positive(value: Any, most: float = np.inf) -> bool:
+    return bool(0 < value <= most)
+
+
+def _require_whole(samples: object, max_steps: object) -> None:
+    for name, value, least in (("samples", samples, 2), ("max_steps", max_steps, 1)):
+        if not is_whole(value, least):
+            found = repr(value)[:60]
+            raise bad(name, found, f"a whole number, {least} or more", "correct it")

@@ -1,0 +1,169 @@
+"""The machine as one degree of freedom: reduced inertia, and the torque that the loads ask for."""
+
+from __future__ import annotations
+
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import bad
+from .blocks import Array
+from .forces import Evaluation
+from .machine import Machine
+from .tables import ReducedTable, reduced_table
+
+_FIRST = np.array([0.0, 1.0])
+_SECOND = np.array([1.0, 0.0])
+# A reduced inertia below this share of its median gives no usable acceleration.
+_LEAST_SHARE = 1e-12
+# A series is good to 1e-12 of the largest inertia: below this share it is not used.
+_TABLE_SHARE = 1e-5
+_TURN = 2.0 * np.pi
+_SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
+
+
+class OneFreedom:
+    """``(J + flywheel) alpha + J'/2 omega^2 + load(theta, omega) = motor torque``.
+
+    J and J'/2 are what the emitted driving torque becomes at crank acceleration 1 and speed 0, and
+    at speed 1 and acceleration 0: it is linear in acceleration and square of the speed.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    flywheel : float
+        Inertia [kg m^2] added to the crank.
+
+    Raises
+    ------
+    BadInput
+        If the inertia is negative or not finite.
+    """
+
+    def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:
+        real = isinstance(flywheel, Real) and not isinstance(flywheel, bool)
+        if not (real and np.isfinite(flywheel) and flywheel >= 0):
+            found = repr(flywheel)[:60]
+            raise bad("flywheel", found, "a finite inertia, zero or more", "correct it")
+        self.machine, self.flywheel = machine, float(flywheel)
+        self.hasty = any(load.given == "motion" for load in machine.loads) or any(
+            spring.dampers is not None for spring in machine.springs
+        )
+        self._bare = Machine(machine.linkage, machine.masses)
+
+    def coefficients(self, theta: Any) -> tuple[Array, Array]:
+        """Return J and J'/2 [kg m^2] at crank angles [rad].
+
+        Raises
+        ------
+        BadInput
+            If the linkage cannot reach an angle.
+        """
+        angles = np.asarray(theta, dtype=float)[..., np.newaxis]
+        batch = (*angles.shape[:-1], 2)
+        found = Evaluation(self._bare, angles, _FIRST, _SECOND, batch).values(("torque",))["torque"]
+        return found[..., 0], found[..., 1]
+
+    def load(self, theta: Any, speed: Any) -> Array:
+        """Return the torque [N m] that weights, loads, springs and dampers ask for.
+
+        Raises
+        ------
+        BadInput
+            As :meth:`Machine.wrenches`.
+        """
+        angles, speeds = np.asarray(theta, dtype=float), np.asarray(speed, dtype=float)
+        batch = np.broadcast_shapes(angles.shape, speeds.shape)
+        if not self.machine.loaded:
+            return np.zeros(batch)
+        unit = self.machine.linkage.motion(angles)
+        motion = self.machine.linkage.motion(angles, speeds) if self.hasty else unit
+        total: Array = np.zeros(batch)
+        for link, (fx, fy, couple) in self.machine.wrenches(motion, speeds).items():
+            moving = unit.link(link)
+            vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
+            total = total - (fx * vx + fy * vy + couple * moving.speed)
+        return total
+
+    def table(self) -> ReducedTable | None:
+        """Return J, J'/2 and the load as Fourier series, where the crank turns fully.
+
+        None where the series would be long, or the inertia nearly vanishes somewhere: such a
+        machine is evaluated directly.
+        """
+        if not self.machine.linkage.crank_turns:
+            return None
+        inertia = self.coefficients(self._scan())[0]
+        if np.min(inertia) + self.flywheel < _TABLE_SHARE * np.max(inertia):
+            return None
+        loads = self.machine.loads
+        # A callable may do something new in a later turn.
+        lawful = not any(callable(item.force) or callable(item.couple) for item in loads)
+        still = lawful and not self.hasty and self.machine.loaded
+        load = (lambda theta: self.load(theta, 0.0)) if still else None
+        return reduced_table(lambda theta: self.coefficients(theta)[0], load)
+
+    def acceleration(self, theta: Any, speed: Any, torque: Any) -> Array:
+        """Return the crank acceleration [rad/s^2] under a motor torque [N m]."""
+        inertia, half_slope = self.coefficients(theta)
+        rest = torque - half_slope * np.square(speed) - self.load(theta, speed)
+        return np.asarray(rest / (inertia + self.flywheel))
+
+    def energy(self, theta: Any, speed: Any) -> Array:
+        """Return kinetic and potential energy [J], that of the flywheel among them."""
+        turning = self.flywheel / 2.0 * np.square(speed)
+        kinetic = self.machine.kinetic_energy(theta, speed)
+        return np.asarray(kinetic + turning + self.machine.potential_energy(theta))
+
+    def range_about(self, theta: float) -> tuple[float, float]:
+        """Return the ends of the crank's range [rad] about an angle, infinite where it turns."""
+        linkage = self.machine.linkage
+        if linkage.crank_turns:
+            return -np.inf, np.inf
+        for low, high in linkage.crank_ranges():
+            turns = _TURN * np.floor((theta - low) / _TURN)
+            if low + turns <= theta <= high + turns:
+                if high - low >= _TURN:  # a fold at whole turns is none for the interval
+                    continue
+                return float(low + turns), float(high + turns)
+        return -np.inf, np.inf
+
+    def require_inertia(self, theta: float) -> None:
+        """Raise BadInput where the reduced inertia vanishes in the crank's range about an angle.
+
+        Its least values are sought between the angles of a scan, for a massless crank has its
+        zeros at single angles: where the moving links stand still.
+        """
+        low, high = self.range_about(theta)
+        angles = self._scan(low, high)
+        inertia = self.coefficients(angles)[0]
+        spacing = angles[1] - angles[0]
+        middle = float(np.median(inertia))
+        dips = (inertia <= np.roll(inertia, 1)) & (inertia <= np.roll(inertia, -1))
+        # Within half a degree of a zero nearly nothing is left.
+        dips &= inertia + self.flywheel <= _DIP_SHARE * middle
+        for dip in angles[dips]:
+            ends = max(dip - spacing, low), min(dip + spacing, high)
+            least, at = self._least_inertia(*ends)
+            if not least > _LEAST_SHARE * middle:
+                found = f"none at {at:.6g} rad, where the links that have mass stand still"
+                fix = "give the crank an inertia, or add a flywheel"
+                raise bad("Machine.masses", found, "inertia at every crank angle", fix)
+
+    def _scan(self, low: float = -np.inf, high: float = np.inf) -> Array:
+        """Return angles over a turn or a range; they miss its ends, and special positions."""
+        if not np.isfinite(high - low):
+            low, high = 0.0, _TURN
+        return low + (high - low) * (np.arange(_SCANNED) + 0.5) / _SCANNED
+
+    def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
+        """Return the least inertia with the flywheel [kg m^2] in an interval, and its angle."""
+        for _ in range(_ZOOM):
+            angles = np.linspace(low, high, 13)[1:-1]
+            inertia = self.coefficients(angles)[0]
+            best = int(np.argmin(inertia))
+            width = (high - low) / 12.0
+            low, high = max(low, angles[best] - width), min(high, angles[best] + width)
+        return float(inertia[best]) + self.flywheel, float(angles[best])

@@ -1,0 +1,141 @@
+"""Error figures of stresses and pin forces over random linkages: actual error against fine meshes.
+
+What counts as true is the same model of beams with the same law of damping on many more elements;
+of bars that rock it is found by dense Fourier collocation, another solver of the motion too.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beam_motions import STEEL, periodic_motion, turning_bar
+from elastolink.runtime.beams import BeamMotion, Section, linkage_system, pin_reactions, stress
+from elastolink.runtime.beams.beam_motion import quiet_steady_state
+from elastolink.runtime.beams.finer_mesh import intervals_for, solved
+from elastolink.runtime.beams.recovery import stations_of
+from elastolink.runtime.beams.stress_errors import fibre_factors, largest_difference, stresses
+from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
+from elastolink.runtime.linkages import FourBar, SliderCrank
+from elastolink.runtime.systems.modal_damping import with_modal_damping
+
+BARS, SLIDER_CRANKS, FOUR_BARS = 185, 12, 3
+COUNT, PLACES = 32, 7
+FIRST = {False: 3.516, True: 9.870}  # (lambda L)^2 of a clamped and of a pinned bar
+# Cubics per link of the mesh that is taken for the limit: an h^4 of the mesh of one, two or three
+# elements is less there by a factor of 39 at least, an h^2 by 6.
+TRUE = {1: 4, 2: 5, 3: 8}
+
+
+def rocking_bar(rng, elements):
+    """Return a random rocking bar and its speed, over its first frequency."""
+    size, second = rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2)
+
+    def angle(theta):
+        phi = size * np.sin(theta) + second * np.cos(2 * theta)
+        rate = size * np.cos(theta) - 2 * second * np.sin(2 * theta)
+        return phi, rate, -size * np.sin(theta) - 4 * second * np.cos(2 * theta)
+
+    pinned = bool(rng.integers(2))
+    # Of the bar of 1 m, 10 mm thick: sqrt(EI/m) = 14.93 m^2/s.
+    first = FIRST[pinned] * 14.93
+    drag = rng.uniform(0.01, 0.1) * first
+    system = turning_bar(angle, pinned=pinned, drag=drag, elements=elements)
+    return system, rng.uniform(0.03, 0.6) * first
+
+
+def random_linkage(rng, kind):
+    """Return a random linkage whose crank turns fully, of a usable transmission angle."""
+    while True:
+        crank = rng.uniform(0.03, 0.3)
+        lengths = {name: rng.uniform(0.2, 0.8) for name in ("coupler", "follower", "frame")}
+        try:
+            if kind is SliderCrank:
+                offset = crank * rng.uniform(-0.3, 0.3)
+                return SliderCrank(crank=crank, coupler=crank * rng.uniform(2, 5), offset=offset)
+            found = FourBar(crank=crank, **lengths)
+            found.require_full_turn()
+        except BadInput:
+            continue
+        b, f = lengths["coupler"], lengths["follower"]
+        sides = lengths["frame"] + crank * np.array([-1.0, 1.0])
+        if np.all(np.abs((b**2 + f**2 - sides**2) / (2 * b * f)) < np.cos(np.radians(25.0))):
+            return found
+
+
+def elastic_linkage(rng, kind, elements):
+    """Return a random elastic linkage and its speed, over its least frequency at any angle."""
+    made = random_linkage(rng, kind)
+    names = ("crank", "coupler", "follower") if kind is FourBar else ("crank", "coupler")
+    sections = {
+        name: Section.rectangle(rng.uniform(0.01, 0.03), 10 ** rng.uniform(-2.6, -1.9), **STEEL)
+        for name in names
+    }
+    masses = {"B": rng.uniform(0.0, 0.3), "C": rng.uniform(0.0, 0.3)}
+    bare = linkage_system(made, sections, joint_masses=masses, elements=elements)
+    system = with_modal_damping(bare, 10 ** rng.uniform(-2.3, -1.3))
+    theta = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
+    flexible = np.linalg.solve(system.array("K", theta), system.array("M", theta))
+    least = np.min(np.max(np.linalg.eigvals(flexible).real, axis=1) ** -0.5)
+    return system, rng.uniform(0.03, 0.45) * least
+
+
+def fine(system, elements):
+    """Return the same system on many cubics."""
+
+    def meshed(structure):
+        beams = (replace(b, kind="cubic", elements=TRUE[elements]) for b in structure.beams)
+        return replace(structure, beams=tuple(beams))
+
+    return system.remesh(meshed)
+
+
+def figures(rng, kind, elements):
+    """Return actual error and figure of the stress, and of the pin forces."""
+    if kind is None:
+        system, speed = rocking_bar(rng, elements)
+    else:
+        system, speed = elastic_linkage(rng, kind, elements)
+    method = "equilibrium" if rng.integers(2) else "shape"
+    steady = quiet_steady_state(system, speed)
+    found = stress(system, steady, stations=PLACES, method=method)
+    pins = pin_reactions(system, steady)
+    true = fine(system, elements)
+    every = len(found.theta) // COUNT
+    if kind is None:
+        motion = periodic_motion(true, speed, COUNT)
+    else:
+        every = 1
+        intervals = intervals_for(steady.q.reshape(-1, system.size))
+        q, qd = solved(true, speed, intervals, len(found.theta))
+        motion = BeamMotion(theta=found.theta, q=q, qd=qd, speed=speed, period=2 * np.pi)
+    factors = fibre_factors(true, stations_of(true.structure, PLACES))
+    exact = stresses(true, motion, PLACES, "equilibrium", factors)
+    actual = largest_difference((found.axial[::every], found.bending[::every]), exact)
+    limit = pin_reactions(true, motion)
+    longest = max(beam.length for beam in true.structure.beams)
+    scale = np.array([1.0, 1.0, 1.0 / longest])
+    gaps = [
+        np.max(np.linalg.norm((limit.on_beams[pair] - force[::every]) * scale, axis=-1))
+        for pair, force in pins.on_beams.items()
+    ]
+    return (actual, found.error), (max(gaps), pins.error)
+
+
+@pytest.mark.slow
+def test_actual_errors_stay_within_their_figures():
+    rng = np.random.default_rng(1996)
+    kinds = [None] * BARS + [SliderCrank] * SLIDER_CRANKS + [FourBar] * FOUR_BARS
+    pairs = []
+    with warnings.catch_warnings():
+        # Stiffness and speed are drawn without regard to the linear range.
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        for kind in kinds:
+            # The references of more elements take too long.
+            most = {None: 3, SliderCrank: 2, FourBar: 1}[kind]
+            pairs.append(figures(rng, kind, int(rng.integers(1, most + 1))))
+    for actual, figure in np.moveaxis(np.array(pairs), 0, -1):
+        assert np.mean(actual <= figure) >= 0.99
+        assert np.median(figure / actual) <= 30.0

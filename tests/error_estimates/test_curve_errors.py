@@ -1,0 +1,98 @@
+"""The figures of coupler curves and harmonics against many digits, over random linkages."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.linkages.curves import coupler_curve
+from elastolink.runtime.linkages.harmonic_analysis import harmonics
+
+
+def random_linkage(rng):
+    while True:
+        try:
+            return FourBar(*rng.uniform(0.2, 3.0, 4))
+        except BadInput:
+            continue
+
+
+def exact_place(linkage, theta, branch, place):
+    """Return the coupler point from the crank angle by intersecting two circles."""
+    f, c, m, n = (mpmath.mpf(v) for v in linkage.lengths.values())
+    pin = c * mpmath.expj(mpmath.mpf(theta))
+    line = f - pin
+    square = abs(line) ** 2
+    along = (square + m**2 - n**2) / 2
+    across = mpmath.sqrt(m**2 * square - along**2) * branch
+    return pin + mpmath.mpc(place) * line * mpmath.mpc(along, across) / (square * m)
+
+
+@pytest.mark.slow
+def test_positions_of_turning_cranks():
+    rng = np.random.default_rng(5)
+    ratios = []
+    with mpmath.workdps(40):
+        while len(ratios) < 300:
+            linkage = random_linkage(rng)
+            if not linkage.crank_turns:
+                continue
+            place = complex(*rng.uniform(-2, 2, 2))
+            curve = coupler_curve(linkage, place.real, place.imag, points=97)
+            for i in rng.integers(0, 97, 3):
+                exact = exact_place(linkage, curve.theta2[i], curve.branch[i], place)
+                found = mpmath.mpc(*map(float, curve.position[i]))
+                ratios.append(float(abs(found - exact) / curve.error[i]))
+    assert np.mean(np.array(ratios) <= 1) >= 0.99
+    assert np.median(ratios) >= 1e-3
+
+
+@pytest.mark.slow
+def test_lengths_and_areas():
+    # Reference: the trapezoidal rule, which converges geometrically on a closed analytic path.
+    rng = np.random.default_rng(6)
+    lengths, areas = [], []
+    while len(lengths) < 200:
+        linkage = random_linkage(rng)
+        if not linkage.crank_turns:
+            continue
+        curve = coupler_curve(linkage, *rng.uniform(-2, 2, 2), points=2**11)
+        if curve.slowest < 0.05:
+            continue
+        step = 2 * np.pi / 2**11
+        speed = np.hypot(*curve.velocity.T)
+        length = math.fsum(speed) * step
+        turned = curve.position[:, 0] * curve.velocity[:, 1]
+        turned -= curve.position[:, 1] * curve.velocity[:, 0]
+        area = 0.5 * math.fsum(turned) * step
+        # The velocities bring a round-off of their own, averaged over 2048 of them.
+        own = 0.4 * float(np.max(curve.error))
+        lengths.append(max(abs(curve.length - length) - own, 0) / curve.length_error)
+        areas.append(max(abs(curve.area - area) - own, 0) / curve.area_error)
+    assert np.mean(np.array(lengths) <= 1) >= 0.99
+    assert np.mean(np.array(areas) <= 1) >= 0.99
+
+
+def test_harmonics_of_known_series():
+    # 1/(1 - 2 r cos(t - s) + r^2): coefficients 2 r^m cos ms/(1 - r^2), and with sines.
+    rng = np.random.default_rng(7)
+    ratios = []
+    with mpmath.workdps(30):
+        for _ in range(200):
+            r, s, size = rng.uniform(0.05, 0.97), rng.uniform(0, 6), 10 ** rng.uniform(-6, 6)
+            accuracy = 10 ** rng.uniform(-13, -3)
+
+            def f(theta, r=r, s=s, size=size):
+                return size / ((1 - r) ** 2 + 4 * r * np.sin((theta - s) / 2) ** 2)
+
+            found = harmonics(f, order=6, accuracy=accuracy)
+            worst = mpmath.mpf(0)
+            for m in range(7):
+                scale = (1 if m == 0 else 2) * mpmath.mpf(size) / (1 - mpmath.mpf(r) ** 2)
+                exact = scale * mpmath.mpf(r) ** m * mpmath.expj(m * mpmath.mpf(s))
+                worst = max(worst, abs(found.a[m] - exact.real), abs(found.b[m] - exact.imag))
+            ratios.append(float(worst) / float(found.error))
+    assert np.mean(np.array(ratios) <= 1) >= 0.99
+    assert np.median(ratios) >= 1e-3

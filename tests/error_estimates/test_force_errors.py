@@ -1,0 +1,203 @@
+"""The error figure of the forces against 60 digits, over random machines of every linkage."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import rigid_truth
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.rigid import Load, Machine, MassDistribution, rigid_forces
+
+MACHINES, ANGLES = 80, 2
+
+
+def random_linkage(kind, random):
+    while True:
+        scale = 10.0 ** random.uniform(-3, 3)
+        try:
+            if kind == "four-bar":
+                lengths = random.uniform(0.1, 1.0, 4) * scale
+                return FourBar(*map(float, lengths), random.choice(["open", "crossed"]))
+            if kind == "slider-crank":
+                crank, coupler = random.uniform(0.1, 1.0, 2) * scale
+                offset = random.uniform(-0.5, 0.5) * scale
+                branch = random.choice(["open", "crossed"])
+                return SliderCrank(float(crank), float(coupler), float(offset), branch)
+            frame, crank = (float(size) for size in random.uniform(0.1, 1.0, 2) * scale)
+            return QuickReturn(frame, crank, 1.5 * (frame + crank))
+        except BadInput:
+            continue
+
+
+def random_machine(kind, random):
+    linkage = random_linkage(kind, random)
+    size = max(linkage.lengths.values())
+    masses = {}
+    for link in linkage.links:
+        if random.random() < 0.2:
+            continue
+        mass = 10.0 ** random.uniform(-2, 2)
+        along, across = random.uniform(-0.7, 1.0) * size, random.uniform(-0.3, 0.3) * size
+        across = 0.0 if random.random() < 0.3 else across
+        inertia = mass * size**2 * random.uniform(0.0, 0.2)
+        masses[link] = MassDistribution.about_centre(mass, along, across, inertia)
+    if not masses:
+        masses["coupler" if "coupler" in linkage.links else "rod"] = MassDistribution(inertia=1.0)
+    wrenches = {}
+    if random.random() < 0.4:
+        wrenches[linkage.links[2]] = tuple(random.normal(size=3) * (1.0, 1.0, size))
+    loads = tuple(Load(link, force[:2], force[2]) for link, force in wrenches.items())
+    gravity = (0.0, -9.81) if random.random() < 0.4 else (0.0, 0.0)
+    return Machine(linkage, masses, gravity, loads), wrenches
+
+
+def random_angles(linkage, random):
+    low, high = linkage.crank_ranges()[int(random.integers(len(linkage.crank_ranges())))]
+    # Now and then a hair's breadth from the fold, or from where a full turn comes nearest to one.
+    share = random.uniform(0.001, 0.999, ANGLES)
+    if random.random() < 0.2:
+        share[0] = 10.0 ** random.uniform(-6, -3)
+    return low + share * (high - low)
+
+
+@pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "quick-return"])
+def test_the_figure_covers_the_error_and_is_not_idle(kind) -> None:
+    random = np.random.default_rng(20260)
+    covered, ratios = [], []
+    for _ in range(MACHINES):
+        machine, wrenches = random_machine(kind, random)
+        theta = random_angles(machine.linkage, random)
+        speed = 10.0 ** random.uniform(-1, 3)
+        acceleration = float(random.choice([0.0, 1.0])) * random.normal() * speed**2
+        found = rigid_forces(machine, theta, speed, acceleration)
+        actual, figure = rigid_truth.errors(machine, found, outside=wrenches)
+        covered += list(actual <= figure)
+        ratios += list(figure / np.maximum(actual, np.finfo(float).tiny))
+        assert found.passed == bool(np.all(np.isfinite(figure)))
+    assert np.mean(covered) >= 0.99
+    assert np.median(ratios) <= 1e3
+
+
+def test_the_parts_have_the_same_figure() -> None:
+    random = np.random.default_rng(7)
+    machine, _ = random_machine("four-bar", random)
+    theta = random_angles(machine.linkage, random)
+    whole = rigid_forces(machine, theta, 3.0)
+    part = rigid_forces(machine, theta, 3.0, outputs=("torque",))
+    np.testing.assert_array_equal(whole.error, part.error)
+    assert whole.error.shape == theta.shape
+    assert np.all(whole.error > 0)
+
+
+def near_change(kind, random):
+    """Return a linkage near a change point, and a crank angle near a fold or near the change."""
+    while True:
+        lengths = 10.0 ** random.uniform(-1.5, 0.0, 4) * 10.0 ** random.uniform(-3, 6)
+        off = 1.0 + 10.0 ** random.uniform(-12, -3) * random.choice([-1.0, 1.0])
+        one, two, three, last = random.permutation(4)
+        lengths[last] = abs(lengths[one] + lengths[two] - lengths[three]) * off
+        branch = random.choice(["open", "crossed"])
+        try:
+            if kind == "four-bar":
+                linkage = FourBar(*map(float, lengths), branch)
+            else:
+                crank, coupler = map(float, lengths[:2])
+                offset = random.choice([0.0, abs(crank - coupler) * off])
+                linkage = SliderCrank(crank, coupler, float(offset), branch)
+            ranges = linkage.crank_ranges()
+            low, high = ranges[int(random.integers(len(ranges)))]
+            share = 10.0 ** random.uniform(-10, 0)
+            theta = random.choice([low + share * (high - low), high - share * (high - low)])
+            linkage.motion(theta)
+            return linkage, float(theta)
+        except BadInput:
+            continue
+
+
+def lumps(linkage):
+    """Return masses of every link, off its line."""
+    size = linkage.lengths["crank"]
+    sizes = {link: linkage.lengths.get(link, size) for link in linkage.links}
+    return {
+        link: MassDistribution.about_centre(1.0, 0.3 * own, 0.1 * own, 0.2 * own**2)
+        for link, own in sizes.items()
+    }
+
+
+@pytest.mark.parametrize("kind", ["four-bar", "slider-crank"])
+def test_the_figure_covers_the_error_near_change_points_and_folds(kind) -> None:
+    random = np.random.default_rng(90)
+    shares, known = [], 0
+    for _ in range(120):
+        linkage, theta = near_change(kind, random)
+        machine = Machine(linkage, lumps(linkage))
+        try:
+            found = rigid_forces(machine, [theta], 10.0 ** random.uniform(-3, 2), random.normal())
+            actual, figure = rigid_truth.errors(machine, found)
+        except ValueError:  # refused, or in many digits the linkage does not reach the angle
+            continue
+        assert found.passed == bool(np.isfinite(figure[0]))
+        known += bool(np.isfinite(figure[0]))
+        shares.append(float(actual[0] / figure[0]))
+    assert known > 0.8 * len(shares)
+    assert len(shares) > 100
+    assert max(shares) <= 1.0
+    assert np.median(shares) >= 1e-3
+
+
+@pytest.mark.parametrize(
+    ("linkage", "theta", "speed", "acceleration"),
+    [
+        (
+            FourBar(
+                0.22870767452519397, 0.1328884680702529, 0.14214426318859136, 0.2194518793383923
+            ),
+            -3.140645789157872,
+            10.0,
+            0.0,
+        ),
+        (
+            FourBar(987635.9984780651, 690374.4558117427, 1675199.272225518, 2811.182003136147),
+            -3.141459496765695,
+            1e-3,
+            0.0,
+        ),
+        (SliderCrank(0.0016513553304968302, 8.298065090076801e-05), 0.04780407482999341, 10.0, 5.0),
+        # Here the coupler's height is a small difference of large parts of the crank.
+        (
+            SliderCrank(70.74758551208086, 0.42933700970465943),
+            0.006034717525772312,
+            0.002547284828053281,
+            1.3338402777555505e-05,
+        ),
+    ],
+)
+def test_the_figure_covers_known_bad_cases(linkage, theta, speed, acceleration) -> None:
+    machine = Machine(linkage, lumps(linkage))
+    found = rigid_forces(machine, [theta], speed, acceleration)
+    actual, figure = rigid_truth.errors(machine, found)
+    assert actual[0] <= figure[0] < np.inf
+    assert found.passed
+
+
+def test_exactly_at_a_fold_nothing_is_known() -> None:
+    linkage = FourBar(0.3, 0.25, 0.1, 0.1)
+    machine = Machine(linkage, {"coupler": MassDistribution.uniform_bar(1.0, 0.1)})
+    inside = 0.5 * sum(linkage.crank_ranges()[0])
+    for theta in (linkage.crank_ranges()[0][1], [inside, linkage.crank_ranges()[0][1], inside]):
+        found = rigid_forces(machine, theta, 1.0)
+        assert np.max(found.error) == np.inf
+        assert not found.checks["error over what is added up"].passed
+    assert rigid_forces(machine, inside, 1.0).passed
+
+
+def test_forces_that_cancel_are_no_fold() -> None:
+    """A crank whose weight is borne by a load: no force is left, and none is lost."""
+    weight = Load("crank", (0.0, 9.81), along=0.1)
+    crank = MassDistribution.point(1.0, 0.1)
+    machine = Machine(FourBar(0.3, 0.1, 0.28, 0.25), {"crank": crank}, (0.0, -9.81), (weight,))
+    found = rigid_forces(machine, np.linspace(0.0, 6.0, 7), 0.0)
+    assert np.max(np.abs(found.torque)) < 1e-15
+    assert found.passed
+    assert np.all(np.isfinite(found.error))

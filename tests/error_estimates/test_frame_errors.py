@@ -1,0 +1,34 @@
+"""Error bounds of frame frequencies, over random frames, against determinants in 60 digits."""
+
+from __future__ import annotations
+
+import frame_truth
+import frequency_truth
+import numpy as np
+import pytest
+from elastolink.runtime.frequencies import dynamic_stiffness, wittrick_williams
+
+SCENES = 200
+
+
+@pytest.mark.slow
+def test_bounds_hold_and_are_not_idle():
+    rng = np.random.default_rng(2024)
+    figures, actual = [], []
+    for _ in range(SCENES):
+        structure = frame_truth.random_frame(rng)
+        number = int(rng.integers(1, 5))
+        found = wittrick_williams(dynamic_stiffness(structure), count=number)
+        assert found.passed
+        place = found.frequencies[-1]
+        if np.max(np.abs(found.vectors()[-1])) * place < 1e-12:
+            continue  # the nodes stand still: a pole of the determinant
+        frequency_truth.stiffness.cache_clear()
+        frequency_truth.amplitudes.cache_clear()
+        truth = frame_truth.exact_frequency(structure, place)
+        figures.append(found.error[-1])
+        actual.append(abs(float(truth - float(place))))
+    figures, actual = np.array(figures), np.array(actual)
+    assert len(actual) > 0.95 * SCENES
+    assert np.all(actual <= figures)
+    assert np.median(figures / np.maximum(actual, 1e-6 * figures)) <= 1e3

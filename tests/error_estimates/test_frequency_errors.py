@@ -1,0 +1,100 @@
+"""Error figures of held frequencies, of their means and of least gaps, over random systems."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.frequencies import natural_frequencies
+from elastolink.runtime.frequencies.eigenproblem import held_frequencies
+from elastolink.runtime.frequencies.means import cycle_mean
+
+
+def _exact(mass, stiffness):
+    """Return natural frequencies by 40-digit arithmetic."""
+    with mpmath.workdps(40):
+        inverse = mpmath.cholesky(mpmath.matrix(mass.tolist())) ** -1
+        symmetric = inverse * mpmath.matrix(stiffness.tolist()) * inverse.T
+        squares = mpmath.eigsy((symmetric + symmetric.T) / 2, eigvals_only=True)
+        return [mpmath.sqrt(square) for square in squares]
+
+
+def test_figures_of_held_frequencies():
+    rng = np.random.default_rng(11)
+    ratio = []
+    for _ in range(200):
+        n = int(rng.integers(2, 5))
+        turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
+        stiffness = turn @ np.diag(10.0 ** rng.uniform(0, 8, n)) @ turn.T
+        stiffness = (stiffness + stiffness.T) / 2
+        base = rng.normal(size=(n, n))
+        mass = base @ base.T + 0.3 * np.eye(n)
+        mass = (mass + mass.T) / 2
+        terms = (Term("M", None, mass), Term("K", None, stiffness))
+        system = LinearPeriodic(n, terms, {}, lambda values: {})
+        frequency, error = held_frequencies(system, np.zeros(1), {})
+        exact = _exact(mass, stiffness)
+        for found, figure, true in zip(frequency[0], error[0], exact, strict=True):
+            ratio.append(float(figure / max(abs(found - true), mpmath.mpf(found) * 2**-60)))
+    ratio = np.array(ratio)
+    assert np.mean(ratio >= 1.0) >= 0.99
+    assert np.median(ratio) <= 1e3
+
+
+def test_figures_of_means():
+    rng = np.random.default_rng(12)
+    ratio = []
+    for _ in range(200):
+        depth, harmonic = rng.uniform(0.05, 0.95), int(rng.integers(1, 4))
+        phase = rng.uniform(0, 2 * np.pi)
+
+        def values(theta, depth=depth, harmonic=harmonic, phase=phase):
+            found = 1.0 / (1.0 - depth * np.cos(harmonic * theta - phase))[:, None]
+            return found, 1e-15 * found
+
+        mean, error = cycle_mean(values, 2 * np.pi, enough=1e-7)
+        # The mean of 1/(1 - a cos x) is 1/sqrt(1 - a^2).
+        actual = abs(mean[0] - 1.0 / np.sqrt(1.0 - depth**2))
+        ratio.append(error[0] / max(actual, 1e-17))
+    assert np.mean(np.array(ratio) >= 1.0) >= 0.99
+
+
+def test_figures_of_means_with_a_kink():
+    rng = np.random.default_rng(13)
+    ratio = []
+    for _ in range(200):
+        at = rng.uniform(0.0, 2 * np.pi)
+
+        def values(theta, at=at):
+            found = np.abs(np.cos((theta - at) / 2))[:, None] + 2.0
+            return found, 1e-15 * found
+
+        mean, error = cycle_mean(values, 2 * np.pi, [at + np.pi], enough=1e-9)
+        ratio.append(error[0] / max(abs(mean[0] - 2.0 - 2.0 / np.pi), 1e-16))
+    ratio = np.array(ratio)
+    assert np.mean(ratio >= 1.0) >= 0.99
+    assert np.median(ratio) <= 1e3
+
+
+def test_figures_of_least_gaps():
+    rng = np.random.default_rng(14)
+    ratio = []
+    for _ in range(40):
+        coupling, at = 10.0 ** rng.uniform(-6, -1), rng.uniform(0, 2 * np.pi)
+
+        def stiffness(theta, coupling=coupling, at=at):
+            d = np.sin((theta - at) / 1.0)
+            return np.moveaxis(
+                np.array([[16 + d, coupling + 0 * d], [coupling + 0 * d, 16 - d]]), (0, 1), (-2, -1)
+            )
+
+        terms = (Term("M", None, np.eye(2)), Term("K", None, stiffness))
+        found = natural_frequencies(LinearPeriodic(2, terms, {}, lambda values: {}), 0.0)
+        assert [one.kind for one in found.encounters] == ["veering", "veering"]
+        for one in found.encounters:
+            # sqrt(16 + c) - sqrt(16 - c), free of cancellation.
+            exact = 2 * coupling / (np.sqrt(16 + coupling) + np.sqrt(16 - coupling))
+            ratio.append(one.gap_error / max(abs(one.gap - exact), 1e-17))
+    ratio = np.array(ratio)
+    assert np.mean(ratio >= 1.0) >= 0.99
+    assert np.median(ratio) <= 1e3

@@ -1,0 +1,237 @@
+"""Figures of periodic solutions on boundaries, against Fourier matrices in more digits.
+
+The reference iterates on a whole subspace with a matrix of its own assembly: both ends of a region,
+or an end and the next region's, so that pairs of any closeness are told apart.  Where they lie
+close it computes with 60 digits, elsewhere in extended precision.
+"""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill.perturbation.solutions import boundary_solution
+from honesty import verdict
+
+pytestmark = pytest.mark.skipif(
+    np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
+)
+SOME = [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]
+THETA = np.linspace(0.0, 4.0 * np.pi, 61)
+CLOSE = 1e-4
+
+
+def scene(rng, strongest):
+    """Return functions, parameters, region, end and damping."""
+    count = 1 + int(rng.random() < 0.2)
+    functions = []
+    for _ in range(count):
+        highest = int(rng.choice([1, 2, 4, 8]))
+        a, b = rng.normal(size=(2, highest + 1)) * rng.uniform(0.3, 0.8) ** np.arange(highest + 1)
+        b[0] = 0.0
+        b *= rng.random() > 0.25  # even ones
+        if rng.random() < 0.2:  # of period pi: every other region is closed
+            a[1::2] = b[1::2] = 0.0
+        functions.append(PeriodicFunction(a, b))
+    mu = [float(10.0 ** rng.uniform(-6.0, strongest) * rng.choice([-1, 1])) for _ in functions]
+    n = int(rng.integers(0, 7))
+    end = "upper" if n == 0 else str(rng.choice(["lower", "upper"]))
+    damping = 0.0 if rng.random() < 0.6 else float(10.0 ** rng.uniform(-8.0, -0.5))
+    return functions, mu, n, end, damping
+
+
+def more_digits(values, exact):
+    """Return an array of long doubles, or of numbers of 60 digits."""
+    if exact:
+        return np.array([mpmath.mpf(float(v)) for v in values], dtype=object)
+    return np.asarray(values, dtype=np.longdouble)
+
+
+def as_long(values):
+    high = np.array([float(v) for v in values])
+    rest = np.array([float(v - h) for v, h in zip(values, high, strict=True)])
+    return high.astype(np.longdouble) + rest
+
+
+def fourier_matrix(functions, mu, damping, k, exact):
+    """Return the matrix of ``-y'' - 2 K y' - F y`` on cos k theta, then sin k theta."""
+    places = {float(wave): i for i, wave in enumerate(k)}
+    size, half = len(k), more_digits([0.5], exact)[0]
+    highest = max(f.harmonics for f in functions)
+    a, b = (more_digits(np.zeros(1 + highest), exact) for _ in range(2))
+    for f, value in zip(functions, more_digits(mu, exact), strict=True):
+        a[: f.harmonics + 1] += value * more_digits(f.a, exact)
+        b[: f.harmonics + 1] += value * more_digits(f.b, exact)
+    out = np.array([more_digits(np.zeros(2 * size), exact) for _ in range(2 * size)])
+
+    def add(wave, sine, column, amount):
+        """Add to cos or sin of any wave number, negative ones included."""
+        row = places.get(abs(wave))
+        if row is not None and not (sine and wave == 0):
+            sign = -1 if sine and wave < 0 else 1
+            out[row + size * sine, column] -= sign * amount
+
+    for i, wave in enumerate(k):
+        square = more_digits([wave * wave], exact)[0]
+        out[i, i] += square
+        out[i + size, i + size] += square
+        turn = 2 * more_digits([damping], exact)[0] * more_digits([wave], exact)[0]
+        out[i + size, i] += turn  # cos' = -k sin
+        out[i, i + size] -= turn
+        for h in range(len(a)):
+            add(wave + h, 0, i, half * a[h])
+            add(wave - h, 0, i, half * a[h])
+            add(wave + h, 1, i, half * b[h])
+            add(h - wave, 1, i, half * b[h])
+            add(wave + h, 1, i + size, half * a[h])
+            add(wave - h, 1, i + size, half * a[h])
+            add(h - wave, 0, i + size, half * b[h])
+            add(h + wave, 0, i + size, -half * b[h])
+    return out
+
+
+def eliminated(matrix):
+    """Return a factored matrix, by Gauss with pivots."""
+    matrix, order = matrix.copy(), np.arange(len(matrix))
+    for j in range(len(matrix)):
+        p = j + int(np.argmax(np.abs(matrix[j:, j])))
+        matrix[[j, p]], order[[j, p]] = matrix[[p, j]], order[[p, j]]
+        matrix[j + 1 :, j] /= matrix[j, j]
+        matrix[j + 1 :, j + 1 :] -= matrix[j + 1 :, j, None] * matrix[j, None, j + 1 :]
+    return matrix, order
+
+
+def solved(factors, right):
+    matrix, order = factors
+    x = right[order].copy()
+    for j in range(len(matrix)):
+        x[j + 1 :] -= matrix[j + 1 :, j, None] * x[j]
+    for j in range(len(matrix) - 1, -1, -1):
+        x[j] /= matrix[j, j]
+        x[:j] -= matrix[:j, j, None] * x[j]
+    return x
+
+
+def orthonormal(columns):
+    found = []
+    for column in columns.T:
+        for _ in range(2):
+            for other in found:
+                column = column - other * np.sum(other * column)
+        found.append(column / np.sum(column * column) ** 0.5)
+    return np.stack(found, axis=-1)
+
+
+def neighbours(functions, mu, n, end, damping):
+    """Return the boundary, the distance to the next one of its period, and which is lower."""
+    whole = sum((f * m for f, m in zip(functions[1:], mu[1:], strict=True)), functions[0] * mu[0])
+    regions = [m for m in (n - 2, n, n + 2) if m >= 0]
+    found = hill_boundaries(whole, 1.0, tuple(regions), damping)
+    places = [
+        (m, side, float(getattr(found, side)[i]))
+        for i, m in enumerate(regions)
+        for side in ("lower", "upper")
+        if m or side == "upper"
+    ]
+    own = next(i for i, place in enumerate(places) if place[:2] == (n, end))
+    target = places[own][2]
+    gaps = [
+        (abs(place[2] - target), i)
+        for i, place in enumerate(places)
+        if i != own and np.isfinite(place[2])
+    ]
+    gap, other = min(gaps, default=(np.inf, own + 1))
+    return target, gap, own < other
+
+
+def truth(given, found):
+    """Return wave numbers, the solution, and the space of all solutions that lie close by."""
+    functions, mu, n, _, damping = given
+    target, gap, first = neighbours(*given)
+    exact = gap < CLOSE
+    seen = np.flatnonzero(np.hypot(found.a, found.b) > 1e-14)[-1]
+    # A way beyond these and back is 1e-28 of the coupling of the pair.
+    highest = int(seen) + 2 + max(f.harmonics for f in functions)
+    k = np.arange(highest) + 0.5 * (n % 2)
+    matrix = fourier_matrix(functions, mu, damping, k, exact)
+    if n % 2 == 0:  # no sine of 0
+        matrix = np.delete(np.delete(matrix, highest, 0), highest, 1)
+    pair = gap < 1e-2 * max(1.0, abs(target))
+    # Between the two, or a little beyond both.
+    away = max(0.55 * gap if pair else 0.0, 1e-7 * max(1.0, abs(target))) * (1 if first else -1)
+    centred = matrix.copy()
+    centred[np.diag_indices_from(matrix)] -= more_digits([target + away], exact)[0]
+    factors = eliminated(centred)
+    start = np.random.default_rng(0).normal(size=(1 + pair, len(matrix)))
+    x = orthonormal(np.array([more_digits(row, exact) for row in start]).T)
+    for _ in range(100):
+        y = orthonormal(solved(factors, x))
+        change = np.max(np.abs(y - x @ (x.T @ y)))
+        x = y
+        if change < (1e-50 if exact else 1e-18):
+            break
+    solution = x[:, 0]
+    if pair:
+        h = x.T @ (centred @ x)
+        half = (h[0, 0] - h[1, 1]) / 2
+        square = half * half + h[0, 1] * h[1, 0]
+        root = abs(square) ** (more_digits([0.5], exact)[0]) * (-1 if first else 1)
+        one, two = (h[0, 1], root - half), (root + half, h[1, 0])
+        weight = max(one, two, key=lambda v: max(abs(v[0]), abs(v[1])))
+        solution = x[:, 0] * weight[0] + x[:, 1] * weight[1]
+    return k, solution, x
+
+
+def deviation(given, found):
+    """Return the largest deviation over theta from the true solution."""
+    k, solution, space = truth(given, found)
+    n = found.n
+    drop = [len(k)] if n % 2 == 0 else []
+    scale = np.where(k == 0.0, 1.0, np.sqrt(np.longdouble(0.5)))
+    scale = np.delete(np.concatenate([scale, scale]), drop)
+    both = np.zeros((2, len(k)), dtype=np.longdouble)
+    kept = min(len(k), len(found.a))
+    both[:, :kept] = found.a[:kept], found.b[:kept]
+    ours = np.delete(both.ravel(), drop) * scale
+    if found.degenerate:
+        basis = orthonormal(np.stack([as_long(c) for c in space.T], axis=-1) * scale[:, None])
+        exact = basis @ (basis.T @ ours)
+    else:
+        exact = as_long(solution) * scale
+        exact *= np.sign(np.sum(exact * ours)) / np.sqrt(np.sum(exact * exact))
+    exact = np.insert(exact / scale, drop, 0.0).reshape(2, -1)
+    phase = np.multiply.outer(THETA.astype(np.longdouble), k.astype(np.longdouble))
+    values = np.cos(phase) @ exact[0] + np.sin(phase) @ exact[1]
+    return float(np.max(np.abs(found(THETA) - values)))
+
+
+def ratios(seed, scenes, strongest, orders):
+    rng = np.random.default_rng(seed)
+    out, passed = [], 0
+    while len(out) < scenes:
+        given = scene(rng, strongest)
+        order = orders[int(rng.integers(len(orders)))]
+        functions, mu, n, end, damping = given
+        try:
+            found = boundary_solution(functions, mu, n, end, order, damping)
+        except BadInput as refusal:
+            assert "closed by damping" in str(refusal) or "converge visibly" in str(refusal)
+            continue
+        with mpmath.workdps(60):
+            out.append(found.error / max(deviation(given, found), 1e-17))
+        passed += found.passed
+    assert passed >= 0.99 * scenes
+    return out
+
+
+@pytest.mark.parametrize("scenes", SOME)
+def test_exact_solutions(scenes):
+    verdict([ratios(61, scenes, 2.0, [None])], scenes)
+
+
+@pytest.mark.parametrize("scenes", SOME)
+def test_solutions_to_an_order(scenes):
+    verdict([ratios(62, scenes, 0.0, range(1, 9))], scenes)

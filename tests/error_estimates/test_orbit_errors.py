@@ -1,0 +1,60 @@
+"""Error figures of periodic orbits on constraints, against a bead on a cycloid in closed form."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cycloid_truth import Cycloid
+from elastolink.derive import regenerate
+from elastolink.derive.spec import ModelSpec
+from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
+from elastolink.runtime.core.families import Constrained
+from elastolink.runtime.systems.modules import find_module
+
+MODEL = Path(__file__).parents[1] / "third_party_models" / "cycloid.py"
+SCENES = 200
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def module(tmp_path_factory):
+    folder, spec = tmp_path_factory.mktemp("modules"), ModelSpec("cycloid", "multiplier")
+    arguments = ["--model", str(MODEL), "--out", str(folder), "--jobs", "1"]
+    assert regenerate.main([*arguments, spec.name()]) == 0
+    return find_module(spec, [folder]).module
+
+
+def random_bead(rng: np.random.Generator) -> Cycloid:
+    """Return a bead that swings through up to 2 rad of rolling, from damped to hardly so."""
+    mass, radius, gravity = rng.uniform(0.1, 5.0), rng.uniform(0.05, 2.0), rng.uniform(1.0, 20.0)
+    own = np.sqrt(gravity / (4 * radius))
+    speed = own * np.exp(rng.uniform(np.log(0.2), np.log(5.0)))
+    drag = 2 * mass * own * 10.0 ** rng.uniform(-3.0, -0.3)
+    reply = abs(mass * (own**2 - speed**2) + 1j * drag * speed)
+    arc = 4 * radius * rng.uniform(0.05, 0.84)
+    return Cycloid(mass, radius, gravity, drag, arc * reply, speed)
+
+
+def test_figures_hold_and_are_not_idle(module):
+    rng = np.random.default_rng(20)
+    orbit_ratio, ratio = [], []
+    for _ in range(SCENES):
+        bead = random_bead(rng)
+        system = Constrained.from_module(module, bead.numbers)
+        t = np.arange(24) * (bead.period / 24)
+        guess = [0.9 * values for values in bead.state(t)]
+        orbit = periodic_orbit(system, bead.period, *guess)
+        assert not orbit.message
+        scale = orbit.source.scale
+        exact = scale.state(*bead.state(orbit.t))
+        away = np.max(np.abs(scale.state(orbit.q, orbit.qd) - exact)) / np.max(np.abs(exact))
+        orbit_ratio.append(away / orbit.error)
+        found = orbit_multipliers(orbit)
+        gap = np.abs(found.physical[:, None] - bead.multipliers()).min(axis=1)
+        ratio.extend(gap / found.error)
+    for actual in (np.array(orbit_ratio), np.array(ratio)):
+        assert np.mean(actual <= 1.0) >= 0.99
+        assert np.median(actual) >= 1e-3

@@ -1,0 +1,183 @@
+"""Figures of run-ups of random bars against Gauss collocation of a far finer mesh of time.
+
+The reference writes the second-order equation out from the family's documentation, with the
+derivatives of its arrays, and takes four stages a step, in which the axial waves turn by
+0.4 rad; the solver marches the canonical form with three stages and a hundred times longer steps.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
+from elastolink.runtime.design import SpeedProfile, run_through
+from elastolink.runtime.design.shape_stress import largest_by_shape
+from elastolink.runtime.floquet.spring_form import periodic_derivative
+from elastolink.runtime.integrators.gauss_legendre import gauss_maps
+from elastolink.runtime.linkages.linkage import LinkMotion
+from elastolink.runtime.response import steady_state
+from honesty import verdict
+from scipy.interpolate import CubicSpline
+
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
+SCENES = 200
+STATIONS = 5
+# A bar of 1 m and a tenth of it thick, so that its axial waves are no faster than they need be.
+SECTION = Section.rectangle(0.02, 0.1, modulus=2.1e11, density=7850.0)
+SQUARE = np.sqrt(SECTION.bending_stiffness / SECTION.mass_per_length)
+FIRST = {False: 3.516 * SQUARE, True: 9.870 * SQUARE}
+# The fastest rate of one element: axial, or the second bending mode of a cubic [rad/s].
+AXIAL = max(3.5 * np.sqrt(SECTION.axial_stiffness / SECTION.mass_per_length), 110.0 * SQUARE)
+STAGES, PHASE = 4, 0.4
+
+
+def rocking_bar(rng):
+    """Return a random rocking bar and its first frequency."""
+    size, second = rng.uniform(0.02, 0.3), rng.uniform(-0.1, 0.1)
+
+    def configuration(theta):
+        still = np.zeros((len(theta), 2))
+        phi = size * np.sin(theta) + second * np.cos(2 * theta)
+        rate = size * np.cos(theta) - 2 * second * np.sin(2 * theta)
+        acceleration = -size * np.sin(theta) - 4 * second * np.cos(2 * theta)
+        return {"bar": LinkMotion(still, still, still, phi, rate, acceleration)}
+
+    pinned = bool(rng.integers(2))
+    ends = (("x", "y"), ("x", "y")) if pinned else (("x", "y", "rotation"), ())
+    drag = 10.0 ** rng.uniform(-2.0, -0.7) * FIRST[pinned]
+    beam = Beam(name="bar", start="O", end="P", section=SECTION, length=1.0, elements=1)
+    nodes = (Node(name="O", held=ends[0]), Node(name="P", held=ends[1]))
+    structure = Structure(beams=(beam,), nodes=nodes, configuration=configuration)
+    return linear_system(structure, rayleigh=(drag, 0.0)), FIRST[pinned]
+
+
+def random_profile(rng, first):
+    """Return a run-up or a run-down of a few revolutions through some of the fractions."""
+    low, high = np.sort(first * rng.uniform(0.1, 0.5, 2))
+    start, stop = (low, high) if rng.integers(4) else (high, low)
+    duration = float(rng.uniform(1.0, 2.0) * 2 * np.pi / high)
+    return SpeedProfile.ramp(start, stop, duration, after=float(rng.choice([0.0, 0.3 * duration])))
+
+
+class SecondOrder:
+    """``M qdd + (C + w G) qd + (K + w D + w^2 H + a E) q = w^2 f + a g`` along a drive."""
+
+    def __init__(self, system, profile):
+        self.system, self.profile = system, profile
+        self.slope = {
+            name: periodic_derivative(
+                lambda angles, name=name: system.array(name, angles)[None], system.period
+            )
+            for name in ("M", "A")
+        }
+
+    def generator(self, time):
+        """Return the generator of (q, qd, 1) at times, ``(nt, 2n + 1, 2n + 1)``."""
+        system, n = self.system, self.system.size
+        theta, w = self.profile.angle(time), self.profile.speed(time)[:, None, None]
+        a = self.profile.acceleration(time)[:, None, None]
+
+        def at(name, power=0):
+            parts = [t for t in system.terms if t.array == name]
+            scales, total = system.scale_values(), 0.0
+            for term in parts:
+                scale = 1.0 if term.scale is None else float(scales[term.scale])
+                value = term(theta)
+                speed = w.reshape(-1, *(1,) * (value.ndim - 1)) ** (term.power + power)
+                total = total + scale * speed * value
+            return total
+
+        drift = at("A")
+        turn = self.slope["M"](theta)[0] + drift - np.swapaxes(drift, 1, 2)
+        stiff = at("K") + at("Kg") + at("D", 1)
+        stiff = stiff + w**2 * (self.slope["A"](theta)[0] - at("B")) + a * (drift - at("S"))
+        force = at("f", 2) + a[:, 0] * at("g")
+        sides = np.concatenate([-stiff, -(at("C") + w * turn), force[:, :, None]], axis=2)
+        found = np.zeros((len(time), 2 * n + 1, 2 * n + 1))
+        found[:, :n, n : 2 * n] = np.eye(n)
+        found[:, n : 2 * n] = np.linalg.solve(np.broadcast_to(at("M"), stiff.shape), sides)
+        return found
+
+    def march(self, start, phase):
+        """Return times and coordinates by Gauss collocation, between the profile's own times."""
+        times, states = [np.zeros(1)], [start[None]]
+        for begin, end in zip(self.profile.times[:-1], self.profile.times[1:], strict=True):
+            steps = int(np.ceil(AXIAL * (end - begin) / phase))
+            edges = np.linspace(begin, end, steps + 1)
+            step = edges[1] - edges[0]
+            maps = gauss_maps(STAGES, self.generator, edges[:-1], step)
+            inside = np.empty((steps, len(start)))
+            state = states[-1][-1]
+            for k in range(steps):
+                inside[k] = state = maps[k] @ state
+            times.append(edges[1:])
+            states.append(inside)
+        return np.concatenate(times), np.concatenate(states)[:, : self.system.size]
+
+
+def largest(system, profile, time, q):
+    """Return the largest stress at the times and, by splines, between them."""
+
+    def at(when, values):
+        return largest_by_shape(system, profile.angle(when), values, STATIONS)[:, 0]
+
+    rough = at(time, q)
+    near = np.flatnonzero(rough > 0.97 * np.max(rough))
+    spline = CubicSpline(time, q)
+    steps = np.linspace(-1.0, 1.0, 33)[:, None] * (time[1] - time[0])
+    between = np.clip((time[near] + steps).ravel(), time[0], time[-1])
+    return max(np.max(rough), np.max(at(between, spline(between))))
+
+
+def exact_largest(system, profile, start, phases=(PHASE,)):
+    """Return the largest stress of the run, with steps of some lengths."""
+    n, first = system.size, np.zeros(2 * system.size + 1)
+    first[-1] = 1.0
+    if start == "steady":
+        speed = float(profile.speeds[0])
+        steady = steady_state(system, speed, method="shooting", rtol=1e-10, stability=False)
+        first[:n], first[n : 2 * n] = steady.q.reshape(-1, n)[0], steady.qd.reshape(-1, n)[0]
+    problem = SecondOrder(system, profile)
+    return [largest(system, profile, *problem.march(first, phase)) for phase in phases]
+
+
+def ratio(rng, modes=None):
+    """Return figure over actual error of the largest stress of one random run."""
+    system, first = rocking_bar(rng)
+    profile = random_profile(rng, first)
+    start = str(rng.choice(["steady", "rest"]))
+    rtol = float(10.0 ** rng.uniform(-3.5, -1.2))
+    found = run_through(system, profile, modes=modes, stations=STATIONS, rtol=rtol, start=start)
+    figure = float(found.error[0])
+    phase = PHASE if figure > 1e-4 else 0.3 * PHASE
+    exact = exact_largest(system, profile, start, (phase,))[0]
+    actual = abs(found.largest["bar"] / exact - 1.0)
+    return np.array([figure / max(actual, 1e-12)])
+
+
+def test_the_reference_is_one():
+    """Shorter steps change it by far less than the figures are."""
+    rng = np.random.default_rng(8000)
+    for start in ("rest", "steady", "rest"):
+        system, first = rocking_bar(rng)
+        one, other = exact_largest(system, random_profile(rng, first), start, (PHASE, 0.6 * PHASE))
+        assert abs(one / other - 1.0) < 1e-6
+
+
+@pytest.mark.parametrize("modes", [None, 1])
+def test_some_runs(modes):
+    rng = np.random.default_rng(8100)
+    verdict([ratio(rng, modes) for _ in range(2)], 2)
+
+
+@pytest.mark.slow
+def test_runs_of_all_coordinates():
+    rng = np.random.default_rng(8200)
+    verdict([ratio(rng) for _ in range(SCENES)], SCENES)
+
+
+@pytest.mark.slow
+def test_runs_of_a_few_modes():
+    """Those left out are added, all in the end: their figure is that of what they change."""
+    rng = np.random.default_rng(8300)
+    verdict([ratio(rng, int(rng.integers(1, 3))) for _ in range(40)], 40)

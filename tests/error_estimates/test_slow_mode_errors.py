@@ -1,0 +1,61 @@
+"""Error figures of slow multipliers and reduced systems, over 200 random stiff systems."""
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.floquet import characteristic_exponents, floquet_multipliers, slow_system
+
+SCENES = 200
+
+
+def random_system(generator):
+    """Return one slow and two stiff coupled freedoms on a turning basis."""
+    levels = np.array([1.0, generator.uniform(30.0, 40.0), generator.uniform(60.0, 80.0)]) ** 2
+    modulation = generator.uniform(-0.3, 0.3, (3, 2))
+    swing = generator.uniform(-0.4, 0.4, (2, 2))
+    drag = generator.choice([0.0, 1e-3])
+
+    def turn(theta):
+        out = np.broadcast_to(np.eye(3), (len(theta), 3, 3)).copy()
+        for other, (a, b) in zip((1, 2), swing, strict=True):
+            angle = a * np.sin(theta) + b * np.cos(theta)
+            part = np.broadcast_to(np.eye(3), (len(theta), 3, 3)).copy()
+            part[:, 0, 0] = part[:, other, other] = np.cos(angle)
+            part[:, 0, other], part[:, other, 0] = -np.sin(angle), np.sin(angle)
+            out = out @ part
+        return out
+
+    def stiffness(theta):
+        waves = np.stack([np.cos(theta), np.sin(theta)])
+        rows = levels * (1.0 + (modulation @ waves).T)
+        r = turn(theta)
+        return np.swapaxes(r, -1, -2) @ (rows[:, :, None] * r)
+
+    terms = [Term("M", None, np.eye(3)), Term("K", None, stiffness)]
+    if drag:
+        terms.append(Term("C", None, lambda theta: drag * stiffness(theta)))
+    return LinearPeriodic(3, tuple(terms), {}, lambda values: {}), bool(drag)
+
+
+@pytest.mark.slow
+def test_slow_multipliers_lie_within_their_figures():
+    generator = np.random.default_rng(7)
+    inside, ratio, held = [], [], []
+    for _ in range(SCENES):
+        system, damped = random_system(generator)
+        speed = generator.uniform(0.25, 0.7)
+        found = characteristic_exponents(system, speed, 1)
+        # All modes resolved: right to 1e-12, far below the figures asked of the slow ones.
+        whole = floquet_multipliers(system, speed, rtol=1e-12).multipliers
+        actual = np.min(np.abs(found.multipliers[:, None] - whole), axis=1)
+        inside.append(np.all(actual <= found.error))
+        ratio.append(np.max(found.error) / max(np.max(actual), 1e-14))
+        if not damped:
+            reduced = slow_system(system, (0.9 * speed, 1.1 * speed), 1)
+            own = floquet_multipliers(reduced.system, speed).multipliers
+            gap = np.max(np.min(np.abs(own[:, None] - whole), axis=1))
+            turn = 2.0 * np.pi / speed
+            held.append(gap <= turn * reduced.error + 1e-10)
+    assert np.mean(inside) >= 0.99
+    assert np.median(ratio) <= 1e3
+    assert np.mean(held) >= 0.99

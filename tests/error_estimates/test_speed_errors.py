@@ -1,0 +1,203 @@
+"""Figures of frequencies, critical speeds and peaks over the speed, on scenes known exactly."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import LinearRangeWarning
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.frequencies import campbell, compare_critical_speeds, critical_speeds
+from elastolink.runtime.response import frozen_frequencies, resonance_curve, steady_peaks
+from honesty import verdict
+from manufactured import manufactured
+
+SCENES = 200
+
+
+class Turned:
+    """Springs and dampers of given rates in random coordinates, which wave where asked."""
+
+    def __init__(self, rng, count=2, drag=0.0, wavy=True):
+        # Without waves the products below are exact: few digits.
+        squares = np.rint(np.sort(rng.uniform(5.0, 80.0, count)) ** 2 * 256.0) / 256.0
+        self.natural = np.sqrt(squares.astype(np.longdouble))
+        fixed = np.eye(count) + 0.15 * rng.standard_normal((count, count))
+        fixed = np.rint(fixed * 1024.0) / 1024.0
+        waves = (0.08 if wavy else 0.0) * rng.standard_normal((2, count, count))
+
+        def turn(theta):
+            first = np.multiply.outer(np.cos(theta), waves[0])
+            return fixed + first + np.multiply.outer(np.sin(theta), waves[1])
+
+        def slope(theta):
+            first = np.multiply.outer(np.cos(theta), waves[1])
+            return first - np.multiply.outer(np.sin(theta), waves[0])
+
+        def made(left, right, weight=1.0):
+            return lambda theta: np.swapaxes(left(theta), 1, 2) * weight @ right(theta)
+
+        terms = [
+            Term("M", None, made(turn, turn)),
+            Term("K", None, made(turn, turn, squares)),
+            Term("A", None, made(turn, slope)),
+            Term("B", None, made(slope, slope)),
+        ]
+        if drag:
+            terms += [
+                Term("C", None, made(turn, turn, drag)),
+                Term("D", None, made(turn, slope, drag)),
+            ]
+        self.system = LinearPeriodic(count, tuple(terms), {}, lambda values: {})
+
+
+def above(error, actual, size):
+    """Return figures over actual errors, these no less than half a last digit."""
+    return np.ravel(error / np.maximum(np.abs(actual), 1e-16 * np.abs(size))).astype(float)
+
+
+def test_held_frequencies_and_campbell():
+    rng = np.random.default_rng(71)
+    frozen, held = [], []
+    for _ in range(SCENES):
+        scene = Turned(rng, wavy=False)
+        angles = rng.uniform(0.0, 6.0, 3)
+        found = frozen_frequencies(scene.system, angles)
+        frozen.append(above(found.error, found.frequency - scene.natural, scene.natural))
+        drawn = campbell(scene.system, np.linspace(2.0, 9.0, 4), exponents=False)
+        held.append(above(drawn.error, drawn.held - scene.natural, scene.natural))
+    verdict(frozen, SCENES)
+    verdict(held, SCENES)
+
+
+def test_fractions_of_mean_frequencies():
+    rng = np.random.default_rng(72)
+    ratios = []
+    for _ in range(SCENES):
+        scene = Turned(rng, wavy=False)
+        found = critical_speeds(scene.system, (6.0, 30.0))
+        exact = scene.natural[found.mode - 1] / found.order
+        ratios.append(above(found.error, found.speed - exact, exact))
+    verdict(ratios, SCENES)
+
+
+@pytest.mark.slow
+def test_maxima_of_multipliers():
+    """exp(-c t/2) cos(w t) over the period t is greatest where tan(w t) = -c/(2 w)."""
+    rng = np.random.default_rng(73)
+    ratios = []
+    while len(ratios) < SCENES:
+        drag = float(rng.choice([0.0, rng.uniform(0.1, 3.0)]))
+        scene = Turned(rng, count=1, drag=drag)
+        own = np.sqrt(scene.natural[0] ** 2 - drag**2 / 4)
+        n = int(rng.integers(1, 4))
+        exact = 2 * np.pi * own / (2 * np.pi * n - np.arctan(drag / (2 * own)))
+        found = critical_speeds(scene.system, (0.9 * exact, 1.1 * exact), method="multipliers")
+        assert len(found.speed) == 1
+        ratios.append(above(found.error, found.speed - exact, exact))
+    verdict(ratios, SCENES)
+
+
+class Forced:
+    """Two damped oscillators, each forced by three harmonics; what both add up to is known."""
+
+    def __init__(self, rng):
+        self.natural = np.array([rng.uniform(10.0, 20.0), rng.uniform(40.0, 70.0)])
+        self.drag = float(10.0 ** rng.uniform(-2.0, -1.0)) * self.natural[0]
+        self.force = rng.uniform(0.3, 1.0, (3, 2))
+        order = np.arange(1, 4)
+        terms = (
+            Term("M", None, np.eye(2)),
+            Term("K", None, np.diag(self.natural**2)),
+            Term("C", None, self.drag * np.eye(2)),
+            Term("p", None, lambda t: np.cos(np.multiply.outer(t, order)) @ self.force),
+        )
+
+        def shape(x):
+            return 1e-6 * np.stack([np.asarray(x)] * 2, axis=1)
+
+        self.system = LinearPeriodic(2, terms, {}, lambda values: {}, shape=shape)
+
+    def square(self, speed):
+        """Return the mean square of the sum of both, over speeds in extended precision."""
+        w = np.asarray(speed, dtype=np.longdouble)[..., None, None]
+        n = np.arange(1, 4, dtype=np.longdouble)[:, None]
+        stiff = self.natural.astype(np.longdouble) ** 2 - (n * w) ** 2
+        sums = (self.force / (stiff + 1j * np.longdouble(self.drag) * n * w)).sum(axis=-1)
+        return (np.abs(sums) ** 2).sum(axis=-1)
+
+    def maximum(self, near):
+        """Return the place of the maximum next to a speed, by parabolas closing in."""
+        at, step = np.longdouble(near), np.longdouble(near) * 1e-4
+        for _ in range(12):
+            low, middle, high = 1 / self.square(at + step * np.array([-1, 0, 1]))
+            at += step * (low - high) / (2 * (low - 2 * middle + high))
+            step = max(step / 4, np.longdouble(near) * 1e-6)
+        return at
+
+
+@pytest.mark.slow
+def test_maxima_of_the_response():
+    """The speed at which two oscillators and three harmonics together move most."""
+    rng = np.random.default_rng(74)
+    ratios = []
+    for _ in range(SCENES):
+        scene = Forced(rng)
+        top = scene.natural[0] / int(rng.integers(1, 4))
+        span = (top * rng.uniform(0.75, 0.9), top * rng.uniform(1.1, 1.25))
+        found = critical_speeds(scene.system, span, method="response", speeds=31)
+        for speed, error in zip(found.speed, found.error, strict=True):
+            ratios.append(above(error, speed - scene.maximum(speed), speed))
+    verdict(ratios, SCENES)
+
+
+def _with_shapes(seed):
+    system, speed, motion = manufactured(seed)
+    n = system.size
+
+    def shape(x):
+        return 1e-4 * np.stack([np.asarray(x) ** (k + 1) for k in range(n)], axis=1)
+
+    return replace(system, shape=shape), speed, motion, shape
+
+
+def _largest(motion, weights):
+    """Return the largest deflection of a known motion, between the angles too."""
+    theta = 2 * np.pi * np.arange(1024) / 1024
+    best = float(theta[np.argmax(np.abs(motion(theta) @ weights))])
+    width = 2 * np.pi / 1024
+    for _ in range(4):
+        near = best + width * np.linspace(-1.0, 1.0, 201)
+        values = np.abs(motion(near) @ weights)
+        best, width = float(near[np.argmax(values)]), width / 50
+    return float(np.max(values))
+
+
+@pytest.mark.slow
+def test_peaks_of_steady_motions():
+    ratios, curves = [], []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        for seed in range(SCENES):
+            system, speed, motion, shape = _with_shapes(7000 + seed)
+            found = steady_peaks(system, [speed], x=[0.5, 1.0])
+            exact = [_largest(motion, shape(np.array([x]))[0]) for x in (0.5, 1.0)]
+            actual = abs(found.peak[0] - max(exact)) / max(exact)
+            ratios.append(above(found.error, actual, 1.0))
+            curve = resonance_curve(system, speed * np.array([0.999, 1.0, 1.001]))
+            actual = abs(curve.peak[1] - exact[1]) / exact[1]
+            curves.append(above(curve.error[1], actual, 1.0))
+    verdict(ratios, SCENES)
+    verdict(curves, SCENES)
+
+
+def test_a_comparison_repeats_the_figures_of_its_methods():
+    scene = Forced(np.random.default_rng(75))
+    both = compare_critical_speeds(scene.system, (6.0, 30.0))
+    for column, method in enumerate(both.methods):
+        alone = critical_speeds(scene.system, (6.0, 30.0), method=method)
+        known = np.isfinite(both.speed[:, column])
+        assert set(both.error[known, column]) <= set(alone.error)
+        assert known.any()

@@ -1,0 +1,83 @@
+"""The figure of tolerances against exact extremes of many digits, over random four-bars."""
+
+from __future__ import annotations
+
+import itertools
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.linkages.length_tolerances import tolerances
+from linkage_truth import motion, random_linkage
+
+_OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")
+
+
+def _extreme(lengths, widths, theta, assembly):
+    """Return the greatest deviations over the corners of the box, by output."""
+    numbers = {name: mpmath.mpf(size) for name, size in lengths.items()}
+    numbers |= {"theta2": mpmath.mpf(theta), "assembly": mpmath.mpf(assembly)}
+    here = motion(numbers)
+    worst = dict.fromkeys(_OUTPUTS, mpmath.mpf(0))
+    for signs in itertools.product((-1, 1), repeat=len(widths)):
+        moved = dict(numbers)
+        for (name, width), sign in zip(widths.items(), signs, strict=True):
+            moved[name] += sign * mpmath.mpf(width)
+        there = motion(moved, here)
+        for name in _OUTPUTS:
+            worst[name] = max(worst[name], abs(there[name] - here[name]))
+    return worst
+
+
+@pytest.mark.slow
+def test_worst_cases():
+    random = np.random.default_rng(41)
+    actual, figures, drawn = [], [], 0
+    with mpmath.workdps(40):
+        while drawn < 200:
+            shape = random_linkage(random, ("rocker", "drag")[drawn % 2])
+            assembly = "open" if shape.assembly > 0 else "crossed"
+            linkage = FourBar(**shape.lengths, assembly=assembly)
+            widths = {
+                name: float(size * 10.0 ** random.uniform(-7.0, -1.5))
+                for name, size in linkage.lengths.items()
+                if random.uniform() < 0.7
+            }
+            theta = float(random.uniform(-np.pi, np.pi))
+            try:
+                found = tolerances(linkage, widths, [theta])
+            except BadInput:
+                continue  # it could fold
+            drawn += 1
+            exact = _extreme(linkage.lengths, widths, theta, shape.assembly)
+            for row, name in enumerate(found.outputs):
+                actual.append(float(abs(found.worst_case[row, 0] - exact[name])))
+                figures.append(float(found.error[row, 0]))
+    off, figure = np.array(actual), np.array(figures)
+    assert np.mean(off <= figure) >= 0.99
+    known = off > 0.0
+    assert np.median(figure[known] / off[known]) <= 1e3
+
+
+@pytest.mark.parametrize("distribution", ["normal", "uniform"])
+def test_spreads_of_trials(distribution):
+    """Tolerances so narrow that the first order is all: its spread is the exact one."""
+    random = np.random.default_rng(43)
+    ratios = []
+    for seed in range(200):
+        shape = random_linkage(random, "rocker")
+        linkage = FourBar(**shape.lengths, assembly="open" if shape.assembly > 0 else "crossed")
+        widths = {name: 1e-7 * size for name, size in linkage.lengths.items()}
+        try:
+            found = tolerances(linkage, widths, [float(random.uniform(-np.pi, np.pi))])
+        except BadInput:
+            continue  # it could fold
+        trial = found.monte_carlo(int(random.integers(3, 60)), seed, distribution)
+        off = np.abs(trial.standard_deviation - trial.expected)
+        # All outputs are of one draw.
+        ratios.append(float(np.median(trial.error / np.maximum(off, 1e-300))))
+    assert len(ratios) > 150
+    assert np.mean(np.array(ratios) >= 1.0) >= 0.98
+    assert np.median(ratios) <= 1e3

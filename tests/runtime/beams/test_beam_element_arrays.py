@@ -1,0 +1,134 @@
+"""Beam elements at run time: shapes carry fields exactly, matrices are their energies, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.beams.elements import (
+    KINDS,
+    NODAL_VALUES,
+    element_arrays,
+    rigid_field,
+    section_rotation,
+    shape_functions,
+)
+from elastolink.runtime.core.errors import BadInput
+
+LENGTH, BENDING, SHEAR = 0.3, 20.0, 4e4
+STIFF = {"bending_stiffness": BENDING, "shear_stiffness": SHEAR}
+NUMBERS = {"mass_per_length": 1.2, "axial_stiffness": 1e6, "rotary_inertia": 2e-4, **STIFF}
+
+
+def arrays(kind, **changes):
+    return element_arrays(kind, **{"length": LENGTH, **NUMBERS, **changes})
+
+
+def nodal(kind, rng):
+    """Return random nodal values of the size that the units ask for."""
+    size = {"u": 1e-3, "v": 1e-2, "r": 0.1, "k": 1.0}
+    return np.array([rng.normal() * size[name[0]] for name in NODAL_VALUES[kind]])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_matrices_are_symmetric_or_skew_and_cannot_be_written_to(kind):
+    found = arrays(kind)
+    n = len(NODAL_VALUES[kind])
+    assert found.mass.shape == found.coupling.shape == (n, n)
+    assert found.geometric.shape == (3, n, n) and found.load.shape == (n, 4)
+    for matrix in (found.mass, found.centripetal, found.stiffness, *found.geometric):
+        np.testing.assert_array_equal(matrix, matrix.T)
+    np.testing.assert_array_equal(found.coupling, -found.coupling.T)
+    assert np.linalg.eigvalsh(found.mass)[0] > 0
+    with pytest.raises(ValueError, match="read-only"):
+        found.mass[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_energies_by_quadrature_of_the_shapes(kind):
+    """Kinetic, strain and geometric energy, power of a load: Gauss points against matrices."""
+    rng = np.random.default_rng(7)
+    q, p, found = nodal(kind, rng), nodal(kind, rng), arrays(kind)
+    points, weights = np.polynomial.legendre.leggauss(8)
+    xi, dx = (points + 1) / 2, weights * LENGTH / 2
+    (u, v), (strain, slope) = (shape_functions(kind, xi, LENGTH, k, **STIFF) for k in (0, 1))
+    turn, bend = (section_rotation(kind, xi, LENGTH, k, **STIFF) @ q for k in (0, 1))
+    thick = kind == "timoshenko"
+    moving = 1.2 * ((u @ q) ** 2 + (v @ q) ** 2) + 2e-4 * thick * turn**2
+    assert q @ found.mass @ q == pytest.approx(dx @ moving, rel=1e-12)
+    energy = 1e6 * (strain @ q) ** 2 + BENDING * bend**2 + SHEAR * (slope @ q - turn) ** 2
+    assert q @ found.stiffness @ q == pytest.approx(dx @ energy, rel=1e-12)
+    crossed = 1.2 * ((v @ q) * (u @ p) - (u @ q) * (v @ p))
+    assert q @ found.coupling @ p == pytest.approx(dx @ crossed, rel=1e-11)
+    for k in range(3):
+        pulled = xi**k * (slope @ q) ** 2
+        assert q @ found.geometric[k] @ q == pytest.approx(dx @ pulled, rel=1e-12)
+    ends = np.array([3.0, -1.0, 2.0, 5.0])
+    work = (3.0 - 4.0 * xi) * (u @ q) + (2.0 + 3.0 * xi) * (v @ q)
+    assert q @ found.load @ ends == pytest.approx(dx @ work, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_derivatives_of_the_shapes_by_differences(kind):
+    q = nodal(kind, np.random.default_rng(8))
+    xi, h = np.array([0.1, 0.45, 0.8]), 1e-5
+    for k in range(3):
+        low, high = (shape_functions(kind, xi + s * h, LENGTH, k, **STIFF) for s in (-1, 1))
+        slopes = shape_functions(kind, xi, LENGTH, k + 1, **STIFF)
+        for one, two, slope in zip(low, high, slopes, strict=True):
+            difference = (two - one) @ q / (2 * h * LENGTH)
+            scale = np.max(np.abs(slope)) * np.max(np.abs(q)) + np.max(np.abs(one)) * 1e-3
+            np.testing.assert_allclose(slope @ q, difference, atol=1e-6 * scale + 1e-8)
+
+
+def test_shear_force_of_timoshenkos_beam_from_either_side():
+    """``k G A (v' - psi)`` is ``-EI psi''``, the same everywhere."""
+    q = nodal("timoshenko", np.random.default_rng(9))
+    xi = np.linspace(0.0, 1.0, 5)
+    slope = shape_functions("timoshenko", xi, LENGTH, 1, **STIFF)[1]
+    turn, second = (section_rotation("timoshenko", xi, LENGTH, k, **STIFF) for k in (0, 2))
+    np.testing.assert_allclose(SHEAR * (slope - turn) @ q, -BENDING * second @ q, rtol=1e-8)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_rigid_fields_are_carried_exactly(kind):
+    start, turning = np.array([[0.3, -0.2], [1.0, 2.0]]), np.array([0.7, -3.0])
+    end = start + np.stack([np.full(2, 0.05), LENGTH * turning], axis=-1)
+    values = rigid_field(kind, start, end, turning)
+    assert values.shape == (2, len(NODAL_VALUES[kind]))
+    xi = np.linspace(0.0, 1.0, 7)
+    u, v = shape_functions(kind, xi, LENGTH, **STIFF)
+    exact = start[:, None, :] + xi[:, None] * (end - start)[:, None, :]
+    np.testing.assert_allclose(values @ u.T, exact[..., 0], rtol=1e-14)
+    np.testing.assert_allclose(values @ v.T, exact[..., 1], rtol=1e-13, atol=1e-14)
+    turned = values @ section_rotation(kind, xi, LENGTH, **STIFF).T
+    np.testing.assert_allclose(turned, np.broadcast_to(turning[:, None], (2, 7)), rtol=1e-12)
+
+
+def test_kinds_without_shear_do_not_use_its_numbers():
+    bare = arrays("cubic", shear_stiffness=None, rotary_inertia=0.0)
+    np.testing.assert_array_equal(arrays("cubic").mass, bare.mass)
+    np.testing.assert_array_equal(arrays("cubic").stiffness, bare.stiffness)
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: arrays("linear"), "kind"),
+        (lambda: arrays("cubic", length=0.0), "length"),
+        (lambda: arrays("cubic", mass_per_length=-1.0), "mass_per_length"),
+        (lambda: arrays("cubic", bending_stiffness=float("nan")), "bending_stiffness"),
+        (lambda: arrays("timoshenko", shear_stiffness=None), "shear_stiffness"),
+        (lambda: arrays("timoshenko", rotary_inertia=-1.0), "rotary_inertia"),
+        (lambda: shape_functions("cubic", [1.1], 1.0), "xi"),
+        (lambda: shape_functions("cubic", [float("nan")], 1.0), "xi"),
+        (lambda: shape_functions("cubic", [0.5], 1.0, 4), "derivative"),
+        (lambda: shape_functions("timoshenko", [0.5], 1.0), "bending_stiffness"),
+        (lambda: section_rotation("cubic", [0.5], 1.0, 3), "derivative"),
+        (lambda: rigid_field("cubic", [1.0], [1.0, 2.0], 0.0), "start"),
+        (lambda: rigid_field("other", [1.0, 2.0], [1.0, 2.0], 0.0), "kind"),
+    ],
+)
+def test_unusable_input_is_refused(call, word):
+    with pytest.raises(BadInput, match=word) as caught:
+        call()
+    assert "\n" not in str(caught.value)

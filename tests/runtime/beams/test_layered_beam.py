@@ -1,0 +1,236 @@
+"""Three-layer beams with a viscoelastic core: limits, formulas, plane elasticity, refusals."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.beams.layered import (
+    ElasticLayer,
+    SandwichStudy,
+    ViscoelasticLayer,
+    sandwich_section,
+    sandwich_study,
+)
+from elastolink.runtime.core.errors import BadInput
+
+BASE = ElasticLayer(3e-3, 70e9, 2700.0)
+COVER = ElasticLayer(1e-3, 70e9, 2700.0)
+WIDTH, WAVE = 0.025, np.pi / 0.5
+
+
+def core(shear=2e6, loss=1.0, thickness=1e-3):
+    return ViscoelasticLayer(thickness, shear, loss, 1200.0)
+
+
+def section(middle=None, base=BASE, cover=COVER, **changes):
+    numbers = {"width": WIDTH, "wave_number": WAVE, **changes}
+    return sandwich_section(base, core() if middle is None else middle, cover, **numbers)
+
+
+def geometry(middle, wave):
+    """Return Mead and Markus' D, Y and g: outer layers alone, coupling, shear parameter."""
+    b, c, h = BASE, COVER, middle.thickness
+    alone = WIDTH * (b.modulus * b.thickness**3 + c.modulus * c.thickness**3) / 12
+    first, third = b.modulus * b.thickness * WIDTH, c.modulus * c.thickness * WIDTH
+    arm = h + (b.thickness + c.thickness) / 2
+    y = arm**2 * first * third / (first + third) / alone
+    g = middle.shear_modulus * WIDTH / h * (1 / first + 1 / third)
+    return alone, y, g / wave**2
+
+
+# ---------------------------------------------------------------- limits and formulas
+
+
+def test_slack_and_rigid_core():
+    alone, y, _ = geometry(core(), WAVE)
+    soft, hard = section(core(1e-9)), section(core(1e18))
+    assert soft.bending_stiffness == pytest.approx(alone, rel=1e-12)
+    assert hard.bending_stiffness == pytest.approx(alone * (1 + y), rel=1e-10)
+    assert soft.loss_factor < 1e-12 and hard.loss_factor < 1e-10
+    assert soft.slack == pytest.approx(alone, rel=1e-14)
+    assert hard.bonded == pytest.approx(alone * (1 + y), rel=1e-14)
+
+
+def test_layers_glued_without_core_are_one_beam():
+    thin = section(core(1e18, thickness=1e-12))
+    whole = WIDTH * 70e9 * (4e-3) ** 3 / 12
+    assert thin.bending_stiffness == pytest.approx(whole, rel=1e-8)
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3, 1.5])
+@pytest.mark.parametrize("wave", [1.0, 10.0, 300.0])
+def test_the_equation_of_sixth_order(loss, wave):
+    """Mead and Markus: ``D (w6 - g (1 + Y) w4) = ..`` with w = sin kx and a complex g."""
+    middle = core(loss=loss)
+    alone, y, x = geometry(middle, wave)
+    shear = mpmath.mpc(x, x * loss)
+    stiffness = alone * (1 + shear * (1 + y)) / (1 + shear)
+    found = section(middle, wave_number=wave)
+    assert found.bending_stiffness == pytest.approx(float(stiffness.real), rel=1e-13)
+    expected = float(stiffness.imag / stiffness.real)
+    assert found.loss_factor == pytest.approx(expected, rel=1e-12, abs=1e-300)
+
+
+def test_best_shear_parameter_is_ungars():
+    """The loss factor is largest at ``x = 1/sqrt((1 + Y) (1 + eta^2))``."""
+    loss = 0.8
+    _, y, x = geometry(core(1.0, loss), WAVE)
+    best = 1 / np.sqrt((1 + y) * (1 + loss**2))
+    largest = loss * y / (2 + y + 2 / best)
+    shear = best / x
+    found = [section(core(shear * f, loss)).loss_factor for f in (0.9, 1.0, 1.1)]
+    assert found[1] == pytest.approx(largest, rel=1e-12)
+    assert found[1] > found[0] and found[1] > found[2]
+
+
+# ---------------------------------------------------------------- plane elasticity
+
+
+def elastic(wave, layers, poisson=0.3):
+    """Return the bending stiffness per width of a laminate in plane stress, sinusoidal along it.
+
+    State (U, W, T, S): displacements along and across, shear and normal stress; free below, a
+    normal load above; each layer is the exponential of a 4 x 4 matrix.
+    """
+    k, nu = mpmath.mpf(wave), mpmath.mpf(poisson)
+    whole = mpmath.eye(4)
+    for thickness, young in layers:
+        shear = young / (2 * (1 + nu))
+        rates = mpmath.matrix(
+            [
+                [0, -k, 1 / shear, 0],
+                [nu * k, 0, 0, (1 - nu**2) / young],
+                [young * k**2, 0, 0, -nu * k],
+                [0, 0, k, 0],
+            ]
+        )
+        whole = mpmath.expm(rates * thickness) * whole
+    start = mpmath.lu_solve(whole[2:4, 0:2], mpmath.matrix([0, 1]))
+    return 1 / (k**4 * start[1])
+
+
+def test_plane_elasticity_tends_to_the_layer_model():
+    """Long waves over a soft core, the shear parameter kept: the difference goes as (k h)^2."""
+    loss, differences = 0.7, []
+    with mpmath.workdps(40):
+        for wave in (1.0, 0.5, 0.25):
+            shear = mpmath.mpf(50e3) * wave**2
+            young = shear * mpmath.mpc(1, loss) * 2 * (1 + mpmath.mpf("0.3"))
+            layers = [(3e-3, mpmath.mpf(70e9)), (1e-3, young), (1e-3, mpmath.mpf(70e9))]
+            exact = WIDTH * elastic(wave, layers)
+            model = section(core(float(shear), loss), wave_number=wave)
+            both = mpmath.mpc(1, model.loss_factor) * model.bending_stiffness
+            differences.append(float(abs(both / exact - 1)))
+    assert differences[0] < 1e-4
+    orders = np.log2(np.array(differences[:-1]) / differences[1:])
+    np.testing.assert_allclose(orders, 2.0, atol=0.05)
+
+
+# ---------------------------------------------------------------- waves, mass, time
+
+
+def test_free_waves_and_frequencies_belong_together():
+    first = section()
+    again = section(wave_number=None, frequency=first.frequency)
+    assert again.wave_number == pytest.approx(WAVE, rel=1e-13)
+    assert again.bending_stiffness == pytest.approx(first.bending_stiffness, rel=1e-13)
+    mass = WIDTH * (4e-3 * 2700.0 + 1e-3 * 1200.0)
+    assert first.mass_per_length == pytest.approx(mass, rel=1e-14)
+    square = first.bending_stiffness * WAVE**4 / mass
+    assert first.frequency == pytest.approx(np.sqrt(square), rel=1e-13)
+
+
+@pytest.mark.parametrize("frequency", [1e-3, 1.0, 1e4, 1e9])
+def test_free_waves_at_any_frequency(frequency):
+    found = section(wave_number=None, frequency=frequency)
+    load = found.mass_per_length * frequency**2
+    assert found.bending_stiffness * found.wave_number**4 == pytest.approx(load, rel=1e-12)
+    assert found.slack <= found.bending_stiffness <= found.bonded
+
+
+def test_equivalent_section_keeps_stiffness_mass_and_loss():
+    found = section(frequency=100.0)
+    same = found.section()
+    assert same.modulus * same.second_moment == pytest.approx(found.bending_stiffness, rel=1e-14)
+    assert same.modulus * same.area == pytest.approx(found.axial_stiffness, rel=1e-14)
+    assert same.density * same.area == pytest.approx(found.mass_per_length, rel=1e-14)
+    assert same.retardation * 100.0 == pytest.approx(found.loss_factor, rel=1e-14)
+
+
+# ---------------------------------------------------------------- study
+
+
+def study(**changes):
+    numbers = {
+        "width": WIDTH,
+        "wave_number": WAVE,
+        "core_thickness": np.linspace(1e-4, 3e-3, 6),
+        "cover_thickness": np.linspace(1e-4, 3e-3, 5),
+        **changes,
+    }
+    return sandwich_study(BASE, core(), COVER, **numbers)
+
+
+def test_study_against_single_sections():
+    found = study()
+    assert isinstance(found, SandwichStudy) and found.loss_factor.shape == (6, 5)
+    for i, j in ((0, 0), (3, 1), (5, 4)):
+        single = section(
+            core(thickness=found.core_thickness[i]),
+            cover=ElasticLayer(found.cover_thickness[j], 70e9, 2700.0),
+        )
+        assert found.loss_factor[i, j] == pytest.approx(single.loss_factor, rel=1e-14)
+        assert found.bending_stiffness[i, j] == pytest.approx(single.bending_stiffness, rel=1e-14)
+        assert found.mass_per_length[i, j] == pytest.approx(single.mass_per_length, rel=1e-14)
+    thick, cover, best = found.best()
+    assert best == found.loss_factor.max()
+    assert thick in found.core_thickness and cover in found.cover_thickness
+
+
+def test_error_figure_of_the_study_is_a_bound_and_not_idle():
+    found, actual = study(), []
+    for (i, j), value in np.ndenumerate(found.loss_factor):
+        with mpmath.workdps(40):
+            h = [mpmath.mpf(v) for v in (3e-3, found.core_thickness[i], found.cover_thickness[j])]
+            young, k = mpmath.mpf(70e9), mpmath.mpf(WAVE)
+            ends = young * h[0], young * h[2]
+            alone = young * (h[0] ** 3 + h[2] ** 3) / 12
+            coupling = (h[1] + (h[0] + h[2]) / 2) ** 2 * ends[0] * ends[1] / sum(ends) / alone
+            x = mpmath.mpc(1, 1) * mpmath.mpf(2e6) / h[1] * (1 / ends[0] + 1 / ends[1]) / k**2
+            whole = (1 + x * (1 + coupling)) / (1 + x)
+            exact = whole.imag / whole.real
+            actual.append(abs(float((mpmath.mpf(value) - exact) / exact)))
+    assert max(actual) <= found.error
+    assert found.error <= 1e3 * np.median(actual)
+    assert found.error_kind == "bound" and found.passed
+
+
+def test_plot_of_the_study():
+    axes = study().plot()
+    assert "mm" in axes.get_xlabel() and "loss factor" in axes.get_title()
+
+
+# ---------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda: ElasticLayer(0.0, 70e9, 2700.0), "thickness"),
+        (lambda: ElasticLayer(1e-3, float("nan"), 2700.0), "modulus"),
+        (lambda: ViscoelasticLayer(1e-3, 1e6, -0.1, 1200.0), "loss_factor"),
+        (lambda: section(width=0.0), "width"),
+        (lambda: section(wave_number=None), "frequency"),
+        (lambda: section(wave_number=-1.0), "wave_number"),
+        (lambda: section(frequency=float("inf")), "frequency"),
+        (lambda: section(core(1e19)), "core_shear_modulus"),
+        (lambda: study(core_thickness=[]), "core_thickness"),
+        (lambda: study(cover_thickness=[1e-3, -1e-3]), "cover_thickness"),
+        (lambda: study(wave_number=0.0), "wave_number"),
+    ],
+)
+def test_unusable_numbers_are_refused(make, word):
+    with pytest.raises(BadInput, match=word) as caught:
+        make()
+    assert "\n" not in str(caught.value)

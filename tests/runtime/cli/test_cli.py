@@ -1,0 +1,493 @@
+"""The command line: what each subcommand prints, draws and returns, and how it refuses."""
+
+import json
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from elastolink.runtime.cli import application, linkages, main, options, stability
+from elastolink.runtime.core.errors import BadInput, SelfCheckFailed, StepTooLongWarning
+from elastolink.runtime.core.results import Check, Result
+from elastolink.runtime.scenes import list_scenes
+
+RIG = "smith_1972_5152_sixteenth_inch"
+COMMANDS = (
+    "scenes",
+    "show",
+    "kinematics",
+    "classify",
+    "curve",
+    "harmonics",
+    "clearance",
+    "tolerances",
+    "forces",
+    "run-up",
+    "balance",
+    "simulate",
+    "stability",
+    "chart",
+    "reproduce",
+    "benchmark",
+    "explain",
+)
+
+
+def run(capsys, *arguments):
+    """Run the command here and return status, standard output and standard error."""
+    status = main([str(argument) for argument in arguments])
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def refused(capsys, *arguments):
+    """Check that a command line is refused in the promised way, and return its complaint."""
+    status, out, err = run(capsys, *arguments)
+    assert status == 2 and out == ""
+    assert err and "Traceback" not in err
+    assert all(line.startswith("elastolink ") for line in err.splitlines())
+    return err
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_has_a_worked_example_and_the_common_options(capsys, command):
+    with pytest.raises(SystemExit) as left:
+        main([command, "--help"])
+    out = capsys.readouterr().out
+    assert left.value.code == 0
+    assert f"example:\n  elastolink {command}" in out
+    assert "--json" in out and "--plot FILE" in out
+
+
+def test_help_and_scenes_load_nothing_heavy():
+    code = (
+        "import sys\n"
+        "from elastolink.runtime.cli import main\n"
+        "try: main({arguments})\n"
+        "except SystemExit: pass\n"
+        "heavy = {{'pint', 'matplotlib', 'scipy', 'sympy', 'numpy', 'jinja2'}} & set(sys.modules)\n"
+        "sys.exit(str(heavy) if heavy else 0)\n"
+    )
+    for arguments in (["--help"], ["scenes"], ["chart", "--help"], ["scenes", "--json"]):
+        script = code.format(arguments=arguments)
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert left.value.code == 0
+    assert capsys.readouterr().out.startswith("elastolink ")
+
+
+@pytest.mark.parametrize("arguments", [[], ["chrt"], ["show"], ["show", RIG, "--nope"]])
+def test_a_wrong_command_line_is_one_line_and_status_2(capsys, arguments):
+    with pytest.raises(SystemExit) as left:
+        main(arguments)
+    err = capsys.readouterr().err
+    assert left.value.code == 2
+    assert err.count("\n") == 1 and "--help" in err
+
+
+def test_scenes_lists_every_scene(capsys):
+    status, out, _ = run(capsys, "scenes")
+    assert status == 0
+    assert [line.split()[0] for line in out.splitlines()] == list(list_scenes())
+    status, out, _ = run(capsys, "scenes", "--json")
+    rows = json.loads(out)
+    assert [row["name"] for row in rows] == list(list_scenes())
+    assert all(row["title"] and row["source"] for row in rows)
+    _, out, _ = run(capsys, "scenes", "--long")
+    assert len(out.splitlines()) == 2 * len(list_scenes())
+
+
+def test_show_prints_si_values_and_json(capsys):
+    status, out, _ = run(capsys, "show", RIG, "--set", "links.crank=75 mm")
+    assert status == 0 and "crank = 0.075 m" in out and "(1560 rpm)" in out
+    status, out, _ = run(capsys, "show", RIG, "--set", "links.crank=75 mm", "--json")
+    table = json.loads(out)
+    assert table["links"]["crank"] == 0.075 and list(table) == sorted(table)
+
+
+def test_set_takes_numbers_lists_and_text(capsys):
+    pairs = [
+        "links.crank=0.07",
+        "operation.speed_range=['1 rpm', '2 rpm']",
+        "title=a = b",
+        "model.modes=2",
+    ]
+    arguments = [part for pair in pairs for part in ("--set", pair)]
+    _, out, _ = run(capsys, "show", RIG, "--json", *arguments)
+    table = json.loads(out)
+    assert table["links"]["crank"] == 0.07 and table["model"]["modes"] == 2
+    assert table["title"] == "a = b"
+    assert table["operation"]["speed_range"] == pytest.approx([np.pi / 30, np.pi / 15])
+
+
+@pytest.mark.parametrize(
+    "pair", ["links.crank", "=3", "links.crnk=3", "crank=3", "links.crank=3\nx=1"]
+)
+def test_a_wrong_setting_is_refused(capsys, pair):
+    assert "found" in refused(capsys, "show", RIG, "--set", pair)
+
+
+def test_every_problem_is_one_line(capsys):
+    sets = ["--set", "links.crank=-1", "--set", "links.frame=3 kg", "--set", "model.modes=0"]
+    assert len(refused(capsys, "show", RIG, *sets).splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["show", "smith_1972"],
+        ["show", "nothing.toml"],
+        ["kinematics", "mathieu"],
+        ["kinematics", "smith_1972_2122", "--angles", "0:360"],
+        ["kinematics", "smith_1972_2122", "--angles", "0:360:0deg"],
+        ["kinematics", "smith_1972_2122", "--angles", "0:360:13kg"],
+        ["kinematics", "smith_1972_2122", "--angles", "360:0:13"],
+        ["simulate", RIG, "--speed", "0 rpm"],
+        ["simulate", RIG, "--speed", "3 kg"],
+        ["simulate", RIG, "--revolutions", "-1"],
+        ["simulate", RIG, "--revolutions", "nan"],
+        ["simulate", "smith_1972_2122", "--speed", "3 rpm"],
+        ["stability", RIG, "--speed=-100:100:5rpm"],
+        ["stability", "smith_1972_2122", "--speed", "3 rpm"],
+        ["chart", "smith_1972_2122"],
+        ["show", RIG, "--modules", "no_such_folder"],
+        ["reproduce", "--out", "/dev/null/gallery"],
+    ],
+)
+def test_bad_input_is_refused(capsys, arguments):
+    refused(capsys, *arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (["--x", "sped=1:2:3"], "did you mean speed?"),
+        (["--x", "speed"], "START:STOP:COUNT"),
+        (["--x", "speed=1:2"], "START:STOP:COUNT"),
+        (["--y", "speed=100:900:20rpm"], "another parameter"),
+        (["--y", "follower_inertia=1:2:3m"], "[length]"),
+    ],
+)
+def test_wrong_axes_are_refused(capsys, arguments, part):
+    assert part in refused(capsys, "chart", RIG, *arguments)
+
+
+def test_kinematics_prints_a_table_and_json(capsys):
+    status, out, _ = run(capsys, "kinematics", "smith_1972_2122", "--angles", "0:360:5deg")
+    assert status == 0
+    assert len([line for line in out.splitlines() if line[:1].isdigit()]) == 5
+    assert "method: closed form" in out and "check:" in out
+    _, out, _ = run(capsys, "kinematics", "smith_1972_2122", "--angles", "0:360:5deg", "--json")
+    content = json.loads(out)
+    assert content["passed"] is True and len(content["theta4"]) == 5
+    assert content["theta4"][4] == pytest.approx(content["theta4"][0], abs=1e-12)
+
+
+def test_json_is_the_same_bytes_each_time(capsys):
+    arguments = ("kinematics", RIG, "--angles", "0:1:7", "--json")
+    assert run(capsys, *arguments) == run(capsys, *arguments)
+
+
+@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
+def test_pictures_are_whole_and_the_same_bytes_each_time(capsys, tmp_path, ending):
+    files = [tmp_path / f"{i}{ending}" for i in (1, 2)]
+    for file in files:
+        status, _, _ = run(capsys, "kinematics", "smith_1972_2122", "--plot", file)
+        assert status == 0
+    assert files[0].read_bytes() == files[1].read_bytes()
+    assert sorted(tmp_path.iterdir()) == files
+
+
+@pytest.mark.parametrize("arguments", [["scenes"], ["show", RIG], ["show", "mathieu"]])
+def test_scenes_are_drawn(capsys, tmp_path, arguments):
+    file = tmp_path / "scene.png"
+    status, _, _ = run(capsys, *arguments, "--plot", file)
+    assert status == 0 and file.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_an_unwritable_picture_is_refused_before_any_work(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(options, "load", lambda _: pytest.fail("work began"))
+    for place in ("missing/chart.png", "chart.gif", "chart"):
+        for command in ("show", "kinematics", "simulate", "stability", "chart"):
+            refused(capsys, command, RIG, "--plot", tmp_path / place)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupt_while_drawing_leaves_nothing_behind(capsys, tmp_path, monkeypatch):
+    from pathlib import Path
+
+    def interrupt(self, target):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupt)
+    status, out, err = run(capsys, "show", RIG, "--plot", tmp_path / "linkage.png")
+    assert status == 130 and out == ""
+    assert err == "elastolink show: interrupted; no file is left half written\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_one_line(capsys, tmp_path, monkeypatch):
+    from pathlib import Path
+
+    def full(self, target):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    err = refused(capsys, "show", RIG, "--plot", tmp_path / "linkage.png")
+    assert "No space left" in err and list(tmp_path.iterdir()) == []
+
+
+def _result(value):
+    return Result(
+        method="a test",
+        error=np.array([1e-12, np.nan]),
+        error_norm="absolute",
+        checks={"balance": Check(value, 1.0)},
+    )
+
+
+@pytest.mark.parametrize(("value", "status"), [(0.5, 0), (2.0, 1), (float("nan"), 1)])
+def test_a_failed_self_check_gives_status_1(capsys, value, status):
+    given = SimpleNamespace(command="chart", plot=None, json=False)
+    assert options.finish(given, _result(value), ["found"]) == status
+    out, err = capsys.readouterr()
+    assert "error:  1e-12 (estimate; absolute)" in out and out.startswith("found\n")
+    assert bool(err) == bool(status)
+
+
+def test_json_of_what_is_not_finite_is_null(capsys):
+    given = SimpleNamespace(command="chart", plot=None, json=True)
+    options.finish(given, _result(float("inf")), [])
+    content = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert content["error"] == [1e-12, None] and content["passed"] is False
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [
+        (SelfCheckFailed("the balance is off"), 2),
+        (PermissionError(13, "Permission denied", "gallery"), 2),
+        (KeyboardInterrupt(), 130),
+    ],
+)
+def test_errors_of_the_work_become_one_line(capsys, monkeypatch, error, status):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(options, "load", fail)
+    found, out, err = run(capsys, "show", RIG)
+    assert found == status and out == "" and len(err.splitlines()) == 1
+
+
+def test_a_bug_keeps_its_traceback(monkeypatch):
+    def fail(*_):
+        raise ZeroDivisionError("a bug")
+
+    monkeypatch.setattr(options, "load", fail)
+    with pytest.raises(ZeroDivisionError):
+        main(["show", RIG])
+
+
+def test_warnings_are_one_line_each(capsys, monkeypatch):
+    import warnings
+
+    def warn(_):
+        warnings.warn("the step is too long", StepTooLongWarning, stacklevel=1)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(options, "load", warn)
+    _, _, err = run(capsys, "show", RIG)
+    assert err.splitlines()[0] == "elastolink show: warning: the step is too long"
+
+
+def test_the_module_folder_holds_for_one_command_only(capsys, monkeypatch, tmp_path):
+    import os
+
+    seen = []
+    monkeypatch.setattr(
+        options, "load", lambda _: seen.append(os.environ["ELASTOLINK_GENERATED"]) or {}["stop"]
+    )
+    monkeypatch.setenv("ELASTOLINK_GENERATED", "before")
+    (tmp_path / "manifest.json").write_text("{}")
+    with pytest.raises(KeyError):
+        main(["show", RIG, "--modules", str(tmp_path)])
+    assert seen == [str(tmp_path)] and os.environ["ELASTOLINK_GENERATED"] == "before"
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    command = (
+        f"{sys.executable} -c 'from elastolink.runtime.cli import main; raise SystemExit(main())'"
+    )
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {command} show {RIG} | true"],
+        capture_output=True,
+        text=True,
+    )
+    assert "Traceback" not in done.stderr and "Exception" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "dimension", "expected"),
+    [
+        ("0:1:3", "dimensionless", [0.0, 0.5, 1.0]),
+        ("0:90:3deg", "angle", [0.0, np.pi / 4, np.pi / 2]),
+        ("-1:1:3", "dimensionless", [-1.0, 0.0, 1.0]),
+        ("60rpm:120rpm:2", "frequency", [2 * np.pi, 4 * np.pi]),
+        ("1:2:2 Hz", "frequency", [2 * np.pi, 4 * np.pi]),
+    ],
+)
+def test_values_of_an_axis(text, dimension, expected):
+    assert options.values(text, dimension, "--x") == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("text", ["", "1:2", "1:2:3:4", "1:2:x", "2:1:5", "0:1:1", "0:1:9999999"])
+def test_wrong_values_of_an_axis(text):
+    with pytest.raises(BadInput):
+        options.values(text, "dimensionless", "--x")
+
+
+def test_default_axes_come_from_the_scene():
+    from elastolink.runtime.scenes import load_scene
+
+    scene = load_scene(RIG)
+    name, values = stability._axis(None, "x", scene)
+    assert (name, len(values)) == ("speed", 401)
+    assert (values[0], values[-1]) == pytest.approx(scene.get("chart.x_range"))
+    changes = {f"chart.{axis}_range": None for axis in ("x", "y")}
+    bare = load_scene(RIG, changes)
+    assert stability._axis(None, "x", bare)[1][-1] == pytest.approx(
+        bare.get("operation.speed_range")[1]
+    )
+    name, values = stability._axis(None, "y", bare)
+    measured = bare.get("measured.follower_inertias")
+    assert name == "follower_inertia" and values[0] < min(measured) and values[-1] > max(measured)
+    nothing = load_scene(RIG, {**changes, "operation.speed_range": None})
+    with pytest.raises(BadInput, match=r"chart\.x_range"):
+        stability._axis(None, "x", nothing)
+
+
+def test_the_speed_comes_from_the_option_or_the_scene():
+    from elastolink.runtime.scenes import load_scene
+
+    scene = load_scene(RIG)
+    given = SimpleNamespace(speed="60 rpm")
+    assert linkages.speed_of(given, scene) == pytest.approx(2 * np.pi)
+    given.speed = None
+    assert linkages.speed_of(given, scene) == scene.get("operation.speed")
+    with pytest.raises(BadInput, match="a crank speed"):
+        linkages.speed_of(given, load_scene("smith_1972_2122"))
+
+
+def test_complaints_never_span_lines(capsys):
+    application._complain("elastolink", "one\ntwo")
+    assert capsys.readouterr().err == "elastolink: one two\n"
+
+
+def test_chart_draws_the_rig_and_lists_its_boundaries(capsys, tmp_path):
+    file = tmp_path / "chart.png"
+    small = ["--x", "speed=350:950:61rpm", "--y", "follower_inertia=0.0006:0.0022:31kg*m**2"]
+    status, out, _ = run(capsys, "chart", RIG, *small, "--plot", file)
+    assert status == 0 and file.read_bytes()[:4] == b"\x89PNG"
+    rows = [line for line in out.splitlines() if line[:1].isdigit()]
+    # Region 5 lies near 2/5 of 1560 rpm, from the observed 26 Hz (section 9.5.3).
+    fifth = next(row for row in rows if row.startswith("5 "))
+    assert float(fifth.split()[1]) == pytest.approx(624, rel=0.02)
+    status, out, _ = run(capsys, "chart", RIG, *small, "--json")
+    content = json.loads(out)
+    assert np.shape(content["stable"]) == (31, 61) and content["error"] < 1e-9
+
+
+def test_chart_of_a_hill_equation_starts_at_the_squares(capsys):
+    arguments = ["--x", "lam2=0.1:5:41", "--y", "mu=0:1:21"]
+    status, out, _ = run(capsys, "chart", "mathieu", *arguments)
+    assert status == 0
+    rows = [line.split() for line in out.splitlines() if line[:1].isdigit()]
+    starts = {int(row[0]): float(row[1]) for row in rows}
+    assert {n: starts[n] for n in (1, 2, 3, 4)} == {1: 0.25, 2: 1.0, 3: 2.25, 4: 4.0}
+
+
+def test_measured_inertias_are_marked_where_they_lie_along_y():
+    from elastolink.runtime.scenes import load_scene
+
+    scene = load_scene(RIG)
+    measured = scene.get("measured.follower_inertias")
+    everything = ("follower_inertia", [0.0, 1.0])
+    assert stability._marks(scene, everything) == {"measured follower inertias": measured}
+    part = ("follower_inertia", [measured[2], measured[4]])
+    assert stability._marks(scene, part) == {"measured follower inertias": measured[2:5]}
+    assert stability._marks(scene, ("damping", [0.0, 1.0])) == {}
+    assert stability._marks(load_scene("mathieu"), ("mu", [0.0, 1.0])) == {}
+
+
+def test_stability_at_one_speed_and_over_a_range(capsys):
+    status, out, _ = run(capsys, "stability", RIG, "--speed", "332 rpm")
+    assert status == 0 and "stable at 34.767 rad/s (332 rpm)" in out
+    _, out, _ = run(capsys, "stability", RIG, "--speed", "740:780:21rpm")
+    assert "speeds stable; unstable ones:" in out and out.count("largest modulus") == 1
+    _, out, _ = run(capsys, "stability", RIG, "--speed", "400:410:3rpm")
+    assert "all 3 speeds stable" in out
+    _, out, _ = run(capsys, "stability", "mathieu")
+    assert "unstable at 1" in out
+
+
+def test_simulate_from_rest_and_from_a_start(capsys, tmp_path):
+    file = tmp_path / "wave.svg"
+    status, out, _ = run(capsys, "simulate", RIG, "--revolutions", "1", "--plot", file)
+    assert status == 0 and "status: the end was reached" in out
+    assert file.read_bytes().startswith(b"<?xml")
+    status, out, _ = run(
+        capsys, "simulate", "mathieu", "--initial", "1,0", "--revolutions", "1", "--json"
+    )
+    assert status == 0 and json.loads(out)["q"][0] == [1.0]
+    refused(capsys, "simulate", "mathieu")
+    refused(capsys, "simulate", RIG, "--method", "rk5")
+
+
+def test_too_long_a_step_is_a_warning_on_one_line(capsys):
+    arguments = ["--speed", "195 rpm", "--revolutions", "1", "--method", "rk4", "--steps", "24"]
+    _, _, err = run(capsys, "simulate", RIG, *arguments)
+    assert err.splitlines()[0].startswith("elastolink simulate: warning: ")
+
+
+@pytest.mark.parametrize("text", ["1", "a,b", ""])
+def test_a_wrong_start_is_refused(capsys, text):
+    with pytest.raises(SystemExit) as left:
+        main(["simulate", "mathieu", "--initial", text])
+    assert left.value.code == 2 and capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize("text", ["a,b", "1,nan", "1,2,3", ""])
+def test_a_wrong_start_says_what_is_wanted(capsys, text):
+    with pytest.raises(SystemExit):
+        main(["simulate", "mathieu", "--initial", text])
+    assert "expected two finite numbers, such as 0.001,0" in capsys.readouterr().err
+
+
+def test_a_start_from_rest_without_forcing_names_the_option(capsys):
+    assert "--initial Q,QD" in refused(capsys, "simulate", "mathieu")
+
+
+def test_a_folder_without_a_manifest_is_refused(capsys, tmp_path):
+    assert "manifest.json" in refused(capsys, "show", RIG, "--modules", tmp_path)
+
+
+def test_too_little_memory_is_one_line(capsys, monkeypatch):
+    def greedy(_):
+        raise MemoryError
+
+    monkeypatch.setattr(options, "load", greedy)
+    assert "out of memory" in refused(capsys, "show", RIG)
+
+
+def test_stability_as_json_holds_the_verdict(capsys):
+    _, out, _ = run(capsys, "stability", RIG, "--speed", "760 rpm", "--json")
+    found = json.loads(out)
+    assert found["stable"] is False and found["growth"] > 0
+    _, out, _ = run(capsys, "stability", RIG, "--speed", "300 rpm", "--json")
+    assert json.loads(out)["stable"] is True

@@ -1,0 +1,209 @@
+"""Initial values that meet the constraints."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+from constrained_truth import Circle
+from elastolink.generated import four_bar_multibody as multibody
+from elastolink.runtime.constrained import consistent_state
+from elastolink.runtime.core.errors import BadInput, RedundantConstraints
+from elastolink.runtime.core.families import Constrained
+
+CIRCLE = Circle(oblique=np.array([[1.0, 0.3], [0.0, 0.02]]), pivot=np.array([0.4, -0.2]), row=50.0)
+
+
+def test_a_state_on_the_constraints_stays():
+    q, qd = CIRCLE.exact([0.0, 0.3, 1.7])
+    found = consistent_state(CIRCLE.system, q, qd, [0.0, 0.3, 1.7])
+    np.testing.assert_allclose(found.q, q, rtol=1e-14)
+    np.testing.assert_allclose(found.qd, qd, rtol=1e-13)
+    angle, turning = np.array([CIRCLE.angle(t) for t in (0.0, 0.3, 1.7)]).T
+    by_hand = CIRCLE.multiplier(angle, turning)
+    np.testing.assert_allclose(found.multipliers[:, 0], by_hand, rtol=1e-12)
+    assert found.passed
+    assert found.error < 1e-14
+
+
+def test_the_change_is_the_least_one():
+    circle = Circle()
+    found = consistent_state(circle.system, [0.6, -1.2], [0.5, 0.7])
+    # In Cartesian coordinates of one mass the nearest point lies along the ray.
+    ray = np.array([0.6, -1.2]) / np.hypot(0.6, 1.2)
+    np.testing.assert_allclose(found.q, ray, atol=1e-15)
+    along = np.array([-ray[1], ray[0]])
+    np.testing.assert_allclose(found.qd, along * (along @ [0.5, 0.7]), atol=1e-15)
+    np.testing.assert_allclose(found.moved, ray - [0.6, -1.2], atol=1e-15)
+    assert found.position_norm < 1e-15
+    assert found.velocity_norm < 1e-15
+    assert found.acceleration_norm < 1e-15
+
+
+def test_held_coordinates_stay():
+    found = consistent_state(Circle().system, [0.6, -1.2], [0.5, 0.7], hold=("a",))
+    np.testing.assert_allclose(found.q, [0.6, -0.8], atol=1e-15)
+    np.testing.assert_allclose(found.qd, [0.5, 0.375], atol=1e-15)
+    by_place = consistent_state(Circle().system, [0.6, -1.2], [0.5, 0.7], hold=(0,))
+    np.testing.assert_array_equal(found.q, by_place.q)
+
+
+def test_a_batch_is_as_each_alone():
+    rng = np.random.default_rng(3)
+    q, qd = rng.normal(size=(2, 4, 3, 2))
+    t = rng.uniform(0, 0.2, (4, 3))
+    together = consistent_state(CIRCLE.system, q, qd, t)
+    assert together.q.shape == (4, 3, 2)
+    assert together.multipliers.shape == (4, 3, 1)
+    assert together.velocity_norm.shape == (4, 3)
+    for i in np.ndindex(4, 3):
+        alone = consistent_state(CIRCLE.system, q[i], qd[i], t[i])
+        np.testing.assert_allclose(together.q[i], alone.q, rtol=1e-10, atol=1e-12)
+        np.testing.assert_allclose(together.qd[i], alone.qd, rtol=1e-9, atol=1e-10)
+
+
+LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
+
+
+def four_bar(turning=0.0, mass: float = 1.0):
+    """The four-bar with a driven crank: as many constraints as coordinates."""
+    values = dict.fromkeys((name for name, _, _ in multibody.PARAMETERS), 0.0) | LENGTHS
+    for n, length in ((2, 0.3), (3, 0.9), (4, 0.8)):
+        values[f"mass{n}"] = mass * length
+        values[f"along{n}"] = mass * length**2 / 2
+        values[f"inertia{n}"] = mass * length**3 / 3
+    drive = {
+        "drive": lambda q, t: turning * t,
+        "drive_d1": lambda q, t: turning,
+        "drive_d2": lambda q, t: 0.0,
+    }
+    return Constrained.from_module(multibody, values, external=drive)
+
+
+def test_a_driven_linkage_finds_its_position():
+    linkage = el.FourBar(**LENGTHS)
+    exact = linkage.motion(0.8, 5.0)
+    t, turning = 0.16, 5.0
+    guess = np.zeros(9)
+    guess[[2, 5, 8]] = 0.8, float(exact.theta3) + 0.3, float(exact.theta4) - 0.2
+    found = consistent_state(four_bar(turning), guess, np.zeros(9), t)
+    np.testing.assert_allclose(found.q[5], exact.theta3, rtol=1e-13)
+    np.testing.assert_allclose(found.q[8], exact.theta4, rtol=1e-13)
+    np.testing.assert_allclose(found.qd[[5, 8]], [exact.omega3, exact.omega4], rtol=1e-12)
+    np.testing.assert_allclose(found.qdd[[5, 8]], [exact.alpha3, exact.alpha4], rtol=1e-12)
+
+
+def twice(other: float = 1.0, offset: float = 0.0) -> Constrained:
+    """The circle with its constraint a second time."""
+    system = Circle().system
+
+    def doubled(arrays, moved):
+        found = dict(arrays)
+        for name in moved:
+            copy = other * found[name] + (offset if name == "constraints" else 0.0)
+            found[name] = np.concatenate([found[name], copy], axis=-2)
+        return found
+
+    return Constrained(
+        2,
+        2,
+        lambda q, qd, t: doubled(system.dynamics(q, qd, t), ("jacobian", "velocity_rhs", "gamma")),
+        lambda q, t: doubled(system.violation(q, t), ("constraints", "jacobian")),
+        labels=("a", "b"),
+    )
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3])
+def test_redundant_and_contradictory_constraints_are_refused(offset):
+    with pytest.raises(RedundantConstraints, match="constraints: found a Jacobian") as refusal:
+        consistent_state(twice(2.0, offset), [0.6, -0.8], [0.0, 0.0])
+    assert "\n" not in str(refusal.value)
+    with pytest.raises(RedundantConstraints):
+        twice().accelerations(np.array([0.6, -0.8]), np.zeros(2))
+
+
+def test_more_constraints_than_coordinates_are_refused():
+    system = twice()
+    many = Constrained(
+        2,
+        3,
+        lambda q, qd, t: {
+            name: np.concatenate([value, value[..., :1, :]], axis=-2)
+            if name in ("jacobian", "velocity_rhs", "gamma")
+            else value
+            for name, value in system.dynamics(q, qd, t).items()
+        },
+        lambda q, t: {
+            name: np.concatenate([value, value[..., :1, :]], axis=-2)
+            for name, value in system.violation(q, t).items()
+        },
+    )
+    with pytest.raises(RedundantConstraints, match="3 constraints on 2"):
+        consistent_state(many, [0.6, -0.8], [0.0, 0.0])
+
+
+def test_a_motion_without_inertia_is_refused():
+    system = Constrained(
+        2,
+        0,
+        lambda q, qd, t: {
+            "mass": np.diag([1.0, 0.0]),
+            "rest": np.zeros((2, 1)),
+            "forces": np.ones((2, 1)),
+            "jacobian": np.zeros((0, 2)),
+            "velocity_rhs": np.zeros((0, 1)),
+            "gamma": np.zeros((0, 1)),
+        },
+        lambda q, t: {"constraints": np.zeros((0, 1)), "jacobian": np.zeros((0, 2))},
+    )
+    with pytest.raises(RedundantConstraints, match="without inertia"):
+        system.accelerations(np.zeros(2), np.zeros(2))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named", "message"),
+    [
+        (([np.nan, 0.0], [0.0, 0.0]), {}, "q: found a number that is not finite"),
+        (([0.6, -0.8], [0.0, np.inf]), {}, "qd: found a number that is not finite"),
+        (([0.6, -0.8], [0.0, 0.0], np.nan), {}, "t: found a number that is not finite"),
+        (([0.6], [0.0, 0.0]), {}, r"q: found shape \(1,\)"),
+        ((0.6, [0.0, 0.0]), {}, r"q: found shape \(\)"),
+        ((["x", "y"], [0.0, 0.0]), {}, "q: found"),
+        (([0.6, -0.8], np.zeros((3, 2)), [0.0, 1.0]), {}, "shapes that broadcast"),
+        (([0.6, -0.8], [0.0, 0.0]), {"hold": ("c",)}, "hold: found 'c'"),
+        (([0.6, -0.8], [0.0, 0.0]), {"hold": (2,)}, "hold: found 2"),
+        (([0.6, -0.8], [0.0, 0.0]), {"hold": ("a", "b")}, "at most 1"),
+        (([2.6, -0.8], [0.0, 0.0]), {"hold": ("a",)}, "no state nearby"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(arguments, named, message):
+    with pytest.raises(BadInput, match=message) as refusal:
+        consistent_state(Circle().system, *arguments, **named)
+    assert "\n" not in str(refusal.value)
+
+
+def test_the_centre_of_the_circle_has_no_direction():
+    with pytest.raises(RedundantConstraints):
+        consistent_state(Circle().system, [0.0, 0.0], [0.0, 0.0])
+
+
+def test_unconstrained_systems_pass_through():
+    system = Constrained(
+        1,
+        0,
+        lambda q, qd, t: {
+            "mass": np.ones((*q.shape, 1)),
+            "rest": np.zeros((*q.shape, 1)),
+            "forces": -4.0 * q[..., None],
+            "jacobian": np.zeros((*q.shape[:-1], 0, 1)),
+            "velocity_rhs": np.zeros((*q.shape[:-1], 0, 1)),
+            "gamma": np.zeros((*q.shape[:-1], 0, 1)),
+        },
+        lambda q, t: {
+            "constraints": np.zeros((*q.shape[:-1], 0, 1)),
+            "jacobian": np.zeros((*q.shape[:-1], 0, 1)),
+        },
+    )
+    found = consistent_state(system, [0.5], [0.1])
+    np.testing.assert_allclose(found.qdd, [-2.0])
+    assert found.multipliers.shape == (0,)

@@ -1,0 +1,286 @@
+"""System families at run time: shapes, hand cases, refusals."""
+
+from __future__ import annotations
+
+import types
+
+import numpy as np
+import pytest
+import scipy.linalg
+from elastolink.generated import four_bar_coupler_complete, hill_plain
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import (
+    MATRICES,
+    VECTORS,
+    Constrained,
+    LinearPeriodic,
+    Term,
+    Transcendental,
+    array_function,
+)
+from elastolink.runtime.core.families.emitted import check_module, parameter_values, stacked
+from elastolink.runtime.systems.assembly import assemble
+
+
+def named(*names: str):
+    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
+
+
+def wave(matrix):
+    return lambda theta: np.cos(theta).reshape(-1, *(1,) * np.ndim(matrix)) * np.array(matrix)
+
+
+def system(**changes) -> LinearPeriodic:
+    terms = (
+        Term("M", "mass", np.eye(2)),
+        Term("K", None, np.diag([3.0, 5.0])),
+        Term("Kg", "load", wave([[0.0, 1.0], [1.0, 0.0]])),
+        Term("Kg", "load", np.eye(2), power=2),
+        Term("f", None, wave([1.0, -1.0])),
+    )
+    values = {
+        "size": 2,
+        "terms": terms,
+        "parameters": {"mass": 2.0, "load": 0.5},
+        "scales": named("mass", "load"),
+        **changes,
+    }
+    return LinearPeriodic(**values)
+
+
+# Linear periodic -----------------------------------------------------------------------------
+
+
+def test_arrays_are_sums_of_their_terms():
+    theta = np.array([0.0, 1.0, 2.0])
+    found = system().array("Kg", theta, speed=3.0)
+    expected = 0.5 * (np.cos(theta)[:, None, None] * np.array([[0, 1], [1, 0]]) + 9.0 * np.eye(2))
+    np.testing.assert_allclose(found, expected, rtol=1e-15)
+    np.testing.assert_array_equal(system().array("M", 0.0, mass=7.0), [7.0 * np.eye(2)])
+    np.testing.assert_array_equal(system().array("f", np.pi), [[-1.0, 1.0]])
+
+
+def test_absent_arrays_are_zero_and_declared_so():
+    found = system()
+    for name in MATRICES + VECTORS:
+        present = name in ("M", "K", "Kg", "f")
+        assert found.has(name) == present
+        if not present:
+            shape = (4, 2, 2) if name in MATRICES else (4, 2)
+            np.testing.assert_array_equal(found.array(name, np.zeros(4)), np.zeros(shape))
+    assert found.is_constant("M")
+    assert not found.is_constant("Kg")
+
+
+def test_a_constant_term_is_not_copied():
+    term = Term("K", None, np.eye(2))
+    assert term(np.zeros(1000)).strides[0] == 0
+
+
+def test_parameters_and_terms_are_exchanged_by_copy():
+    one = system()
+    other = one.with_parameters(load=2.0)
+    assert (one.parameters["load"], other.parameters["load"]) == (0.5, 2.0)
+    damped = one.with_terms(Term("C", "loss", 2.0 * np.eye(2)), scales={"loss": 0.1})
+    assert not one.has("C")
+    np.testing.assert_array_equal(damped.array("C", 0.0), [0.2 * np.eye(2)])
+    np.testing.assert_array_equal(damped.array("C", 0.0, loss=0.3), [0.6 * np.eye(2)])
+    np.testing.assert_array_equal(damped.array("M", 0.0), one.array("M", 0.0))
+    again = damped.with_terms(Term("K", "spring", np.eye(2)), scales={"spring": 1.0})
+    assert set(again.parameters) == {"mass", "load", "loss", "spring"}
+    np.testing.assert_array_equal(again.array("C", 0.0), damped.array("C", 0.0))
+
+
+def test_parameters_broadcast():
+    loads = np.linspace(0.0, 1.0, 3)
+    found = system().scale_values(load=loads, mass=np.ones((2, 1)))
+    assert found["load"].shape == (3,)
+    assert found["mass"].shape == (2, 1)
+
+
+def test_labels_are_given_or_counted():
+    assert system().labels == ("q1", "q2")
+    assert system(labels=("a", "b")).labels == ("a", "b")
+
+
+@pytest.mark.parametrize(
+    ("term", "message"),
+    [
+        (Term("G", None, np.eye(2)), "'G'"),
+        (Term("M", None, np.eye(3)), r"\(1, 3, 3\)"),
+        (Term("f", None, np.eye(2)), r"\(1, 2, 2\)"),
+        (Term("K", None, lambda theta: np.cos(theta)), r"shape \(1,\)"),
+    ],
+)
+def test_unusable_terms_are_refused(term, message):
+    with pytest.raises(BadInput, match=message):
+        LinearPeriodic(2, (term,), {}, named())
+
+
+def test_unknown_parameters_are_refused():
+    with pytest.raises(BadInput, match="weight"):
+        system().with_parameters(weight=1.0)
+
+
+# Constrained ---------------------------------------------------------------------------------
+
+
+def pendulum(mass: float = 2.0, gravity: float = 10.0) -> Constrained:
+    """A bob on a rod of length 1 in x and y, written by hand."""
+
+    def violation(q, t):
+        x, y = np.moveaxis(np.asarray(q), -1, 0)
+        return {
+            "constraints": ((x**2 + y**2 - 1) / 2)[..., None, None],
+            "jacobian": np.asarray(q)[..., None, :],
+        }
+
+    def dynamics(q, qd, t):
+        q, qd = np.asarray(q), np.asarray(qd)
+        zero = np.zeros((*q.shape, 1))
+        weight = np.broadcast_to(np.array([[0.0], [-mass * gravity]]), zero.shape)
+        return {
+            "mass": np.broadcast_to(mass * np.eye(2), (*q.shape, 2)),
+            "rest": zero,
+            "forces": weight,
+            "jacobian": q[..., None, :],
+            "velocity_rhs": zero[..., :1, :],
+            "gamma": -np.sum(qd**2, axis=-1)[..., None, None],
+        }
+
+    return Constrained(2, 1, dynamics, violation)
+
+
+def test_pendulum_by_hand():
+    angle, turning = np.linspace(-3.0, 3.0, 7), 1.7
+    q = np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
+    qd = turning * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    qdd, multipliers = pendulum().accelerations(q, qd)
+    along = np.sum(qdd * qd, axis=-1) / turning
+    np.testing.assert_allclose(along, -10.0 * np.sin(angle), atol=1e-13)
+    # tension = m (g cos a + omega^2) pulls inwards
+    pull = 2.0 * (10.0 * np.cos(angle) + turning**2)
+    np.testing.assert_allclose(multipliers, -pull[:, None], rtol=1e-13)
+
+
+# Transcendental ------------------------------------------------------------------------------
+
+
+def test_count_on_a_chain_whose_answer_is_known():
+    """Masses as D = K - Omega^2 M without poles: the count is that of the eigenvalues below."""
+    stiffness = 2.0 * np.eye(5) - np.eye(5, k=1) - np.eye(5, k=-1)
+    chain = Transcendental(
+        5,
+        lambda w: stiffness - np.asarray(w)[..., None, None] ** 2 * np.eye(5),
+        lambda w: np.zeros(np.shape(w)),
+    )
+    exact = np.sqrt(scipy.linalg.eigvalsh(stiffness))
+    frequency = np.linspace(0.01, 2.1, 40).reshape(8, 5)
+    found = chain.count(frequency)
+    assert found.dtype == np.int64
+    np.testing.assert_array_equal(found, np.sum(frequency[..., None] > exact, axis=-1))
+
+
+# Emitted modules -----------------------------------------------------------------------------
+
+PLACES = {"K": ((2, 2), ((0, 0, 0), (0, 1, 1), (1, 0, 1))), "f": ((2, 1), ())}
+
+
+def module(**changes) -> types.SimpleNamespace:
+    values = {
+        "__name__": "emitted",
+        "FAMILY": "closed_form",
+        "PARAMETERS": (("m", "kg", "Mass"), ("k", "N/m", "Stiffness")),
+        "ARRAYS": {"element": PLACES, "idle": {"f": PLACES["f"]}},
+        "element": lambda x, m, k: (k * x, -m),
+        **changes,
+    }
+    return types.SimpleNamespace(**values)
+
+
+def test_entries_are_stacked_behind_the_batch():
+    found = stacked(PLACES, (np.array([1.0, 2.0, 3.0]), 4.0), (3,))
+    assert found["K"].shape == (3, 2, 2)
+    np.testing.assert_array_equal(found["K"][2], [[3.0, 4.0], [4.0, 0.0]])
+    np.testing.assert_array_equal(found["f"], np.zeros((3, 2, 1)))
+    single = stacked({"K": ((1, 1), ((0, 0, 0),))}, 5.0)
+    np.testing.assert_array_equal(single["K"], [[5.0]])
+
+
+def test_functions_of_arrays_broadcast_all_their_arguments():
+    function = array_function(module(), "element")
+    found = function(np.ones((4, 1)), m=np.array([1.0, 2.0, 3.0]), k=2.0)
+    assert found["K"].shape == (4, 3, 2, 2)
+    np.testing.assert_array_equal(found["K"][0, 2], [[2.0, -3.0], [-3.0, 0.0]])
+    np.testing.assert_array_equal(
+        array_function(module(), "idle")(np.ones(2))["f"].shape, (2, 2, 1)
+    )
+
+
+def test_unknown_functions_of_arrays_are_refused():
+    with pytest.raises(BadInput, match="dynamics"):
+        array_function(module(), "dynamics")
+    with pytest.raises(BadInput, match="motion"):
+        array_function(types.SimpleNamespace(__name__="closed", FAMILY="closed_form"), "motion")
+
+
+def test_family_and_parameters_are_checked():
+    assert check_module(module(), "closed_form", {"m": 1.0, "k": 2.0, "more": 3.0}) == ("m", "k")
+    with pytest.raises(BadInput, match="family closed_form"):
+        check_module(module(), "constrained", {"m": 1.0, "k": 2.0})
+    with pytest.raises(BadInput, match=r"\['k'\]"):
+        check_module(module(), "closed_form", {"m": 1.0})
+    values = parameter_values(module(), "closed_form", {"m": 1, "k": [1, 2], "more": 3})
+    assert set(values) == {"m", "k"}
+    assert isinstance(values["m"], float)
+    np.testing.assert_array_equal(values["k"], [1.0, 2.0])
+
+
+def test_modules_of_another_family_are_refused():
+    for family in (Constrained, Transcendental):
+        with pytest.raises(BadInput, match="family linear_periodic"):
+            family.from_module(hill_plain, {"lam2": 1.0, "mu": 0.0, "damping": 0.0})
+
+
+def test_arguments_beside_the_frequency():
+    emitted = module(
+        FAMILY="transcendental",
+        SIZE=1,
+        ARRAYS={"dynamic_stiffness": {"stiffness": ((1, 1), ((0, 0, 0),)), "poles": ((1, 1), ())}},
+        dynamic_stiffness=lambda frequency, theta, m, k: (k * np.cos(theta) - m * frequency**2,),
+    )
+    given = {"m": 1.0, "k": 4.0}
+    found = Transcendental.from_module(emitted, given, geometry={"theta": np.array([0.0, 1.5])})
+    np.testing.assert_array_equal(found.count(1.0), [0, 1])
+    with pytest.raises(BadInput, match="theta"):
+        Transcendental.from_module(emitted, given)
+
+
+def test_assembled_module_takes_functions_of_angle():
+    found = assemble(
+        hill_plain,
+        geometry={},
+        parameters={"lam2": 1.3, "mu": 0.4, "damping": 0.1},
+        external={"f": lambda theta: np.cos(2 * theta)},
+        labels=("y",),
+    )
+    assert found.labels == ("y",)
+    theta = np.linspace(0.0, 3.0, 4)
+    np.testing.assert_allclose(found.array("Kg", theta)[:, 0, 0], 0.4 * np.cos(2 * theta))
+    np.testing.assert_allclose(found.array("C", 0.0), [[[0.2]]])
+
+
+def test_what_an_assembled_module_lacks_is_named():
+    with pytest.raises(BadInput, match="damping"):
+        assemble(hill_plain, geometry={}, parameters={"lam2": 1.0, "mu": 1.0})
+    numbers = {name: 1.0 for name, _, _ in hill_plain.PARAMETERS}
+    with pytest.raises(BadInput, match=r"none for \['f'\]"):
+        assemble(hill_plain, geometry={}, parameters=numbers)
+    numbers = {name: 1.0 for name, _, _ in four_bar_coupler_complete.PARAMETERS}
+    with pytest.raises(BadInput, match="follower"):
+        assemble(
+            four_bar_coupler_complete,
+            geometry={"frame": 1.0, "crank": 0.2, "coupler": 1.0},
+            parameters=numbers,
+            modes=1,
+        )

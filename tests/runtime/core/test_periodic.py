@@ -1,0 +1,275 @@
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction, segment_values
+from elastolink.runtime.linkages import FourBar
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+coefficients = st.lists(st.floats(-10, 10), min_size=1, max_size=12)
+
+
+def end_load(*lengths):
+    """Smith's f3 = -alpha4 / sin(theta3 - theta4), (6.16)."""
+    linkage = FourBar(*map(float, lengths))
+
+    def f3(theta):
+        motion = linkage.motion(theta)
+        return -motion.alpha4 / np.sin(motion.theta3 - motion.theta4)
+
+    return f3
+
+
+@given(a=coefficients, b=coefficients, theta=st.lists(st.floats(-20, 20), max_size=5))
+def test_it_is_the_sum_that_the_docstring_states(a, b, theta):
+    b[0] = 0.0
+    f = PeriodicFunction(a, b)
+    theta = np.array(theta)
+    expected = sum(c * np.cos(m * theta) for m, c in enumerate(a)) + sum(
+        c * np.sin(m * theta) for m, c in enumerate(b)
+    )
+    assert f(theta).shape == theta.shape
+    np.testing.assert_allclose(f(theta), expected, rtol=0, atol=1e-11)
+
+
+@given(a=coefficients, b=coefficients, spare=st.integers(1, 9))
+def test_samples_give_the_coefficients_back(a, b, spare):
+    b[0] = 0.0
+    f = PeriodicFunction(a, b)
+    n = 2 * f.harmonics + spare
+    again = PeriodicFunction.from_samples(f(2 * np.pi * np.arange(n) / n))
+    size = len(f.a)
+    np.testing.assert_allclose(again.a[:size], f.a, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(again.b[:size], f.b, rtol=0, atol=1e-12)
+
+
+def test_the_mean_has_no_factor_one_half():
+    assert PeriodicFunction.from_samples([3.0, 3.0, 3.0]).a[0] == 3.0
+    f = PeriodicFunction(a=[1.5, 2.0], b=[0.0, 0.5])
+    assert f.mean == 1.5
+    assert f(0.0) == pytest.approx(3.5, abs=1e-15)
+    assert f(np.pi / 2) == pytest.approx(2.0, abs=1e-15)
+
+
+def test_even_sample_counts_put_the_highest_harmonic_into_the_cosine():
+    f = PeriodicFunction.from_samples([1.0, -1.0, 1.0, -1.0])
+    np.testing.assert_allclose(f.a, [0.0, 0.0, 1.0], atol=1e-16)
+    assert not f.b.any()
+
+
+@pytest.mark.parametrize("eccentricity", [0.1, 0.5, 0.9])
+def test_a_known_series(eccentricity):
+    """1/(1 - r cos) has the coefficients 2 q^m / sqrt(1 - r^2), q = (1 - sqrt(1 - r^2)) / r."""
+    r = eccentricity
+    f = PeriodicFunction.from_callable(lambda theta: 1 / (1 - r * np.cos(theta)))
+    root = np.sqrt(1 - r * r)
+    exact = 2 * ((1 - root) / r) ** np.arange(f.harmonics + 1) / root
+    exact[0] /= 2
+    np.testing.assert_allclose(f.a, exact, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(f.b, 0, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("lengths", [(5, 1, 5, 2), (10, 1, 10, 4), (2, 1, 2, 2)])
+def test_coefficients_of_the_linkages_against_quadrature_at_fifty_digits(lengths):
+    """The trapezoidal rule on 512 points, each value from loop closure in 50 digits."""
+    from mpmath import mp, mpf
+
+    f = PeriodicFunction.from_callable(end_load(*lengths))
+    count = 256
+    with mp.workdps(50):
+        l1, l2, l3, l4 = map(mpf, lengths)
+        values, angles = [], [2 * mp.pi * j / count for j in range(count)]
+        for t in angles:
+            gap = l1 - l2 * mp.expjpi(t / mp.pi)
+            distance = abs(gap)
+            t3 = mp.arg(gap) + mp.acos((l3**2 + distance**2 - l4**2) / (2 * l3 * distance))
+            t4 = mp.arg(l3 * mp.expj(t3) - gap)
+            w3 = -l2 * mp.sin(t - t4) / (l3 * mp.sin(t3 - t4))
+            w4 = -l2 * mp.sin(t - t3) / (l4 * mp.sin(t3 - t4))
+            right = l2 * mp.cos(t - t3) + l3 * w3**2 - l4 * w4**2 * mp.cos(t4 - t3)
+            alpha4 = right / (l4 * mp.sin(t4 - t3))
+            values.append(-alpha4 / mp.sin(t3 - t4))
+        for m in (0, 1, 2, 5, 20):
+            if m > f.harmonics:
+                continue
+            factor = mpf(1 if m == 0 else 2) / count
+            a = factor * mp.fsum(v * mp.cos(m * t) for v, t in zip(values, angles, strict=True))
+            b = factor * mp.fsum(v * mp.sin(m * t) for v, t in zip(values, angles, strict=True))
+            assert abs(f.a[m] - a) < 1e-13
+            assert abs(f.b[m] - b) < 1e-13
+
+
+@pytest.mark.parametrize("lengths", [(5, 1, 5, 2), (10, 1, 10, 4), (2, 1, 2, 2)])
+def test_the_error_covers_the_function(lengths):
+    f3 = end_load(*lengths)
+    f = PeriodicFunction.from_callable(f3)
+    theta = np.linspace(0.0, 2 * np.pi, 1000)
+    gap = np.abs(f(theta) - f3(theta)).max()
+    assert f.error < 1e-12
+    # The two evaluations differ by their own round-off besides.
+    assert gap < f.error + 1e-14
+
+
+@pytest.mark.parametrize("order", [7, 31, 32, 40, 64, 500])
+def test_high_harmonics_are_not_mistaken_for_low_ones(order):
+    f = PeriodicFunction.from_callable(lambda theta: np.cos(order * theta))
+    assert f.harmonics == order
+    assert f.a[order] == pytest.approx(1.0, abs=1e-13)
+
+
+def test_a_noisy_function_is_accepted_with_its_noise_in_the_error():
+    rng = np.random.default_rng(3)
+    f = PeriodicFunction.from_callable(
+        lambda theta: np.cos(theta) + 1e-13 * rng.standard_normal(theta.shape)
+    )
+    assert 1e-14 < f.error < 1e-10
+    assert f.a[1] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_function_that_jumps_is_refused_by_name():
+    def saw(theta):
+        return np.asarray(theta) % (2 * np.pi)
+
+    with pytest.raises(BadInput, match="saw"):
+        PeriodicFunction.from_callable(saw)
+    rough = PeriodicFunction.from_callable(lambda theta: np.abs(np.sin(theta)), tol=1e-4)
+    assert rough.a[0] == pytest.approx(2 / np.pi, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("f", "message"),
+    [
+        (lambda theta: np.where(theta > 3, np.nan, 1.0), "not finite"),
+        (lambda theta: theta[:3], "one value per angle"),
+    ],
+)
+def test_unusable_functions_are_refused(f, message):
+    with pytest.raises(BadInput, match=message):
+        PeriodicFunction.from_callable(f)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"a": [np.nan]},
+        {"a": [1.0, np.inf]},
+        {"a": [[1.0]]},
+        {"a": []},
+        {"a": [0.0], "b": [1.0]},
+        {"a": ["one"]},
+        {"a": [1.0], "error": -1.0},
+    ],
+)
+def test_unusable_coefficients_are_refused(arguments):
+    with pytest.raises(BadInput):
+        PeriodicFunction(**arguments)
+
+
+@settings(max_examples=25)
+@given(a=coefficients, b=coefficients, c=st.floats(-5, 5))
+def test_arithmetic(a, b, c):
+    b[0] = 0.0
+    f, g = PeriodicFunction(a, error=1e-3), PeriodicFunction(a=[0.0, 1.0], b=b, error=2e-3)
+    theta = np.linspace(0, 7, 11)
+    np.testing.assert_allclose((f + g)(theta), f(theta) + g(theta), atol=1e-12)
+    np.testing.assert_allclose((c * f)(theta), c * f(theta), atol=1e-12)
+    np.testing.assert_allclose((f - g)(theta), f(theta) - g(theta), atol=1e-12)
+    np.testing.assert_allclose((f + c)(theta), f(theta) + c, atol=1e-12)
+    assert (f + g).error == pytest.approx(3e-3)
+    assert (f * c).error == pytest.approx(abs(c) * 1e-3)
+    h = 1e-5
+    slope = (f(theta + h) - f(theta - h)) / (2 * h)
+    np.testing.assert_allclose(f.derivative()(theta), slope, atol=1e-5)
+
+
+def test_truncation_never_changes_the_function_by_more_than_it_says():
+    m = np.arange(40)
+    f = PeriodicFunction(0.7**m, np.where(m > 0, (-0.6) ** m, 0.0))
+    short = f.truncated(1e-3)
+    theta = np.linspace(0, 7, 500)
+    gap = np.abs(short(theta) - f(theta)).max()
+    assert short.harmonics < f.harmonics
+    assert 0 < gap <= short.error <= 1e-3
+    assert f.truncated() is f
+    assert PeriodicFunction([1.0, 0.0, 0.0]).truncated().harmonics == 0
+
+
+def test_it_is_immutable():
+    f = PeriodicFunction([1.0, 2.0])
+    with pytest.raises(ValueError, match="read-only"):
+        f.a[0] = 5.0
+    with pytest.raises(AttributeError):
+        f.error = 1.0
+
+
+@pytest.mark.parametrize("harmonics", [0, 3, 4, 11, 60])
+def test_values_on_segments(harmonics):
+    rng = np.random.default_rng(0)
+    b = rng.uniform(-1, 1, harmonics + 1)
+    b[0] = 0.0
+    f = PeriodicFunction(rng.uniform(-1, 1, harmonics + 1), b)
+    nodes = (-0.5, 0.0, 1.0)
+    theta = 2 * np.pi * (np.arange(4)[:, None] + 0.5 * (1 + np.array(nodes))) / 4
+    np.testing.assert_allclose(segment_values(f, 4, nodes), f(theta), rtol=0, atol=1e-12)
+
+
+def test_angles_that_are_not_finite_are_refused():
+    with pytest.raises(BadInput):
+        PeriodicFunction([1.0])(np.inf)
+
+
+@pytest.mark.parametrize(("width", "place"), [(0.01, 1.05), (0.02, 1.0), (0.004, 4.2)])
+def test_a_narrow_peak_is_not_missed(width, place):
+    def peaked(theta):
+        return np.cos(theta) + 0.5 * np.exp(-(((theta - place) / width) ** 2))
+
+    f = PeriodicFunction.from_callable(peaked)
+    theta = np.linspace(0.0, 2 * np.pi, 20_001)
+    assert f.harmonics > 100
+    assert np.abs(f(theta) - peaked(theta)).max() <= f.error < 1e-12
+
+
+def square(theta):
+    return np.sign(np.sin(theta))
+
+
+def rectified(theta):
+    return np.abs(np.sin(theta))
+
+
+def pole(theta):
+    return 1 / (1.0001 - np.cos(theta))
+
+
+@pytest.mark.parametrize(
+    ("meant", "tol"),
+    [
+        (square, 0.1),
+        (square, 0.01),
+        (rectified, 1e-2),
+        (rectified, 1e-4),
+        (pole, 1e-2),
+        (pole, 1e-4),
+        (pole, 1e-8),
+        (pole, None),
+    ],
+)
+def test_with_a_tolerance_the_figure_still_covers_the_function(meant, tol):
+    f = PeriodicFunction.from_callable(meant, tol=tol)
+    theta = np.concatenate([np.linspace(-0.1, 0.1, 2001), np.linspace(0.0, 6.28, 5000)])
+    gap = np.abs(f(theta) - meant(theta)).max()
+    assert gap <= f.error < 10 * gap
+
+
+def test_a_jump_of_the_size_of_noise_stays_in_the_figure():
+    def jumping(theta):
+        return np.cos(theta) + 1e-12 * np.sign(np.sin(theta - 0.3))
+
+    f = PeriodicFunction.from_callable(jumping)
+    theta = np.linspace(0.0, 2 * np.pi, 10_001)
+    assert np.abs(f(theta) - jumping(theta)).max() <= f.error < 1e-11
+
+
+def test_huge_values_do_not_overflow():
+    f = PeriodicFunction.from_callable(lambda theta: 1e300 * np.cos(theta))
+    assert f.harmonics == 1 and f.error < 1e287

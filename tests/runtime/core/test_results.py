@@ -1,0 +1,127 @@
+"""What every result does: checks, JSON, CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.core.results import Check, DeferredChecks, Result, provenance
+from elastolink.runtime.hill import discriminant
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sample(Result):
+    x: np.ndarray
+    y: np.ndarray
+    table: np.ndarray
+    odd: np.ndarray
+    marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    dimensions: ClassVar = {"x": ("x",), "y": ("y",), "table": ("y", "x"), "odd": ("odd",)}
+    exported: ClassVar = ("largest",)
+
+    @property
+    def largest(self):
+        return float(np.nanmax(self.table))
+
+
+def sample(**changes):
+    given = {
+        "method": "by hand",
+        "error": 0.5,
+        "error_norm": "absolute",
+        "x": np.array([1.0, 2.0, 3.0]),
+        "y": np.array([10.0, 20.0]),
+        "table": np.array([[11.0, 12.0, 13.0], [21.0, 22.0, 23.0]]),
+        "odd": np.array([7, 8]),
+    }
+    return Sample(**{**given, **changes})
+
+
+def test_csv_repeats_what_has_fewer_dimensions_and_parts_what_does_not_fit(tmp_path):
+    text = sample().save(tmp_path / "s.csv").read_text()
+    first, second = text.split("\n\n")
+    assert first.splitlines() == [
+        "error,x,y,table,largest",
+        "0.5,1.0,10.0,11.0,23.0",
+        "0.5,2.0,10.0,12.0,23.0",
+        "0.5,3.0,10.0,13.0,23.0",
+        "0.5,1.0,20.0,21.0,23.0",
+        "0.5,2.0,20.0,22.0,23.0",
+        "0.5,3.0,20.0,23.0,23.0",
+    ]
+    assert second.splitlines() == ["error,odd,largest", "0.5,7,23.0", "0.5,8,23.0"]
+
+
+def test_csv_turns_axes(tmp_path):
+    class Turned(Sample):
+        dimensions: ClassVar = {**Sample.dimensions, "odd": ("x", "y")}
+
+    given = {item: getattr(sample(), item) for item in ("method", "error", "error_norm", "x", "y")}
+    turned = Turned(**given, table=sample().table, odd=sample().table.T)
+    header, *rows = turned.save(tmp_path / "t.csv").read_text().splitlines()
+    i, j = header.split(",").index("table"), header.split(",").index("odd")
+    assert len(rows) == 6
+    assert all(row.split(",")[i] == row.split(",")[j] for row in rows)
+
+
+def test_csv_keeps_batches_and_matrices_apart(tmp_path):
+    """Two speeds with two multipliers each: equal lengths of axes that are not the same."""
+
+    class Plain(Sample):
+        dimensions: ClassVar = {}
+
+    two = np.array([1.0, 2.0])
+    plain = Plain(method="", error=0.0, error_norm="", x=two, y=two, table=np.eye(2), odd=two)
+    first, second = plain.save(tmp_path / "p.csv").read_text().split("\n\n")
+    assert first.splitlines()[0] == "axis_0_of_2x2,axis_1_of_2x2,error,table,largest"
+    assert second.splitlines()[1] == "0.0,1.0,1.0,1.0,1.0"
+
+
+def test_csv_of_an_empty_axis_is_its_header(tmp_path):
+    empty = discriminant(PeriodicFunction([0.0, 1.0]), np.zeros(0), 1.0)
+    lines = empty.save(tmp_path / "e.csv").read_text().splitlines()
+    assert len(lines) == 1 and "value" in lines[0].split(",")
+
+
+def test_json_holds_mappings_and_exported_properties():
+    found = sample(marks={"measured": (1.0, np.inf)}).to_dict()
+    assert found["marks"] == {"measured": [1.0, None]}
+    assert found["largest"] == 23.0
+
+
+def test_netcdf_splits_complex_arrays(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    path = sample(x=np.array([1.0 + 2.0j, -3.0j, 4.0])).save(tmp_path / "r.nc")
+    with xarray.open_dataset(path) as kept:
+        assert kept["x_real"].dims == kept["x_imag"].dims == ("x",)
+        np.testing.assert_array_equal(kept["x_real"].values, [1.0, 0.0, 4.0])
+        np.testing.assert_array_equal(kept["x_imag"].values, [2.0, -3.0, 0.0])
+        np.testing.assert_array_equal(kept["table"].values, sample().table)
+        assert "x" not in kept.variables
+
+
+def test_without_checks_it_passes_and_says_so():
+    assert sample().passed and not sample().checks
+
+
+def test_deferred_checks_are_made_once():
+    calls = []
+
+    def make():
+        calls.append(1)
+        return {"a": Check(2.0, 1.0)}
+
+    found = sample(checks=DeferredChecks(make))
+    assert not calls
+    assert not found.passed and found.to_dict()["passed"] is False and len(found.checks) == 1
+    assert len(calls) == 1
+
+
+def test_provenance_names_versions():
+    assert provenance()["numpy"] == np.__version__
+    assert provenance({"scene": "x"})["scene"] == "x"

@@ -1,0 +1,22 @@
+"""Whole numbers: one check for all that ask for them, of any integer type, no truth values."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.inputs import is_whole, require_whole
+
+
+@pytest.mark.parametrize("value", [1, 7, np.int64(3), np.uint8(7)])
+def test_integers_of_any_type_come_back_as_plain_ones(value):
+    found = require_whole("modes", value, 1, 7)
+    assert type(found) is int
+    assert found == value
+
+
+@pytest.mark.parametrize("value", [0, 8, True, np.True_, 3.0, "3", None, [3], np.array([3])])
+def test_everything_else_is_refused_by_name(value):
+    assert not is_whole(value, 1, 7)
+    with pytest.raises(BadInput, match=r"modes.*a whole number from 1 to 7.*choose 3"):
+        require_whole("modes", value, 1, 7, "choose 3")

@@ -1,0 +1,256 @@
+"""Quiet speeds, damping, lengths, the screen, fatigue: hand cases, and the document's machine."""
+
+import numpy as np
+import pytest
+from elastolink import BadInput, load_scene
+from elastolink.runtime.beams import Section, linkage_system
+from elastolink.runtime.beams.stress import StressResult
+from elastolink.runtime.design import (
+    Material,
+    damping_effect,
+    fatigue,
+    length_effect,
+    quiet_speeds,
+    running_speed,
+    screen,
+    screening_error,
+)
+from elastolink.runtime.design.quiet import _bands, _maxima
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.reduction.stress_curve import stress_curve
+
+TABLE = "aannaque_1996_table_4_1"
+STEEL = Material(tensile_strength=600e6, endurance_limit=200e6, exponent=9.0, knee=1e6)
+
+
+def system(**changes):
+    return load_scene(TABLE, overrides={"mesh.elements": 1, **changes}).system()
+
+
+def test_maxima_are_found_between_the_speeds():
+    speed = np.linspace(1.0, 10.0, 181)
+    values = 0.5 + 2.0 / (1 + 9 * (speed - 3.02) ** 2) + 1.0 / (1 + 16 * (speed - 7.51) ** 2)
+    found = _maxima(speed, values)
+    fine = np.linspace(1.0, 10.0, 900001)
+    exact = 0.5 + 2.0 / (1 + 9 * (fine - 3.02) ** 2) + 1.0 / (1 + 16 * (fine - 7.51) ** 2)
+    tops = fine[1:-1][(exact[1:-1] > exact[:-2]) & (exact[1:-1] > exact[2:])]
+    # A parabola through neighbours 0.05 apart: off by a few per cent of that.
+    np.testing.assert_allclose([w for w, _ in found], tops, atol=2e-3)
+
+
+def test_bands_end_where_the_limit_is_met():
+    speed = np.linspace(0.5, 10.0, 1901)
+    worst = np.exp(np.sin(speed))
+    limiting = np.array([w for w, height in _maxima(speed, worst) if height > 1])
+    bands = _bands(speed, worst, limiting)
+    assert [round(band.low, 3) for band in bands] == [round(np.pi, 3), round(3 * np.pi, 3)]
+    np.testing.assert_allclose(bands[0].high, 2 * np.pi, atol=1e-5)
+    np.testing.assert_allclose(bands[0].best, 1.5 * np.pi, atol=5e-3)
+    np.testing.assert_allclose(bands[0].above, 0.5 * np.pi, atol=1e-4)
+    np.testing.assert_allclose(bands[1].above, 2.5 * np.pi, atol=1e-4)
+
+
+def test_bands_leave_out_what_is_unstable():
+    speed = np.linspace(0.5, 10.0, 1901)
+    worst, none = np.exp(np.sin(speed)), np.array([])
+    unstable = ((3.0, 3.5), (4.0, 4.5), (6.0, 7.0), (9.9, 10.0))
+    bands = _bands(speed, worst, none, unstable)
+    ends = [(round(band.low, 3), round(band.high, 3)) for band in bands]
+    assert ends == [(3.5, 4.0), (4.5, 6.0), (round(3 * np.pi, 3), 9.9)]
+    assert [band.best for band in bands] == pytest.approx([4.0, 1.5 * np.pi, 9.9], abs=5e-3)
+    assert [band.above for band in bands] == pytest.approx([3.5, 4.5, 3 * np.pi], abs=1e-4)
+
+
+def test_an_unstable_speed_is_never_quiet():
+    """With limits that nothing meets; unstable from 86.92 to 95.64 rad/s by the multipliers."""
+    found = quiet_speeds(system(), np.linspace(84.0, 98.0, 57), 1e15, rtol=1e-2)
+    assert found.unstable == ((86.75, 95.75),)
+    assert [(band.low, band.high) for band in found.bands] == [(84.0, 86.75), (95.75, 98.0)]
+    assert found.quiet == found.bands[1:] and found.quiet[0].above == 95.75
+    assert "unstable" in [text.get_text() for text in found.plot().get_legend().get_texts()]
+
+
+def test_a_range_within_the_limits_is_one_band():
+    found = quiet_speeds(system(), np.linspace(5.0, 20.0, 60), 1e12)
+    assert len(found.bands) == 1 and found.bands[0].above is None
+    assert not found.limiting.size and not found.quiet
+
+
+def test_unusable_limits_and_speeds_are_refused():
+    with pytest.raises(BadInput, match="limits of crank"):
+        quiet_speeds(system(), (5.0, 20.0), {"crank": -1.0})
+    with pytest.raises(BadInput, match="limits: found rod"):
+        quiet_speeds(system(), (5.0, 20.0), {"rod": 1e8})
+    for speeds in ((0.0, 20.0), ("a", 20.0)):
+        with pytest.raises(BadInput, match="speeds"):
+            quiet_speeds(system(), speeds, 1e8)
+    with pytest.raises(BadInput, match="without beams"):
+        quiet_speeds(None, (5.0, 20.0), 1e8)
+    with pytest.raises(BadInput, match="increasing crank speeds"):
+        quiet_speeds(system(), [5.0, 4.0, 3.0], 1e8)
+
+
+def test_damping_helps_at_a_critical_speed_and_hurts_a_link_at_a_quiet_one():
+    # Aannaque 7.4.2; the machine of Table 4.1 with one element: critical at 61.4, quiet at 41.
+    found = damping_effect(system(), [41.0, 61.4], [0.02, 0.06])
+    assert np.all(found.change[1, 1] < 0.8)
+    assert np.any(found.hurts()[0])
+    with pytest.raises(BadInput, match="without modal damping"):
+        damping_effect(load_scene(TABLE, overrides={"damping.ratio": 0.0}).system(), [10.0], [0.1])
+
+
+def test_a_longer_frame_lowers_the_stresses_up_to_a_length():
+    # Aannaque 7.3 and 8.5.1: lower with L4 up to about 0.66 m, then higher again.
+    found = length_effect(system(), "frame", [0.547, 0.632, 0.667], [30.0])
+    worst = np.max(found.maximum, axis=(1, 2))
+    assert worst[1] < 0.7 * worst[0] and worst[2] > worst[1]
+    assert found.transmission is not None and found.transmission[2, 1] > np.radians(150)
+    assert found.best(limit=0.64)[0] == 0.632
+    with pytest.raises(BadInput, match="cannot turn"):
+        length_effect(system(), "frame", [0.7], [30.0])
+
+
+@pytest.mark.slow
+def test_the_design_method_finds_a_quiet_speed_and_a_way_up():
+    found = running_speed(
+        system(), np.linspace(28.0, 36.0, 120), 200e6, values=[0.547, 0.632], rtol=5e-3
+    )
+    assert found.band.above is not None and found.band.ratio < 1.0
+    assert found.quiet.limiting.size and np.min(found.quiet.limiting) < found.speed
+    assert found.run_up_length == 0.632
+    assert found.passed and 0.0 < found.checks["stable"].value < 1.0
+    ratio = found.checks["within limits"].value
+    assert found.band.ratio < ratio < found.band.ratio * 1.01
+
+
+def test_lengths_are_refused_before_the_work():
+    for more, words in (({"length": "crankk"}, "length"), ({"values": []}, "values")):
+        with pytest.raises(BadInput, match=words):
+            running_speed(system(), (25.0, 45.0), 1e6, **more)
+
+
+def test_nothing_within_the_limits_is_said():
+    with pytest.raises(BadInput, match="beyond their limits everywhere"):
+        running_speed(system(), np.linspace(40.0, 45.0, 30), 1e6, rtol=1e-2)
+
+
+def test_the_screen_is_quasi_static_at_low_speed_and_peaks_at_the_fractions_of_the_mean():
+    made = system()
+    speeds = np.array([1.0, 2.0])
+    found = screen(made, speeds, damping=0.02)
+    full = stress_curve(made, speeds, method="shape")
+    # At 2 rad/s the third harmonic lies at 0.033 of the first frequency: 0.1 % of amplification.
+    ratio = screening_error(found, full.speed, full.maximum)["ratio"]
+    np.testing.assert_allclose(ratio, 1.0, atol=0.01)
+    near = np.linspace(58.0, 65.0, 141)
+    peak = near[np.argmax(np.max(screen(made, near, damping=0.02).maximum, axis=1))]
+    np.testing.assert_allclose(peak, found.mean_frequency[0] / 3.0, rtol=0.01)
+    with pytest.raises(BadInput, match="other speeds"):
+        screening_error(found, np.array([1.0]), full.maximum[:1])
+
+
+def test_a_resonance_without_damping_is_infinite_and_constant_loads_count():
+    made = system()
+    mean = screen(made, [10.0], damping=0.02).mean_frequency[0]
+    assert np.all(np.isinf(screen(made, [mean / 3.0], damping=0.0).maximum))
+    heavy = linkage_system(
+        FourBar(crank=0.17, coupler=0.328, follower=0.525, frame=0.547),
+        dict.fromkeys(
+            ("crank", "coupler", "follower"),
+            Section.rectangle(0.025, 3e-3, modulus=2e11, density=7850.0),
+        ),
+        elements=1,
+        gravity=(0.0, -9.81),
+    )
+    # Hardly moving, the links bear their weight alone: a follower that leans, at most a cantilever.
+    least = screen(heavy, [1e-6], damping=0.02).maximum[0]
+    assert np.all(least > 1e4) and np.all(least < 6 * 7850 * 9.81 * 0.525**2 / 3e-3)
+    with pytest.raises(BadInput, match="damping"):
+        screen(made, [10.0], damping="a")
+
+
+def of_history(history, error=0.0):
+    """Return a stress result with one station, all of it axial."""
+    values = np.asarray(history)[:, None]
+    count = len(values)
+    none = np.zeros_like(values)
+    return StressResult(
+        method="hand",
+        error=error,
+        error_norm="none",
+        speed=10.0,
+        theta=2 * np.pi * np.arange(count) / count,
+        links=("bar",),
+        places=np.array([0.5]),
+        axial=values,
+        bending=none,
+        static_axial=none,
+        static_bending=none,
+        motion_error=0.0,
+        mesh_error=0.0,
+        period=2 * np.pi,
+    )
+
+
+def test_one_harmonic_is_one_cycle_on_goodmans_line():
+    theta = 2 * np.pi * np.arange(64) / 64
+    found = fatigue(of_history(100e6 + 250e6 * np.cos(theta)), STEEL)
+    amplitude = 250e6 / (1 - 100.0 / 600.0)
+    np.testing.assert_allclose(found.amplitude, amplitude, rtol=1e-12)
+    np.testing.assert_allclose(found.safety, 200e6 / amplitude, rtol=1e-12)
+    np.testing.assert_allclose(found.damage, (amplitude / 200e6) ** 9 / 1e6, rtol=1e-12)
+    np.testing.assert_allclose(found.revolutions, 1e6 / (amplitude / 200e6) ** 9, rtol=1e-12)
+    np.testing.assert_allclose(found.hours, found.revolutions * 2 * np.pi / 10 / 3600, rtol=1e-12)
+
+
+def test_the_error_of_the_safety_covers_that_of_amplitude_and_mean():
+    theta = 2 * np.pi * np.arange(64) / 64
+    mean, size, off = 500e6, 20e6, 2e6
+    found = fatigue(of_history(mean + size * np.cos(theta), error=off), STEEL)
+    worse = fatigue(of_history(mean + off + (size + off) * np.cos(theta)), STEEL)
+    actual = np.max(worse.amplitude) / np.max(found.amplitude) - 1.0
+    # With what may lie between 512 angles: (2 pi/512)^4 * 3/128 of the size, 5e-9 of the error.
+    assert actual < found.error < actual * (1.0 + 1e-8)
+    with pytest.raises(BadInput, match="not finite"):
+        fatigue(of_history(np.full(64, np.nan)), STEEL)
+    with pytest.raises(BadInput, match="StressResult"):
+        fatigue(None, STEEL)
+
+
+def test_compression_counts_as_no_mean_and_small_cycles_do_no_damage():
+    theta = 2 * np.pi * np.arange(64) / 64
+    found = fatigue(of_history(-300e6 + 150e6 * np.cos(theta)), STEEL)
+    np.testing.assert_allclose(found.amplitude, 150e6, rtol=1e-12)
+    assert np.all(found.damage == 0) and found.revolutions == np.inf
+
+
+def test_nested_cycles_are_counted_apart():
+    # Peaks 300, valley 100, peak 200, valley -300 MPa: one cycle 300/-300, one 100/200 inside.
+    theta = np.linspace(0.0, 2 * np.pi, 5)
+    corners = np.array([300e6, 100e6, 200e6, -300e6, 300e6])
+    count = 4000
+    fine = 2 * np.pi * np.arange(count) / count
+    found = fatigue(of_history(np.interp(fine, theta, corners)), STEEL)
+    # The Fourier series of a polygon overshoots its corners by 1/count of the slopes.
+    large, small = 300e6, 50e6 / (1 - 150.0 / 600.0)
+    np.testing.assert_allclose(found.amplitude, large, rtol=2e-3)
+    assert small < STEEL.endurance_limit
+    np.testing.assert_allclose(found.damage, (large / 200e6) ** 9 / 1e6, rtol=2e-2)
+
+
+def test_a_cycle_that_reaches_the_strength_is_no_life():
+    theta = 2 * np.pi * np.arange(64) / 64
+    found = fatigue(of_history(650e6 + 10e6 * np.cos(theta)), STEEL)
+    assert np.all(found.safety == 0) and found.revolutions == 0.0
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"tensile_strength": -1.0, "endurance_limit": 1.0}, "positive number"),
+        ({"tensile_strength": 1.0, "endurance_limit": 2.0}, "less than tensile_strength"),
+    ],
+)
+def test_impossible_materials_are_refused(values, words):
+    with pytest.raises(BadInput, match=words):
+        Material(**values)

@@ -1,0 +1,154 @@
+"""Critical speeds: constant systems on which every method must agree, varying ones, bad input."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.frequencies import compare_critical_speeds, critical_speeds
+from elastolink.runtime.frequencies.labels import label_speeds
+
+FREQUENCY = np.array([30.0, 71.0])
+
+
+def _system(damping=0.6, softening=0.0, varying=0.0, shape=True) -> LinearPeriodic:
+    """Two oscillators, each forced by all harmonics."""
+    terms = [
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag(FREQUENCY**2)),
+        Term("p", None, lambda t: np.outer(1.0 / (1.2 - np.cos(t)), [1.0, 3.0])),
+    ]
+    if damping:
+        terms.append(Term("C", None, damping * np.eye(2)))
+    if softening:
+        terms.append(Term("Kg", None, -softening * np.eye(2), power=2))
+    if varying:
+        terms.append(
+            Term("K", None, lambda t: varying * np.cos(t)[:, None, None] * np.diag([1.0, 0.0]))
+        )
+    return LinearPeriodic(
+        2,
+        tuple(terms),
+        {},
+        lambda values: {},
+        shape=(lambda x: 1e-6 * np.stack([x, x], axis=1)) if shape else None,
+    )
+
+
+def _expected(low, high):
+    """Return speed, mode and order of the fractions within a range, by rising speed."""
+    return sorted(
+        (float(value / n), mode, n)
+        for mode, value in enumerate(FREQUENCY, 1)
+        for n in range(1, 40)
+        if low <= value / n <= high
+    )
+
+
+def test_mean_frequencies_are_divided():
+    found = critical_speeds(_system(), (9.0, 40.0))
+    expected = _expected(9.0, 40.0)
+    np.testing.assert_allclose(found.speed, [row[0] for row in expected], rtol=1e-12)
+    assert found.labels == tuple((mode, n) for _, mode, n in expected)
+    assert np.all(np.abs(found.speed - [row[0] for row in expected]) <= found.error + 1e-14)
+    np.testing.assert_allclose(found.ratio, 1.0, rtol=1e-12)
+
+
+def test_axial_forces_of_the_speed_by_hand():
+    # omega^2 - s w^2 = n^2 w^2: w = omega/sqrt(n^2 + s); buckled from 30/sqrt(0.5) = 42.4 on.
+    found = critical_speeds(_system(0.0, 0.5), (9.0, 60.0), method="running_mean")
+    expected = FREQUENCY[found.mode - 1] / np.sqrt(found.order**2 + 0.5)
+    assert np.all(np.abs(found.speed - expected) <= found.error)
+    assert np.max(found.error) < 2e-2 and np.max(found.speed) < 42.4
+    assert {(1, 1), (1, 2), (2, 2)} <= set(found.labels)
+    with pytest.raises(BadInput, match="buckled"):
+        critical_speeds(_system(0.0, 0.5), (43.0, 60.0), method="running_mean")
+
+
+def test_maxima_of_the_response_are_near_the_fractions():
+    found = critical_speeds(_system(), (13.0, 40.0), method="response", speeds=120)
+    expected = {(mode, n): w for w, mode, n in _expected(13.0, 40.0)}
+    assert set(found.labels) <= set(expected) and {(1, 1), (2, 2), (2, 3)} <= set(found.labels)
+    for speed, label in zip(found.speed, found.labels, strict=True):
+        # Damping and the other oscillator move a maximum by parts of its width, 0.3/n.
+        assert speed == pytest.approx(expected[label], abs=0.1)
+    assert found.passed and np.all(np.isfinite(found.height))
+    assert found.plot().get_ylabel() == found.quantity
+
+
+def test_the_place_of_a_maximum_to_its_error():
+    # One harmonic alone, one coordinate: amplitude 1/|k - w^2 + i w c|, greatest at k - c^2/2.
+    c = 3.0
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", None, 900.0 * np.eye(1)),
+        Term("C", None, c * np.eye(1)),
+        Term("p", None, lambda t: np.cos(t)[:, None]),
+    )
+    system = LinearPeriodic(1, terms, {}, lambda v: {}, shape=lambda x: 1e-6 * x[:, None])
+    found = critical_speeds(system, (20.0, 40.0), method="response", speeds=31)
+    assert len(found.speed) == 1
+    assert abs(found.speed[0] - np.sqrt(900.0 - c**2 / 2)) <= found.error[0] < 1e-2
+
+
+def test_all_methods_agree_on_a_constant_system():
+    found = compare_critical_speeds(_system(0.2), (20.0, 40.0), speeds=80)
+    assert found.methods[0] == "response" and found.speed.shape[1] == 5
+    labels = {(int(m), int(n)) for m, n in zip(found.mode, found.order, strict=True)}
+    assert {(1, 1), (2, 2), (2, 3)} == labels
+    assert np.all(np.isfinite(found.speed))
+    # Of the multipliers' real part damping moves the maximum, exp(-c pi/w) rising with w.
+    assert np.all(found.spread < 2e-3)
+    assert "| 2, 3 |" in found.table()
+    assert found.plot().get_xlabel() == "crank speed [rad/s]"
+
+
+def test_a_varying_frequency_parts_the_methods():
+    # Frequency of sqrt(900 + 400 cos): its mean is 29.23.. but the resonance is a Mathieu one.
+    system = _system(0.4, 0.0, 400.0)
+    by_mean = critical_speeds(system, (25.0, 34.0), modes=1)
+    by_step = critical_speeds(system, (25.0, 34.0), method="meissner", modes=1)
+    even = 2 * np.pi * np.arange(400) / 400
+    assert by_mean.speed == pytest.approx([np.mean(np.sqrt(900 + 400 * np.cos(even)))], rel=1e-12)
+    # Second order of the modulation moves the multiplier's maximum, not the mean.
+    assert len(by_step.speed) and abs(by_step.speed[0] - by_mean.speed[0]) > 0.05
+
+
+def test_labels_are_given_once_and_best_first():
+    mode, order = label_speeds(np.array([30.0, 70.0]), np.array([10.1, 9.9, 35.2]))
+    assert list(zip(mode, order, strict=True)) == [(2, 7), (1, 3), (2, 2)] or list(
+        zip(mode, order, strict=True)
+    ) == [(1, 3), (2, 7), (2, 2)]
+    assert label_speeds(np.array([30.0]), np.array([29.0, 31.0]))[0].tolist() == [1, 1]
+
+
+@pytest.mark.parametrize(
+    ("system", "changes", "message"),
+    [
+        (_system(), {"method": "guess"}, "one of"),
+        (_system(), {"modes": 3}, "from 1 to 2"),
+        (_system(), {"speeds": 2}, "3 or more"),
+        (_system(0.0), {"method": "response"}, "damped"),
+        (_system(shape=False), {"method": "response"}, "deflections are not known"),
+    ],
+)
+def test_bad_input_is_refused(system, changes, message):
+    with pytest.raises(BadInput, match=message):
+        critical_speeds(system, (10.0, 40.0), **changes)
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1.0), (2.0, 1.0), (1.0,), (np.nan, 2.0)])
+def test_a_bad_range_is_refused(ends):
+    with pytest.raises(BadInput, match="two rising positive speeds"):
+        critical_speeds(_system(), ends)
+    with pytest.raises(BadInput, match="methods"):
+        compare_critical_speeds(_system(), (1.0, 2.0), methods=("guess",))
+
+
+@pytest.mark.parametrize("method", ["mean_frequency", "response", "multipliers", "meissner"])
+def test_a_frame_has_no_critical_speed(method):
+    frame = el.load_scene("aannaque_1996_portal_frame").linear_system()
+    with pytest.raises(BadInput, match="no crank moves it"):
+        critical_speeds(frame, (5.0, 100.0), method=method)

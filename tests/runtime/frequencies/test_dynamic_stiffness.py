@@ -1,0 +1,316 @@
+"""Exact frequencies of frames: known roots, shapes, nodes that stand still, refusals."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.beams import Section, beam_linkage, frame
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import Transcendental
+from elastolink.runtime.frequencies import (
+    dynamic_stiffness,
+    element_matrices,
+    hybrid_matrices,
+    log_determinant,
+    member_matrices,
+    wittrick_williams,
+)
+from elastolink.runtime.linkages import FourBar
+from scipy.integrate import quad_vec
+from scipy.linalg import eigvalsh
+
+CLAMPED, PINNED, FREE = ("x", "y", "rotation"), ("x", "y"), ()
+HELD_DOWN = ("y", "rotation")
+BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)  # EI = rho A
+# Equations that the roots solve, in forms without growth.
+EQUATIONS = {
+    "clamped-clamped": ((CLAMPED, CLAMPED), lambda z: mpmath.cos(z) - 1 / mpmath.cosh(z), 0.5),
+    "clamped-free": ((CLAMPED, FREE), lambda z: mpmath.cos(z) + 1 / mpmath.cosh(z), -0.5),
+    "clamped-pinned": ((CLAMPED, PINNED), lambda z: mpmath.tan(z) - mpmath.tanh(z), 0.25),
+    "pinned-pinned": ((PINNED, PINNED), mpmath.sin, 0.0),
+}
+
+
+def bar(supports, section=BAR, **values):
+    first, second = supports
+    return frame(
+        {"A": (0, 0), "B": (0.6, 0.8)},
+        {"bar": ("A", "B")},
+        section,
+        supports={"A": first, "B": second},
+        **values,
+    )
+
+
+def cross(stretch=0.0, arms=4):
+    """Return equal arms from a rigid hub to clamped ends, each ``stretch`` longer than the last."""
+    places, members = {"O": (0.0, 0.0)}, {}
+    for k in range(arms):
+        angle = 2 * np.pi * k / arms
+        reach = 1 + stretch * k
+        places[f"P{k}"] = (reach * np.cos(angle), reach * np.sin(angle))
+        members[f"arm{k}"] = ("O", f"P{k}")
+    return frame(places, members, BAR, supports={f"P{k}": CLAMPED for k in range(arms)})
+
+
+def four_bar(**values):
+    """Return the linkage of Aannaque's Table 4.1."""
+    table = {"crank": (157.5, 520.47), "coupler": (85.5, 83.34), "follower": (78.75, 65.12)}
+    sections = {
+        name: Section(area=a * 1e-6, second_moment=i * 1e-12, modulus=210e9, density=7850.0)
+        for name, (a, i) in table.items()
+    }
+    masses = {"B": 0.174, "C": 0.174}
+    return beam_linkage(FourBar(0.17, 0.328, 0.525, 0.547), sections, joint_masses=masses, **values)
+
+
+@pytest.mark.parametrize("name", EQUATIONS)
+def test_bars_of_known_frequencies(name):
+    """Thirty roots of each, within bounds of 1e-12; axial frequencies left out."""
+    supports, equation, shift = EQUATIONS[name]
+    problem = dynamic_stiffness(bar(supports), inextensible=True)
+    found = wittrick_williams(problem, count=30)
+    assert found.passed and np.all(found.multiplicity == 1)
+    with mpmath.workdps(40):
+        for k, omega in enumerate(found.frequencies, 1):
+            root = mpmath.findroot(equation, (k + mpmath.mpf(shift)) * mpmath.pi)
+            exact = root**2
+            assert abs(exact - float(omega)) <= found.error[k - 1]
+            assert found.error[k - 1] <= 1e-12 * omega
+
+
+def test_axial_and_bending_frequencies_interlace_in_the_count():
+    """A bar held at one end: (k - 1/2) pi c / L between the bending ones."""
+    found = wittrick_williams(dynamic_stiffness(bar((CLAMPED, FREE))), upto=3000.0)
+    wave = np.sqrt(1e9 / 1e4)
+    axial = (np.arange(1, 4) - 0.5) * np.pi * wave
+    distance = np.min(np.abs(found.frequencies[:, None] / axial - 1.0), axis=0)
+    assert np.all(distance < 1e-13)
+    bending = [k for k in range(1, 18) if ((k - 0.5) * np.pi) ** 2 < 3000.0]
+    assert len(found.frequencies) == len(bending) + 3
+
+
+def test_a_free_bar_has_three_frequencies_zero():
+    found = wittrick_williams(dynamic_stiffness(bar((FREE, FREE))), count=5)
+    assert found.passed
+    assert tuple(found.frequencies[:3]) == (0.0, 0.0, 0.0)
+    assert tuple(found.multiplicity) == (3, 3, 3, 1, 1)
+    np.testing.assert_allclose(
+        np.sqrt(found.frequencies[3:]), [4.730040744862704, 7.853204624095838]
+    )
+    assert len(wittrick_williams(dynamic_stiffness(bar((FREE, FREE))), upto=1.0).frequencies) == 3
+
+
+@pytest.mark.parametrize("stretch", [0.0, 1e-9])
+def test_close_and_equal_frequencies(stretch):
+    """A symmetric cross has pairs; arms that differ by 1e-9 part them, and none is lost."""
+    found = wittrick_williams(dynamic_stiffness(cross(stretch)), count=13)
+    assert found.passed
+    pairs = [1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 1, 1] if stretch == 0.0 else [1] * 13
+    assert list(found.multiplicity) == pairs
+    gap = found.frequencies[2] / found.frequencies[1] - 1.0
+    assert gap < 1e-13 if stretch == 0.0 else 1e-10 < gap < 1e-8
+
+
+def mass_products(found, section=BAR):
+    """Return ``int rho A (u u + v v)`` of all pairs of modes, by quadrature along the members."""
+    names = [beam.name for beam in found.problem.structure.beams]
+    count = len(found.frequencies)
+
+    def density(eta, name, length):
+        moved = [found.shape(i, name, [eta]).displacement[0] for i in range(count)]
+        return section.mass_per_length * length * np.array(moved) @ np.array(moved).T
+
+    total = np.zeros((count, count))
+    for name in names:
+        length = found.problem.structure.beam(name).length
+        total += quad_vec(density, 0.0, 1.0, args=(name, length), epsabs=1e-9, epsrel=1e-9)[0]
+    return total
+
+
+def test_shapes_are_orthogonal_and_of_unit_mass():
+    """By quadrature of the shapes between the nodes, modes with q = 0 and pairs among them."""
+    found = wittrick_williams(dynamic_stiffness(cross()), count=5)
+    still = np.max(np.abs(found.vectors()), axis=1)
+    np.testing.assert_allclose(mass_products(found), np.eye(5), atol=1e-7)
+    assert np.min(still) < 2e-3  # four arms that bend about a hub that barely moves
+
+
+def test_nodes_that_stand_still():
+    """A bar with both ends held, and a portal's fourth mode: in no node, but with a shape."""
+    for problem, number in (
+        (dynamic_stiffness(bar((CLAMPED, CLAMPED))), 0),
+        (dynamic_stiffness(portal(), inextensible=True), 3),
+    ):
+        found = wittrick_williams(problem, count=number + 1)
+        assert found.passed
+        np.testing.assert_allclose(found.frequencies[-1], 4.730040744862704**2, rtol=1e-12)
+        if number:
+            assert np.max(np.abs(found.vectors()[-1])) < 1e-12
+        name = problem.structure.beams[0].name
+        shape = found.shape(number, name, np.linspace(0.0, 1.0, 9))
+        assert abs(shape.across[0]) < 1e-10 and abs(shape.slope[-1]) < 1e-9
+        assert np.max(np.abs(shape.across)) > 0.5
+
+
+def portal():
+    places = {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)}
+    members = {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")}
+    return frame(places, members, BAR, supports={"A": CLAMPED, "D": CLAMPED})
+
+
+def test_shapes_join_at_the_nodes_and_solve_the_field_equation():
+    found = wittrick_williams(dynamic_stiffness(portal()), count=6)
+    for mode, omega in enumerate(found.frequencies):
+        left, beam = (found.shape(mode, name, [0.0, 1.0]) for name in ("left", "beam"))
+        size = np.max(np.abs(found.shape(mode, "beam", np.linspace(0, 1, 11)).across)) + 0.1
+        np.testing.assert_allclose(left.displacement[1], beam.displacement[0], atol=1e-11 * size)
+        assert abs(left.slope[1] - beam.slope[0]) < 1e-10 * size
+        assert abs(left.curvature[1] - beam.curvature[0]) < 1e-9 * (1 + omega) * size
+        places = np.array([0.3 - 1e-3, 0.3, 0.3 + 1e-3])
+        third = found.shape(mode, "beam", places)
+        fourth = (third.third[2] - third.third[0]) / 2e-3
+        assert abs(fourth - omega**2 * third.across[1]) < 1e-4 * (1 + omega**2) * size
+
+
+def test_linkage_against_its_finite_elements():
+    """Four-bar at two angles: quintic elements, a pin at each joint, masses on the joints."""
+    for theta in (0.4, 3.3):
+        found = wittrick_williams(dynamic_stiffness(four_bar(), theta), count=6)
+        mass, stiffness, _ = element_matrices(four_bar(elements=5, kind="internal_node"), theta)
+        reference = np.sqrt(eigvalsh(stiffness, mass))[:6]
+        assert found.passed
+        np.testing.assert_allclose(found.frequencies, reference, rtol=5e-6)
+
+
+def test_three_cubic_elements_of_the_thesis():
+    """Its 1.18 % at most in the first four modes over the cycle: 1.17 % here, in the fourth."""
+    worst = np.zeros(4)
+    linkage = four_bar(elements=3)
+    for theta in np.linspace(0.0, 2 * np.pi, 13)[:-1]:
+        found = wittrick_williams(dynamic_stiffness(linkage, theta), count=4)
+        mass, stiffness, _ = element_matrices(linkage, theta)
+        values = np.sqrt(eigvalsh(stiffness, mass))[:4]
+        worst = np.maximum(worst, values / found.frequencies - 1.0)
+    assert np.all(worst[:3] < 1e-3)
+    assert worst[3] == pytest.approx(0.0118, abs=2e-4)
+
+
+def test_plain_problems_are_bisected():
+    """What only counts: one mass between springs that stiffen, sqrt(k / m) = 3."""
+    problem = Transcendental(
+        1,
+        lambda omega: 9.0 - np.asarray(omega)[..., None, None] ** 2,
+        lambda omega: np.zeros(np.shape(omega)),
+    )
+    found = wittrick_williams(problem, upto=10.0)
+    assert found.frequencies.shape == (1,) and found.modes == ()
+    assert abs(found.frequencies[0] - 3.0) <= found.error[0] <= 1e-11
+    with pytest.raises(BadInput, match="members"):
+        found.vectors()
+    with pytest.raises(BadInput, match="fewer frequencies"):
+        wittrick_williams(problem, count=2)
+
+
+def test_count_is_that_of_the_family():
+    problem = dynamic_stiffness(portal())
+    found = wittrick_williams(problem, upto=200.0)
+    for omega in (1.0, 10.0, 21.0, 100.0, 199.0):
+        assert problem.count(omega) == np.sum(found.frequencies < omega)
+    trials = np.linspace(1.0, 199.0, 7)
+    assert problem.count(trials).shape == (7,)
+    assert problem.stiffness(trials).shape == (7, 6, 6)
+
+
+def test_determinant_of_one_and_two_pieces():
+    """Fig. 5.1: a pole with whole bars where nodes stand still, a zero with divided ones."""
+    whole = dynamic_stiffness(portal(), inextensible=True)
+    halves = whole.divided(dict.fromkeys(("left", "beam", "right"), (0.5, 0.5)))
+    at = 4.730040744862704**2
+    near = at * (1 + np.array([1e-3, 1e-5]))
+    one, two = log_determinant(whole, near)[0], log_determinant(halves, near)[0]
+    assert one[1] > one[0] + 1.0 and two[1] < two[0] - 1.0
+    signs = log_determinant(halves, at * np.array([0.9999, 1.0001]))[1]
+    assert signs[0] == -signs[1]
+    with pytest.raises(BadInput, match="positive"):
+        log_determinant(whole, [0.0, 1.0])
+
+
+def test_hybrid_element_reaches_the_exact_first_frequency():
+    """At most five iterations at 1e-3, as in the thesis; two or three are enough."""
+    theta = np.linspace(0.0, 2 * np.pi, 9)
+    found = hybrid_matrices(four_bar(), theta)
+    assert found.passed
+    assert found.iterations.min() >= 1 and found.iterations.max() <= 3
+    exact = [
+        wittrick_williams(dynamic_stiffness(four_bar(), angle), count=1).frequencies[0]
+        for angle in theta
+    ]
+    assert np.all(np.abs(found.first - exact) <= found.error)
+    assert np.all(found.polynomial >= found.first * (1 - 1e-9))
+    tight = hybrid_matrices(four_bar(), theta[:2], rtol=1e-9)
+    assert tight.iterations.max() <= 5
+    stiffness = dynamic_stiffness(four_bar(), 0.0).stiffness(tight.first[0])
+    formed = tight.stiffness[0] - tight.first[0] ** 2 * tight.mass[0]
+    np.testing.assert_allclose(formed, stiffness, atol=1e-6 * np.abs(stiffness).max())
+
+
+def test_matrices_of_a_section_that_loses_energy():
+    """Complex stiffness: analytic in it, so that a small loss turns D by its derivative."""
+    data = {"length": 0.4, "axial_stiffness": 2e6, "mass_per_length": 0.6}
+    base = 30.0
+    plain, _ = member_matrices(700.0, bending_stiffness=base, **data)
+    step = 1e-6 * base
+    lossy, _ = member_matrices(700.0, bending_stiffness=base + 1j * step, **data)
+    above, _ = member_matrices(700.0, bending_stiffness=base + step, **data)
+    below, _ = member_matrices(700.0, bending_stiffness=base - step, **data)
+    np.testing.assert_allclose(lossy.real, plain, rtol=1e-9, atol=1e-6)
+    slope = (above - below) / 2
+    np.testing.assert_allclose(lossy.imag, slope, rtol=1e-5, atol=1e-9 * np.abs(plain).max())
+
+
+def test_static_limits_are_the_cubic_element():
+    stiffness, mass = member_matrices(
+        0.0, length=2.0, bending_stiffness=8.0, axial_stiffness=6.0, mass_per_length=3.0
+    )
+    assert stiffness[0, 1, 1] == pytest.approx(12.0, rel=1e-15)
+    assert stiffness[0, 2, 5] == pytest.approx(8.0, rel=1e-15)
+    assert stiffness[0, 0, 3] == pytest.approx(-3.0, rel=1e-15)
+    assert mass[0, 1, 1] == pytest.approx(156 / 420 * 6.0, rel=1e-15)
+    assert mass[0, 0, 3] == pytest.approx(1.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: wittrick_williams(dynamic_stiffness(portal())), "one of the two"),
+        (lambda: wittrick_williams(dynamic_stiffness(portal()), upto=1.0, count=2), "both"),
+        (lambda: wittrick_williams(dynamic_stiffness(portal()), upto=-1.0), "positive"),
+        (lambda: wittrick_williams(dynamic_stiffness(portal()), count=0), "whole number"),
+        (lambda: dynamic_stiffness(portal(), np.nan), "theta"),
+        (lambda: dynamic_stiffness(portal(), inextensible=("roof",)), "roof"),
+        (
+            lambda: dynamic_stiffness(bar((CLAMPED, ("y", "rotation"))), inextensible=True),
+            "no node",
+        ),
+        (lambda: member_matrices(1.0, 0.0, 1.0, 1.0, 1.0), "length"),
+        (lambda: member_matrices(1.0, 1.0, -1.0, 1.0, 1.0), "bending_stiffness"),
+        (lambda: hybrid_matrices(bar((FREE, FREE)), 0.0), "no stiffness"),
+        (lambda: hybrid_matrices(portal(), 0.0, rtol=2.0), "rtol"),
+    ],
+)
+def test_refusals(call, words):
+    with pytest.raises(BadInput, match=words):
+        call()
+
+
+def test_places_and_modes_that_do_not_exist():
+    found = wittrick_williams(dynamic_stiffness(portal()), count=2)
+    for arguments, words in (
+        ((2, "beam", 0.5), "0 to 1"),
+        ((0, "roof", 0.5), "roof"),
+        ((0, "beam", 1.5), "places"),
+    ):
+        with pytest.raises(BadInput, match=words):
+            found.shape(*arguments)

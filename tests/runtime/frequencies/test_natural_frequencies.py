@@ -1,0 +1,214 @@
+"""Natural frequencies over the crank angle: against 40 digits, beams, means, models, bad input."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.beams import Section, frame, linear_system
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.frequencies import (
+    buckling_speed,
+    compare_models,
+    draw_mode,
+    draw_modes,
+    frequency_exponents,
+    link_frequencies,
+    natural_frequencies,
+    pinned_frequency,
+)
+from elastolink.runtime.response import frozen_frequencies
+from elastolink.runtime.scenes import load_scene
+
+
+def _linkage(elements=1, formulation="cubic_beams"):
+    overrides = {"mesh.elements": elements, "model.formulation": formulation}
+    return load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
+
+
+@pytest.fixture(scope="module")
+def linkage():
+    return _linkage()
+
+
+def test_frequencies_of_the_linkage_to_their_error(linkage):
+    theta = np.array([0.0, 0.7, 2.0, 4.4])
+    found = natural_frequencies(linkage, theta, 9)
+    mass, stiffness = linkage.array("M", theta), linkage.array("K", theta)
+    with mpmath.workdps(40):
+        for row in range(len(theta)):
+            factor = mpmath.cholesky(mpmath.matrix(mass[row].tolist())) ** -1
+            symmetric = factor * mpmath.matrix(stiffness[row].tolist()) * factor.T
+            squares = mpmath.eigsy((symmetric + symmetric.T) / 2, eigvals_only=True)
+            exact = np.array([float(mpmath.sqrt(square)) for square in squares])
+            assert np.all(np.abs(found.frequency[row] - exact) <= found.error[row])
+    assert np.max(found.error / found.frequency) < 1e-9
+
+
+def test_frequencies_agree_with_the_frozen_ones(linkage):
+    theta = np.linspace(0.0, 2 * np.pi, 13)
+    found, plain = natural_frequencies(linkage, theta, 9), frozen_frequencies(linkage, theta)
+    np.testing.assert_array_equal(found.frequency, plain.frequency)
+    np.testing.assert_allclose(found.mean, plain.mean, rtol=1e-11)
+    assert found.passed and plain.passed
+
+
+def test_shapes_are_modes_of_unit_mass(linkage):
+    theta = np.linspace(0.0, 2 * np.pi, 13)
+    found = natural_frequencies(linkage, theta, 4)
+    mass, stiffness = linkage.array("M", theta), linkage.array("K", theta)
+    unit = np.einsum("tik,tij,tjl->tkl", found.shape, mass, found.shape)
+    np.testing.assert_allclose(unit, np.broadcast_to(np.eye(4), unit.shape), atol=1e-10)
+    strain = np.einsum("tik,tij,tjk->tk", found.shape, stiffness, found.shape)
+    np.testing.assert_allclose(np.sqrt(strain), found.tracked, rtol=1e-10)
+    # A whole turn later the mechanism stands as it stood, and so do its modes.
+    np.testing.assert_allclose(found.mac[-1], 1.0, rtol=1e-9)
+    assert list(found.closure) == [1, 2, 3, 4]
+
+
+def test_the_linkage_has_a_veering_of_modes_two_and_three(linkage):
+    found = natural_frequencies(linkage, count=3)
+    assert [(one.kind, one.lower) for one in found.encounters] == [("veering", 2)]
+    veering = found.encounters[0]
+    told = found.to_dict()
+    assert told["encounter_rank"] == [2] and told["encounter_width"] == [veering.width]
+    # Two modes that trade with each other alone: 2 coupling width = 1.
+    assert veering.trade == pytest.approx(1.0, abs=0.05)
+    dense = veering.angle + np.linspace(-0.02, 0.02, 401)
+    gap = np.diff(natural_frequencies(linkage, dense, 3).frequency[:, 1:], axis=1)[:, 0]
+    assert abs(gap.min() - veering.gap) < 1e-4 * veering.gap
+    assert abs(dense[int(np.argmin(gap))] - veering.angle) <= 1e-4
+
+
+def test_mean_with_its_error_against_the_trapezoidal_rule(linkage):
+    found = natural_frequencies(linkage, 0.0, 4)
+    even = 2 * np.pi * np.arange(2000) / 2000
+    values = frozen_frequencies(linkage, even).frequency[:, :4]
+    allowed = found.mean_error + 1e-13 * found.mean
+    assert np.all(np.abs(values.mean(axis=0) - found.mean) <= allowed)
+
+
+def test_a_standing_frame_has_the_same_frequencies_at_every_angle():
+    bar = Section(area=1e-4, second_moment=1e-9, modulus=2e11, density=7800.0)
+    held = {"A": ("x", "y", "rotation"), "B": ("x", "y", "rotation")}
+    beam = frame({"A": (0, 0), "B": (1, 0)}, {"beam": ("A", "B")}, bar, supports=held)
+    found = natural_frequencies(linear_system(beam), np.array([0.0, 1.0]), 2)
+    # First root of cos x cosh x = 1, 4.730041; cubic elements are above it, by 0.5 % at most here.
+    exact = 4.730040744862704**2 * np.sqrt(bar.bending_stiffness / bar.mass_per_length)
+    assert exact <= found.mean[0] <= 1.005 * exact
+    np.testing.assert_allclose(found.frequency[0], found.frequency[1], rtol=1e-14)
+    assert np.all(found.mean_error <= 1e-9 * found.mean) and not found.encounters
+
+
+def test_axial_forces_of_the_speed_until_the_linkage_buckles(linkage):
+    limit = buckling_speed(linkage)
+    square = []
+    for part in (0.99, 1.0 - 1e-6, 1.0 + 1e-6):
+        stiffness = linkage.array("K", [limit.angle]) + linkage.array(
+            "Kg", [limit.angle], part * limit.speed
+        )
+        square.append(np.linalg.eigvalsh(stiffness[0])[0])
+    assert square[0] > square[1] > 0 > square[2]
+    with pytest.raises(BadInput, match="buckled"):
+        natural_frequencies(linkage, limit.angle, 1, speed=1.001 * limit.speed)
+    rest = natural_frequencies(linkage, 0.0, 2)
+    assert natural_frequencies(linkage, 0.0, 2, speed=30.0).mean[0] > rest.mean[0]
+
+
+def test_buckling_by_hand():
+    def softening(theta):
+        return -(1.0 + 0.5 * np.cos(theta - 1.0))[:, None, None] * np.eye(1)
+
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", None, 600.0 * np.eye(1)),
+        Term("Kg", None, softening, power=2),
+    )
+    found = buckling_speed(LinearPeriodic(1, terms, {}, lambda values: {}))
+    assert found.speed == pytest.approx(20.0, rel=1e-12)
+    assert found.angle == pytest.approx(1.0, abs=3e-6)
+    still = LinearPeriodic(1, terms[:2], {}, lambda values: {})
+    assert buckling_speed(still).speed == np.inf
+
+
+def test_percentages_of_the_thesis():
+    # Aannaque 4.3: 10 % (first) and 26 % (fourth), one element against three; 5.4.2: 1.18 %.
+    models = {"1": _linkage(1), "3": _linkage(3), "p 2": _linkage(1, "curvature_beams")}
+    theta = 2 * np.pi * np.arange(10) / 10
+    found = compare_models(models, theta)
+    mean = 100 * found.mean_difference("1", "3")
+    assert round(mean[0]) == 10 and round(mean[3]) == 26
+    assert np.max(found.largest_difference("3")) == pytest.approx(0.0118, abs=5e-5)
+    assert list(found.size[:3]) == [9, 27, 10]
+    # Finite elements are above the exact frequencies at every angle.
+    for name in models:
+        assert np.all(found.difference(name) > 0)
+    assert found.plot_mode(4).get_ylabel() == "natural frequency 4 [rad/s]"
+
+
+def test_the_first_mean_follows_the_softer_of_two_links():
+    system = _linkage(2)
+    found = link_frequencies(system, "coupler", "length", [0.328, 0.636])
+    assert found.mean[0, 0] == pytest.approx(found.pinned[0, 2], rel=0.02)
+    assert found.mean[1, 0] == pytest.approx(found.pinned[1, 1], rel=0.02)
+    structure = system.structure
+    beam = structure.beam("follower")
+    assert found.pinned[0, 2] == pinned_frequency(beam.section, beam.length)
+    assert found.plot().get_xlabel() == "length of the coupler [m]"
+
+
+@pytest.mark.slow
+def test_exponents_scale_as_dimensions_say(linkage):
+    found = frequency_exponents(linkage, count=3)
+    rows = dict(zip(found.rows, found.exponent, strict=True))
+    error = np.max(found.error)
+    # All widths and lumped masses together change nothing.
+    widths = sum(rows[f"{name} width"] for name in ("crank", "coupler", "follower"))
+    masses = rows["mass at B"] + rows["mass at C"]
+    np.testing.assert_allclose(widths + masses, 0.0, atol=1e-5 + 6 * error)
+    assert "| follower length |" in found.table()
+
+
+def test_modes_are_drawn(linkage):
+    assert "mode 2" in draw_mode(linkage, 0.3, 2).get_title()
+    assert len(draw_modes(linkage, [0.0, 1.0], 2).axes) == 4
+    assert natural_frequencies(linkage, count=3).plot().get_ylim()[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"theta": [np.nan]}, "finite crank angles"),
+        ({"theta": []}, "finite crank angles"),
+        ({"count": 0}, "from 1 to 9"),
+        ({"count": 10}, "from 1 to 9"),
+        ({"count": 2.0}, "from 1 to 9"),
+        ({"speed": -1.0}, "0 or more"),
+        ({"speed": np.inf}, "0 or more"),
+        ({"mass": 2.0}, "mass"),
+    ],
+)
+def test_bad_input_is_refused(linkage, changes, message):
+    with pytest.raises(BadInput, match=message):
+        natural_frequencies(linkage, **changes)
+
+
+def test_bad_input_to_the_studies_is_refused(linkage):
+    for arguments, message in (
+        (("rod", "length", 1.0), "one of"),
+        (("coupler", "colour", 1.0), "one of"),
+        (("coupler", "length", -1.0), "positive"),
+        (("coupler", "thickness", []), "positive"),
+    ):
+        with pytest.raises(BadInput, match=message):
+            link_frequencies(linkage, *arguments)
+    with pytest.raises(BadInput, match="at least one"):
+        compare_models({})
+    with pytest.raises(BadInput, match="mode"):
+        draw_mode(linkage, 0.0, 10)
+    plain = LinearPeriodic(
+        1, (Term("M", None, np.eye(1)), Term("K", None, np.eye(1))), {}, lambda values: {}
+    )
+    with pytest.raises(BadInput, match="beams"):
+        draw_modes(plain)

@@ -1,0 +1,271 @@
+"""Certified boundaries against mpmath at 60 digits, published values and exact cases."""
+
+import pickle
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from boundary_cases import closing_damping
+from elastolink.runtime.benchmarking.records import functions
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill.exact.certified import CertifiedBoundaries
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+FUNCTIONS = functions()
+COSINE = PeriodicFunction([0.0, 1.0])
+GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
+
+
+def number(x):
+    from mpmath import mpf
+
+    return mpf(x.numerator) / mpf(x.denominator)
+
+
+class Truncated:
+    """Hill's matrix in cos, sin at mpmath's precision, from the integrals of the products."""
+
+    def __init__(self, f, mu, damping, odd, harmonic):
+        from mpmath import mp, mpf
+
+        self.basis = [(mpf(2 * i + odd) / 2, s) for i in range(harmonic) for s in "cs"]
+        if not odd:
+            self.basis.remove((0, "s"))
+        n = len(self.basis)
+        self.width = 2 * f.harmonics + 1
+        self.matrix = mp.zeros(n)
+        for i, (j, js) in enumerate(self.basis):
+            for m in range(max(0, i - self.width), min(n, i + self.width + 1)):
+                k, ks = self.basis[m]
+                self.matrix[i, m] = -mpf(mu) * self.product(f, j, js, k, ks)
+            self.matrix[i, i] += j * j
+        for i, (j, js) in enumerate(self.basis):
+            if js == "c" and j > 0:
+                drag = 2 * mpf(damping) * j
+                self.matrix[i + 1, i] += drag
+                self.matrix[i, i + 1] -= drag
+
+    @staticmethod
+    def product(f, j, js, k, ks):
+        """(1/pi) times the integral of f times two of the basis, over one period of both."""
+        from mpmath import mpf, sqrt
+
+        def cos(m):
+            # (1/pi) integral of f cos m theta over 2 pi, m whole of either sign.
+            m = abs(int(m))
+            return mpf(f.a[m]) * (2 if m == 0 else 1) if m <= f.harmonics else mpf(0)
+
+        def sin(m):
+            value = mpf(f.b[abs(int(m))]) if abs(int(m)) <= f.harmonics else mpf(0)
+            return value if m >= 0 else -value
+
+        if js == ks:
+            value = (cos(j - k) + (cos(j + k) if js == "c" else -cos(j + k))) / 2
+        elif js == "s":
+            value = (sin(j + k) + sin(j - k)) / 2
+        else:
+            value = (sin(j + k) + sin(k - j)) / 2
+        return value / sqrt(2) ** ((j == 0) + (k == 0))
+
+    def below(self, t):
+        """How many eigenvalues lie below t: negative pivots of Gauss elimination (Sylvester)."""
+        n = self.matrix.rows
+        rows = [
+            {m: self.matrix[i, m] for m in range(i, min(n, i + self.width + 1))} for i in range(n)
+        ]
+        count = 0
+        for i in range(n):
+            rows[i][i] -= t
+            count += rows[i][i] < 0
+            for m in range(i + 1, min(n, i + self.width + 1)):
+                factor = rows[i][m] / rows[i][i]
+                for j in range(m, min(n, i + self.width + 1)):
+                    rows[m][j] = rows[m].get(j, 0) - factor * rows[i][j]
+        return count
+
+    def determinant_sign(self, t):
+        from mpmath import mp
+
+        return mp.sign(mp.det(self.matrix - t * mp.eye(self.matrix.rows)))
+
+
+def assert_enclosed(f, mu, regions, found, harmonic):
+    """Exactly the right number of eigenvalues below either end of each interval."""
+    from mpmath import mp, mpf
+
+    with mp.workdps(60):
+        # The test's own cut raises its eigenvalues by less than this.
+        slack = mpf(10) ** -45
+        for odd in (0, 1):
+            matrix = Truncated(f, mu, 0, odd, harmonic)
+            for row, n in enumerate(regions):
+                if n % 2 != odd:
+                    continue
+                for end, index in (("lower", n - 1), ("upper", n)):
+                    if n == 0 and end == "lower":
+                        continue
+                    low, high = (number(x) for x in found.enclosure(end, row))
+                    assert matrix.below(low - slack) <= index < matrix.below(high + slack)
+
+
+@pytest.mark.parametrize(
+    ("f", "mu", "harmonic"),
+    [(COSINE, 1.0, 30), (GENERAL, 0.7, 60), (GENERAL, -3.0, 70), (COSINE, 300.0, 90)],
+)
+def test_intervals_hold_the_eigenvalues_at_60_digits(f, mu, harmonic):
+    regions = (0, 1, 2, 3, 4, 5, 6)
+    found = hill_boundaries(f, mu, regions, certified=True)
+    assert_enclosed(f, mu, regions, found, harmonic)
+    assert max(found.lower_radius.max(), found.upper_radius.max()) < 1e-18
+    assert not found.pair[1:].any()
+
+
+@pytest.mark.parametrize("q", [1e3, 1e4])
+def test_mathieu_values_at_large_q(q):
+    """Low and high orders; 12 digits of max(|a|, 2 q), the larger of the value and the wells."""
+    regions = (0, 1, 2, 7, 60, 150)
+    proved = hill_boundaries(COSINE, -q / 2, regions, certified=True)
+    assert_enclosed(COSINE, -q / 2, regions, proved, 260)
+    plain = hill_boundaries(COSINE, -q / 2, regions)
+    scale = np.maximum(np.abs(4 * proved.upper), 2 * q)
+    assert np.all(4 * np.abs(plain.upper - proved.upper) <= 1e-12 * scale)
+    assert np.all(4 * np.abs(plain.lower[1:] - proved.lower[1:]) <= 1e-12 * scale[1:])
+
+
+@settings(max_examples=6, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_random_functions_at_60_digits(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 4))
+    a, b = rng.normal(size=(2, count + 1)) * rng.uniform(0.1, 1.0)
+    b[0] = 0.0
+    f, mu = PeriodicFunction(a, b), float(rng.normal() * 10 ** rng.uniform(-3, 1))
+    regions = tuple(int(n) for n in rng.choice(8, 2, replace=False))
+    found = hill_boundaries(f, mu, regions, certified=True)
+    assert_enclosed(f, mu, regions, found, 75)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("mu", [1.0, -0.3])
+def test_the_plain_figure_is_confirmed_by_the_certificate(name, mu):
+    regions = (0, 1, 2, 3, 4, 5, 6)
+    plain = hill_boundaries(FUNCTIONS[name], mu, regions)
+    proved = hill_boundaries(FUNCTIONS[name], mu, regions, certified=True)
+    assert isinstance(proved, CertifiedBoundaries) and proved.error_kind == "bound"
+    assert plain.error_kind == "estimate"
+    for end in ("lower", "upper"):
+        ours, truth = getattr(plain, end)[1:], getattr(proved, end)[1:]
+        assert np.all(np.abs(ours - truth) <= (plain.error + proved.error)[1:])
+        radius = getattr(proved, f"{end}_radius")
+        assert radius.max() < 0.5e-14
+        assert np.all(np.abs(getattr(proved, f"{end}_rest")) + radius <= proved.error)
+    assert proved.function_error == pytest.approx(abs(mu) * FUNCTIONS[name].error)
+
+
+def test_published_series_of_a0():
+    """A&S 20.2.25: a0 = -q^2/2 + 7 q^4/128 - 29 q^6/2304 + 68687 q^8/18874368 + O(q^10)."""
+    q = Fraction(1, 1024)
+    series = -(q**2) / 2 + 7 * q**4 / 128 - 29 * q**6 / 2304 + 68687 * q**8 / 18874368
+    found = hill_boundaries(COSINE, -float(q) / 2, (0,), certified=True)
+    low, high = (4 * x for x in found.enclosure("upper", 0))
+    # The next coefficient is about -0.0011; 1 is a generous cover.
+    assert low - q**10 <= series <= high + q**10
+    assert high - low < Fraction(1, 10**24)
+
+
+@pytest.mark.parametrize("mu", [0.5, -2.0, 40.0])
+def test_touching_edges_are_a_pair_and_never_a_gap(mu):
+    """Only even harmonics: odd regions are closed, and even ones are those of half the angle."""
+    f = PeriodicFunction([0.0, 0.0, 1.0])
+    found = hill_boundaries(f, mu, (1, 2, 3, 4, 5), certified=True)
+    np.testing.assert_array_equal(found.pair, [True, False, True, False, True])
+    for i in (0, 2, 4):
+        low, high = found.enclosure("lower", i), found.enclosure("upper", i)
+        assert max(low[0], high[0]) <= min(low[1], high[1])
+    # Open regions: Mathieu's equation in 2 theta, enclosed independently.
+    same = hill_boundaries(COSINE, mu / 4, (1, 2), certified=True)
+    for i, j in ((1, 0), (3, 1)):
+        for end in ("lower", "upper"):
+            a, b = found.enclosure(end, i), same.enclosure(end, j)
+            assert a[0] <= 4 * b[1] and 4 * b[0] <= a[1]
+
+
+def test_a_narrow_gap_is_proved_open():
+    """Region n of Mathieu's equation is about mu^n wide; doubles do not show it, intervals do."""
+    found = hill_boundaries(COSINE, 1e-3, (1, 2, 3, 4, 5, 6), certified=True)
+    widths = [
+        float(found.enclosure("upper", i)[0] - found.enclosure("lower", i)[1]) for i in range(6)
+    ]
+    # Leading term (DLMF 28.6): a_n - b_n = 8 (q/4)^n / ((n-1)!)^2, q = 2 mu, lam2 = a/4.
+    expected = [2 * (0.5e-3) ** n / np.prod(np.arange(1.0, n)) ** 2 for n in range(1, 7)]
+    np.testing.assert_allclose(widths[:5], expected[:5], rtol=1e-5)
+    assert not found.pair.any()
+
+
+def test_mu_zero_gives_the_squares():
+    found = hill_boundaries(GENERAL, 0.0, (0, 1, 2, 5), certified=True)
+    for row, n in enumerate((0, 1, 2, 5)):
+        low, high = found.enclosure("upper", row)
+        assert low <= Fraction(n * n, 4) <= high and high - low < Fraction(1, 10**30)
+    assert found.pair[1:].all() and not found.pair[0]
+
+
+@pytest.mark.parametrize(("mu", "k"), [(1.0, 0.01), (-3.0, 0.05), (0.8, 0.2)])
+def test_damped_intervals_hold_an_eigenvalue_at_40_digits(mu, k):
+    """The determinant of the damped matrix changes its sign across every interval."""
+    from mpmath import mp, mpf
+
+    regions = (0, 1, 2, 3)
+    found = hill_boundaries(GENERAL, mu, regions, k, certified=True)
+    plain = hill_boundaries(GENERAL, mu, regions, k)
+    np.testing.assert_array_equal(found.closed, np.isnan(plain.upper))
+    assert found.passed
+    seen = 0
+    with mp.workdps(40):
+        for odd in (0, 1):
+            matrix = Truncated(GENERAL, mu, k, odd, 26)
+            for row, n in enumerate(regions):
+                if n % 2 != odd or found.closed[row]:
+                    continue
+                for end in ("lower", "upper")[n == 0 :]:
+                    low, high = (number(x) for x in found.enclosure(end, row))
+                    # The cut of the test's matrix, whose tail falls faster than 1e-25 here.
+                    low, high = low - mpf(10) ** -25, high + mpf(10) ** -25
+                    assert matrix.determinant_sign(low) * matrix.determinant_sign(high) < 0
+                    seen += 1
+    assert seen >= 3
+
+
+def test_damping_closes_with_proof_and_near_the_tip_says_undecided():
+    mu = 0.6
+    low, high = closing_damping(COSINE, mu, 0.2, 0.4)
+    inside = hill_boundaries(COSINE, mu, (1,), low * (1 - 1e-6), certified=True)
+    beyond = hill_boundaries(COSINE, mu, (1,), high * (1 + 1e-3), certified=True)
+    tip = hill_boundaries(COSINE, mu, (1,), 0.5 * (low + high), certified=True)
+    assert inside.passed and not inside.closed[0] and inside.lower[0] < inside.upper[0]
+    assert beyond.passed and beyond.closed[0] and np.isnan(beyond.upper[0])
+    assert not tip.passed and not tip.closed[0] and np.isnan(tip.upper[0])
+    with pytest.raises(BadInput, match="finite end"):
+        tip.enclosure("lower", 0)
+
+
+def test_shapes_export_and_refusals(tmp_path):
+    found = hill_boundaries(GENERAL, [[0.1, 0.2]], (0, 1, 3), [[0.0], [0.01]], certified=True)
+    assert found.lower.shape == found.pair.shape == found.upper_radius.shape == (3, 2, 2)
+    assert np.all(found.lower[0] == -np.inf)
+    assert pickle.loads(pickle.dumps(found)).to_dict() == found.to_dict()
+    found.save(tmp_path / "b.csv")
+    with pytest.raises(BadInput, match="'lower' or 'upper'"):
+        found.enclosure("middle", 0)
+    nothing = hill_boundaries(GENERAL, np.zeros((0,)), (1,), certified=True)
+    assert nothing.lower.shape == (1, 0)
+    assert hill_boundaries(GENERAL, 1.0, (), certified=True).upper.shape == (0,)
+
+
+def test_the_order_of_regions_and_repeats_do_not_matter():
+    one = hill_boundaries(GENERAL, 0.4, (3, 1, 3), certified=True)
+    assert one.lower[0] == one.lower[2]
+    assert one.lower[1] == hill_boundaries(GENERAL, 0.4, (1,), certified=True).lower[0]

@@ -1,0 +1,163 @@
+"""Grashof's and Barker's classes: every class, refusals, tolerances, inversions, sliding links."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.barker import CLASSES, LINKS
+from elastolink.runtime.linkages.classification import SYMBOLS, classify, classify_many
+
+
+def grashof_symbol(lengths):
+    """Read Barker's table word by word; '' where the four cannot move."""
+    s, p, q, longest = sorted(lengths)
+    lengths = list(lengths)
+    if longest >= s + p + q:
+        return ""
+    if s + longest < p + q:
+        return ("GCCC", "GCRR", "GRCR", "GRRC")[lengths.index(s)]
+    if s + longest > p + q:
+        return f"RRR{lengths.index(longest) + 1}"
+    if s == longest:
+        return "CP3X"
+    if s == p:
+        return "CP2X"
+    return ("CPCCC", "CPCRR", "CPRCR", "CPRRC")[lengths.index(s)]
+
+
+GRID = [*itertools.product(range(1, 8), repeat=4)]
+
+
+def test_all_small_integers_have_the_class_of_the_table():
+    expected = [grashof_symbol(lengths) for lengths in GRID]
+    assert set(expected) == set(SYMBOLS)
+    assert [SYMBOLS[number] for number in classify_many(GRID)] == expected
+    for lengths, symbol in zip(GRID, expected, strict=True):
+        if symbol:
+            assert classify(lengths).symbol == symbol
+        else:
+            with pytest.raises(BadInput, match="cannot"):
+                classify(lengths)
+
+
+def test_inversions_are_the_classes_of_the_lengths_taken_in_turn():
+    for lengths in GRID[::7]:
+        if not grashof_symbol(lengths):
+            continue
+        found = classify(lengths)
+        turned = [lengths[i:] + lengths[:i] for i in range(4)]
+        assert [*found.inversions.values()] == [grashof_symbol(each) for each in turned]
+        mirrored = (lengths[0], *lengths[:0:-1])
+        assert classify(lengths, input="follower").symbol == grashof_symbol(mirrored)
+
+
+def reaches_every_angle(lengths, i, j):
+    """Sweep: does the sum of links i and j stay within the reach of the other two?"""
+    one, two = lengths[i], lengths[j]
+    k, m = (x for x in range(4) if x not in (i, j))
+    diagonal = np.abs(one + two * np.exp(1j * np.linspace(0.0, np.pi, 181)))
+    least, most = abs(lengths[k] - lengths[m]), lengths[k] + lengths[m]
+    return bool(np.all((diagonal >= least - 1e-9) & (diagonal <= most + 1e-9)))
+
+
+def test_turning_links_are_those_that_a_sweep_turns():
+    for lengths in GRID[::3]:
+        if grashof_symbol(lengths):
+            found = classify(lengths).relative_turns
+            for i, j in itertools.combinations(range(4), 2):
+                name = f"{LINKS[i]}-{LINKS[j]}"
+                assert found[name] == reaches_every_angle(lengths, i, j), (lengths, name)
+
+
+def test_names_follow_the_symbols():
+    """Where Table 3.1 prints crank-rocker-crank for GCRR: letters and words agree here."""
+    for row in CLASSES[:4] + CLASSES[8:12]:
+        letters = "".join(word[0].upper() for word in row.name.split()[-1].split("-"))
+        assert row.symbol.endswith(letters)
+    assert CLASSES[1].name == "Grashof crank-rocker-rocker"
+    assert [row.number for row in CLASSES] == list(range(1, 15))
+
+
+def test_distance_is_the_tolerance_that_just_reaches_the_change_point():
+    lengths = (5.0, 1.0, 5.0, 2.0)
+    found = classify(lengths)
+    assert found.distance == -1.0 / 13.0
+    assert classify(lengths, tolerance=1.0 / 13.0 * (1 - 1e-12)).symbol == "GCRR"
+    assert classify(lengths, tolerance=1.0 / 13.0 * (1 + 1e-12)).symbol == "CPCRR"
+
+
+def test_a_tolerance_finds_pairs_and_equal_links():
+    assert classify((1.0, 2.0, 1.0 + 1e-9, 2.0), tolerance=1e-8).symbol == "CP2X"
+    assert classify((1.0, 2.0, 1.0 + 1e-9, 2.0)).symbol != "CP2X"
+    assert classify((1.0, 1.0, 1.0 + 1e-9, 1.0), tolerance=1e-8).symbol == "CP3X"
+    assert classify((2.0, 1.0, 2.0, 1.0)).also == "parallelogram linkage"
+    assert classify((2.0, 1.0, 1.0, 2.0)).also == "kite linkage"
+    assert classify((1.0, 1.0, 3.0, 3.1), tolerance=0.015).symbol == "CPCCC"
+
+
+@pytest.mark.parametrize("scale", [2.0**-1074, 2.0**-1000, 1.0, 2.0**1020])
+def test_scale_changes_nothing(scale):
+    lengths = np.array([7.0, 2.0, 6.0, 3.0]) * scale
+    assert SYMBOLS[classify_many(lengths)] == classify(lengths.tolist()).symbol == "CPCRR"
+
+
+@pytest.mark.parametrize(
+    ("lengths", "words"),
+    [
+        ((10, 1, 2, 3), "cannot close"),
+        ((6, 1, 2, 3), "cannot move"),
+        ((1, 2, 3), "3 of them"),
+        ((1, 2, 3, np.nan), "positive finite"),
+        ((1, 2, 3, -1), "positive finite"),
+        ((1, 2, 3, 10**400), "positive finite"),
+        ((1, 2, 3, "x"), "positive finite"),
+        (3.0, "four lengths"),
+    ],
+)
+def test_impossible_lengths_are_refused_with_the_reason(lengths, words):
+    with pytest.raises(BadInput, match=words):
+        classify(lengths)
+
+
+@pytest.mark.parametrize("options", [{"tolerance": -1}, {"tolerance": np.nan}, {"input": "frame"}])
+def test_meaningless_options_are_refused(options):
+    with pytest.raises(BadInput):
+        classify((5, 1, 5, 2), **options)
+
+
+def test_a_linkage_and_its_lengths_have_one_class():
+    assert classify(FourBar(12, 6, 12, 12)).symbol == classify((12, 6, 12, 12)).symbol == "GCRR"
+
+
+@pytest.mark.parametrize(
+    ("sizes", "category", "turning"),
+    [
+        ((1.0, 3.0, 0.5), "Grashof", {"crank"}),
+        ((3.0, 1.0, -0.5), "Grashof", {"coupler"}),
+        ((1.0, 1.25, 0.5), "non-Grashof", set()),
+        ((1.0, 1.5, -0.5), "change point", {"crank"}),
+        ((1.0, 1.0, 0.0), "change point", {"crank", "coupler"}),
+    ],
+)
+def test_slider_crank(sizes, category, turning):
+    found = classify(SliderCrank(*sizes))
+    assert found.category == category
+    assert {link for link, full in found.turns.items() if full} == turning
+    assert np.sign(found.distance) == {"Grashof": -1, "non-Grashof": 1, "change point": 0}[category]
+    # Endless frame and follower that differ by the offset: the same class.
+    far = 2.0**40
+    crank, coupler, offset = sizes
+    limit = classify((far + abs(offset), crank, coupler, far))
+    assert limit.category == category
+
+
+@pytest.mark.parametrize(("crank", "turns"), [(0.5, False), (2.0, True)])
+def test_quick_return(crank, turns):
+    found = classify(QuickReturn(1.0, crank, 4.0))
+    assert found.turns["rod"] == turns
+    assert found.category == "Grashof"
+    assert np.sign(found.distance) == (1 if turns else -1)

@@ -1,0 +1,387 @@
+"""Clearance: exact ranges against trial of the pins and many digits, folds, extremes, refusals."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.generated import four_bar_clearance
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.clearance import clearance_range
+
+TURN = 2.0 * np.pi
+LONG_CRANK = (10.0, 8.0, 10.0, 10.0)  # Smith's Fig. 10
+FOUR_BARS = (LONG_CRANK, (5.0, 1.0, 5.0, 2.0), (10.0, 3.0, 6.0, 8.0), (3.0, 10.0, 9.0, 8.0))
+ANGLES = np.linspace(0.0, TURN, 25)
+JOINTS = ("12", "23", "34", "41")
+
+
+def wrapped(angle):
+    return np.angle(np.exp(1j * np.asarray(angle)))
+
+
+def sides(found):
+    return [float(found.below), float(found.above)]
+
+
+def four_bar_trial(linkage, theta, plays, link, count=24):
+    """Return all angles of a link, less the nominal one, with every pin on the rim of its hole."""
+    l1, l2, l3, l4 = linkage.lengths.values()
+    rim = np.exp(1j * np.linspace(0.0, TURN, count, endpoint=False))
+    discs = [plays.get(joint, 0.0) / 2 * (rim if joint in plays else rim[:1]) for joint in JOINTS]
+    found = []
+    for a, b, c, d in itertools.product(*(np.append(disc, 0.0) for disc in discs)):
+        pin, pivot = a + l2 * np.exp(1j * theta) + b, l1 + d - c
+        span = pivot - pin
+        cosine = (abs(span) ** 2 + l3**2 - l4**2) / (2 * abs(span) * l3)
+        if abs(cosine) <= 1.0:
+            third = np.angle(span) + linkage.branch * np.arccos(cosine)
+            fourth = np.angle(pin + l3 * np.exp(1j * third) - pivot)
+            found.append(third if link == "coupler" else fourth)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("link", ["follower", "coupler"])
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+@pytest.mark.parametrize("lengths", FOUR_BARS)
+def test_all_pins_by_trial(lengths, assembly, link):
+    linkage = FourBar(*lengths, assembly)
+    plays = {"12": 0.01, "23": 0.02, "34": 0.015, "41": 0.025}
+    plays = {joint: size * lengths[1] / 8 for joint, size in plays.items()}
+    for theta in (0.3, 2.1, 4.4):
+        exact = clearance_range(linkage, plays, theta, link=link)
+        tried = wrapped(four_bar_trial(linkage, theta, plays, link, 12) - exact.nominal)
+        # Never beyond; short of it by no more than 12 places of each pin allow, 1 - cos(15 deg).
+        for reached, end in ((-tried.min(), exact.below), (tried.max(), exact.above)):
+            assert reached <= end * (1 + 1e-9)
+            assert reached >= 0.96 * end
+        inner = clearance_range(linkage, {"12": 0.0, "41": 0.0}, theta, link=link)
+        assert inner.width == 0.0
+
+
+def test_dense_trial_of_one_pin():
+    linkage = FourBar(*LONG_CRANK)
+    for theta, joint in itertools.product((0.0, 0.7, 3.0), JOINTS):
+        plays = {joint: 0.5}
+        exact = clearance_range(linkage, 0.5, theta, joint=joint)
+        tried = wrapped(four_bar_trial(linkage, theta, plays, "follower", 20001) - exact.nominal)
+        # As in the ledger: such a search misses the extremes by 2e-8 of the movement.
+        assert [-tried.min(), tried.max()] == pytest.approx(sides(exact), rel=1e-7)
+
+
+@pytest.mark.parametrize("link", ["follower", "coupler"])
+def test_the_joint_does_not_matter(link):
+    for lengths in FOUR_BARS:
+        linkage = FourBar(*lengths)
+        found = [clearance_range(linkage, 0.02, ANGLES, joint=j, link=link) for j in JOINTS]
+        assert all(np.array_equal(found[0].lower, other.lower) for other in found)
+        split = clearance_range(linkage, dict.fromkeys(JOINTS, 0.005), ANGLES, link=link)
+        assert split.width == pytest.approx(found[0].width, rel=1e-13)
+
+
+def many_digits(lengths, branch, theta, play):
+    """Return how far the follower falls and rises, with 60 digits, from arc cosines alone."""
+    with mpmath.workdps(60):
+        l1, l2, l3, l4, theta, play = (mpmath.mpf(float(v)) for v in (*lengths, theta, play))
+        d = mpmath.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * mpmath.cos(theta))
+
+        def angle(side):
+            return mpmath.acos((d**2 + l4**2 - side**2) / (2 * d * l4))
+
+        rise, fall = angle(l3 + play / 2) - angle(l3), angle(l3) - angle(l3 - play / 2)
+        return (rise, fall) if branch > 0 else (fall, rise)
+
+
+@pytest.mark.parametrize("size", [1e-2, 1e-6, 1e-12, 1e-200])
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+def test_relative_accuracy_of_vanishing_clearances(size, assembly):
+    for lengths in FOUR_BARS:
+        linkage = FourBar(*lengths, assembly)
+        play = size * lengths[1]
+        with mpmath.workdps(460 if size < 1e-100 else 60):
+            for theta in (0.0, 0.3, 2.0, 3.1, 5.5):
+                exact = clearance_range(linkage, play, theta)
+                if size < 1e-100:
+                    continue
+                true = many_digits(lengths, linkage.branch, theta, play)
+                for value, truth in zip((exact.below, exact.above), true, strict=True):
+                    assert float(abs(mpmath.mpf(float(value)) / truth - 1)) < 2e-14
+        # Far below the round-off of the angles the first order is exact.
+        if size == 1e-200:
+            assert exact.width == pytest.approx(exact.small, rel=1e-14)
+
+
+def test_first_order_is_left_with_the_third_power():
+    linkage = FourBar(*LONG_CRANK)
+    plays = np.array([0.2, 0.1, 0.05, 0.025])
+    for theta in (0.0, 1.0, 2.5):
+        found = [clearance_range(linkage, float(c), theta) for c in plays]
+        apart = np.array([r.width - r.small for r in found])
+        sides = np.array([r.above - r.below for r in found])
+        assert np.log2(apart[:-1] / apart[1:]) == pytest.approx(3.0, abs=0.02)
+        # One side alone is left with the second: the sum cancels it.
+        assert np.log2(sides[:-1] / sides[1:]) == pytest.approx(2.0, abs=0.02)
+    # The ledger's own figures: too small by 1.0e-6, 1.0e-4, 2.6e-3 of itself.
+    for c, part in ((0.01, 1.02e-6), (0.1, 1.02e-4), (0.5, 2.56e-3)):
+        found = clearance_range(linkage, c, 0.0)
+        assert (found.width - found.small) / found.width == pytest.approx(part, rel=0.01)
+
+
+def test_first_order_is_that_of_the_transmission_angle():
+    for linkage in (FourBar(*lengths) for lengths in FOUR_BARS):
+        motion = linkage.motion(ANGLES)
+        found = clearance_range(linkage, 1e-3, ANGLES)
+        sine = np.sin(motion.transmission_angle)
+        assert found.small == pytest.approx(1e-3 / (linkage.follower * sine), rel=1e-11)
+
+
+def test_right_angle_at_the_frame():
+    # BD^2 = l3^2 - l4^2: sin(delta) = (l3 c + c^2/4)/(2 BD l4), Smith's second special position.
+    l1, l2, l3, l4, c = 10.0, 2.0, 10.0, 6.0, 0.5
+    theta = np.arccos((l1**2 + l2**2 - (l3**2 - l4**2)) / (2 * l1 * l2))
+    found = clearance_range(FourBar(l1, l2, l3, l4), c, theta)
+    assert np.sin(found.below) == pytest.approx((l3 * c + c**2 / 4) / (2 * 8.0 * l4), rel=1e-13)
+
+
+def test_stretched_dead_centre():
+    # phi = 0, BD = l3 + l4 = 20: the range is symmetric, +- 0.2269 rad for c = 1 (ledger).
+    linkage = FourBar(15.0, 8.0, 10.0, 10.0)
+    (low, high), *_ = linkage.crank_ranges()
+    found = clearance_range(linkage, 1.0, [low, high])
+    right = np.arccos(1 - (10.0 + 0.25) / (2 * 10 * 20.0))
+    assert found.folds.all() and not found.free.any()
+    # The crank angle of the fold is rounded, and BD with it: a root of round-off in the angle.
+    assert found.below == pytest.approx(right, abs=1e-7)
+    assert found.above == pytest.approx(right, abs=1e-7)
+    assert np.all(found.error > 1e-9) and np.all(np.isinf(found.small))
+    assert found.passed
+
+
+def test_both_assemblies_share_the_range_beyond_a_fold():
+    lengths = (10.0, 8.0, 4.0, 10.0)
+    opened, crossed = (FourBar(*lengths, assembly) for assembly in ("open", "crossed"))
+    for low, high in opened.crank_ranges():
+        theta = np.linspace(low, high, 41)
+        a, b = (clearance_range(linkage, 0.4, theta) for linkage in (opened, crossed))
+        assert a.folds.any() and not a.folds.all()
+        assert np.array_equal(a.folds, b.folds)
+        assert wrapped(a.lower - b.lower)[a.folds] == pytest.approx(0.0, abs=1e-12)
+        assert wrapped(a.upper - b.upper)[a.folds] == pytest.approx(0.0, abs=1e-12)
+        # Where nothing folds, the ranges lie apart from each other.
+        assert np.all(a.width + b.width < TURN) and a.passed and b.passed
+        for name in ("nominal", "lower", "upper", "width", "error", "nominal_error"):
+            assert np.all(np.isfinite(getattr(a, name)))
+
+
+def test_double_rocker_near_its_dead_position_by_trial():
+    linkage = FourBar(10.0, 8.0, 4.0, 10.0)
+    (low, high), *_ = linkage.crank_ranges()
+    for theta in (low + 1e-3, low + 1e-2, high - 1e-3, high - 1e-9):
+        exact = clearance_range(linkage, 0.3, theta)
+        assert exact.folds
+        # Every follower angle whose pin is within the reach of the coupler.
+        pin = 8.0 * np.exp(1j * theta)
+        turn = np.linspace(-np.pi, np.pi, 2_000_001)
+        tip = 10.0 + 10.0 * np.exp(1j * (turn + exact.nominal))
+        inside = turn[np.abs(np.abs(tip - pin) - 4.0) <= 0.15]
+        assert [-inside.min(), inside.max()] == pytest.approx(sides(exact), abs=TURN / 1e6)
+
+
+def test_a_follower_without_any_limit():
+    found = clearance_range(FourBar(2.0, 1.0, 1.2, 0.3), 1.0, [0.473])
+    assert found.free.all() and found.width == pytest.approx(TURN)
+    assert found.passed
+
+
+LINKAGES = (
+    *(FourBar(*lengths) for lengths in FOUR_BARS),
+    FourBar(10.0, 8.0, 4.0, 10.0),
+    FourBar(15.0, 8.0, 10.0, 10.0, "crossed"),
+    FourBar(10.0, 8.0, 2.0, 3.0),
+    *(SliderCrank(1.0, 3.0, offset, "open") for offset in (0.0, 0.4, -1.5)),
+    SliderCrank(2.0, 1.2, 0.3, "crossed"),
+    QuickReturn(3.0, 1.0, 5.0),
+    QuickReturn(1.0, 2.0, 5.0),
+)
+
+
+@pytest.mark.parametrize("play", [1e-3, 0.05, 0.6])
+@pytest.mark.parametrize("linkage", LINKAGES, ids=str)
+def test_extremes_over_the_cycle_against_a_scan(linkage, play):
+    ranges = ((0.0, TURN),) if linkage.crank_turns else linkage.crank_ranges()
+    # Close to the ends, where a fold begins, the steps are a thousandth of the way from the end.
+    way = np.geomspace(1e-9, 0.5, 20001)
+    theta = np.concatenate([low + (high - low) * np.append(way, 1 - way) for low, high in ranges])
+    sliding = {SliderCrank: "41", QuickReturn: "34"}.get(type(linkage), "34")
+    for link in (None, "coupler"):
+        if link and isinstance(linkage, QuickReturn):
+            continue
+        found = clearance_range(linkage, {"23": play, sliding: play / 3}, theta, link=link)
+        assert found.passed
+        width, great, least = found.width, found.greatest, found.least
+        assert np.max(width) <= great.width * (1 + 1e-9)
+        assert np.min(width) >= least.width * (1 - 1e-9)
+        # A jump, or a root at a fold, is steep: the scan comes as near as its step allows.
+        assert np.max(width) >= great.width * (1 - 0.02)
+        assert np.min(width) <= least.width * (1 + 1e-3)
+        if linkage.crank_turns:
+            at = [great.theta2, least.theta2]
+            there = clearance_range(linkage, {"23": play, sliding: play / 3}, at, link=link)
+            if not there.folds.any():
+                assert there.width == pytest.approx([great.width, least.width], rel=1e-12)
+
+
+def test_figure_10():
+    # Smith's Fig. 10: greatest at 0, a second maximum at 180 deg, least in between.
+    found = clearance_range(FourBar(*LONG_CRANK), 0.1, np.radians([0.0, 180.0]))
+    assert found.worst.theta2 == 0.0
+    assert found.worst.width == found.width[0]
+    # By trial in the ledger: 0.0503 rad for both sides, 0.0252 for the one.
+    assert [found.width[0], found.below[0]] == pytest.approx([0.0503, 0.0252], abs=5e-5)
+    half = clearance_range(FourBar(*LONG_CRANK), 0.5, np.pi)
+    assert half.below == pytest.approx(0.03126, abs=5e-6)
+    near = clearance_range(FourBar(*LONG_CRANK), 0.1, np.radians([175.0, 180.0, 185.0]))
+    assert near.width[1] > max(near.width[0], near.width[2])
+
+
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+def test_slider_by_trial(assembly):
+    linkage = SliderCrank(1.0, 3.0, 0.4, assembly)
+    plays = {"12": 0.02, "23": 0.03, "34": 0.01, "41": 0.05}
+    rim = np.exp(1j * np.linspace(0.0, TURN, 721))
+    for theta in np.linspace(0.1, TURN, 9):
+        found = clearance_range(linkage, plays, theta)
+        turned = clearance_range(linkage, plays, theta, link="coupler")
+        # The three pins add up to one disc; the guide is tried across.
+        pin = np.exp(1j * theta) + 0.03 * rim[:, None]
+        gap = 0.4 + np.linspace(-0.025, 0.025, 101) - pin.imag
+        along = pin.real + linkage.branch * np.sqrt(9.0 - gap**2)
+        assert [along.min(), along.max()] == pytest.approx([found.lower, found.upper], abs=3e-6)
+        angle = np.arcsin(gap / 3.0)
+        angle = angle if assembly == "open" else np.pi - angle
+        assert [angle.min(), angle.max()] == pytest.approx([turned.lower, turned.upper], abs=1e-6)
+        assert found.nominal == pytest.approx(linkage.motion(theta).position, abs=1e-14)
+        assert turned.nominal == pytest.approx(linkage.motion(theta).theta3, abs=1e-14)
+
+
+def test_slider_passes_its_dead_position():
+    linkage = SliderCrank(2.0, 1.2, 0.0)
+    theta = np.arcsin(0.6) - 1e-6
+    found = clearance_range(linkage, 0.1, theta)
+    crossed = clearance_range(SliderCrank(2.0, 1.2, 0.0, "crossed"), 0.1, theta)
+    assert found.folds and found.lower == pytest.approx(crossed.lower, rel=1e-13)
+    reach = np.sqrt(1.25**2 - (2.0 * np.sin(theta)) ** 2)
+    assert found.upper - 2.0 * np.cos(theta) == pytest.approx(reach, rel=1e-9)
+    assert found.passed
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+def test_rod_by_trial(joint):
+    linkage = QuickReturn(3.0, 1.0, 5.0)
+    rim = np.exp(1j * np.linspace(0.0, TURN, 20001))
+    for theta in (0.0, 1.0, 2.5, 3.3):
+        found = clearance_range(linkage, 0.2, theta, joint=joint)
+        # The rod's line from the pivot to every place of the pin about its nominal one.
+        angle = np.angle(3.0 + np.exp(1j * theta) + 0.1 * rim)
+        assert [angle.min(), angle.max()] == pytest.approx([found.lower, found.upper], abs=1e-8)
+        slide = linkage.motion(theta).slide
+        assert np.sin(found.width / 2) == pytest.approx(0.1 / slide, rel=1e-13)
+
+
+def test_nominal_is_that_of_the_motion_over_many_turns():
+    theta = np.linspace(-20.0, 20.0, 101)
+    for lengths, assembly in itertools.product(FOUR_BARS, ("open", "crossed")):
+        linkage = FourBar(*lengths, assembly)
+        motion = linkage.motion(theta)
+        for link, angle in (("follower", motion.theta4), ("coupler", motion.theta3)):
+            found = clearance_range(linkage, 0.01, theta, link=link)
+            assert found.nominal == pytest.approx(angle, abs=1e-13)
+            assert found.passed
+
+
+def test_scale_changes_nothing():
+    ones = clearance_range(FourBar(*LONG_CRANK), 0.3, ANGLES)
+    for power in (-900, 900):
+        lengths = np.ldexp(LONG_CRANK, power)
+        other = clearance_range(FourBar(*map(float, lengths)), float(np.ldexp(0.3, power)), ANGLES)
+        assert np.array_equal(ones.width, other.width)
+    small = clearance_range(SliderCrank(1.0, 3.0, 0.4), 0.1, ANGLES)
+    large = clearance_range(SliderCrank(1024.0, 3072.0, 409.6), 102.4, ANGLES)
+    assert large.width == pytest.approx(1024.0 * small.width, rel=1e-13)
+    assert large.worst.width == pytest.approx(1024.0 * small.worst.width, rel=1e-13)
+
+
+def test_picture_has_a_curve_for_each_clearance():
+    ax = None
+    for c in (0.01, 0.1, 0.5):
+        ax = clearance_range(FourBar(*LONG_CRANK), c, ANGLES).plot(ax)
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels == ["c34 = 0.01", "c34 = 0.1", "c34 = 0.5"]
+    assert ax.lines[0].get_ydata()[0] == pytest.approx(0.287922, abs=1e-6)
+    ax = clearance_range(FourBar(10.0, 8.0, 4.0, 10.0), 0.1, [-1.0, -0.9, 0.9, 1.0]).plot()
+    assert [len(line.get_xdata()) for line in ax.lines[:4]] == [2, 2, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ((-0.1, 0.0), "clearance"),
+        ((np.nan, 0.0), "clearance"),
+        ((11.0, 0.0), "longest"),
+        (("0.1", 0.0), "clearance"),
+        (({"55": 0.1}, 0.0), "one of 12"),
+        ((0.1, [np.inf]), "finite"),
+        ((0.1, "x"), "angles"),
+    ],
+)
+def test_refusals(arguments, word):
+    with pytest.raises(BadInput, match=word):
+        clearance_range(FourBar(*LONG_CRANK), *arguments)
+
+
+def test_refusals_of_joint_link_linkage_and_reach():
+    linkage = FourBar(*LONG_CRANK)
+    with pytest.raises(BadInput, match="leave it out"):
+        clearance_range(linkage, {"34": 0.1}, 0.0, joint="23")
+    with pytest.raises(BadInput, match="follower, coupler"):
+        clearance_range(linkage, 0.1, 0.0, link="rod")
+    with pytest.raises(BadInput, match="QuickReturn"):
+        clearance_range("linkage", 0.1, 0.0)
+    with pytest.raises(BadInput, match="cannot reach"):
+        clearance_range(FourBar(10.0, 8.0, 4.0, 10.0), 0.1, 0.0)
+    with pytest.raises(BadInput, match="cannot reach"):
+        clearance_range(FourBar(2.0, 2.0, 3.0, 3.0), 0.1, 0.0)
+
+
+def test_shapes_and_export(tmp_path):
+    found = clearance_range(FourBar(*LONG_CRANK), 0.1, np.zeros((2, 3)))
+    assert found.width.shape == (2, 3) == found.error.shape
+    assert clearance_range(FourBar(*LONG_CRANK), 0.1, []).width.shape == (0,)
+    told = json.loads(found.save(tmp_path / "play.json").read_text())
+    assert told["greatest"]["theta2"] == 0.0 and told["clearances"] == {"34": 0.1}
+    assert (tmp_path / "play.json").exists()
+    rows = found.save(tmp_path / "play.csv").read_text().splitlines()
+    assert len(rows) == 7
+
+
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+def test_emitted_closed_form_gives_the_same(assembly):
+    for lengths in FOUR_BARS:
+        linkage = FourBar(*lengths, assembly)
+        frame, crank, coupler, follower = lengths
+        pairs = {"follower": (follower, coupler), "coupler": (coupler, follower)}
+        for (link, pair), play in itertools.product(pairs.items(), (1e-9, 0.01, 0.1)):
+            found = clearance_range(linkage, play, ANGLES, link=link)
+            _, opened, closed, small, _ = four_bar_clearance.extremes(
+                ANGLES, frame, crank, *pair, play / 2
+            )
+            lowers = (linkage.branch > 0) == (link == "follower")
+            both = (opened, closed) if lowers else (closed, opened)
+            assert not found.folds.any()
+            assert found.below == pytest.approx(both[0], rel=1e-12)
+            assert found.above == pytest.approx(both[1], rel=1e-12)
+            assert found.small == pytest.approx(small, rel=1e-12)

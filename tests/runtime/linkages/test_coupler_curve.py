@@ -1,0 +1,358 @@
+"""Coupler curves: place, length, curvature, cusps, double points, cognates, each by two routes."""
+
+import json
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.cognate_linkages import cognates
+from elastolink.runtime.linkages.coupler_sextic import sextic_nodes, sextic_residual
+from elastolink.runtime.linkages.curves import coupler_curve
+from scipy.integrate import quad
+
+CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
+CROSSED = FourBar(2.0, 1.0, 2.0, 2.0, assembly="crossed")
+DRAG_LINK = FourBar(2.0, 4.0, 4.5, 3.9)
+TRIPLE_ROCKER = FourBar(2.0, 1.7, 1.0, 1.2)
+DOUBLE_ROCKER = FourBar(2.0, 1.7, 1.0, 1.5)
+INWARD_ROCKER = FourBar(3.0, 2.0, 1.0, 1.5)
+TWO_RANGES = FourBar(3.0, 2.5, 1.0, 2.2)
+SLIDER = SliderCrank(1.0, 3.0, 0.3)
+SHORT_SLIDER = SliderCrank(2.0, 1.0, 0.3)
+OFFSET_SLIDER = SliderCrank(2.0, 2.2, 1.5)
+ROD = QuickReturn(2.0, 1.0, 4.0)
+ALL = [
+    (CRANK_ROCKER, "coupler"),
+    (CROSSED, "coupler"),
+    (DRAG_LINK, "coupler"),
+    (DRAG_LINK, "follower"),
+    (TRIPLE_ROCKER, "coupler"),
+    (DOUBLE_ROCKER, "coupler"),
+    (INWARD_ROCKER, "coupler"),
+    (INWARD_ROCKER, "follower"),
+    (TWO_RANGES, "coupler"),
+    (SLIDER, "coupler"),
+    (SLIDER, "slider"),
+    (SHORT_SLIDER, "coupler"),
+    (OFFSET_SLIDER, "coupler"),
+    (ROD, "rod"),
+    (ROD, "block"),
+    (QuickReturn(1.0, 2.0, 4.0), "block"),
+    (CRANK_ROCKER, "crank"),
+]
+
+
+def assembled(linkage, branch):
+    """Return the same lengths in the assembly of a sign."""
+    if isinstance(linkage, QuickReturn):
+        return linkage
+    return type(linkage)(*linkage.lengths.values(), assembly="open" if branch > 0 else "crossed")
+
+
+def complex_of(places):
+    return np.asarray(places)[..., 0] + 1j * np.asarray(places)[..., 1]
+
+
+@pytest.mark.parametrize(("linkage", "link"), ALL)
+@pytest.mark.parametrize("circuit", [0, 1])
+def test_agrees_with_the_motion_of_each_assembly(linkage, link, circuit):
+    try:
+        curve = coupler_curve(linkage, 0.7, 0.4, link=link, circuit=circuit, points=64)
+    except BadInput:
+        assert circuit == 1
+        return
+    assert curve.passed
+    for i in range(64):
+        own = assembled(linkage, curve.branch[i]).motion(curve.theta2[i])
+        point = own.point(link, 0.7, 0.4)
+        # Towards a dead centre the emitted motion passes its own round-off on.
+        loose = 1e-13 + 20 * float(own.error)
+        assert curve.position[i] == pytest.approx(point.position, abs=loose)
+        for mine, theirs in (
+            (curve.velocity[i], point.velocity),
+            (curve.acceleration[i], point.acceleration),
+        ):
+            size = max(1.0, float(np.max(np.abs(theirs))))
+            assert mine == pytest.approx(theirs, abs=loose * 200 * size * size)
+
+
+@pytest.mark.parametrize("linkage", [CRANK_ROCKER, DRAG_LINK, SLIDER, ROD])
+def test_the_crank_pin_runs_round_a_circle(linkage):
+    crank = linkage.lengths["crank"]
+    curve = coupler_curve(linkage, crank, link="crank")
+    assert curve.length == pytest.approx(2 * np.pi * crank, rel=1e-14)
+    assert curve.area == pytest.approx(np.pi * crank**2, rel=1e-14)
+    assert curve.curvature == pytest.approx(np.full(720, 1 / crank), rel=1e-13)
+    assert np.max(np.abs(curve.centre)) < 1e-14 * crank
+    assert curve.slowest == pytest.approx(1.0, abs=1e-14)
+    assert len(curve.cusp_theta2) == len(curve.double_theta2) == 0
+
+
+@pytest.mark.parametrize(("linkage", "link"), [(CRANK_ROCKER, "coupler"), (SLIDER, "coupler")])
+def test_length_and_area_by_another_quadrature(linkage, link):
+    curve = coupler_curve(linkage, 1.3, -0.9, link=link)
+
+    def speed(theta):
+        return float(np.hypot(*linkage.motion(theta).point(link, 1.3, -0.9).velocity))
+
+    def sector(theta):
+        at = linkage.motion(theta).point(link, 1.3, -0.9)
+        return 0.5 * float((complex(*at.position).conjugate() * complex(*at.velocity)).imag)
+
+    length, loose = quad(speed, 0, 2 * np.pi, epsabs=1e-12, epsrel=1e-12, limit=400)
+    assert abs(curve.length - length) <= loose + curve.length_error
+    area, loose = quad(sector, 0, 2 * np.pi, epsabs=1e-12, epsrel=1e-12, limit=400)
+    assert abs(curve.area - area) <= loose + curve.area_error
+
+
+@pytest.mark.parametrize("linkage", [TRIPLE_ROCKER, INWARD_ROCKER, TWO_RANGES])
+def test_a_swinging_crank_length_is_that_of_the_polygon(linkage):
+    curve = coupler_curve(linkage, 0.7, 0.6)
+    chords = []
+    for count in (20_000, 40_000):
+        places = coupler_curve(linkage, 0.7, 0.6, points=count).position
+        chords.append(np.sum(np.abs(np.diff(complex_of(places), append=complex_of(places[:1])))))
+    # Chords fall short by a second-order term, which two of them cancel.
+    assert curve.length == pytest.approx((4 * chords[1] - chords[0]) / 3, rel=1e-12)
+
+
+def test_arc_run_out_and_back():
+    curve = coupler_curve(CRANK_ROCKER, 2.0, link="follower")
+    motion = CRANK_ROCKER.motion(np.linspace(0, 2 * np.pi, 100_001))
+    swing = np.ptp(motion.theta4)
+    assert curve.length == pytest.approx(2 * 2.0 * swing, rel=1e-8)
+    assert abs(curve.area) < 1e-14
+    assert len(curve.cusp_theta2) == 2
+    # At the ends crank and coupler lie in one line.
+    ends = CRANK_ROCKER.motion(curve.cusp_theta2)
+    assert np.sin(ends.theta3 - ends.theta2) == pytest.approx([0, 0], abs=1e-12)
+    assert np.abs(curve.curvature) == pytest.approx(np.full(720, 0.5), rel=1e-9)
+
+
+def pole_in_coupler(linkage, theta):
+    """Return the instantaneous centre in the coupler's (the block's) axes."""
+    name = "block" if isinstance(linkage, QuickReturn) else "coupler"
+    at = linkage.motion(theta).link(name)
+    velocity = complex(*at.velocity)
+    # v + i w (z - origin) = 0
+    arm = -velocity / (1j * float(at.speed))
+    return name, arm * np.exp(-1j * float(at.angle))
+
+
+@pytest.mark.parametrize("linkage", [CRANK_ROCKER, CROSSED, DRAG_LINK, SLIDER, ROD])
+@pytest.mark.parametrize("theta", [0.6, 2.0, 4.5])
+def test_cusp_where_the_point_is_the_pole(linkage, theta):
+    name, place = pole_in_coupler(linkage, theta)
+    curve = coupler_curve(linkage, place.real, place.imag, link=name)
+    gaps = np.abs(np.exp(1j * (curve.cusp_theta2 - theta)) - 1)
+    assert np.min(gaps, initial=9.0) < 1e-12
+    at = linkage.motion(theta).point(name, place.real, place.imag)
+    nearest = curve.cusp_position[np.argmin(gaps)]
+    assert nearest == pytest.approx(at.position, abs=1e-12)
+    assert not np.any(np.isnan(curve.curvature)) and not np.any(np.isnan(curve.centre))
+
+
+def test_a_sample_on_the_cusp_itself():
+    # The pole at theta = pi, on a sample: the centre of curvature of a cusp is the cusp.
+    name, place = pole_in_coupler(SLIDER, np.pi)
+    curve = coupler_curve(SLIDER, place.real, place.imag, link=name, points=32)
+    at = int(np.argmin(np.abs(np.exp(1j * (curve.theta2 - np.pi)) - 1)))
+    shift = np.linalg.norm(curve.centre[at] - curve.position[at])
+    assert shift < 1e-6
+    assert abs(curve.curvature[at]) > 1e6
+    assert not np.any(np.isnan(curve.curvature))
+
+
+@pytest.mark.parametrize("distance", [1e-3, 1e-5, 1e-7, 1e-9])
+def test_near_a_cusp_the_path_has_a_loop_or_a_bend(distance):
+    name, place = pole_in_coupler(CRANK_ROCKER, 0.6)
+    at = CRANK_ROCKER.motion(0.6)
+    # The moving centrode runs across the acceleration of its pole.
+    turned = complex(*at.point(name, place.real, place.imag).acceleration)
+    normal = turned / abs(turned) * np.exp(-1j * float(at.theta3))
+    loops = 0
+    for sign in (1, -1):
+        point = place + sign * distance * normal
+        curve = coupler_curve(CRANK_ROCKER, point.real, point.imag, link=name)
+        assert len(curve.cusp_theta2) == 0
+        assert 0.01 * distance < curve.slowest < 10 * distance
+        apart = np.abs(np.exp(1j * np.diff(curve.double_theta2, axis=1)) - 1)
+        near = np.abs(np.exp(1j * (curve.double_theta2[:, :1] - 0.6)) - 1)
+        loops += int(np.sum((apart < 20 * np.sqrt(distance)) & (near < 20 * np.sqrt(distance))))
+    # The point loops on one side of the centrode and bends on the other.
+    assert loops == 1
+
+
+def test_an_ordinary_cusp_is_a_double_point_of_the_sextic():
+    _, place = pole_in_coupler(CRANK_ROCKER, 2.0)
+    curve = coupler_curve(CRANK_ROCKER, place.real, place.imag)
+    nodes = sextic_nodes(CRANK_ROCKER, place.real, place.imag)
+    gaps = np.linalg.norm(nodes.position - curve.cusp_position[0], axis=1)
+    assert np.min(gaps) < 1e-9
+
+
+def both_passages_alike(linkage, place, p):
+    """Tell whether the two positions that meet in a double point are of one assembly."""
+    frame, crank, coupler, _ = linkage.lengths.values()
+    size = abs(p) ** 2 + abs(place) ** 2 - crank**2
+    sides = []
+    for u in np.roots([np.conj(p) * place, -size, p * np.conj(place)]):
+        pin = p - place * u
+        sides.append(np.sign((np.conj(frame - pin) * coupler * u).imag))
+    return sides[0] == sides[1]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_double_points_are_those_of_the_cubic(seed):
+    rng = np.random.default_rng(seed)
+    while True:
+        try:
+            linkage = FourBar(*rng.uniform(0.3, 3.0, 4))
+            break
+        except BadInput:
+            continue
+    place = complex(rng.uniform(-2, 3), rng.uniform(-2, 2)) * linkage.coupler
+    nodes = sextic_nodes(linkage, place.real, place.imag)
+    everywhere = complex_of(nodes.position)
+    found, count = [], 0
+    for circuit in (0, 1):
+        try:
+            curve = coupler_curve(linkage, place.real, place.imag, circuit=circuit)
+        except BadInput:
+            continue
+        count += 1
+        curve.require()
+        found += list(complex_of(curve.double_position))
+    size = sum(linkage.lengths.values()) + abs(place)
+    for p in found:
+        assert np.min(np.abs(everywhere - p)) < 1e-9 * size
+    crossing = everywhere[nodes.crossing]
+    if linkage.crank_turns:
+        crossing = [p for p in crossing if both_passages_alike(linkage, place, p)]
+    if linkage.crank_turns or count == 1:
+        assert len(found) == len(crossing)
+    # All lie on the circle through A, D and the third singular focus.
+    focus = linkage.frame * place / linkage.coupler
+    for p in everywhere:
+        ratio = (p / (p - linkage.frame)) / (focus / (focus - linkage.frame))
+        assert abs(ratio.imag) < 1e-9 * abs(ratio)
+
+
+def test_the_sextic_refuses_other_points():
+    curve = coupler_curve(CRANK_ROCKER, 1.0, 0.5)
+    lengths, place = CRANK_ROCKER.lengths, 1.0 + 0.5j
+    on = sextic_residual(lengths, place, complex_of(curve.position))
+    off = sextic_residual(lengths, place, complex_of(curve.position) + 1e-6)
+    assert np.max(on) < 1e-15
+    assert np.max(off) > 1e-8
+
+
+@pytest.mark.parametrize(
+    ("linkage", "along", "across"),
+    [
+        (CRANK_ROCKER, 1.0, -1.5),
+        (CROSSED, 1.0, 0.4),
+        (DRAG_LINK, 1.0, 1.0),
+        (INWARD_ROCKER, 0.7, 0.6),
+        (TRIPLE_ROCKER, 0.7, 0.6),
+        (DOUBLE_ROCKER, 0.7, 0.6),
+        (CRANK_ROCKER, 3.0, 0.0),
+    ],
+)
+def test_cognates_trace_the_same_curve(linkage, along, across):
+    curve = coupler_curve(linkage, along, across)
+    for cognate in cognates(linkage, along, across):
+        other = cognate.curve()
+        assert other.length == pytest.approx(curve.length, rel=1e-11)
+        assert abs(other.area) == pytest.approx(abs(curve.area), rel=1e-10, abs=1e-11)
+        places = complex_of(cognate.placed(other.position))
+        residual = sextic_residual(linkage.lengths, complex(along, across), places)
+        assert np.max(residual) < 1e-13
+        # The same circuit: each sample lies close to a sample of the first one.
+        far = np.abs(places[::40, None] - complex_of(curve.position)[None])
+        chord = np.max(np.abs(np.diff(complex_of(curve.position))))
+        assert np.max(np.min(far, axis=1)) < chord
+        mine = np.sort_complex(np.round(complex_of(curve.double_position), 8))
+        theirs = np.sort_complex(np.round(complex_of(cognate.placed(other.double_position)), 8))
+        assert theirs == pytest.approx(mine, abs=1e-7)
+
+
+@pytest.mark.parametrize("unit", [0.0254, 1e-150, 1e150])
+def test_unit_of_length(unit):
+    lengths = [unit * value for value in INWARD_ROCKER.lengths.values()]
+    curve = coupler_curve(FourBar(*lengths), 0.7 * unit, 0.6 * unit)
+    plain = coupler_curve(INWARD_ROCKER, 0.7, 0.6)
+    assert curve.length == pytest.approx(plain.length * unit, rel=1e-13)
+    assert curve.double_position == pytest.approx(plain.double_position * unit, rel=1e-11)
+
+
+def test_mirror():
+    plain = coupler_curve(CRANK_ROCKER, 1.0, -1.5)
+    mirrored = coupler_curve(CROSSED, 1.0, 1.5)
+    # The mirror reverses the sense of a path, and so does the crank that turns the same way.
+    assert mirrored.length == pytest.approx(plain.length, rel=1e-14)
+    assert mirrored.area == pytest.approx(plain.area, rel=1e-12)
+    assert mirrored.double_position == pytest.approx(plain.double_position * [1, -1], abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "word"),
+    [
+        ((CRANK_ROCKER, 1.0), {"link": "rod"}, "link"),
+        ((CRANK_ROCKER, float("nan")), {}, "along"),
+        ((CRANK_ROCKER, "x"), {}, "along"),
+        ((CRANK_ROCKER, 1.0), {"points": 3}, "points"),
+        ((CRANK_ROCKER, 1.0), {"circuit": 2}, "circuit"),
+        ((TRIPLE_ROCKER, 1.0), {"circuit": 1}, "circuit"),
+        ((CRANK_ROCKER, 0.0), {"link": "crank"}, "pivot"),
+        ((FourBar(2.0, 1.0, 2.0, 1.0), 1.0), {}, "change point"),
+        ((QuickReturn(2.0, 1.0, 2.5), 1.0), {"link": "rod"}, "rod"),
+    ],
+)
+def test_refusals(arguments, options, word):
+    with pytest.raises(BadInput, match=word) as refusal:
+        coupler_curve(*arguments, **options)
+    assert "\n" not in str(refusal.value)
+
+
+def test_refusals_of_cognates_and_nodes():
+    with pytest.raises(BadInput, match="FourBar"):
+        cognates(SLIDER, 1.0)
+    for along in (0.0, 2.0):
+        with pytest.raises(BadInput, match="joint"):
+            cognates(CRANK_ROCKER, along)
+        with pytest.raises(BadInput, match="joint"):
+            sextic_nodes(CRANK_ROCKER, along)
+
+
+@pytest.mark.parametrize("ending", ["json", "csv", "npz"])
+def test_saving(tmp_path, ending):
+    curve = coupler_curve(INWARD_ROCKER, 0.7, 0.6, points=32)
+    path = curve.save(tmp_path / f"curve.{ending}")
+    assert path.stat().st_size > 500
+    told = json.loads(json.dumps(curve.to_dict()))
+    assert len(told["double_position"]) == 2 and told["passed"]
+
+
+def test_picture_marks_what_was_found():
+    ax = coupler_curve(INWARD_ROCKER, 0.7, 0.6).plot()
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels == ["point of the coupler", "double point"]
+
+
+@pytest.mark.parametrize(("detuned", "pairs"), [(-1e-6, ((0, 1),)), (1e-6, ())])
+def test_tacnode_of_a_symmetric_curve(detuned, pairs):
+    """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
+
+    It is 2 l sin((g - mu)/2) from D, g the angle from CB to CP, mu the transmission angle: the same
+    on the axis of symmetry at theta = 0 and pi where 2 g = 2 pi + mu(0) + mu(pi).  Both branches
+    are at right angles to the axis there, and touch.
+    """
+    frame, crank, arm = 2.0, 0.8, 1.7
+    least, greatest = (2.0 * np.arcsin((frame + s * crank) / (2.0 * arm)) for s in (-1, 1))
+    angle = np.pi + 0.5 * (least + greatest) + detuned
+    place = arm + arm * np.exp(1j * (np.pi + angle))
+    curve = coupler_curve(FourBar(frame, crank, arm, arm), place.real, place.imag)
+    assert np.linalg.norm(curve.position[0] - curve.position[360]) < 2e-6
+    assert curve.tacnodes == pairs

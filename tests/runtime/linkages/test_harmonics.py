@@ -1,0 +1,186 @@
+"""Harmonics by FFT: closed forms, quadrature of many digits, aliasing, and dishonest functions."""
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.harmonic_analysis import harmonics
+
+CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
+DRAG_LINK = FourBar(2.0, 4.0, 4.5, 3.9)
+
+
+@pytest.mark.parametrize("name", ["theta3", "theta4"])
+def test_sine_coefficients_of_a_crank_rocker_in_closed_form(name):
+    # The sine part of both angles is that of the diagonal's direction: -(l2/l1)^m / m.
+    found = harmonics((CRANK_ROCKER, name), order=20)
+    m = np.arange(1, 21)
+    assert found.b[1:] == pytest.approx(-(0.5**m) / m, abs=float(found.error))
+    assert found.secular == 0.0 and found.passed
+
+
+def test_secular_part_of_a_drag_link():
+    found = harmonics((DRAG_LINK, "theta4"), order=20)
+    m = np.arange(1, 21)
+    assert found.secular == 1.0
+    # Seen from the crank, frame and crank change places.
+    assert found.b[1:] == pytest.approx(0.5**m / m, abs=float(found.error))
+    theta = np.linspace(-9.0, 9.0, 101)
+    gap = found(theta) - DRAG_LINK.motion(theta).theta4
+    assert np.max(np.abs(gap)) <= found.remainder
+
+
+def test_quick_return_in_closed_form():
+    eps = 0.4
+    found = harmonics((QuickReturn(1.0, eps, 3.0), "theta4"), order=12)
+    m = np.arange(1, 13)
+    assert found.b[1:] == pytest.approx(-((-eps) ** m) / m, abs=float(found.error))
+    assert np.max(np.abs(found.a)) <= float(found.error)
+
+
+def test_slider_in_closed_form():
+    # position = l2 cos + l3 sqrt(1 - (l2/l3 sin)^2): binomial series of the root.
+    ratio = 0.25
+    found = harmonics((SliderCrank(1.0, 4.0), "position"), order=8)
+    with mpmath.workdps(30):
+        even = []
+        for k in range(5):
+            total = mpmath.mpf(0)
+            for n in range(k, 60):
+                size = mpmath.binomial(0.5, n) * (-1) ** n * mpmath.mpf(ratio) ** (2 * n)
+                share = mpmath.binomial(2 * n, n - k) / mpmath.mpf(4) ** n * (-1) ** k
+                total += size * share * (1 if k == 0 else 2)
+            even.append(float(4 * total))
+    a = np.zeros(9)
+    a[::2], a[1] = even, 1.0
+    assert found.a == pytest.approx(a, abs=float(found.error))
+
+
+def test_any_field_against_many_digits():
+    found = harmonics((CRANK_ROCKER, "theta4"), order=5)
+    with mpmath.workdps(25):
+
+        def theta4(t):
+            # Law of cosines at D, in half of the triangle BCD on each side of the diagonal.
+            b = mpmath.expj(t)
+            to_b = b - 2
+            size = abs(to_b)
+            return mpmath.arg(to_b) - mpmath.acos(size / 4)
+
+        def wrapped(t):
+            return theta4(t) % (2 * mpmath.pi)
+
+        for m in range(6):
+            whole = [0, mpmath.pi, 2 * mpmath.pi]
+            scale = (2 if m == 0 else 1) * mpmath.pi
+            exact = mpmath.quad(lambda t, m=m: wrapped(t) * mpmath.cos(m * t), whole) / scale
+            assert abs(found.a[m] - float(exact)) <= float(found.error)
+
+
+def test_a_harmonic_of_a_thousand_is_no_mean():
+    found = harmonics(lambda t: np.cos(1024 * t), order=4)
+    assert np.max(np.abs(found.a)) <= float(found.error)
+    assert found.passed
+
+
+@pytest.mark.parametrize("harmonic", [32, 64, 128, 4096])
+def test_aliases(harmonic):
+    found = harmonics(lambda t: 0.5 + np.sin(harmonic * t + 0.2), order=3)
+    assert found.a == pytest.approx([0.5, 0, 0, 0], abs=float(found.error))
+    assert float(found.error) < 1e-10
+
+
+def test_a_narrow_peak():
+    width = 0.005
+    found = harmonics(lambda t: np.exp(-(((t % (2 * np.pi)) - 3.0) ** 2) / width**2), order=4)
+    mean = width / (2 * np.sqrt(np.pi))
+    assert abs(found.mean if hasattr(found, "mean") else found.a[0] - mean) <= float(found.error)
+
+
+@pytest.mark.parametrize(
+    ("f", "a1", "b1"),
+    [
+        (lambda t: np.abs(np.sin(t - 0.3)), 0.0, 0.0),
+        (lambda t: np.sign(np.sin(t - 0.3)), -4 * np.sin(0.3) / np.pi, 4 * np.cos(0.3) / np.pi),
+    ],
+)
+def test_kinks_and_jumps_are_told(f, a1, b1):
+    found = harmonics(f, order=6)
+    assert not found.passed
+    with pytest.raises(Exception, match="change on doubling"):
+        found.require()
+    for value, truth in ((found.a[1], a1), (found.b[1], b1)):
+        assert abs(value - truth) <= float(found.error)
+    # An accuracy that is in reach passes.
+    assert harmonics(f, order=6, accuracy=1e-3).passed
+
+
+def test_noise_is_told():
+    def noisy(theta):
+        # The same noise for the same number of angles.
+        noise = np.random.default_rng(theta.size).normal(size=theta.shape)
+        return np.cos(theta - 0.1) + 1e-7 * noise
+
+    found = harmonics(noisy, order=6)
+    assert not found.passed
+    assert abs(found.a[1] - np.cos(0.1)) <= float(found.error) < 1e-6
+
+
+def test_amplitude_phase_and_series():
+    found = harmonics(lambda t: 2.0 + 3.0 * np.cos(2 * t - 0.4), order=3)
+    assert found.amplitude == pytest.approx([2, 0, 3, 0], abs=1e-14)
+    assert found.phase[2] == pytest.approx(0.4, abs=1e-14)
+    assert found.series(np.array([0.2])) == pytest.approx([5.0], abs=1e-13)
+    assert found.series.error == found.remainder
+    assert found.to_dict()["amplitude"][2] == pytest.approx(3.0)
+
+
+def test_constant_and_zero():
+    assert harmonics(lambda t: 3.0).a[0] == 3.0
+    nothing = harmonics(np.zeros_like)
+    assert nothing.passed and not np.any(nothing.a)
+
+
+def test_plot():
+    ax = harmonics((CRANK_ROCKER, "theta4"), order=5).plot()
+    assert len(ax.patches) == 10
+
+
+@pytest.mark.parametrize(
+    ("source", "options", "word"),
+    [
+        (3.0, {}, "source"),
+        ((CRANK_ROCKER, "theta9"), {}, "theta9"),
+        (("x", "theta4"), {}, "source"),
+        (("x", "torque", 1.0), {}, "source"),
+        ((FourBar(2.0, 1.7, 1.0, 1.5), "theta4"), {}, "crank"),
+        (np.sin, {"order": 0}, "order"),
+        (np.sin, {"order": 2.5}, "order"),
+        (np.sin, {"accuracy": 0.0}, "accuracy"),
+        (lambda t: 0.3 * t, {}, "change of"),
+        (lambda t: np.where(t > 3, np.nan, 1.0), {}, "not finite"),
+        (lambda t: np.zeros(3), {}, "shape"),
+    ],
+)
+def test_refusals(source, options, word):
+    with pytest.raises(BadInput, match=word) as refusal:
+        harmonics(source, **options)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("half", [5e-3, 2e-4, 5e-5, 1e-6])
+@pytest.mark.parametrize("place", [1.0, 2.0, 2.1275, 3.3])
+def test_a_pulse_between_samples_stays_within_the_figure(half, place):
+    found = harmonics(lambda t: (np.abs(np.mod(t, 2 * np.pi) - place) < half) * 1.0)
+    m = np.arange(1, 9)
+    size = np.append(half / np.pi, 2 * np.sin(m * half) / (m * np.pi))
+    m = np.arange(9)
+    gaps = np.abs([found.a - size * np.cos(m * place), found.b - size * np.sin(m * place)])
+    assert np.max(gaps) <= float(found.error) < 1e-3
+
+
+def test_a_constant_admits_what_its_samples_could_miss():
+    # 131072 angles: a pulse as high as the function, between two of them.
+    assert float(harmonics(lambda t: 3.0).error) >= 2 * 3.0 / 131072
+    assert 0.0 < float(harmonics(np.zeros_like).error) < 1e-4

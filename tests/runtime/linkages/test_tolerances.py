@@ -1,0 +1,397 @@
+"""Tolerances against derivatives in many digits, exact extremes, and random linkages."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages._box import box_of, margin
+from elastolink.runtime.linkages.length_tolerances import tolerances
+from elastolink.runtime.rigid import (
+    Load,
+    Machine,
+    MassDistribution,
+    Spring,
+    TorsionSpring,
+    rigid_forces,
+)
+from forces_truth import forces as exact_forces
+from linkage_truth import motion as four_bar_motion
+from sliding_truth import rod_motion, slider_motion
+
+THETA = np.linspace(0.0, 2.0 * np.pi, 37)
+FOUR_BAR = FourBar(0.5, 0.1, 0.45, 0.22)
+DRAG_LINK = FourBar(2.0, 4.0, 5.0, 4.5, "crossed")
+SLIDER = SliderCrank(0.04, 0.14, 0.01)
+SHAPER = QuickReturn(0.25, 0.1, 0.5)
+LINKAGES = (FOUR_BAR, DRAG_LINK, SLIDER, SHAPER)
+BODY = MassDistribution.about_centre(0.7, 0.06, 0.01, 0.004)
+
+
+MOTIONS = {
+    FourBar: ("four_bar", four_bar_motion),
+    SliderCrank: ("slider_crank", slider_motion),
+    QuickReturn: ("quick_return", rod_motion),
+}
+
+
+def machine_of(linkage, **more):
+    return Machine(linkage, dict.fromkeys(linkage.links, BODY), **more)
+
+
+def springs_of(linkage):
+    """Springs and dampers of both kinds between all links and the frame."""
+    second, third, fourth = linkage.links
+    return (
+        Spring(("frame", 0.1, 2.0), (third, 0.05, 0.02), 30.0, 0.1, damping=2.0, preload=3.0),
+        Spring((second, 0.02, -0.01), (fourth, 0.03, 1.5), 20.0, 0.2),
+        Spring(("frame", 0.0, -0.3), (fourth, 0.1, 0.0), 5.0),
+        TorsionSpring(second, fourth, 2.0, 0.3, damping=0.1),
+        TorsionSpring("frame", third, 1.0, preload=0.2),
+    )
+
+
+def exact(machine, theta, speed, acceleration):
+    """Return numbers by parameter's name, and the exact outputs as their function."""
+    mechanism, motion = MOTIONS[type(machine.linkage)]
+    numbers = {name: mpmath.mpf(size) for name, size in machine.linkage.lengths.items()}
+    numbers["theta2"] = mpmath.mpf(theta)
+    for link in machine.linkage.links:
+        own = machine.mass(link)
+        numbers |= {f"{link}.{k}": mpmath.mpf(v) for k, v in vars(own).items()}
+
+    def outputs(values):
+        given = {name: values[name] for name in machine.linkage.lengths}
+        given |= {"theta2": values["theta2"], "assembly": mpmath.mpf(machine.linkage.branch)}
+        m = dict(motion(given))
+        for place, link in enumerate(machine.linkage.links, start=2):
+            for name in vars(machine.mass(link)):
+                given[f"{name}{place}"] = values[f"{link}.{name}"]
+        given |= {"speed": mpmath.mpf(speed), "acceleration": mpmath.mpf(acceleration)}
+        pairs = (("omega3", "alpha3"), ("omega4", "alpha4"))
+        pairs += (("slider_velocity", "slider_acceleration"),)
+        pairs += (("slide_velocity", "slide_acceleration"),)
+        for w, a in pairs:
+            if w in m:
+                m[w], m[a] = m[w] * speed, m[a] * speed**2 + m[w] * acceleration
+        return m | exact_forces(mechanism)(given)
+
+    return numbers, outputs
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_every_sensitivity_against_sixty_digits(linkage):
+    machine = machine_of(linkage)
+    angles, speed, acceleration = np.array([0.3, 2.0, 4.4]), 7.0, -11.0
+    found = tolerances(machine, {"crank": 1e-6}, angles, speed, acceleration)
+    assert found.passed
+    with mpmath.workdps(60):
+        step = mpmath.mpf(10) ** -30
+        for at, theta in enumerate(angles):
+            numbers, outputs = exact(machine, theta, speed, acceleration)
+            here = outputs(numbers)
+            for parameter in found.parameters:
+                there = outputs({**numbers, parameter: numbers[parameter] + step})
+                for row, name in enumerate(found.outputs):
+                    slope = float((there[name] - here[name]) / step)
+                    sizes = np.abs(found.sensitivity[row, :, at])
+                    size = sizes.max() + abs(found.nominal[row, at])
+                    assert found.by(name, parameter)[at] == pytest.approx(
+                        slope, rel=1e-11, abs=1e-12 * size
+                    ), (name, parameter)
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_nominal_values_are_those_of_motion_and_forces(linkage):
+    machine = machine_of(
+        linkage,
+        gravity=(0.3, -9.81),
+        loads=(
+            Load(linkage.links[1], (3.0, -2.0), couple=0.4, along=0.05, across=0.02),
+            Load(linkage.links[2], (1.0, 5.0), along=0.03, axes="link"),
+        ),
+        springs=springs_of(linkage),
+    )
+    found = tolerances(machine, {"crank": 1e-5}, THETA, 9.0, 4.0)
+    motion = linkage.motion(THETA, 9.0, 4.0)
+    forces = rigid_forces(machine, THETA, 9.0, 4.0)
+    for row, name in enumerate(found.outputs):
+        expected = forces.values[name] if name in forces.values else getattr(motion, name)
+        np.testing.assert_allclose(found.nominal[row], expected, rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_sensitivities_of_weights_loads_and_springs_by_differences(linkage):
+    size = linkage.lengths["crank"]
+
+    def built(crank):
+        moved = type(linkage)(**{**linkage.lengths, "crank": crank}, **_branch(linkage))
+        loads = (
+            Load(linkage.links[1], (3.0, -2.0), couple=0.4, along=0.05, across=0.02),
+            Load(linkage.links[2], (1.0, 5.0), along=0.03, axes="link"),
+        )
+        springs = springs_of(linkage)
+        return machine_of(moved, gravity=(0.3, -9.81), loads=loads, springs=springs)
+
+    found = tolerances(built(size), {"crank": 1e-6 * size}, THETA, 2.0)
+    step = 1e-5 * size
+    forces = [rigid_forces(built(size + sign * step), THETA, 2.0).values for sign in (1, -1)]
+    for name in forces[0]:
+        slope = (forces[0][name] - forces[1][name]) / (2.0 * step)
+        # Third order: step^2 over the crank's square, 1e-10; round-off: 1e-16 over the step.
+        atol = 1e-8 * np.abs(slope).max() + 1e-9 * np.abs(forces[0][name]).max() / size
+        np.testing.assert_allclose(found.by(name, "crank"), slope, rtol=0, atol=atol)
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_bars_grow_with_their_links(linkage):
+    """Twice the lengths of uniform bars: forces of inertia grow as mass times length."""
+    bars = {
+        link: MassDistribution.uniform_bar(0.4, linkage.lengths[link])
+        for link in linkage.links
+        if link in linkage.lengths
+    }
+    machine = Machine(linkage, bars)
+    found = tolerances(machine, {"crank": 1e-6}, THETA, 3.0, 2.0, masses="bars")
+    sizes = np.array(list(linkage.lengths.values()))[:, np.newaxis]
+    for name in found.outputs:
+        row = found.place(name)
+        grown = np.sum(found.sensitivity[row, : len(sizes)] * sizes, axis=0)
+        moment = "moment" in name or name == "torque" or name.startswith("couple")
+        degree = 3 if moment else 2 if name[0] in "xy" or "shaking" in name else 0
+        degree = 1 if name.startswith("slide") or name == "position" else degree
+        size = np.abs(found.sensitivity[row, : len(sizes)] * sizes).max() + 1e-300
+        np.testing.assert_allclose(
+            grown / size, degree * found.nominal[row] / size, rtol=0, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_the_figure_holds_at_every_corner(linkage):
+    widths = {name: 0.003 * abs(size) for name, size in linkage.lengths.items() if name != "rod"}
+    machine = machine_of(linkage)
+    found = tolerances(machine, widths, THETA, 5.0)
+    largest = np.zeros_like(found.nominal)
+    for signs in itertools.product((-1.0, 0.0, 1.0), repeat=len(widths)):
+        moved = dict(linkage.lengths)
+        for (name, width), sign in zip(widths.items(), signs, strict=True):
+            moved[name] += sign * width
+        other = type(linkage)(**moved, **_branch(linkage))
+        there = tolerances(machine_of(other), {}, THETA, 5.0).nominal
+        shift = np.array([moved[name] - size for name, size in linkage.lengths.items()])
+        predicted = np.einsum("opt,p->ot", found.sensitivity[:, : len(shift)], shift)
+        deviation = there - found.nominal
+        assert np.all(np.abs(deviation - predicted) <= found.error + 1e-13)
+        largest = np.maximum(largest, np.abs(deviation))
+    off = np.abs(largest - found.worst_case)
+    assert np.all(off <= found.error + 1e-13)
+    # The figure is not idle.
+    used = found.worst_case > 1e-9 * np.abs(found.nominal).max(axis=1, keepdims=True)
+    assert np.median(found.error[used] / np.maximum(off[used], 1e-300)) < 50.0
+
+
+def _branch(linkage):
+    return {"assembly": linkage.assembly} if hasattr(linkage, "assembly") else {}
+
+
+@pytest.mark.parametrize("distribution", ["normal", "uniform"])
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_random_linkages_agree(linkage, distribution):
+    widths = {name: 1e-3 * abs(size) for name, size in linkage.lengths.items() if name != "rod"}
+    widths["coupler.mass" if linkage is not SHAPER else "rod.mass"] = 0.01
+    found = tolerances(machine_of(linkage), widths, THETA, 5.0)
+    trial = found.monte_carlo(samples=1500, seed=3, distribution=distribution)
+    assert trial.passed, dict(trial.checks)
+    assert trial.lost == 0
+    row = found.place("omega4" if linkage is not SLIDER else "omega3")
+    ratio = trial.standard_deviation[row] / trial.expected[row]
+    # Standard error of 1500 samples: 1/sqrt(3000) = 1.8 %.
+    assert np.all(np.abs(ratio - 1.0) < 0.1)
+
+
+def test_a_wrong_sensitivity_does_not_pass_the_trial():
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
+    wrong = replace(found, sensitivity=found.sensitivity * 1.3)
+    assert not wrong.monte_carlo(samples=2000).passed
+
+
+def test_the_same_seed_gives_the_same_numbers():
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
+    first, second, other = (found.monte_carlo(50, seed) for seed in (1, 1, 2))
+    assert np.array_equal(first.standard_deviation, second.standard_deviation)
+    assert not np.array_equal(first.standard_deviation, other.standard_deviation)
+
+
+def test_a_common_factor_of_all_lengths_changes_no_angle():
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
+    sizes = np.array([*FOUR_BAR.lengths.values(), 0.0])[:, np.newaxis]
+    for name in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle"):
+        terms = found.sensitivity[found.place(name)] * sizes
+        assert np.all(np.abs(terms.sum(axis=0)) <= 1e-13 * np.abs(terms).max())
+    wide = tolerances(FourBar(*(7.0 * sizes[:4, 0])), {"crank": 7e-4}, THETA)
+    np.testing.assert_allclose(wide.worst_case, found.worst_case, rtol=1e-11, atol=1e-17)
+
+
+def test_worst_case_root_of_squares_and_shares():
+    found = tolerances(FOUR_BAR, {"crank": 1e-4, "coupler": 2e-4}, THETA)
+    parts = np.stack([found.by("theta4", "crank") * 1e-4, found.by("theta4", "coupler") * 2e-4])
+    row = found.place("theta4")
+    np.testing.assert_allclose(found.worst_case[row], np.abs(parts).sum(axis=0), rtol=1e-14)
+    np.testing.assert_allclose(found.root_sum_square[row], np.hypot(*parts), rtol=1e-14)
+    np.testing.assert_allclose(found.contribution[row].sum(axis=0), 1.0, rtol=1e-14)
+    assert found.unit("theta4") == "rad" and found.unit("omega4") == "1"
+    assert tolerances(FOUR_BAR, {"crank": 1e-4}, THETA, 2.0).unit("alpha4") == "rad/s^2"
+
+
+# ---------------------------------------------------------------- near a fold
+
+
+def test_near_toggle_the_first_order_says_how_far_it_holds():
+    """Frame + crank nearly coupler + follower: at pi the transmission angle nears pi."""
+    gap = 1e-4
+    linkage = FourBar(0.5, 0.1, 0.35, 0.25 + gap)
+    narrow, wide = (tolerances(linkage, {"crank": t}, [3.0, math.pi]) for t in (1e-9, 9e-5))
+    assert narrow.passed and wide.passed and wide.keeps_turning
+    row = narrow.place("theta4")
+    assert narrow.error[row, 1] < 1e-4 * narrow.worst_case[row, 1]
+    assert wide.error[row, 1] > 0.5 * wide.worst_case[row, 1]
+
+
+def test_tolerances_that_fold_the_linkage_are_refused():
+    linkage = FourBar(0.5, 0.1, 0.35, 0.2501)
+    with pytest.raises(BadInput, match=r"tolerance\['crank'\].*3\.14159 rad.*crank first"):
+        tolerances(linkage, {"crank": 2e-4, "coupler": 1e-6}, [0.0, math.pi])
+    found = tolerances(linkage, {"crank": 2e-4}, [0.0, 1.0])
+    assert not found.keeps_turning
+    with pytest.raises(BadInput, match="offset"):
+        tolerances(SliderCrank(0.1, 0.2, 0.05), {"offset": 0.06}, [-math.pi / 2])
+    with pytest.raises(BadInput, match="rod"):
+        tolerances(SHAPER, {"rod": 0.2}, [0.0])
+
+
+def test_an_uncertain_crank_angle_may_pass_the_fold():
+    rocker = FourBar(0.5, 0.4, 0.45, 0.3)
+    end = rocker.crank_ranges()[-1][1]
+    assert tolerances(rocker, {"theta2": 0.01}, [end - 0.011]).keeps_turning is False
+    with pytest.raises(BadInput, match="theta2 first"):
+        tolerances(rocker, {"theta2": 0.01}, [end - 0.009])
+    # A crank that turns fully folds nowhere.
+    assert np.all(tolerances(FOUR_BAR, {"theta2": 1.5}, THETA).nominal < 10.0)
+    with pytest.raises(BadInput, match="a quarter turn"):
+        tolerances(FOUR_BAR, {"theta2": 1.6}, THETA)
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_the_margin_of_a_range_of_angles(linkage):
+    box = box_of(linkage.lengths, {"crank": 0.01 * linkage.lengths["crank"]})
+    for theta, width in ((0.1, 0.4), (1.4, 0.3), (3.0, 0.2), (-1.0, 0.05)):
+        spread = float(margin(box, np.array([theta]), width)[0])
+        every = margin(box, np.linspace(theta - width, theta + width, 4001))
+        # Next to a dead centre the margin is a square of the angle from there.
+        assert spread <= every.min() + 1e-15
+        assert spread >= every.min() - 1e-6
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_the_margin_is_that_of_the_worst_linkage(linkage):
+    """Against all linkages of a fine grid over the box."""
+    widths = {name: 0.2 * abs(size) for name, size in linkage.lengths.items()}
+    box = box_of(linkage.lengths, widths)
+    grids = [np.linspace(low, high, 9) for low, high in box.values()]
+    for theta in (0.0, 0.1, 2.0, math.pi):
+        at = np.array([theta])
+        found = float(margin(box, at)[0])
+        singles = [
+            float(margin({k: (v, v) for k, v in zip(box, sizes, strict=True)}, at)[0])
+            for sizes in itertools.product(*grids)
+        ]
+        step = 0.05 * max(map(abs, linkage.lengths.values()))
+        assert found <= min(singles) + 1e-15
+        assert found >= min(singles) - step
+
+
+# ---------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"krank": 1e-4}, "expected one of frame, crank"),
+        ({"coupler.mass": 1e-4}, "masses need a Machine"),
+        ({"crank": -1e-4}, "zero or more"),
+        ({"crank": math.nan}, "zero or more"),
+        ({"crank": "1 mm"}, "zero or more"),
+        ({"crank": 0.2}, "less than the length"),
+        ([1e-4], "a mapping"),
+    ],
+)
+def test_wrong_tolerances_are_refused(given, words):
+    with pytest.raises(BadInput, match=words):
+        tolerances(FOUR_BAR, given, THETA)
+
+
+def test_other_wrong_input_is_refused():
+    with pytest.raises(BadInput, match="a linkage or a Machine"):
+        tolerances("four-bar", {"crank": 1e-4}, THETA)
+    with pytest.raises(BadInput, match="'fixed' or 'bars'"):
+        tolerances(FOUR_BAR, {}, THETA, masses="rods")
+    press = Load("follower", lambda angle: (np.sin(angle), 0.0 * angle))
+    with pytest.raises(BadInput, match="a load that is a function"):
+        tolerances(machine_of(FOUR_BAR, loads=(press,)), {}, THETA)
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
+    for call, words in (
+        (lambda: found.by("theta5", "crank"), "theta5"),
+        (lambda: found.by("theta4", "krank"), "krank"),
+        (lambda: found.monte_carlo(1), "samples"),
+        (lambda: found.monte_carlo(10, -1), "seed"),
+        (lambda: found.monte_carlo(10, 0, "cauchy"), "distribution"),
+        (lambda: tolerances(FOUR_BAR, {"crank": 1e-4}, 1.0).plot(), "one-dimensional"),
+    ):
+        with pytest.raises(BadInput, match=words):
+            call()
+
+
+# ---------------------------------------------------------------- files and pictures
+
+
+def test_results_leave_as_json_and_csv(tmp_path):
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
+    told = json.loads(found.save(tmp_path / "t.json").read_text())
+    assert told["outputs"][1] == "theta4" and told["units"]["theta4"] == "rad"
+    np.testing.assert_array_equal(told["worst_case"], found.worst_case)
+    assert "subject" not in told
+    assert found.save(tmp_path / "t.csv").read_text().count("\n") > 37
+    trial = json.loads(found.monte_carlo(20).save(tmp_path / "m.json").read_text())
+    assert trial["samples"] == 20
+
+
+def test_pictures_show_the_band():
+    found = tolerances(SLIDER, {"crank": 1e-4}, THETA)
+    ax = found.plot()
+    assert "mm" in ax.get_ylabel()
+    low, high = ax.get_ylim()
+    assert high >= 1e3 * found.worst_case[found.place("position")].max() * (1 - 1e-12)
+    assert len(ax.get_lines()) == 2
+    assert "omega3" in found.plot(output="omega3").get_ylabel()
+    assert low < 0.0
+
+
+@pytest.mark.parametrize("shape", [(), (0,), (2, 3)])
+def test_any_shape_of_angles(shape):
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, np.full(shape, 0.4))
+    assert found.sensitivity.shape == (7, 5, *shape)
+    assert found.worst_case.shape == found.error.shape == (7, *shape)
+    assert found.passed
+
+
+def test_no_angles_leave_nothing_to_compare():
+    found = tolerances(FOUR_BAR, {"crank": 1e-4}, [])
+    assert found.monte_carlo(20).passed
+    assert tolerances(FOUR_BAR, {"crank": 1e-4}).theta2.shape == (361,)

@@ -1,0 +1,104 @@
+"""Transmission angle, dead centres and mechanical advantage against swept motions and 40 digits."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages.transmission import mechanical_advantage, transmission_angle
+
+ROCKERS = [(12, 6, 12, 12), (5, 1, 5, 2), (0.547, 0.170, 0.328, 0.525), (10, 1, 10, 4)]
+
+
+@pytest.mark.parametrize("lengths", ROCKERS)
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+def test_crank_rocker_against_a_sweep(lengths, assembly):
+    bar = FourBar(*lengths, assembly)
+    found = transmission_angle(bar)
+    swept = bar.motion(np.linspace(0.0, 2.0 * np.pi, 7201))
+    # Next to an extreme the swept values differ in the second order of half a step.
+    assert swept.transmission_angle.min() == pytest.approx(found.least, abs=1e-6)
+    assert swept.transmission_angle.max() == pytest.approx(found.greatest, abs=1e-6)
+    assert np.ptp(swept.theta4) == pytest.approx(found.swing, abs=1e-6)
+    assert found.passed
+    for name, angle in found.dead_centres.items():
+        at = bar.motion(angle)
+        assert abs(at.omega4) < 1e-13
+        turned = (at.theta4 - found.output_at_dead_centres[name]) / (2.0 * np.pi)
+        assert turned == pytest.approx(round(float(turned)), abs=1e-13)
+
+
+def test_extremes_carry_their_bound_next_to_a_change_point():
+    random = np.random.default_rng(5)
+    for _ in range(200):
+        b, c, d = random.uniform(0.5, 2.0, 3)
+        a = c + d - b - 10.0 ** random.uniform(-15, -1)
+        if not 0 < a < b + c + d or max(a, b, c, d) >= (a + b + c + d) / 2:
+            continue
+        found = transmission_angle(FourBar(a, b, c, d))
+        with mpmath.workdps(60):
+            frame, crank, coupler, follower = map(mpmath.mpf, (a, b, c, d))
+            for value, diagonal in ((found.least, frame - crank), (found.greatest, frame + crank)):
+                cosine = (coupler**2 + follower**2 - diagonal**2) / (2 * coupler * follower)
+                exact = mpmath.acos(max(-1, min(1, cosine)))
+                assert abs(exact - value) <= found.error
+
+
+def test_folds_of_a_triple_rocker_bound_its_crank():
+    bar = FourBar(5.0, 4.0, 3.5, 3.0)
+    found = transmission_angle(bar)
+    assert found.greatest == math.pi
+    assert [*found.toggles["extended"]] == [*found.at_greatest]
+    inside, beyond = 1 - 1e-9, 1 + 1e-9
+    bar.motion(found.at_greatest * inside)
+    with pytest.raises(BadInput):
+        bar.motion(found.at_greatest * beyond)
+
+
+@pytest.mark.parametrize("sizes", [(1.0, 3.0, 0.3), (1.0, 3.0, -0.3), (1.0, 2.0, 0.0)])
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+def test_slider_crank_against_a_sweep(sizes, assembly):
+    linkage = SliderCrank(*sizes, assembly)
+    found = transmission_angle(linkage)
+    swept = linkage.motion(np.linspace(0.0, 2.0 * np.pi, 7201))
+    assert np.ptp(swept.position) == pytest.approx(found.swing, abs=1e-6)
+    assert (swept.position.min(), swept.position.max()) == pytest.approx(
+        found.output_range, abs=1e-6
+    )
+    for angle in found.dead_centres.values():
+        assert abs(linkage.motion(angle).slider_velocity) < 1e-14
+    assert found.swing == pytest.approx(linkage.stroke, rel=1e-14)
+    ratio = linkage.time_ratio
+    assert found.time_ratio == pytest.approx(max(ratio, 1 / ratio), rel=1e-13)
+
+
+def test_quick_return_by_hand():
+    found = transmission_angle(QuickReturn(2.0, 1.0, 4.0))
+    assert found.time_ratio == pytest.approx(2.0, rel=1e-15)
+    assert found.swing == pytest.approx(math.pi / 3, rel=1e-15)
+    assert found.least == found.greatest == math.pi / 2
+    assert transmission_angle(QuickReturn(1.0, 2.0, 4.0)).swing is None
+
+
+def test_mechanical_advantage_is_the_corrected_formula():
+    """follower sin(gamma)/(crank sin(beta)); printed (3.1) has the frame for the crank."""
+    bar = FourBar(5.0, 1.0, 4.0, 3.0)
+    theta = np.linspace(0.1, 6.0, 17)
+    moved = bar.motion(theta)
+    beta = np.sin(theta - moved.theta3)
+    formula = 3.0 * np.sin(moved.theta4 - moved.theta3) / beta
+    found = mechanical_advantage(bar, theta)
+    np.testing.assert_allclose(found.advantage, formula, rtol=1e-12)
+    pole = transmission_angle(bar).dead_centres["extended"]
+    assert abs(mechanical_advantage(bar, pole).advantage) > 1e13
+    assert not np.isnan(mechanical_advantage(QuickReturn(2.0, 1.0, 4.0), theta).advantage).any()
+
+
+@pytest.mark.parametrize("band", [(2.0, 1.0), (-1.0, 1.0), (0.0, 4.0), 3.0, ("a", "b")])
+def test_bad_bands_are_refused(band):
+    with pytest.raises(BadInput):
+        transmission_angle(FourBar(5, 1, 5, 2), band)

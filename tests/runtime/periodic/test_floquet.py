@@ -1,0 +1,406 @@
+"""Monodromy matrices and multipliers: hand cases, mpmath, heyoka, structure, combination."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.linalg
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.monodromy_matrix import (
+    floquet_multipliers,
+    monodromy,
+    symplectic_unit,
+)
+from periodic_systems import mathieu, named, wave
+
+
+def _whirling(stiffness: float, damping: float = 0.0) -> LinearPeriodic:
+    """Return a mass on a spring, seen from the turning crank: Coriolis and centrifugal terms."""
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("A", None, np.array([[0.0, -1.0], [1.0, 0.0]])),
+        Term("B", None, np.eye(2)),
+        Term("K", None, stiffness * np.eye(2)),
+        Term("C", None, damping * np.eye(2)),
+        # Damping acts on the velocity in space, whose Coriolis part is a stiffness here.
+        Term("K", None, damping * np.array([[0.0, -1.0], [1.0, 0.0]]), power=1),
+    )
+    return LinearPeriodic(2, terms, {}, lambda values: {})
+
+
+def _pair(coupling: float, sign: float) -> LinearPeriodic:
+    """Two oscillators, 1 and 2.3 rad/s, coupled by cos theta; theta = speed t."""
+    matrix = coupling * np.array([[0.0, 1.0], [sign, 0.0]])
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag([1.0, 2.3**2])),
+        Term("Kg", None, lambda theta: np.cos(theta)[:, None, None] * matrix),
+    )
+    return LinearPeriodic(2, terms, {}, lambda values: {})
+
+
+def _general() -> LinearPeriodic:
+    """Two degrees of freedom with every kind of term, all of them periodic."""
+
+    terms = (
+        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
+        Term("M", None, wave([[0.5, 0.1], [0.1, 0.2]], 1, 0.3)),
+        Term("A", None, np.array([[0.1, -0.6], [0.7, 0.0]])),
+        Term("A", None, wave([[0.2, 0.5], [-0.1, 0.3]], 2, 1.0)),
+        Term("B", None, wave([[1.0, 0.2], [0.2, -0.5]], 1, 0.0)),
+        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
+        Term("Kg", "load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        Term("C", "C", np.array([[0.4, 0.1], [0.1, 0.3]])),
+        Term("C", "C", wave([[0.1, 0.0], [0.0, 0.2]], 1, 0.0)),
+    )
+    return LinearPeriodic(2, terms, {"load": 1.0, "C": 0.0}, named(("load", "C")))
+
+
+# Hand cases ----------------------------------------------------------------------------------
+
+
+def test_oscillator_by_hand():
+    found = monodromy(mathieu(mu=0.0, lam2=2.0), 3.0)
+    w, period = np.sqrt(2.0), 2 * np.pi
+    expected = [
+        [np.cos(w * period), np.sin(w * period) / w],
+        [-w * np.sin(w * period), np.cos(w * period)],
+    ]
+    np.testing.assert_allclose(found.matrix, expected, atol=1e-14)
+    assert found.exponent == 0
+    assert found.passed
+
+
+def test_canonical_momentum_is_mass_times_slope():
+    # p = M q': the oscillator of mass 4 has (q, p) = (cos, -4 w sin).
+    terms = (Term("M", None, 4 * np.eye(1)), Term("K", None, 8 * np.eye(1)))
+    found = monodromy(LinearPeriodic(1, terms, {}, lambda v: {}), 1.0).matrix
+    w = np.sqrt(2.0)
+    expected = [
+        [np.cos(w * 2 * np.pi), np.sin(w * 2 * np.pi) / (4 * w)],
+        [-4 * w * np.sin(w * 2 * np.pi), np.cos(w * 2 * np.pi)],
+    ]
+    np.testing.assert_allclose(found, expected, atol=1e-13)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.6])
+def test_whirling_mass_has_the_multipliers_of_the_resting_one(damping):
+    k, speed = 7.0, 1.9
+    found = floquet_multipliers(_whirling(k, damping), speed)
+    root = -damping / 2 + 1j * np.sqrt(k - damping**2 / 4)
+    # A whole turn of the frame changes nothing.
+    exact = np.exp(root * 2 * np.pi / speed)
+    expected = np.array([exact, exact, np.conj(exact), np.conj(exact)])
+    got = found.multipliers
+    assert np.max(np.min(np.abs(got[:, None] - expected), axis=1)) < 1e-12
+    assert found.stable
+    assert found.passed, found.checks
+    if damping:
+        assert found.growth == pytest.approx(-damping / 2, rel=1e-12)
+
+
+def test_circulatory_force_is_not_mistaken_for_a_conservative_one():
+    # A skew stiffness has no potential: undamped, volume kept, yet not symplectic.
+    skew = np.array([[0.0, 0.3], [-0.3, 0.0]])
+    terms = (Term("M", None, np.eye(2)), Term("K", None, 7.0 * np.eye(2) + skew))
+    found = floquet_multipliers(LinearPeriodic(2, terms, {}, lambda values: {}), 2.0)
+    assert "symplectic" not in found.checks
+    assert found.passed, found.checks
+    # w^2 = 7 +- 0.3 i: flutter.
+    growth = 2 * np.pi / 2.0 * abs(np.sqrt(7 + 0.3j).imag)
+    assert np.log(abs(found.multipliers[0])) == pytest.approx(growth, rel=1e-12)
+
+
+def test_damped_determinant_is_liouvilles():
+    found = monodromy(_general(), 2.5, C=np.array([0.5, 1.0, 2.0]))
+    theta = np.arange(256) * 2 * np.pi / 256
+    system = _general()
+    for index, factor in enumerate((0.5, 1.0, 2.0)):
+        mass, damping = system.array("M", theta), factor * system.array("C", theta, C=1.0)
+        rate = np.trace(np.linalg.solve(mass, damping), axis1=1, axis2=2).mean()
+        expected = np.exp(-rate * 2 * np.pi / 2.5)
+        assert found.determinant[index] == pytest.approx(expected, rel=1e-12)
+    assert found.passed
+    assert set(found.checks) == {"converged", "liouville"}
+
+
+# Independent routes --------------------------------------------------------------------------
+
+
+def _taylor_monodromy(mp, lam2, mu, damping):
+    """Mathieu's monodromy matrix by Taylor steps in 40 digits."""
+    with mp.workdps(40):
+        lam2, mu, damping = mp.mpf(lam2), mp.mpf(mu), mp.mpf(damping)
+        steps, order = 32, 36
+        h = 2 * mp.pi / steps
+        columns = [[mp.mpf(1), mp.mpf(0)], [mp.mpf(0), mp.mpf(1)]]
+        for k in range(steps):
+            at = k * h
+            part = [mp.cos(at), -mp.sin(at), -mp.cos(at), mp.sin(at)]
+            wave = [mu * part[j % 4] / mp.factorial(j) for j in range(order)]
+            wave[0] += lam2
+            for column in columns:
+                c = list(column)
+                for j in range(order - 2):
+                    pull = mp.fsum(wave[i] * c[j - i] for i in range(j + 1))
+                    c.append((-pull - damping * (j + 1) * c[j + 1]) / ((j + 1) * (j + 2)))
+                column[0] = mp.polyval(c[::-1], h)
+                column[1] = mp.polyval([j * c[j] for j in range(len(c) - 1, 0, -1)], h)
+        return np.array([[float(column[i]) for column in columns] for i in range(2)])
+
+
+@pytest.mark.parametrize(
+    "case", [(1.3, 0.4, 0.0), (0.25, 2.0, 0.1), (30.0, 2.0, 0.0), (4.0, 1.5, 1.0), (-0.5, 1.0, 0.0)]
+)
+def test_mathieu_against_forty_digits(case):
+    mp = pytest.importorskip("mpmath")
+    lam2, mu, damping = case
+    expected = _taylor_monodromy(mp, lam2, mu, damping)
+    found = monodromy(mathieu(), 1.7, lam2=lam2, mu=mu, K2=damping)
+    top = np.max(np.abs(expected))
+    assert np.max(np.abs(found.matrix - expected)) < 1e-12 * top
+    scaled = expected / found.scale[:, None] * found.scale
+    actual = np.max(np.abs(found.scaled - scaled)) / np.max(np.abs(scaled))
+    assert actual <= found.error
+
+
+def test_general_system_against_heyoka():
+    hy = pytest.importorskip("heyoka")
+    system, speed = _general(), 2.1
+    q = hy.make_vars("q1", "q2", "p1", "p2")
+    theta = hy.time
+
+    def wave(harmonic, phase):
+        return hy.cos(float(harmonic) * theta + phase)
+
+    def matrix(constant, varying, factor):
+        return [[constant[i][j] + varying[i][j] * factor for j in range(2)] for i in range(2)]
+
+    zero = [[0.0, 0.0], [0.0, 0.0]]
+    mass = matrix([[2.0, 0.3], [0.3, 1.0]], [[0.5, 0.1], [0.1, 0.2]], wave(1, 0.3))
+    gyro = matrix([[0.1, -0.6], [0.7, 0.0]], [[0.2, 0.5], [-0.1, 0.3]], wave(2, 1.0))
+    inertia = matrix(zero, [[1.0, 0.2], [0.2, -0.5]], wave(1, 0.0))
+    spring = matrix([[20.0, 3.0], [3.0, 9.0]], [[2.0, 1.0], [1.0, 3.0]], wave(1, -0.4))
+    damping = matrix([[0.4, 0.1], [0.1, 0.3]], [[0.1, 0.0], [0.0, 0.2]], wave(1, 0.0))
+    r = [q[2 + i] - gyro[i][0] * q[0] - gyro[i][1] * q[1] for i in range(2)]
+    det = mass[0][0] * mass[1][1] - mass[0][1] * mass[1][0]
+    slope = [
+        (mass[1][1] * r[0] - mass[0][1] * r[1]) / det,
+        (mass[0][0] * r[1] - mass[1][0] * r[0]) / det,
+    ]
+    push = [
+        sum(
+            gyro[j][i] * slope[j]
+            + inertia[i][j] * q[j]
+            - spring[i][j] * q[j] / speed**2
+            - damping[i][j] * slope[j] / speed
+            for j in range(2)
+        )
+        for i in range(2)
+    ]
+    equations = [(q[0], slope[0]), (q[1], slope[1]), (q[2], push[0]), (q[3], push[1])]
+    ta = hy.taylor_adaptive(equations, [0.0] * 4, tol=1e-18)
+    columns = []
+    for index in range(4):
+        ta.time = 0.0
+        ta.state[:] = np.eye(4)[index]
+        ta.propagate_until(2 * np.pi)
+        columns.append(ta.state.copy())
+    expected = np.array(columns).T
+    found = monodromy(system, speed, C=1.0)
+    assert np.max(np.abs(found.matrix - expected)) < 1e-11 * np.max(np.abs(expected))
+
+
+# Structure -----------------------------------------------------------------------------------
+
+
+def test_undamped_matrices_are_symplectic():
+    speeds = np.linspace(0.5, 9.0, 40)
+    found = monodromy(_general(), speeds)
+    unit = symplectic_unit(2)
+    scaled = found.scaled
+    defect = np.swapaxes(scaled, 1, 2) @ unit @ scaled - unit
+    norm = np.linalg.norm(scaled, axis=(1, 2))
+    assert np.max(np.linalg.norm(defect, axis=(1, 2)) / norm**2) < 1e-13
+    assert found.checks["symplectic"].value < 1e-13
+    assert found.passed
+
+
+def test_multipliers_come_in_reciprocal_pairs():
+    found = floquet_multipliers(_general(), np.linspace(0.5, 9.0, 40), load=6.0)
+    assert not np.all(found.stable)
+    assert np.any(found.stable)
+    assert found.checks["reciprocal pairs"].passed
+    assert found.passed, found.checks
+    product = np.prod(found.multipliers, axis=-1)
+    np.testing.assert_allclose(product, 1.0, atol=1e-9)
+
+
+def test_speed_and_parameters_broadcast():
+    system = _general()
+    speed = np.array([[1.5], [2.5], [4.0]])
+    load = np.array([0.5, 1.0])
+    found = monodromy(system, speed, load=load, C=0.1)
+    assert found.matrix.shape == (3, 2, 4, 4)
+    assert found.error.shape == (3, 2)
+    alone = monodromy(system.with_parameters(load=1.0, C=0.1), 2.5)
+    np.testing.assert_allclose(found.matrix[1, 1], alone.matrix, rtol=0, atol=1e-12)
+    multipliers = floquet_multipliers(system, speed, load=load, C=0.1)
+    assert multipliers.multipliers.shape == (3, 2, 4)
+    assert multipliers.stable.shape == (3, 2)
+
+
+def test_error_is_a_figure_and_rtol_is_met():
+    for rtol in (1e-3, 1e-6, 1e-11):
+        found = monodromy(_general(), np.linspace(0.3, 5.0, 20), rtol=rtol)
+        fine = monodromy(_general(), np.linspace(0.3, 5.0, 20), rtol=1e-13)
+        top = np.max(np.abs(fine.scaled), axis=(1, 2))
+        actual = np.max(np.abs(found.scaled - fine.scaled), axis=(1, 2)) / top
+        assert np.all(found.error <= rtol)
+        assert np.all(actual <= found.error)
+
+
+def test_same_input_gives_same_bytes():
+    first = floquet_multipliers(_general(), np.linspace(0.5, 9.0, 7))
+    second = floquet_multipliers(_general(), np.linspace(0.5, 9.0, 7))
+    assert first.multipliers.tobytes() == second.multipliers.tobytes()
+    assert first.error.tobytes() == second.error.tobytes()
+
+
+def test_order_of_multipliers():
+    found = floquet_multipliers(_general(), 3.0, C=1.0).multipliers
+    modulus = np.abs(found)
+    assert np.all(np.diff(modulus) < 1e-6)
+    upper = np.flatnonzero(found.imag > 1e-9)
+    assert len(upper)
+    np.testing.assert_allclose(found[upper + 1], np.conj(found[upper]), rtol=1e-12)
+
+
+def test_double_multiplier_gets_a_square_root_error():
+    # lam2 = 1/4 - mu/2 ... is only the first-order boundary; the exact one by bisection on the
+    # discriminant makes a defective double multiplier at -1.
+    low, high = 0.0, 0.1
+    for _ in range(60):
+        middle = (low + high) / 2
+        trace = np.trace(monodromy(mathieu(), 1.0, lam2=0.25 - middle, mu=0.1).matrix)
+        low, high = (middle, high) if trace < -2 else (low, middle)
+    found = floquet_multipliers(mathieu(), 1.0, lam2=0.25 - low, mu=0.1)
+    assert np.all(np.abs(found.multipliers + 1) <= found.error)
+    assert np.all(found.error > 1e-9)
+    assert np.all(found.error < 1e-5)
+    assert found.stable
+
+
+def test_semisimple_double_multiplier_keeps_a_small_error():
+    found = floquet_multipliers(mathieu(), 1.0, lam2=4.0, mu=0.0)
+    assert np.all(np.abs(found.multipliers - 1) <= found.error)
+    assert np.all(found.error < 1e-12)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_combination_resonance_of_a_coupled_pair(sign):
+    """Sum resonance with symmetric coupling, difference resonance with skew coupling.
+
+    First order in the coupling e (Mettler): |speed - (w2 +- w1)| < e/(2 sqrt(w1 w2)), and growth
+    e/(4 sqrt(w1 w2)) in the middle.
+    """
+    coupling, low, high = 0.02, 1.0, 2.3
+    system = _pair(coupling, sign)
+    middle = high + sign * low
+    half = coupling / (2 * np.sqrt(low * high))
+    found = floquet_multipliers(system, middle + half * np.array([-1.02, -0.97, 0.0, 0.97, 1.02]))
+    assert found.stable.tolist() == [True, False, False, False, True]
+    assert found.growth[2] == pytest.approx(coupling / (4 * np.sqrt(low * high)), rel=1e-2)
+    # The multipliers leave the circle in a quadruple, not at +1 or -1.
+    assert np.all(np.abs(found.multipliers[2].imag) > 0.05)
+    other = high - sign * low
+    assert floquet_multipliers(system, other).stable
+
+
+# Growth --------------------------------------------------------------------------------------
+
+
+def test_growth_of_1e200_keeps_every_multiplier():
+    terms = (
+        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
+        Term("K", None, np.diag([-1e4, 2.3])),
+        Term("Kg", None, lambda t: 0.3 * np.cos(t)[:, None, None] * np.array([[1, 0.5], [0.5, 1]])),
+    )
+    found = floquet_multipliers(LinearPeriodic(2, terms, {}, lambda v: {}), 1.0)
+    assert np.abs(found.multipliers[0]) > 1e190
+    assert np.all(np.abs(np.abs(found.multipliers[1:3]) - 1) < 1e-11)
+    assert np.all(found.error[1:3] < 1e-11)
+    assert found.multipliers[0] * found.multipliers[3] == pytest.approx(1.0, rel=1e-10)
+    assert found.passed, found.checks
+
+
+def test_growth_beyond_double_precision():
+    found = monodromy(mathieu(), 1.0, lam2=-1e6)
+    assert found.exponent > 1024
+    assert np.all(np.isfinite(found.matrix))
+    multipliers = floquet_multipliers(mathieu(), 1.0, lam2=-1e6, mu=0.0)
+    assert not multipliers.stable
+    assert np.isinf(multipliers.multipliers[0])
+    assert multipliers.multipliers[1] == 0
+    np.testing.assert_allclose(multipliers.exponents, [2e3 * np.pi, -2e3 * np.pi], rtol=1e-12)
+    assert multipliers.passed
+
+
+def test_strong_damping_keeps_the_small_exponent():
+    damping = 50.0
+    found = floquet_multipliers(mathieu(), 1.0, lam2=2.0, mu=0.0, K2=damping)
+    roots = np.roots([1.0, damping, 2.0])
+    expected = 2 * np.pi * np.sort(roots)[::-1]
+    np.testing.assert_allclose(found.exponents.real, expected, rtol=1e-11)
+    assert found.stable
+
+
+# The record ----------------------------------------------------------------------------------
+
+
+def test_records_plot_and_save(tmp_path):
+    found = floquet_multipliers(_general(), [1.0, 2.0])
+    assert found.plot().get_xlabel() == "real part of multiplier"
+    saved = np.load(found.save(tmp_path / "found.npz"))
+    np.testing.assert_array_equal(saved["multipliers"], found.multipliers)
+    matrices = monodromy(_general(), [1.0, 2.0])
+    assert np.load(matrices.save(tmp_path / "m.npz"))["matrix"].shape == (2, 4, 4)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ({"speed": 0.0}, "speed"),
+        ({"speed": [1.0, -1.0]}, "speed"),
+        ({"speed": np.nan}, "speed"),
+        ({"speed": 1.0, "rtol": 1e-20}, "rtol"),
+        ({"speed": 1.0, "weight": 3.0}, "weight"),
+        ({"speed": 1.0, "load": np.inf}, "load"),
+        ({"speed": [1.0, 2.0], "load": [1.0, 2.0, 3.0]}, "broadcast"),
+        ({"speed": 1e-7}, "speed"),
+    ],
+)
+def test_bad_input_is_one_clear_line(arguments, word):
+    with pytest.raises(BadInput, match=word) as caught:
+        monodromy(_general(), **arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_matrix_agrees_with_a_plain_exponential_for_constant_coefficients():
+    system = _whirling(7.0, 0.4)
+    speed = 1.3
+    gyro = np.array([[0.0, -1.0], [1.0, 0.0]])
+    spring = 7.0 * np.eye(2) + 0.4 * speed * gyro
+    damping = 0.4 * np.eye(2)
+    generator = np.block(
+        [
+            [-gyro, np.eye(2)],
+            [
+                -gyro.T @ gyro + np.eye(2) - spring / speed**2 + damping @ gyro / speed,
+                gyro.T - damping / speed,
+            ],
+        ]
+    )
+    expected = scipy.linalg.expm(2 * np.pi * generator)
+    np.testing.assert_allclose(monodromy(system, speed).matrix, expected, atol=1e-11)

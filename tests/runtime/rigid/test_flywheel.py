@@ -1,0 +1,218 @@
+"""Torque fluctuation and flywheels: by hand, by other quadrature, and by forward dynamics."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.rigid import (
+    Load,
+    Machine,
+    MassDistribution,
+    Spring,
+    TorsionSpring,
+    driving_torque,
+    flywheel,
+    flywheel_inertia,
+    run_up,
+    torque_fluctuation,
+)
+from scipy.integrate import quad
+
+ROCKER = FourBar(0.3, 0.1, 0.28, 0.25)
+TURN = 2.0 * np.pi
+
+
+def bars(linkage, **more):
+    lengths = {**linkage.lengths, "slider": 0.1, "block": 0.1}
+    masses = {link: MassDistribution.uniform_bar(0.5, lengths[link]) for link in linkage.links}
+    return Machine(linkage, masses, **more)
+
+
+def test_a_sine_by_hand() -> None:
+    """The load couple a + b sin on the crank: E = -b cos, a fluctuation of 2 b."""
+    load = Load("crank", couple=lambda t: -3.0 - 2.0 * np.sin(t))
+    found = torque_fluctuation(Machine(ROCKER, loads=(load,)), 8.0)
+    assert found.mean_torque == pytest.approx(3.0, rel=1e-14)
+    assert found.energy_fluctuation == pytest.approx(4.0, rel=1e-12)
+    assert found.slowest == pytest.approx(math.pi, abs=1e-6)
+    assert min(found.fastest, TURN - found.fastest) == pytest.approx(0.0, abs=1e-6)
+    assert found.passed
+
+
+@pytest.mark.parametrize(
+    "linkage", [ROCKER, SliderCrank(0.1, 0.35, 0.04), QuickReturn(0.3, 0.1, 0.6)]
+)
+def test_the_energy_between_the_extremes_by_quadrature(linkage) -> None:
+    machine = bars(linkage, gravity=(0.0, -9.81))
+    found = torque_fluctuation(machine, 8.0)
+    energy, _ = quad(
+        lambda t: float(driving_torque(machine, t, 8.0).torque) - found.mean_torque,
+        found.fastest,
+        found.slowest,
+        epsabs=1e-13,
+        epsrel=1e-13,
+        limit=200,
+    )
+    assert abs(found.energy_fluctuation - energy) <= found.error + 1e-12 * energy
+    # At constant speed it is the greatest difference of kinetic and potential energy.
+    theta = np.linspace(0.0, TURN, 20_001)
+    whole = machine.kinetic_energy(theta, 8.0) + machine.potential_energy(theta)
+    # The peaks between the points are missed by at most J'' h^2 / 8.
+    assert found.energy_fluctuation == pytest.approx(np.ptp(whole), rel=1e-6)
+
+
+def test_a_jumping_load_has_an_honest_figure() -> None:
+    load = Load("crank", couple=lambda t: -6.0 * (np.mod(t, TURN) < 1.0))
+    found = torque_fluctuation(Machine(ROCKER, loads=(load,)), 8.0)
+    # 6 N m over 1 rad of 2 pi: E rises by (6 - 3/pi) within that radian.
+    exact = 6.0 - 3.0 / math.pi
+    assert abs(found.energy_fluctuation - exact) <= found.error
+    assert found.error < 0.1
+
+
+def test_a_flywheel_for_a_sine() -> None:
+    """On a crank without links: J omega^2/2 = const + b cos, exactly."""
+    load = Load("crank", couple=lambda t: -2.0 * np.sin(t))
+    machine = Machine(ROCKER, {"crank": MassDistribution(inertia=0.01)}, loads=(load,))
+    found = flywheel_inertia(machine, 20.0, 0.1)
+    # max^2 - min^2 = 2 (2 b)/J with max + min = 2 w: J = 2 b / (w^2 delta), all of it.
+    assert found.first_order == pytest.approx(4.0 / (0.1 * 400.0), rel=1e-12)
+    assert abs(found.inertia + 0.01 - 0.1) <= found.error
+    assert found.passed
+
+
+def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
+    """(I + J) omega^2 delta = 5 (1 - 1/(2 pi)): 5 N m over one radian of each turn."""
+    load = Load("crank", couple=lambda t: -5.0 * (np.mod(t, TURN) < 1.0))
+    crank = MassDistribution.uniform_bar(0.3, 0.1)
+    found = flywheel_inertia(Machine(ROCKER, {"crank": crank}, loads=(load,)), 10.0, 0.05)
+    exact = 1.0 - 1.0 / TURN - 0.001
+    assert abs(found.inertia - exact) <= found.error <= 0.01 * exact
+    assert found.passed
+    # What error does not admit still fails: the figure's share and no more is added.
+    limit = found.checks["fluctuation by forward dynamics, relative"].limit
+    assert limit == pytest.approx(1e-5 + found.error / (found.inertia + 0.001), rel=1e-9)
+
+
+def test_speeds_that_have_not_settled_fail_the_check(monkeypatch) -> None:
+    drag = Load("follower", couple=lambda at: -2.0 * at.speed, given="motion")
+    machine = bars(ROCKER, loads=(drag,))
+    name = "speeds not settled, relative"
+    assert flywheel_inertia(machine, 8.0, 0.03).checks[name].passed
+    monkeypatch.setattr(flywheel, "_ITERATIONS", 2)
+    assert not flywheel_inertia(machine, 8.0, 0.03).checks[name].passed
+
+
+def test_the_least_flywheel_of_several(monkeypatch) -> None:
+    """Where the coefficient does not fall steadily, the first root is taken."""
+    machine = bars(ROCKER)
+    balance = flywheel._Balance(machine, torque_fluctuation(machine, 8.0))
+    roots = np.array([0.1, 0.4, 0.7])
+    monkeypatch.setattr(balance, "motion", lambda wheel: (0.02 - np.prod(wheel - roots), 0, 0, 0))
+    assert balance.inertia_for(0.02, 1.0) == pytest.approx(0.1, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        lambda t: np.cos(t / 2.0),
+        lambda t: np.cos(t / 3.0),
+        lambda t: -3.0 * (t > 10.0),
+        # Alike at 0.1, 1.1 ... in the first two turns, unlike between them.
+        lambda t: np.sin(np.pi * (t - 0.1)) ** 2,
+    ],
+    ids=["two turns", "three turns", "wakes late", "whole numbers"],
+)
+def test_a_torque_must_repeat_turn_by_turn(law) -> None:
+    with pytest.raises(BadInput, match="changes turn by turn"):
+        torque_fluctuation(bars(ROCKER, loads=(Load("crank", couple=law),)), 8.0)
+
+
+@pytest.mark.parametrize("speed", [8.0, -8.0])
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"gravity": (0.0, -9.81)},
+        {"loads": (Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)},
+        {"springs": (Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)},
+    ],
+    ids=["bare", "weights", "drag", "spring"],
+)
+def test_forward_dynamics_confirm_the_flywheel(speed, more) -> None:
+    machine = bars(ROCKER, **more)
+    found = flywheel_inertia(machine, speed, 0.03)
+    assert found.inertia > 0
+    assert found.fluctuation == pytest.approx(0.03, rel=1e-9)
+    assert found.passed
+    # The textbook's flywheel leaves out the links' own inertia, and is too heavy by about that.
+    assert found.first_order == pytest.approx(found.inertia, rel=0.2)
+    assert np.sign(found.speeds[0]) == np.sign(speed)
+
+
+def test_the_speed_comes_back_after_a_turn() -> None:
+    machine = bars(ROCKER, gravity=(0.0, -9.81))
+    found = flywheel_inertia(machine, 8.0, 0.05)
+    run = run_up(
+        machine,
+        found.motor_torque,
+        revolutions=1,
+        speed0=float(found.speeds[0]),
+        flywheel=found.inertia,
+        tolerance=1e-11,
+    )
+    assert run.speed[-1] == pytest.approx(run.speed[0], rel=1e-9)
+    steady = np.interp(run.angle[:-1], found.theta, found.speeds)
+    # Linear interpolation between 1024 angles.
+    np.testing.assert_allclose(run.speed[:-8], steady[:-7], rtol=1e-5)
+
+
+def test_an_even_machine_needs_none() -> None:
+    machine = bars(ROCKER).with_mass("crank", MassDistribution(inertia=50.0))
+    found = flywheel_inertia(machine, 8.0, 0.02)
+    assert found.inertia == 0.0
+    assert found.fluctuation < 0.02
+    assert found.passed
+
+
+def test_dampers_need_torque() -> None:
+    machine = bars(ROCKER, springs=(TorsionSpring("frame", "follower", damping=0.2),))
+    found = torque_fluctuation(machine, 8.0)
+    motion = ROCKER.motion(np.linspace(0.0, TURN, 1024, endpoint=False), 8.0)
+    assert found.mean_torque == pytest.approx(0.2 * np.mean(motion.omega4**2) / 8.0, rel=1e-12)
+    assert found.passed
+
+
+def test_pictures() -> None:
+    found = flywheel_inertia(bars(ROCKER), 8.0, 0.03)
+    np.testing.assert_array_equal(found.plot().lines[0].get_ydata(), found.speeds)
+    assert len(found.torque.plot().lines) == 2
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"fluctuation": 0.0}, "fluctuation"),
+        ({"fluctuation": 1.5}, "fluctuation"),
+        ({"speed": 0.0}, "speed"),
+        ({"speed": math.nan}, "speed"),
+        ({"speed": "a"}, "speed"),
+        ({"speed": None}, "speed"),
+        ({"fluctuation": "x"}, "fluctuation"),
+        ({"fluctuation": None}, "fluctuation"),
+        ({"machine": None}, "machine"),
+        ({"machine": bars(FourBar(0.3, 0.25, 0.1, 0.3))}, "turn fully"),
+        ({"machine": ROCKER}, "machine"),
+        (
+            {"machine": Machine(ROCKER, springs=(TorsionSpring("frame", "crank", 2.0),))},
+            "changes turn by turn",
+        ),
+    ],
+)
+def test_refusals(given, named) -> None:
+    with pytest.raises(BadInput, match=named):
+        flywheel_inertia(**{"machine": bars(ROCKER), "speed": 8.0, **given})

@@ -1,0 +1,95 @@
+"""Mass distributions: constructors against integrals, sums, and refusals."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.rigid import MassDistribution
+
+
+def test_uniform_bar_is_a_row_of_points() -> None:
+    count, mass, length = 4000, 0.7, 0.3
+    places = (np.arange(count) + 0.5) * length / count
+    pieces = MassDistribution()
+    for place in places:
+        pieces = pieces + MassDistribution.point(mass / count, float(place))
+    bar = MassDistribution.uniform_bar(mass, length)
+    assert pieces.mass == pytest.approx(bar.mass, rel=1e-12)
+    assert pieces.along == pytest.approx(bar.along, rel=1e-12)
+    # The midpoint rule is off by exactly 1/(4 n^2) of the integral of x^2.
+    assert pieces.inertia == pytest.approx(bar.inertia * (1 - 0.25 / count**2), rel=1e-12)
+
+
+def test_disc_about_its_centre_and_about_the_joint() -> None:
+    disc = MassDistribution.disc(2.0, 0.1, 0.3, -0.4)
+    assert disc.centre == pytest.approx((0.3, -0.4))
+    assert disc.inertia_about_centre == pytest.approx(0.01)
+    assert disc.inertia == pytest.approx(0.01 + 2.0 * 0.25)
+
+
+def test_sum_has_the_common_centre() -> None:
+    one = MassDistribution.point(1.0, 0.2, 0.1)
+    other = MassDistribution.about_centre(3.0, -0.2, 0.5, 0.04)
+    both = one + other
+    assert both.centre == pytest.approx((-0.1, 0.4))
+    # Steiner about the common centre: 1*(0.3^2 + 0.3^2) + 3*(0.1^2 + 0.1^2) + 0.04.
+    assert both.inertia_about_centre == pytest.approx(0.18 + 0.06 + 0.04)
+
+
+def test_nothing_has_no_centre_to_divide_by() -> None:
+    nothing = MassDistribution()
+    assert nothing.centre == (0.0, 0.0)
+    assert nothing.inertia_about_centre == 0.0
+    assert MassDistribution(inertia=0.2).inertia_about_centre == 0.2
+
+
+@pytest.mark.parametrize("place", [1e-150, 0.1, 1 / 3, 1e150])
+def test_a_point_mass_is_at_the_limit_and_accepted(place: float) -> None:
+    point = MassDistribution.point(0.3, place)
+    assert point.centre[0] == pytest.approx(place)
+    assert point.inertia_about_centre <= 1e-15 * point.inertia
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"mass": -1.0}, "MassDistribution.mass"),
+        ({"mass": 1.0, "inertia": -0.1}, "MassDistribution.inertia"),
+        ({"mass": 1.0, "along": 0.5, "inertia": 0.2}, "first moment"),
+        ({"along": 0.5}, "first moment"),
+        ({"mass": math.nan}, "finite"),
+        ({"inertia": math.inf}, "finite"),
+        ({"mass": "1 kg"}, "finite"),
+        ({"mass": True}, "finite"),
+    ],
+)
+def test_impossible_ones_are_refused(values: dict[str, float], named: str) -> None:
+    with pytest.raises(BadInput, match=named):
+        MassDistribution(**values)
+
+
+def test_constructors_refuse_before_they_compute() -> None:
+    with pytest.raises(BadInput, match="length"):
+        MassDistribution.uniform_bar(1.0, -0.5)
+    with pytest.raises(BadInput, match="radius"):
+        MassDistribution.disc(1.0, -0.5, 0.1)
+    with pytest.raises(BadInput, match="inertia"):
+        MassDistribution.about_centre(1.0, 0.1, 0.0, -1.0)
+    with pytest.raises(BadInput, match="finite"):
+        MassDistribution.point(1.0, math.nan)
+
+
+def test_only_distributions_add() -> None:
+    with pytest.raises(TypeError):
+        MassDistribution() + 1.0  # type: ignore[operator]
+
+
+def test_a_first_moment_whose_inertia_underflows_is_no_mistake():
+    # An optimiser may pass by: the least inertia, moment^2 / mass = 2e-512, is zero in doubles.
+    tiny = MassDistribution(mass=0.684, across=1.1e-256)
+    assert (tiny.inertia, tiny.across) == (0.0, 1.1e-256)
+    with pytest.raises(BadInput, match="first moment"):
+        MassDistribution(mass=0.684, across=1.1e-100)

@@ -1,0 +1,458 @@
+"""Forces of rigid machines: against nine equations, momenta, energies, and symmetries."""
+
+from __future__ import annotations
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+import rigid_truth
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.rigid import (
+    Load,
+    Machine,
+    MassDistribution,
+    Spring,
+    TorsionSpring,
+    driving_torque,
+    pin_forces,
+    rigid_forces,
+    shaking_force,
+    shaking_moment,
+)
+
+TURN = 2.0 * np.pi
+THETA = np.linspace(0.0, TURN, 512, endpoint=False)
+LINKAGES = {
+    "crank rocker": FourBar(0.3, 0.1, 0.28, 0.25),
+    "crossed": FourBar(0.3, 0.1, 0.28, 0.25, "crossed"),
+    "drag link": FourBar(0.1, 0.3, 0.25, 0.28),
+    "slider-crank": SliderCrank(0.1, 0.35, 0.04),
+    "slider-crank, crossed": SliderCrank(0.1, 0.35, -0.04, "crossed"),
+    "quick-return": QuickReturn(0.3, 0.1, 0.6),
+    "quick-return, turning rod": QuickReturn(0.1, 0.3, 0.6),
+}
+EVERY = pytest.mark.parametrize("linkage", LINKAGES.values(), ids=LINKAGES)
+INCH, POUND = 0.0254, 4.4482216152605
+# Smith, beside Figs. 12-16: weights 0.5, 1, 1 lbf (standard gravity); I3B = I4D = 0.125 lbf in s^2.
+SMITH_MASSES = tuple(weight * POUND / 9.80665 for weight in (0.5, 1.0, 1.0))
+SMITH_INERTIA = 0.125 * POUND * INCH
+
+
+def masses_of(linkage, straight=False):
+    bodies = ((0.4, 0.03, 0.01, 0.002), (0.7, 0.15, -0.04, 0.006), (0.6, 0.1, 0.02, 0.004))
+    return {
+        link: MassDistribution.about_centre(mass, along, 0.0 if straight else across, inertia)
+        for link, (mass, along, across, inertia) in zip(linkage.links, bodies, strict=True)
+    }
+
+
+def loaded(linkage):
+    _, second, third = linkage.links
+    return Machine(
+        linkage,
+        masses_of(linkage),
+        gravity=(0.5, -9.81),
+        loads=(
+            Load(third, (30.0, -20.0), 1.5, 0.1, 0.03, axes="link"),
+            Load(second, lambda t: (5.0 * np.cos(t), 2.0), 0.3, 0.05),
+        ),
+        springs=(
+            Spring(("frame", 0.1, 0.5), (second, 0.05, 0.02), 300.0, 0.1, 5.0, 2.0),
+            Spring(("crank", 0.05, 0.0), (third, 0.05, 0.14), 300.0, damping=3.0),
+            TorsionSpring("crank", second, 3.0, 0.1, 0.3),
+            TorsionSpring("frame", third, damping=0.2, preload=0.4),
+        ),
+    )
+
+
+def derivative(values):
+    """Return the derivative of samples over a turn, exact for a band-limited function."""
+    harmonics = np.fft.rfft(values, axis=0)
+    order = np.arange(harmonics.shape[0]).reshape(-1, *[1] * (values.ndim - 1))
+    return np.fft.irfft(1j * order * harmonics, n=len(values), axis=0)
+
+
+def smith() -> Machine:
+    linkage = FourBar(12 * INCH, 6 * INCH, 12 * INCH, 12 * INCH)
+    crank, coupler, follower = SMITH_MASSES
+    return Machine(
+        linkage,
+        {
+            "crank": MassDistribution.uniform_bar(crank, 6 * INCH),
+            "coupler": MassDistribution(coupler, coupler * 6 * INCH, 0.0, SMITH_INERTIA),
+            "follower": MassDistribution(follower, follower * 6 * INCH, 0.0, SMITH_INERTIA),
+        },
+    )
+
+
+def nine_equations(machine, theta, speed, acceleration):
+    """Solve Aannaque's (3.12): moments about each centre of mass, halfway along uniform links."""
+    motion = machine.linkage.motion(theta, speed, acceleration)
+    names = ["x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "torque"]
+    matrix, right = np.zeros((len(theta), 9, 9)), np.zeros((len(theta), 9))
+    angles = (motion.theta2, motion.theta3, motion.theta4)
+    for n, (link, angle) in enumerate(zip(machine.linkage.links, angles, strict=True)):
+        own = machine.mass(link)
+        half = machine.linkage.lengths[link] / 2
+        centre = motion.point(link, half)
+        matrix[:, 3 * n, 2 * n] = matrix[:, 3 * n + 1, 2 * n + 1] = 1
+        matrix[:, 3 * n, 2 * n + 2] = matrix[:, 3 * n + 1, 2 * n + 3] = -1
+        # The joint ahead is at the near end of crank and coupler, at the far end of the follower.
+        side = half if link == "follower" else -half
+        cos, sin = np.cos(angle), np.sin(angle)
+        for column, sign in ((2 * n, 1), (2 * n + 2, -1)):
+            matrix[:, 3 * n + 2, column] = -sign * sign * side * sin
+            matrix[:, 3 * n + 2, column + 1] = sign * sign * side * cos
+        right[:, 3 * n : 3 * n + 2] = own.mass * centre.acceleration
+        right[:, 3 * n + 2] = own.inertia_about_centre * motion.link(link).angular_acceleration
+    matrix[:, 2, 8] = 1
+    solved = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+    return dict(zip(names, solved.T, strict=True))
+
+
+@pytest.mark.parametrize("acceleration", [0.0, 40.0])
+def test_the_machine_of_figs_12_to_16_against_nine_equations(acceleration) -> None:
+    machine = smith()
+    found = rigid_forces(machine, THETA, 10.0, acceleration)
+    for name, expected in nine_equations(machine, THETA, 10.0, acceleration).items():
+        scale = np.max(np.abs(expected))
+        np.testing.assert_allclose(found[name], expected, atol=1e-12 * scale, err_msg=name)
+    assert found.passed
+
+
+def test_smith_4_7_as_printed() -> None:
+    machine, w = smith(), 10.0
+    motion = machine.linkage.motion(THETA, w)
+    t3, t4, a3, a4 = motion.theta3, motion.theta4, motion.alpha3, motion.alpha4
+    l2, l3, l4 = 6 * INCH, 12 * INCH, 12 * INCH
+    coupled = SMITH_MASSES[1] * 6 * INCH * l2 * l4 * w**2 * np.sin(THETA - t3)
+    below = l3 * l4 * np.sin(t3 - t4)
+    inertia = SMITH_INERTIA
+    x34 = inertia * a3 * l4 * np.cos(t4) + inertia * a4 * l3 * np.cos(t3) - coupled * np.cos(t4)
+    y34 = inertia * a3 * l4 * np.sin(t4) + inertia * a4 * l3 * np.sin(t3) - coupled * np.sin(t4)
+    found = pin_forces(machine, THETA, w)
+    np.testing.assert_allclose(found["x34"], x34 / below, atol=1e-12 * np.max(np.abs(x34 / below)))
+    np.testing.assert_allclose(found["y34"], y34 / below, atol=1e-12 * np.max(np.abs(y34 / below)))
+
+
+@EVERY
+@pytest.mark.parametrize("steady", [True, False], ids=["steady", "accelerated"])
+def test_against_many_digits(linkage, steady) -> None:
+    machine = Machine(linkage, masses_of(linkage), gravity=(0.5, -9.81))
+    theta = np.array([-4.0, 0.3, 2.2, 9.1])
+    acceleration = 0.0 if steady else np.array([30.0, -20.0, 0.0, 7.0])
+    actual, figure = rigid_truth.errors(machine, rigid_forces(machine, theta, 7.0, acceleration))
+    assert np.all(actual <= figure)
+    # All numbers here are of the order of 10 N: the figure stays near round-off.
+    assert np.max(figure) < 1e-11
+
+
+@EVERY
+def test_loads_against_many_digits(linkage) -> None:
+    _, second, third = linkage.links
+    wrenches = {second: (3.0, -4.0, 0.2), third: (-2.0, 1.0, 0.5)}
+    loads = tuple(Load(link, force[:2], force[2]) for link, force in wrenches.items())
+    machine = Machine(linkage, masses_of(linkage), loads=loads)
+    found = rigid_forces(machine, np.array([-4.0, 0.3, 2.2]), 7.0, 3.0)
+    actual, figure = rigid_truth.errors(machine, found, outside=wrenches)
+    assert np.all(actual <= figure)
+
+
+@EVERY
+def test_power_balance_with_everything(linkage) -> None:
+    machine = loaded(linkage)
+    speed, acceleration = 9.0, 25.0
+    found = driving_torque(machine, THETA, speed, acceleration)
+    kinetic = machine.kinetic_energy(THETA, 1.0)
+    # d(J omega^2 / 2)/dt with J = 2 T(omega = 1)
+    gained = derivative(kinetic) * speed**3 + 2.0 * kinetic * speed * acceleration
+    balance = found.torque * speed + machine.power(THETA, speed, "all") - gained
+    assert np.max(np.abs(balance)) < 1e-10 * np.max(np.abs(found.torque * speed))
+
+
+@EVERY
+def test_over_a_turn_the_drive_pays_for_loads_and_dampers(linkage) -> None:
+    machine = loaded(linkage)
+    # Without the springs that wind up: everything repeats, potential energies pay nothing.
+    machine = Machine(linkage, machine.masses, machine.gravity, machine.loads, machine.springs[:2])
+    found = driving_torque(machine, THETA, 9.0)
+    paid = np.mean(found.torque) * 9.0 + np.mean(machine.power(THETA, 9.0))
+    assert abs(paid) < 1e-11 * np.max(np.abs(found.torque)) * 9.0
+
+
+@EVERY
+def test_shaking_force_and_moment_are_lost_momenta(linkage) -> None:
+    machine = Machine(linkage, masses_of(linkage))
+    motion = linkage.motion(THETA, 9.0)
+    momentum, moment = 0.0, 0.0
+    for link, mass in machine.masses.items():
+        along, across = mass.centre
+        centre, turning = motion.point(link, along, across), motion.link(link).speed
+        x, y = centre.position.T
+        vx, vy = centre.velocity.T
+        momentum = momentum + mass.mass * centre.velocity
+        moment = moment + mass.mass * (x * vy - y * vx) + mass.inertia_about_centre * turning
+    found = rigid_forces(machine, THETA, 9.0)
+    force = -9.0 * derivative(momentum)
+    np.testing.assert_allclose(found.shaking_force, force, atol=1e-10 * np.max(np.abs(force)))
+    lost = -9.0 * derivative(moment)
+    np.testing.assert_allclose(found.shaking_moment, lost, atol=1e-10 * np.max(np.abs(lost)))
+    if "couple34" not in found.values and "couple41" not in found.values:
+        # Errata to Smith (4.13): the reaction of the drive belongs to the moment.
+        whole = linkage.lengths["frame"] * found["y41"] - found.torque
+        np.testing.assert_allclose(found.shaking_moment, whole, atol=1e-12 * np.max(np.abs(whole)))
+
+
+@EVERY
+def test_springs_do_not_shake_the_frame(linkage) -> None:
+    plain = Machine(linkage, masses_of(linkage))
+    sprung = Machine(linkage, plain.masses, springs=loaded(linkage).springs)
+    for function in (shaking_force, shaking_moment):
+        one, other = function(plain, THETA, 9.0), function(sprung, THETA, 9.0)
+        for name, values in one.values.items():
+            np.testing.assert_array_equal(values, other[name])
+    found = rigid_forces(sprung, THETA, 9.0)
+    assert found.passed
+    # Through the pins alone more comes: the springs to the frame carry the rest.
+    pins = np.stack([found["x41"] - found["x12"], found["y41"] - found["y12"]], axis=-1)
+    assert np.max(np.abs(pins - found.shaking_force)) > 1.0
+
+
+@EVERY
+def test_each_output_alone_is_the_same(linkage) -> None:
+    machine = loaded(linkage)
+    whole = rigid_forces(machine, THETA, 9.0, -5.0)
+    scale = max(float(np.max(np.abs(values))) for values in whole.values.values())
+    names = set()
+    for function in (pin_forces, driving_torque, shaking_force, shaking_moment):
+        part = function(machine, THETA, 9.0, -5.0)
+        assert part.passed
+        for name, values in part.values.items():
+            np.testing.assert_allclose(values, whole[name], atol=1e-12 * scale, err_msg=name)
+        names |= set(part.values)
+    assert names == set(whole.values)
+    two = rigid_forces(machine, THETA, 9.0, -5.0, ("shaking_moment", "torque"))
+    assert set(two.values) == {"shaking_moment", "torque"}
+
+
+def test_a_crank_alone_is_a_pendulum() -> None:
+    linkage = LINKAGES["crank rocker"]
+    crank = MassDistribution.about_centre(2.0, 0.07, 0.0, 0.01)
+    found = rigid_forces(Machine(linkage, {"crank": crank}, (0.0, -9.81)), THETA, 3.0, 5.0)
+    torque = 2.0 * 9.81 * 0.07 * np.cos(THETA) + crank.inertia * 5.0
+    np.testing.assert_allclose(found.torque, torque, atol=1e-13)
+    x = -0.14 * (9.0 * np.cos(THETA) + 5.0 * np.sin(THETA))
+    y = -0.14 * (9.0 * np.sin(THETA) - 5.0 * np.cos(THETA)) + 2.0 * 9.81
+    np.testing.assert_allclose(found.f12, np.stack([x, y], axis=-1), atol=1e-13)
+    np.testing.assert_array_equal(found.f34, 0.0)
+    np.testing.assert_allclose(found.shaking_moment, -torque, atol=1e-13)
+
+
+@EVERY
+def test_statics_by_virtual_work(linkage) -> None:
+    machine = loaded(linkage)
+    conservative = Machine(linkage, machine.masses, (0.5, -9.81), springs=machine.springs[:2])
+    found = driving_torque(conservative, THETA, 0.0)
+    slope = derivative(conservative.potential_energy(THETA))
+    np.testing.assert_allclose(found.torque, slope, atol=1e-11 * np.max(np.abs(slope)))
+
+
+@pytest.mark.parametrize("name", ["crank rocker", "drag link"])
+def test_mirror(name) -> None:
+    linkage = LINKAGES[name]
+    mirrored = FourBar(*linkage.lengths.values(), "crossed")
+    masses = masses_of(linkage)
+    flipped = {
+        link: MassDistribution(own.mass, own.along, -own.across, own.inertia)
+        for link, own in masses.items()
+    }
+    one = rigid_forces(Machine(linkage, masses, (0.3, -9.81)), THETA, 4.0, 3.0)
+    other = rigid_forces(Machine(mirrored, flipped, (0.3, 9.81)), -THETA, -4.0, -3.0)
+    for field, values in one.values.items():
+        sign = 1.0 if field.startswith("x") or field == "shaking_x" else -1.0
+        size = np.max(np.abs(values))
+        np.testing.assert_allclose(other[field], sign * values, atol=1e-13 * size, err_msg=field)
+
+
+@EVERY
+@pytest.mark.parametrize(("length", "mass"), [(1000.0, 1000.0), (2.0**-90, 8.0), (1e30, 1e-5)])
+def test_unit_systems(linkage, length, mass) -> None:
+    """Forces scale as mass times length, moments as mass times length squared."""
+    sizes = {name: value * length for name, value in linkage.lengths.items()}
+    assembly = {"assembly": linkage.assembly} if hasattr(linkage, "assembly") else {}
+    other = type(linkage)(**sizes, **assembly)
+    scaled = {
+        link: MassDistribution(
+            own.mass * mass,
+            own.along * mass * length,
+            own.across * mass * length,
+            own.inertia * mass * length**2,
+        )
+        for link, own in masses_of(linkage).items()
+    }
+    one = rigid_forces(Machine(linkage, masses_of(linkage)), THETA, 4.0, 3.0)
+    two = rigid_forces(Machine(other, scaled), THETA, 4.0, 3.0)
+    for name, values in one.values.items():
+        moment = name in ("torque", "shaking_moment") or name.startswith("couple")
+        unit = mass * length ** (2 if moment else 1)
+        size = max(np.max(np.abs(values)), 1e-3)
+        np.testing.assert_allclose(two[name] / unit, values, atol=1e-12 * size, err_msg=name)
+    assert two.passed
+
+
+def test_relabelling_crank_and_follower() -> None:
+    """Seen from the other side, driven by what was the follower: the same forces, mirrored."""
+    linkage = LINKAGES["crank rocker"]
+    masses = masses_of(linkage)
+    theta = np.linspace(0.0, TURN, 25)
+    # Where crank and coupler come into line, the follower cannot drive.
+    theta = theta[np.abs(np.sin(theta - linkage.motion(theta).theta3)) > 0.3]
+    motion = linkage.motion(theta, 5.0, 8.0)
+    one = rigid_forces(Machine(linkage, masses), theta, 5.0, 8.0)
+    coupler, length = masses["coupler"], linkage.coupler
+    # The mirror turns over each link; the coupler begins at C, and its axis points to B.
+    turned = {
+        "crank": MassDistribution(
+            *(getattr(masses["follower"], name) for name in ("mass", "along")),
+            -masses["follower"].across,
+            masses["follower"].inertia,
+        ),
+        "coupler": MassDistribution(
+            coupler.mass,
+            coupler.mass * length - coupler.along,
+            coupler.across,
+            coupler.inertia - 2.0 * length * coupler.along + coupler.mass * length**2,
+        ),
+        "follower": MassDistribution(
+            masses["crank"].mass,
+            masses["crank"].along,
+            -masses["crank"].across,
+            masses["crank"].inertia,
+        ),
+    }
+    for i in range(theta.size):
+        # Which assembly it is from the other side depends on how crank and coupler stand.
+        seen = "open" if np.sin(theta[i] - motion.theta3[i]) > 0 else "crossed"
+        mirrored = FourBar(linkage.frame, linkage.follower, linkage.coupler, linkage.crank, seen)
+        # What drove the crank is a load now, and the new drive has nothing to do.
+        load = Load("follower", couple=-float(one.torque[i]))
+        machine = Machine(mirrored, turned, loads=(load,))
+        given = (np.pi - motion.theta4[i], -motion.omega4[i], -motion.alpha4[i])
+        two = rigid_forces(machine, *given)
+        size = float(np.max(np.abs(one.torque)))
+        assert abs(two.torque) < 1e-12 * size
+        pairs = (("12", "41"), ("23", "34"), ("34", "23"), ("41", "12"))
+        for new, old in pairs:
+            # Mirrored in x; force of i upon j becomes that of j upon i.
+            np.testing.assert_allclose(two["x" + new], one["x" + old][i], atol=1e-11)
+            np.testing.assert_allclose(two["y" + new], -one["y" + old][i], atol=1e-11)
+
+
+def test_broadcasting_of_speeds_and_accelerations() -> None:
+    machine = loaded(LINKAGES["crank rocker"])
+    theta, speed = np.linspace(0.0, 6.0, 7), np.array([[3.0], [-5.0]])
+    acceleration = np.array([0.0, 4.0])[:, np.newaxis, np.newaxis]
+    whole = rigid_forces(machine, theta, speed, acceleration)
+    assert whole.f23.shape == (2, 2, 7, 2)
+    assert whole.torque.shape == np.shape(whole.error) == (2, 2, 7)
+    for place in np.ndindex(2, 2, 7):
+        single = rigid_forces(
+            machine, theta[place[2]], speed[place[1], 0], acceleration[place[0], 0, 0]
+        )
+        assert single.f23.shape == (2,)
+        np.testing.assert_allclose(whole.torque[place], single.torque, rtol=1e-12)
+        np.testing.assert_allclose(whole.f41[place], single.f41, rtol=1e-12, atol=1e-11)
+    assert whole.passed
+
+
+def test_long_arrays_are_those_of_their_parts() -> None:
+    machine = Machine(LINKAGES["crank rocker"], masses_of(LINKAGES["crank rocker"]))
+    theta = np.linspace(0.0, 50.0, 10_001)
+    whole = rigid_forces(machine, theta, 3.0)
+    part = rigid_forces(machine, theta[8000:], 3.0)
+    for name, values in whole.values.items():
+        np.testing.assert_allclose(values[8000:], part[name], rtol=1e-13, atol=1e-13)
+    tall = rigid_forces(machine, theta[:, np.newaxis], np.array([3.0, 4.0]))
+    np.testing.assert_allclose(tall.torque[:, 0], whole.torque, rtol=1e-13, atol=1e-13)
+
+
+@EVERY
+def test_the_smaller_modules_agree_with_the_whole_one(linkage) -> None:
+    straight = Machine(linkage, masses_of(linkage, straight=True))
+    bent = {link: own + MassDistribution(across=0.0) for link, own in straight.masses.items()}
+    bent["crank"] = bent["crank"] + MassDistribution(mass=1e-300, across=1e-300, inertia=1e-300)
+    constant = rigid_forces(straight, THETA, 5.0)
+    whole = rigid_forces(Machine(linkage, bent), THETA, 5.0)
+    varied = rigid_forces(straight, THETA, 5.0, np.full(THETA.shape, 1e-300))
+    for name, values in constant.values.items():
+        size = np.max(np.abs(values)) or 1.0
+        np.testing.assert_allclose(whole[name], values, atol=1e-12 * size, err_msg=name)
+        np.testing.assert_allclose(varied[name], values, atol=1e-12 * size, err_msg=name)
+
+
+def test_no_angles_no_forces() -> None:
+    found = rigid_forces(smith(), np.zeros(0), 1.0)
+    assert found.f12.shape == (0, 2)
+    assert found.passed
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"theta": [0.0, 3.0]}, "0.72"),
+        ({"theta": np.nan}, "theta"),
+        ({"theta": "abc"}, "theta"),
+        ({"speed": np.inf}, "speed"),
+        ({"acceleration": np.nan}, "acceleration"),
+        ({"speed": np.ones(3), "theta": np.ones(2)}, "broadcast"),
+        ({"outputs": ("pin",)}, "outputs"),
+        ({"outputs": ()}, "outputs"),
+        ({"speed": 1e200}, "float"),
+    ],
+)
+def test_refusals_name_what_is_wrong(given, named) -> None:
+    # (3, 2.5, 1, 3) reaches crank angles of 0.72 to 1.62 rad either way.
+    linkage = FourBar(0.3, 0.25, 0.1, 0.3)
+    machine = Machine(linkage, masses_of(linkage))
+    with pytest.raises(BadInput, match=named):
+        rigid_forces(machine, **{"theta": 1.0, "speed": 1.0, **given})
+    with pytest.raises(BadInput, match="machine"):
+        rigid_forces(linkage, 1.0, 1.0)
+
+
+def test_what_was_not_asked_for_is_refused() -> None:
+    found = driving_torque(smith(), THETA, 10.0)
+    for name in ("f12", "shaking_force", "sliding_couple"):
+        with pytest.raises(BadInput, match="ask for it"):
+            getattr(found, name)
+    with pytest.raises(BadInput, match="joint"):
+        found.plot(joint="13")
+
+
+def test_files_and_copies(tmp_path) -> None:
+    found = rigid_forces(smith(), THETA[:6], 10.0)
+    told = json.loads(found.save(tmp_path / "f.json").read_text())
+    assert told["x34"] == found["x34"].tolist()
+    rows = found.save(tmp_path / "f.csv").read_text().splitlines()
+    assert len(rows) == 7
+    assert {"theta2", "x12", "torque", "shaking_moment", "error"} <= set(rows[0].split(","))
+    with np.load(found.save(tmp_path / "f.npz")) as stored:
+        np.testing.assert_array_equal(stored["y41"], found["y41"])
+    copy = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(copy.error, found.error)
+    assert copy.passed
+
+
+def test_pictures() -> None:
+    found = rigid_forces(smith(), np.linspace(0.0, TURN, 361), 10.0)
+    polar = found.plot(joint="34")
+    curve = polar.lines[0].get_xydata()
+    np.testing.assert_array_equal(curve, found.f34)
+    texts = {item.get_text() for item in polar.texts}
+    assert {"0°", "30°", "330°"} <= texts
+    torque = found.plot(joint="torque")
+    np.testing.assert_array_equal(torque.lines[0].get_ydata(), found.torque)
+    assert found.plot().get_title() == "force on the frame"

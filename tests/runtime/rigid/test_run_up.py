@@ -1,0 +1,396 @@
+"""Machines under a motor: against solutions by hand, energies, and runs of more digits."""
+
+from __future__ import annotations
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.rigid import (
+    Load,
+    Machine,
+    MassDistribution,
+    Spring,
+    TorqueLine,
+    TorsionSpring,
+    run_up,
+)
+from elastolink.runtime.rigid.one_freedom import OneFreedom
+from elastolink.runtime.rigid.stepping import Goals, _Events
+from scipy.optimize import brentq
+from scipy.special import ellipk
+
+ROCKER = FourBar(0.3, 0.1, 0.28, 0.25)
+LINKAGES = [ROCKER, SliderCrank(0.1, 0.35, 0.04), QuickReturn(0.3, 0.1, 0.6)]
+TURN = 2.0 * np.pi
+
+
+def machine_on(linkage, **more):
+    bodies = ((0.4, 0.03, 0.01, 0.002), (0.7, 0.15, -0.04, 0.006), (0.6, 0.1, 0.02, 0.004))
+    masses = {
+        link: MassDistribution.about_centre(*body)
+        for link, body in zip(linkage.links, bodies, strict=True)
+    }
+    return Machine(linkage, masses, **more)
+
+
+def disc(inertia=0.05, **more):
+    """Return a machine of which the crank alone has inertia."""
+    return Machine(ROCKER, {"crank": MassDistribution(inertia=inertia)}, **more)
+
+
+def test_a_disc_approaches_the_no_load_speed_exponentially() -> None:
+    motor = TorqueLine(stall=4.0, no_load_speed=50.0)
+    run = run_up(disc(), motor, duration=2.0, tolerance=1e-11)
+    # J dw/dt = M0 (1 - w/w0)
+    expected = 50.0 * -np.expm1(-run.time * 4.0 / (0.05 * 50.0))
+    # Ten steps of 1e-11 each, relative to a speed of 50 rad/s.
+    np.testing.assert_allclose(run.speed, expected, atol=1e-8)
+    np.testing.assert_allclose(run.torque, 4.0 - 0.08 * expected, atol=1e-9)
+    assert run.status == "finished"
+    assert run.time[-1] == 2.0
+    assert run.passed
+
+
+def test_the_flywheel_adds_to_the_crank() -> None:
+    one = run_up(disc(0.05), 2.0, duration=1.0, flywheel=0.15)
+    other = run_up(disc(0.2), 2.0, duration=1.0)
+    np.testing.assert_allclose(one.speed, 10.0 * one.time, rtol=1e-8, atol=1e-9)
+    np.testing.assert_allclose(one.angle, other.angle, rtol=1e-9)
+
+
+def test_a_heavy_crank_swings_with_the_period_of_a_pendulum() -> None:
+    crank = MassDistribution.about_centre(2.0, 0.08, 0.0, 0.003)
+    machine = Machine(ROCKER, {"crank": crank}, gravity=(0.0, -9.81))
+    start = -math.pi / 2 + 1.2
+    omega = math.sqrt(2.0 * 9.81 * 0.08 / crank.inertia)
+    period = 4.0 * float(ellipk(math.sin(0.6) ** 2)) / omega
+    run = run_up(machine, 0.0, theta0=start, duration=3 * period, reversals=True, tolerance=1e-11)
+    assert run.status == "finished"
+    angle, speed = run.at(np.array([0.5, 1.0, 2.0, 3.0]) * period)
+    np.testing.assert_allclose(angle + math.pi / 2, [-1.2, 1.2, 1.2, 1.2], atol=1e-8)
+    np.testing.assert_allclose(speed, 0.0, atol=1e-6)
+    # Without leave to turn back it is at rest after half a period.
+    short = run_up(machine, 0.0, theta0=start, duration=3 * period, tolerance=1e-11)
+    assert short.status == "stalled"
+    assert short.time[-1] == pytest.approx(period / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_reduced_inertia_is_twice_the_kinetic_energy(linkage) -> None:
+    machine = machine_on(linkage)
+    theta = np.linspace(0.0, TURN, 64, endpoint=False)
+    inertia, half_slope = OneFreedom(machine).coefficients(theta)
+    energy = 2.0 * machine.kinetic_energy(theta, 1.0)
+    np.testing.assert_allclose(inertia, energy, rtol=1e-13)
+    harmonics = np.fft.rfft(2.0 * machine.kinetic_energy(np.arange(512) * TURN / 512, 1.0))
+    slope = np.fft.irfft(1j * np.arange(harmonics.size) * harmonics, n=512)[::8]
+    np.testing.assert_allclose(2.0 * half_slope, slope, atol=1e-11 * np.max(np.abs(slope)))
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_energy_is_what_motor_loads_and_dampers_gave(linkage) -> None:
+    last = linkage.links[2]
+    machine = machine_on(
+        linkage,
+        gravity=(0.0, -9.81),
+        loads=(Load(last, lambda at: -3.0 * at.velocity, given="motion", along=0.02),),
+        springs=(
+            Spring(("frame", 0.1, 0.6), (last, 0.05, 0.0), 40.0, 0.2, damping=1.0),
+            TorsionSpring("crank", linkage.links[1], damping=0.02),
+        ),
+    )
+    run = run_up(machine, TorqueLine(8.0, 60.0), revolutions=2, flywheel=0.02)
+    assert run.status == "finished"
+    assert run.revolutions == pytest.approx(2.0, abs=1e-9)
+    assert run.passed
+    # The forces along the run ask for the motor's torque, less the flywheel's share.
+    needed = run.forces().torque + 0.02 * run.acceleration
+    np.testing.assert_allclose(needed, run.torque, atol=1e-10)
+
+
+def test_the_error_figure_covers_a_run_of_more_digits() -> None:
+    machine = machine_on(ROCKER, gravity=(0.0, -9.81))
+    ratios = []
+    exact = run_up(machine, TorqueLine(6.0, 60.0), duration=0.2, tolerance=1e-11)
+    for tolerance in (1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
+        run = run_up(machine, TorqueLine(6.0, 60.0), duration=0.2, tolerance=tolerance)
+        actual = np.max(np.abs(run.angle - exact.angle))
+        assert actual <= run.error
+        ratios.append(run.error / actual)
+    assert np.median(ratios) <= 1e3
+
+
+def heavy_slider(**more):
+    """Return a slider-crank whose reduced inertia varies elevenfold in a turn."""
+    masses = {"crank": MassDistribution.uniform_bar(0.3, 0.1), "slider": MassDistribution(1.0)}
+    return Machine(SliderCrank(0.1, 0.3), masses, **more)
+
+
+def angle_by_quadrature(torque: float, duration: float) -> float:
+    """Return the heavy slider's angle after a run from rest, without an integrator of motions.
+
+    A constant torque has given ``torque theta``, so ``t`` is the integral of ``sqrt(J / (2 torque
+    theta))``; in ``s = sqrt(theta)`` it has no singularity.
+    """
+
+    def rate(s):
+        theta = s * s
+        slide = -0.1 * np.sin(theta) - 0.01 * np.sin(theta) * np.cos(theta) / np.sqrt(
+            0.09 - 0.01 * np.sin(theta) ** 2
+        )
+        return np.sqrt(2.0 * (0.001 + slide**2) / torque)
+
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+
+    def elapsed(s):
+        # Pieces of a quarter of a turn at most.
+        ends = np.sqrt(np.linspace(0.0, s * s, int(s * s / 1.5) + 2))
+        middle, half = (ends[1:] + ends[:-1]) / 2.0, np.diff(ends) / 2.0
+        return float(np.sum(rate(middle[:, None] + half[:, None] * nodes) @ weights * half))
+
+    return float(brentq(lambda s: elapsed(s) - duration, 0.1, 200.0, xtol=1e-14, rtol=1e-14)) ** 2
+
+
+def test_a_long_run_is_right_at_every_tolerance() -> None:
+    """The angle by quadrature, and the energy at every time, which is the torque's work."""
+    exact = angle_by_quadrature(5.0, 1.0)
+    assert angle_by_quadrature(5.0, 3.0) == pytest.approx(4186.4505, abs=1e-4)  # by runs to 1e-12
+    ratios = []
+    for tolerance in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9):
+        run = run_up(heavy_slider(), 5.0, duration=1.0, tolerance=tolerance, samples=101)
+        actual = abs(run.angle[-1] - exact)
+        assert actual <= run.error
+        # The angle over 70 turns: no run is off by more than a thousandth of it.
+        assert actual <= 1e-3 * exact
+        assert run.error <= 0.2 * exact
+        assert run.passed
+        # The check's limit, of the largest energy; twice, for the samples lie where they will.
+        np.testing.assert_allclose(run.energy, 5.0 * run.angle, atol=2e-6 * 5.0 * exact)
+        ratios.append(run.error / actual)
+    assert np.median(ratios) <= 1e3
+
+
+def test_a_machine_left_to_itself_keeps_its_energy() -> None:
+    run = run_up(heavy_slider(), 0.0, speed0=100.0, duration=1.0, tolerance=1e-3)
+    # No power flows: the unknown that stands for the energy does not move at all.
+    np.testing.assert_allclose(run.energy, run.energy[0], rtol=1e-12)
+    assert run.steps >= 12 * run.revolutions
+
+
+def test_the_energy_limit_does_not_loosen() -> None:
+    limits = {
+        run_up(heavy_slider(), 5.0, revolutions=1, tolerance=tolerance)
+        .checks["energy less work, relative"]
+        .limit
+        for tolerance in (1e-3, 1e-9)
+    }
+    assert limits == {1e-6}
+
+
+def test_the_fluctuation_is_that_of_the_last_turn() -> None:
+    run = run_up(heavy_slider(), 0.0, speed0=100.0, revolutions=1.5)
+    # The kinetic energy stays: speeds go with the inverse root of the inertia.
+    theta = np.linspace(0.0, TURN, 20001)
+    speed = 1.0 / np.sqrt(OneFreedom(heavy_slider()).coefficients(theta)[0])
+    expected = 2.0 * np.ptp(speed) / (np.max(speed) + np.min(speed))
+    # The 2001 times miss a peak by at most the square of their spacing.
+    assert run.fluctuation == pytest.approx(expected, rel=1e-4)
+    assert run_up(heavy_slider(), 0.0, speed0=100.0, revolutions=0.5).fluctuation is None
+
+
+def test_time_symmetry() -> None:
+    """Backwards from the end, with speeds turned round, a machine without losses comes back."""
+    machine = machine_on(ROCKER, gravity=(0.0, -9.81))
+    there = run_up(machine, 0.0, duration=0.4, speed0=12.0, tolerance=1e-11)
+    back = run_up(
+        machine,
+        0.0,
+        duration=0.4,
+        theta0=float(there.angle[-1]),
+        speed0=-float(there.speed[-1]),
+        tolerance=1e-11,
+    )
+    assert back.angle[-1] == pytest.approx(0.0, abs=1e-8)
+    assert back.speed[-1] == pytest.approx(-12.0, rel=1e-8)
+
+
+def test_a_weak_motor_does_not_start() -> None:
+    machine = machine_on(ROCKER, gravity=(0.0, -9.81))
+    run = run_up(machine, 0.01, revolutions=1)
+    assert run.status == "stalled"
+    assert "cannot start" in run.message
+    assert run.time.tolist() == [0.0]
+    still = run_up(disc(), 0.0, duration=1.0)
+    assert (still.status, still.message) == ("stalled", "at rest in equilibrium")
+
+
+def test_a_load_may_stall_it_on_the_way() -> None:
+    brake = Load("crank", couple=lambda t: -3.0 * (t > 1.0))
+    run = run_up(disc(loads=(brake,)), 1.0, revolutions=2, tolerance=1e-9)
+    # 1 N m over 1 rad, then -2 N m: at rest after another half radian.
+    assert run.status == "stalled"
+    # The jump is met within a step, to its tolerance.
+    assert run.angle[-1] == pytest.approx(1.5, abs=1e-5)
+
+
+def test_a_load_may_wake_in_a_later_turn() -> None:
+    brake = Load("crank", couple=lambda t: -3.0 * (t > 10.0))
+    run = run_up(disc(loads=(brake,)), 1.0, revolutions=5, tolerance=1e-9)
+    assert run.status == "stalled"
+    assert run.angle[-1] == pytest.approx(15.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
+def test_the_table_is_the_machine(linkage) -> None:
+    spring = Spring(("frame", 0.1, 0.6), (linkage.links[2], 0.05, 0.0), 40.0, 0.2)
+    system = OneFreedom(machine_on(linkage, gravity=(0.0, -9.81), springs=(spring,)))
+    table = system.table()
+    assert table is not None and table.loaded
+    for theta in (-3.0, 0.1, 2.5, 40.0):
+        direct = (*system.coefficients(theta), system.load(theta, 0.0))
+        size = np.abs([system.coefficients(0.0)[0]] * 2 + [table(0.3)[2]])
+        np.testing.assert_allclose(table(theta), direct, atol=1e-11 * np.max(size))
+    # What winds up, depends on the speed, or may change its mind is evaluated directly.
+    for more in (
+        {"springs": (TorsionSpring("frame", "crank", 2.0),)},
+        {"springs": (TorsionSpring("frame", "crank", damping=2.0),)},
+        {"loads": (Load("crank", couple=lambda t: np.cos(t)),)},
+    ):
+        other = OneFreedom(machine_on(linkage, **more)).table()
+        assert other is not None and not other.loaded
+    assert OneFreedom(machine_on(FourBar(0.3, 0.25, 0.1, 0.3))).table() is None
+
+
+def test_backwards() -> None:
+    run = run_up(disc(), TorqueLine(-2.0, -40.0), revolutions=1)
+    assert run.revolutions == pytest.approx(-1.0, abs=1e-9)
+    assert run.passed
+
+
+def test_a_rocking_crank_ends_at_its_fold() -> None:
+    linkage = FourBar(0.3, 0.25, 0.1, 0.3)
+    low, high = linkage.crank_ranges()[-1]
+    run = run_up(machine_on(linkage), 1.0, theta0=(low + high) / 2, duration=5.0)
+    assert run.status == "fold"
+    assert run.angle[-1] == pytest.approx(high, abs=2e-6)
+
+
+def test_step_limit() -> None:
+    run = run_up(disc(), 1.0, duration=100.0, max_steps=3)
+    assert run.status == "step limit"
+    assert not run.passed
+
+
+def test_torques_of_speed_angle_and_time() -> None:
+    laws = (
+        lambda w: 2.0,
+        lambda w, angle: 2.0 + 0.0 * angle,
+        lambda w, angle, time: 2.0 + 0.0 * time,
+        lambda *given: 2.0,
+        2.0,
+    )
+    ends = [run_up(disc(), law, duration=0.5).angle[-1] for law in laws]
+    np.testing.assert_allclose(ends, 2.0 / 0.05 * 0.125, rtol=1e-9)
+
+
+def test_copies_and_pictures() -> None:
+    run = run_up(disc(), TorqueLine(2.0, 40.0), duration=0.5, samples=11)
+    copy = pickle.loads(pickle.dumps(run))
+    np.testing.assert_array_equal(copy.at(0.25), run.at(0.25))
+    line = run.plot().lines[0]
+    np.testing.assert_array_equal(line.get_ydata(), run.speed)
+    assert set(run.to_dict()) >= {"time", "angle", "speed", "torque", "status"}
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({}, "no end"),
+        ({"revolutions": -1.0}, "revolutions"),
+        ({"duration": math.nan}, "duration"),
+        ({"duration": 1.0, "speed0": math.inf}, "speed0"),
+        ({"duration": 1.0, "tolerance": 1.0}, "tolerance"),
+        ({"duration": 1.0, "flywheel": -1.0}, "flywheel"),
+        ({"duration": 1.0, "samples": 1}, "samples"),
+        ({"duration": 1.0, "torque": "much"}, "torque"),
+        ({"duration": 1.0, "torque": math.nan}, "torque"),
+        ({"duration": 1.0, "torque": lambda: 1.0}, "torque"),
+        ({"revolutions": "x"}, "revolutions"),
+        ({"revolutions": True}, "revolutions"),
+        ({"duration": 1.0, "speed0": "a"}, "speed0"),
+        ({"duration": 1.0, "theta0": None}, "theta0"),
+        ({"duration": 1.0, "flywheel": "a"}, "flywheel"),
+        ({"duration": 1.0, "samples": 10.5}, "samples"),
+        ({"duration": 1.0, "max_steps": 0}, "max_steps"),
+        ({"duration": 1.0, "tolerance": "fine"}, "tolerance"),
+        ({"duration": 1.0, "torque": lambda w: None}, "None from the torque law"),
+        ({"duration": 1.0, "torque": lambda w: [1.0, 2.0]}, "torque law at speed 0 rad/s"),
+        ({"duration": 1.0, "torque": lambda w: math.nan if w > 3 else 5.0}, "nan from the torque"),
+    ],
+)
+def test_refusals(given, named) -> None:
+    with pytest.raises(BadInput, match=named):
+        run_up(disc(), **{"torque": 1.0, **given})
+
+
+def test_refusals_of_machines() -> None:
+    with pytest.raises(BadInput, match="machine"):
+        run_up(None, 1.0, revolutions=1)
+
+
+@pytest.mark.parametrize("torque", [1e12, -1e12, 1e306])
+def test_a_torque_beyond_all_machines(torque) -> None:
+    with pytest.raises(BadInput, match=r"crank speed of .* smaller torque"):
+        run_up(machine_on(LINKAGES[2]), torque, duration=1e-3, tolerance=1e-6)
+
+
+def test_a_start_beyond_all_machines() -> None:
+    with pytest.raises(BadInput, match="crank speed of"):
+        run_up(disc(), 1.0, duration=1.0, speed0=1e200)
+
+
+def test_a_torque_law_is_refused_on_a_rocking_crank_too() -> None:
+    linkage = FourBar(0.3, 0.25, 0.1, 0.3)
+    middle = float(np.mean(linkage.crank_ranges()[-1]))
+    with pytest.raises(BadInput, match="torque law"):
+        run_up(machine_on(linkage), lambda w: None if w else 1.0, theta0=middle, duration=5.0)
+
+
+def test_steps_that_fail_are_a_fold_only_near_one() -> None:
+    linkage = FourBar(0.3, 0.25, 0.1, 0.3)
+    low, high = linkage.crank_ranges()[-1]
+    goals = Goals(None, 1.0, False, 10)
+    for machine, angle, status in (
+        (machine_on(linkage), high - 1e-5, "fold"),
+        (machine_on(linkage), (low + high) / 2, "step limit"),
+        (disc(), 0.3, "step limit"),
+    ):
+        state = np.array([angle, 1.0, 0.0])
+        assert _Events(OneFreedom(machine), state, goals).failed(state)[0] == status
+
+
+@pytest.mark.parametrize("theta0", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize("offset", [0.0, 0.0123])
+def test_a_massless_crank_has_no_inertia_at_its_dead_centres(theta0, offset) -> None:
+    machine = Machine(SliderCrank(0.1, 0.3, offset), {"slider": MassDistribution(1.0)})
+    with pytest.raises(BadInput, match="inertia at every crank angle; give the crank"):
+        run_up(machine, 1.0, duration=1.0, theta0=theta0)
+    # A flywheel is inertia enough, however light against the slider's.
+    run = run_up(machine, 1.0, revolutions=1, theta0=theta0, flywheel=1e-6)
+    assert run.status == "finished"
+    assert run.passed
+
+
+def test_without_inertia_nothing_accelerates() -> None:
+    slider = SliderCrank(0.1, 0.35)
+    machine = Machine(slider, {"slider": MassDistribution(mass=1.0)})
+    with pytest.raises(BadInput, match="inertia"):
+        run_up(machine, 1.0, duration=1.0)
+    with pytest.raises(BadInput, match="TorqueLine"):
+        TorqueLine(3.0, -20.0)
+    with pytest.raises(BadInput, match="TorqueLine"):
+        TorqueLine(3.0, math.inf)

@@ -1,0 +1,375 @@
+"""Scenes: the built-in data against the printed numbers, overrides, and what follows from them."""
+
+import math
+import pickle
+import subprocess
+import sys
+
+import pytest
+from elastolink.derive.spec import ModelSpec
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.scenes import (
+    Scene,
+    list_scenes,
+    load_scene,
+    scene_from_document,
+    scene_titles,
+)
+
+INCH, LBF = 0.0254, 4.4482216152605
+RPM = math.pi / 30
+THICKNESSES = {"sixteenth": 1 / 16, "threesixtyfourths": 3 / 64, "thirtysecond": 1 / 32}
+PROPORTIONS = {"5152": (5, 1, 5, 2), "101104": (10, 1, 10, 4)}
+RIGS = [(p, t) for p in PROPORTIONS for t in THICKNESSES]
+RIG = "smith_1972_5152_sixteenth_inch"
+
+
+def test_the_promised_scenes_are_there():
+    promised = {f"smith_1972_{p}_{t}_inch" for p, t in RIGS}
+    promised |= {f"smith_1972_{n}" for n in ("2122", "4144", "54_04_54_3", "12_6_12_12")}
+    promised |= {"smith_1972_10_8_10_10", "mathieu", "hill_example"}
+    assert promised <= set(list_scenes())
+    assert list(list_scenes()) == sorted(list_scenes())
+
+
+@pytest.mark.parametrize("name", list_scenes())
+def test_a_built_in_scene_loads_says_its_source_and_survives_a_round_trip(name):
+    scene = load_scene(name)
+    assert isinstance(scene, Scene)
+    assert scene.title and scene.source
+    assert scene_titles()[name] == (scene.title, scene.source)
+    again = pickle.loads(pickle.dumps(scene))
+    assert again == scene and hash(again) == hash(scene)
+    assert again.digest() == load_scene(name).digest()
+
+
+@pytest.mark.parametrize(("proportions", "thickness"), RIGS)
+def test_rig_lengths_stiffness_and_mass(proportions, thickness):
+    scene = load_scene(f"smith_1972_{proportions}_{thickness}_inch")
+    links = [scene.get(f"links.{name}") for name in ("frame", "crank", "coupler", "follower")]
+    unit = 15 * INCH / PROPORTIONS[proportions][2]
+    assert links == pytest.approx([n * unit for n in PROPORTIONS[proportions]], rel=1e-15)
+    # Section 9.4.2: 171.5 lbf in^2 at 1/16 in, and with the cube of the thickness elsewhere.
+    stiffness = 171.5 * LBF * INCH**2 * (16 * THICKNESSES[thickness]) ** 3
+    assert scene.get("coupler.bending_stiffness") == pytest.approx(stiffness, rel=1e-14)
+    # Section 9.5.3: 26 Hz and 20 Hz observed; 13 Hz by proportion.
+    observed = {"sixteenth": 26.0, "threesixtyfourths": 20.0, "thirtysecond": 13.0}[thickness]
+    assert scene.get("coupler.natural_frequency") == pytest.approx(2 * math.pi * observed)
+    mass = scene.get("coupler.mass_per_length")
+    rate = (math.pi / links[2]) ** 2 * math.sqrt(stiffness / mass)
+    assert rate == pytest.approx(2 * math.pi * observed, rel=1e-14)
+
+
+def test_stiffness_and_frequency_of_the_thick_coupler_make_a_steel_strip():
+    # A quarter inch by 1/16 in of steel (0.283 lbm/in^3) weighs 0.00442 lbm/in; the observed
+    # frequency gives a mass within ten per cent of it, so the reading of the data is right.
+    mass = load_scene(RIG).get("coupler.mass_per_length")
+    strip = 0.283 * 0.25 / 16 * 0.45359237 / INCH
+    assert mass == pytest.approx(strip, rel=0.1)
+
+
+@pytest.mark.parametrize(("proportions", "thickness"), RIGS)
+def test_the_eight_follower_inertias_of_section_9_4_1(proportions, thickness):
+    measured = load_scene(f"smith_1972_{proportions}_{thickness}_inch")["measured"]
+    printed = [0.0058, 0.0069, 0.0079, 0.0109, 0.0130, 0.0149, 0.0164, 0.0190]
+    spread = [0.0001, 0.0002, 0.0002, 0.0003, 0.0003, 0.0004, 0.0004, 0.0005]
+    unit = LBF * INCH
+    assert measured["follower_inertias"] == pytest.approx([i * unit for i in printed])
+    assert measured["follower_inertia_tolerances"] == pytest.approx([i * unit for i in spread])
+
+
+@pytest.mark.parametrize(("proportions", "thickness"), RIGS)
+def test_quoted_resonances_lie_near_the_fraction_that_their_region_names(proportions, thickness):
+    scene = load_scene(f"smith_1972_{proportions}_{thickness}_inch")
+    omega = scene.get("coupler.natural_frequency")
+    speeds = scene.get("measured.speeds", ())
+    regions = scene.get("measured.regions", ())
+    assert len(speeds) == len(regions)
+    for speed, region in zip(speeds, regions, strict=True):
+        assert speed == pytest.approx(2 * omega / region, rel=0.16)
+
+
+def test_chapter_4_linkage_is_printed_data_with_its_own_gravity():
+    scene = load_scene("smith_1972_12_6_12_12")
+    # The printed inertia is a uniform bar's, W l^2 / (3 g), with the g of the scene alone.
+    mass, length = scene.get("coupler.mass"), scene.get("links.coupler")
+    assert scene.get("coupler.inertia") == pytest.approx(0.125 * LBF * INCH, rel=1e-14)
+    assert mass * length**2 / 3 == pytest.approx(scene.get("coupler.inertia"), rel=1e-12)
+    assert scene.get("coupler.first_moment") == pytest.approx(mass * length / 2)
+    standard = load_scene("smith_1972_12_6_12_12", {"gravity.acceleration": 9.80665})
+    assert standard.get("coupler.mass") == pytest.approx(0.45359237, rel=1e-12)
+
+
+def test_derived_quantities_of_a_flexible_coupler():
+    bar = load_scene(RIG)["coupler"]
+    length = 15 * INCH
+    assert bar["mass"] == pytest.approx(bar["mass_per_length"] * length)
+    assert bar["inertia"] == pytest.approx(bar["mass_per_length"] * length**3 / 3)
+    assert bar["first_moment"] == pytest.approx(bar["mass_per_length"] * length**2 / 2)
+    assert bar["damping"] == 0.0 and bar["damping_ratio"] == 0.0
+    damped = load_scene(RIG, {"coupler.damping_ratio": 0.01})["coupler"]
+    assert damped["damping"] == pytest.approx(
+        0.02 * damped["mass_per_length"] * damped["natural_frequency"]
+    )
+    back = load_scene(RIG, {"coupler.damping": damped["damping"]})["coupler"]
+    assert back["damping_ratio"] == pytest.approx(0.01)
+
+
+def test_a_balanced_coupler_has_no_first_moment_and_its_own_module():
+    scene = load_scene(RIG, {"model.balanced": ["coupler"]})
+    assert scene.get("coupler.first_moment") == 0.0
+    assert scene.model_spec().balanced == ("coupler",)
+    with pytest.raises(BadInput, match=r"coupler\.first_moment.*model\.balanced"):
+        load_scene(RIG, {"model.balanced": ["coupler"], "coupler.first_moment": 0.1})
+
+
+def test_overrides_replace_keys_and_rivals():
+    scene = load_scene(RIG, {"model.modes": 3, "links.crank": "0.07 m"})
+    assert scene.model["modes"] == 3 and scene.get("links.crank") == 0.07
+    heavier = load_scene(RIG, {"coupler.mass_per_length": 0.2})
+    assert heavier.get("coupler.mass_per_length") == 0.2
+    assert heavier.get("coupler.natural_frequency") < scene.get("coupler.natural_frequency")
+    with pytest.raises(BadInput, match="exactly one"):
+        load_scene(RIG, {"coupler.mass_per_length": 0.2, "coupler.natural_frequency": "9 Hz"})
+    with pytest.raises(BadInput, match="exactly one"):
+        load_scene(RIG, {"coupler.natural_frequency": None})
+    assert load_scene(RIG, {"title": "mine"}).title == "mine"
+
+
+def test_overrides_take_numpy_values():
+    numpy = pytest.importorskip("numpy")
+    scene = load_scene(RIG, {"model.modes": numpy.int64(2), "links.crank": numpy.float64(0.07)})
+    assert scene.model["modes"] == 2
+    ranged = load_scene(RIG, {"operation.speed_range": numpy.array([10.0, 20.0])})
+    assert ranged.get("operation.speed_range") == (10.0, 20.0)
+
+
+@pytest.mark.parametrize(
+    "key", ["foo", "links", "", "links.", "links.crnk", "lnks.crank", "title.x"]
+)
+def test_wrong_override_keys_are_refused(key):
+    with pytest.raises(BadInput):
+        load_scene(RIG, {key: 1.0})
+
+
+def test_units_do_not_change_a_scene():
+    metric = {
+        "links.frame": 0.381,
+        "links.crank": "76.2 mm",
+        "links.coupler": "38.1 cm",
+        "links.follower": "0.5 ft",
+        "coupler.natural_frequency": "1560 rpm",
+    }
+    ours, theirs = load_scene(RIG), load_scene(RIG, metric)
+    for table in ("links", "coupler"):
+        for key, value in ours[table].items():
+            if key == "assembly":
+                assert theirs[table][key] == value
+            else:
+                assert theirs[table][key] == pytest.approx(value, rel=1e-14)
+
+
+def test_tables_cannot_be_changed_and_wrong_keys_name_the_right_one():
+    scene = load_scene(RIG)
+    with pytest.raises(TypeError):
+        scene["links"]["crank"] = 1.0
+    with pytest.raises(AttributeError):
+        scene.title = "other"
+    with pytest.raises(KeyError, match=r"links\.crnk.*did you mean crank"):
+        scene.get("links.crnk")
+    with pytest.raises(KeyError, match="did you mean links"):
+        scene["lnks"]
+    assert scene.get("links.crnk", 7) == 7 and scene.get("nothing.here", None) is None
+    assert "links" in scene and "function" not in scene
+    assert scene.get("links") == scene["links"]
+
+
+def test_the_model_spec_leaves_the_mode_count_open_where_one_module_serves_all():
+    spec = load_scene(RIG, {"model.modes": 4}).model_spec()
+    assert spec == ModelSpec("four_bar", "complete", flexible=("coupler",))
+    assert load_scene("mathieu").model_spec() == ModelSpec("hill", "plain")
+    assert load_scene("smith_1972_2122").model_spec() == ModelSpec("four_bar", "kinematics")
+    wanted = load_scene(RIG, {"model.outputs": ["stability"]}).model_spec()
+    assert wanted.outputs == ("stability",)
+
+
+def test_the_mechanism_has_the_lengths_of_the_scene():
+    linkage = load_scene("smith_1972_2122", {"links.assembly": "crossed"}).mechanism()
+    assert linkage.assembly == "crossed"
+    assert linkage.crank / linkage.frame == pytest.approx(0.5)
+    with pytest.raises(BadInput, match="a linkage"):
+        load_scene("mathieu").mechanism()
+
+
+def test_a_scene_without_anything_flexible_has_no_system():
+    with pytest.raises(BadInput, match="nothing vibrates"):
+        load_scene("smith_1972_2122").system()
+
+
+def test_series_of_unequal_length_are_filled_with_zeros():
+    scene = load_scene("mathieu", {"function.b": [0.0, 0.0, 0.5]})
+    assert scene.get("function.a") == (0.0, 1.0, 0.0)
+    assert scene.get("function.b") == (0.0, 0.0, 0.5)
+
+
+OWN = {
+    "title": "a slider-crank of my own",
+    "model": {
+        "mechanism": "slider_crank_rod",
+        "formulation": "linear",
+        "flexible": ["rod"],
+        "modes": 2,
+    },
+    "schema": {
+        "closed_in_modes": True,
+        "parameters": {"speed": "frequency"},
+        "links": {"crank": {"dimension": "length", "limit": "positive"}, "rod": "length"},
+        "rod": {"bending_stiffness": "bending_stiffness", "count": {"kind": "count", "default": 3}},
+    },
+    "links": {"crank": "10 cm", "rod": "0.3 m"},
+    "rod": {"bending_stiffness": 2.0},
+    "chart": {"x": "speed", "x_range": ["10 rpm", "20 rpm"]},
+}
+
+
+def test_a_mechanism_of_ones_own_declares_its_tables():
+    scene = scene_from_document("own", OWN)
+    assert scene.get("links.crank") == 0.1 and scene.get("rod.count") == 3
+    assert scene.get("chart.x_range") == pytest.approx((10 * RPM, 20 * RPM))
+    assert scene.model_spec() == ModelSpec("slider_crank_rod", "linear", flexible=("rod",))
+    assert scene.dimension("links.rod") == "length"
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        ({"links.crank": -1.0}, "links.crank"),
+        ({"links.crank": "3 kg"}, "[mass]"),
+        ({"links.wrist": 1.0}, "links.wrist"),
+        ({"links.rod": None}, "links.rod"),
+        ({"schema.links": {"rod": "lenght"}}, "schema.links.rod"),
+        ({"schema.links": {"rod": {"dimension": "length", "limits": 3}}}, "schema.links.rod"),
+        ({"schema.links": 3}, "schema.links"),
+        ({"schema.links": {"rod": 3}}, "schema.links.rod"),
+        ({"schema.parameters": {"speed": "speed"}}, "schema.parameters.speed"),
+    ],
+)
+def test_a_declared_table_is_checked_like_a_built_in_one(change, part):
+    with pytest.raises(BadInput) as caught:
+        scene_from_document("own", OWN, change)
+    assert part in str(caught.value)
+
+
+def test_listing_scenes_loads_no_heavy_package():
+    code = (
+        "import sys; from elastolink.runtime.scenes import scene_titles; scene_titles();"
+        "heavy = {'pint', 'matplotlib', 'scipy', 'sympy', 'numpy', 'jinja2'} & set(sys.modules);"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.fixture
+def own_module(tmp_path, monkeypatch):
+    """A module of an own mechanism: the packaged reduced coupler under another spec."""
+    import hashlib
+    import json
+    from dataclasses import asdict
+    from pathlib import Path
+
+    from elastolink import generated
+
+    spec = ModelSpec("own_linkage", "reduced", flexible=("coupler",))
+    source = Path(generated.__path__[0]) / "four_bar_coupler_reduced.py"
+    text = source.read_bytes()
+    (tmp_path / "own_module.py").write_bytes(text)
+    digest = hashlib.sha256(text).hexdigest()
+    row = {"module": "own_module", "spec": asdict(spec), "content": "0" * 32, "text": digest}
+    (tmp_path / "manifest.json").write_text(json.dumps({"modules": {spec.key(): row}}))
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
+    return spec
+
+
+def own_rig():
+    """The rig's numbers under names of one's own, as the module takes them."""
+    rig = load_scene(RIG)
+    lengths = {key: rig["links"][key] for key in ("frame", "crank", "coupler", "follower")}
+    bar = rig["coupler"]
+    return {
+        "model": {"mechanism": "own_linkage", "formulation": "reduced", "flexible": ["coupler"]},
+        "schema": {
+            "closed_in_modes": True,
+            "geometry": {**dict.fromkeys(lengths, "length"), "assembly": "dimensionless"},
+            "coupler": {
+                "bending_stiffness": "bending_stiffness",
+                "mass_per_length": "mass_per_length",
+                "damping": "damping_per_length",
+                "inertia": "inertia",
+                "first_moment": "first_moment",
+            },
+            "follower": {"inertia": "inertia"},
+        },
+        "geometry": {**lengths, "assembly": 1.0},
+        "coupler": {
+            key: bar[key]
+            for key in (
+                "bending_stiffness",
+                "mass_per_length",
+                "damping",
+                "inertia",
+                "first_moment",
+            )
+        },
+        "follower": {"inertia": rig.get("follower.inertia")},
+    }
+
+
+def test_an_own_scene_with_an_own_module_gives_the_same_system(own_module):
+    import numpy as np
+
+    scene = scene_from_document("own", own_rig(), {"model.modes": 2})
+    assert scene.model_spec() == own_module
+    own = scene.system()
+    packaged = load_scene(RIG, {"model.formulation": "reduced", "model.modes": 2}).system()
+    theta = np.linspace(0.0, 6.0, 7)
+    assert own.size == packaged.size == 2
+    for array in ("M", "B", "S", "K", "f", "g"):
+        assert np.array_equal(own.array(array, theta), packaged.array(array, theta))
+    assert own.provenance["module"] == "own_module"
+
+
+def test_an_own_scene_that_lacks_a_number_of_its_module_says_which(own_module):
+    document = own_rig()
+    del document["schema"]["follower"], document["follower"]
+    with pytest.raises(BadInput, match="follower_inertia: found nothing"):
+        scene_from_document("own", document, {"model.modes": 1}).system()
+
+
+def test_a_missing_module_names_the_command_that_makes_it():
+    with pytest.raises(BadInput, match="regenerate-equations"):
+        scene_from_document("own", own_rig(), {"model.modes": 1}).system()
+
+
+@pytest.mark.parametrize("change", [{"coupler.first_moment": 100.0}, {"coupler.inertia": 1e-9}])
+def test_an_inertia_that_no_body_has_is_refused(change):
+    with pytest.raises(BadInput, match=r"coupler\.inertia: .*first_moment\^2 / mass"):
+        load_scene("smith_1972_5152_sixteenth_inch", change)
+
+
+def test_a_point_mass_is_a_body():
+    rigid = load_scene(
+        "smith_1972_2122",
+        {"crank.mass": 2.0, "crank.first_moment": 0.2, "crank.inertia": 0.02},
+    )
+    assert rigid.get("crank.inertia") == 0.02
+
+
+@pytest.mark.parametrize("modes", ["2", 2.0, True])
+def test_only_a_whole_number_counts(modes):
+    with pytest.raises(BadInput, match=r"model\.modes: .*a whole number"):
+        load_scene("smith_1972_5152_sixteenth_inch", {"model.modes": modes})
+
+
+def test_an_axis_needs_two_values():
+    with pytest.raises(BadInput, match=r"chart\.x_points: found 1; expected at least 2"):
+        load_scene("smith_1972_5152_sixteenth_inch", {"chart.x_points": 1})

@@ -1,0 +1,300 @@
+"""Charts: perturbation boundaries of any order, kinds of instability, traced regions, options."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.charts.edge_rows import edge_curves
+from elastolink.runtime.charts.invariants import characteristic, instability_kind
+from elastolink.runtime.cli.application import main
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill.form import hill_form
+from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+
+RIG = "smith_1972_5152_sixteenth_inch"
+SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
+INERTIAS = ("follower_inertia", np.linspace(1e-4, 9e-4, 9))
+
+
+def rig(**overrides):
+    return el.load_scene(RIG, overrides=overrides).system()
+
+
+def mathieu():
+    return el.load_scene("mathieu").system()
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_error_of_the_overlay_falls_with_the_order(order):
+    """Halving mu divides the error of order N by 2^(N + 1) (even functions of mu: more)."""
+    mu = np.array([0.05, 0.1])
+    chart = el.stability_chart(
+        mathieu(), ("lam2", np.linspace(0.1, 0.6, 11)), ("mu", mu), order=order
+    )
+    at = chart.exact.regions.index(1)
+    gap = np.abs(chart.exact.lower[at] - chart.perturbation.lower[at])
+    # Mathieu's series of region 1 holds every power of mu.
+    assert gap[1] / gap[0] == pytest.approx(2.0 ** (order + 1), rel=0.15)
+    assert np.all(gap <= chart.perturbation.error[at] + chart.exact.error[at])
+    assert chart.order == order
+
+
+def test_order_one_is_called_first_order():
+    axes = ("lam2", np.linspace(0.1, 0.6, 5)), ("mu", np.array([0.01, 0.02]))
+    first, second = (el.stability_chart(mathieu(), *axes, order=order) for order in (1, 2))
+    assert first.first_order is first.perturbation
+    assert second.first_order is None
+
+
+@pytest.mark.parametrize("order", [1, 4])
+def test_overlay_along_the_speed_is_that_of_each_row(order):
+    """All rows at once against one function a row, the speed from lam2 = k / w^2."""
+    chart = el.stability_chart(rig(), SPEEDS, INERTIAS, order=order)
+    form = hill_form(rig())
+    curves = chart.perturbation
+    known = 0
+    for j, inertia in enumerate(curves.at):
+        f = form.function(1.0, follower_inertia=float(inertia))
+        row = perturbation_boundaries(f, 1.0, curves.regions, order)
+        for i in range(len(curves.regions)):
+            for lam2, speed in (
+                (row.lower[i], curves.lower[i, j]),
+                (row.upper[i], curves.upper[i, j]),
+            ):
+                if np.isnan(speed):
+                    assert np.isnan(lam2) or lam2 <= 0
+                else:
+                    expected = np.sqrt(form.stiffness() / lam2)
+                    assert speed == pytest.approx(expected, rel=1e-12)
+                    known += 1
+    assert known > 20
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_damped_overlay_along_the_speed_belongs_to_its_own_damping(order):
+    """At a drawn end, lam2 and K of that very speed: the perturbation gives this lam2 again."""
+    system = rig(**{"coupler.damping_ratio": 0.0004})
+    chart = el.stability_chart(system, SPEEDS, INERTIAS, order=order)
+    form = hill_form(system)
+    curves, checked = chart.perturbation, 0
+    for j, inertia in enumerate(curves.at):
+        f = form.function(1.0, follower_inertia=float(inertia))
+        for i, n in enumerate(curves.regions):
+            for side, speed in ((0, curves.lower[i, j]), (1, curves.upper[i, j])):
+                if np.isnan(speed):
+                    continue
+                damping = form.damping() / (2 * speed)
+                row = perturbation_boundaries(f, 1.0, (n,), order, damping)
+                lam2 = (row.lower, row.upper)[side][0]
+                assert lam2 == pytest.approx(form.stiffness() / speed**2, rel=1e-8)
+                checked += 1
+    assert checked > 4
+
+
+def test_figures_of_the_overlay_cover_what_is_drawn():
+    chart = el.stability_chart(rig(), SPEEDS, INERTIAS, order=4)
+    exact, near = chart.exact, chart.perturbation
+    for ends, others in ((exact.lower, near.lower), (exact.upper, near.upper)):
+        both = np.isfinite(ends) & np.isfinite(others)
+        assert both.sum() > 10
+        gap = np.abs(ends - others)[both]
+        assert np.all(gap <= (near.error + exact.error)[both])
+
+
+def test_heavy_loads_leave_gaps_not_lines():
+    """Where the orders do not converge nothing is drawn, and the legend says so."""
+    heavy = ("follower_inertia", np.linspace(4e-3, 6e-3, 5))
+    chart = el.stability_chart(rig(), ("speed", np.linspace(70.0, 99.0, 21)), heavy, order=4)
+    ends = np.concatenate([chart.perturbation.lower, chart.perturbation.upper])
+    exact = np.concatenate([chart.exact.lower, chart.exact.upper])
+    assert np.any((exact > 70.0) & (exact < 99.0))
+    assert not np.any((ends > 70.0) & (ends < 99.0))
+    assert np.any(np.isnan(ends))
+    labels = [text.get_text() for text in chart.plot().get_legend().get_texts()]
+    assert "boundary of order 4: none here" in labels
+
+
+def test_three_independent_parts_go_row_by_row():
+    """More parts than are done together: each row is its own function all the same."""
+    values = {"a": 0.02, "k": 1.0}
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", "k", np.eye(1)),
+        *(
+            Term("Kg", name, lambda theta, m=m: np.cos(m * theta)[:, None, None])
+            for m, name in ((1, "a"), (2, "square"), (3, "cube"))
+        ),
+    )
+
+    def scales(given):
+        a = np.asarray(given["a"], dtype=float)
+        k = np.asarray(given["k"], dtype=float)
+        return {"a": a, "square": a**2, "cube": a**3, "k": k}
+
+    system = LinearPeriodic(1, terms, values, scales)
+    rows = np.array([0.02, 0.05, 0.1])
+    chart = el.stability_chart(system, ("k", np.linspace(0.1, 1.3, 9)), ("a", rows), order=3)
+    for j, a in enumerate(rows):
+        f = PeriodicFunction(a=[0.0, a, a**2, a**3], b=[0.0] * 4)
+        row = hill_boundaries(f, 1.0, chart.exact.regions)
+        near = perturbation_boundaries(f, 1.0, chart.exact.regions, 3)
+        # Region 0 has no lower end.
+        lower = np.where(np.isfinite(row.lower), row.lower, np.nan)
+        np.testing.assert_allclose(chart.exact.lower[:, j], lower, rtol=1e-10)
+        lower = np.where(np.isfinite(near.lower), near.lower, np.nan)
+        np.testing.assert_allclose(chart.perturbation.lower[:, j], lower, rtol=1e-10)
+
+
+# Kinds of instability ----------------------------------------------------------------------------
+
+
+def test_kinds_are_those_of_the_largest_multiplier():
+    system = rig(**{"model.modes": 2})
+    speeds = np.concatenate([np.linspace(78.0, 82.0, 12), [81.4000, 81.4005], [96.5, 99.0]])
+    speeds = np.sort(speeds)
+    chart = el.stability_chart(system, ("speed", speeds), ("follower_inertia", [6.55e-4, 7e-4]))
+    direct = el.floquet_multipliers(
+        system, speeds[None], follower_inertia=np.array([6.55e-4, 7e-4])[:, None]
+    )
+    top = direct.multipliers[..., 0]
+    seen = set()
+    for place in np.ndindex(chart.stable.shape):
+        if chart.stable[place]:
+            assert chart.kind[place] == 0
+            continue
+        real = abs(top[place].imag) < 1e-8
+        wanted = (1 if top[place].real > 0 else -1) if real else 2
+        assert chart.kind[place] == wanted
+        seen.add(wanted)
+    assert seen == {1, -1, 2}
+
+
+def test_kind_of_one_mode_is_the_sign_of_the_half_trace():
+    chart = el.stability_chart(
+        mathieu(), ("lam2", np.linspace(0.0, 2.0, 41)), ("mu", np.linspace(0.1, 1.0, 5))
+    )
+    assert set(np.unique(chart.kind)) == {-1, 0, 1}
+    np.testing.assert_array_equal(chart.kind != 0, ~chart.stable)
+    assert np.all(np.sign(chart.invariants[..., 0])[chart.kind != 0] == chart.kind[chart.kind != 0])
+    labels = [text.get_text() for text in chart.plot().get_legend().get_texts()]
+    assert "unstable: odd regions (multiplier below -1)" in labels
+    assert not any("combination" in label for label in labels)
+
+
+@pytest.mark.parametrize("reduced", [True, False])
+def test_kind_by_hand(reduced):
+    """Block matrices with a quadruple 1.2 exp(+-0.7 i), and with real pairs 1.3 and -1.4."""
+    turn = np.array([[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]])
+    quadruple = np.zeros((4, 4))
+    quadruple[:2, :2], quadruple[2:, 2:] = 1.2 * turn, turn / 1.2
+    pairs = np.diag([1.3, 1 / 1.3, np.cos(1.0), np.cos(1.0)])
+    pairs[2, 3], pairs[3, 2] = np.sin(1.0), -np.sin(1.0)
+    below = np.diag([1.3, 1 / 1.3, -1.4, -1 / 1.4])
+    matrices = np.stack([quadruple, pairs, below, np.eye(4)])
+    stable = np.array([False, False, False, True])
+    found = instability_kind(
+        characteristic(matrices, reduced=reduced), stable, hill=False, reduced=reduced
+    )
+    assert found.tolist() == [2, 1, -1, 0]
+
+
+# Traced regions --------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def traced():
+    speeds = ("speed", np.linspace(79.0, 83.0, 9))
+    inertias = ("follower_inertia", np.array([6.0e-4, 8.0e-4]))
+    return el.stability_chart(rig(**{"model.modes": 2}), speeds, inertias, edges=True)
+
+
+def test_traced_regions_are_joined_by_their_labels(traced):
+    edges = traced.edges
+    assert traced.checks["edges"].passed
+    assert edges.at.tolist() == [6.0e-4, 8.0e-4]
+    at = [i for i, kind in enumerate(edges.kind) if kind == "sum" and edges.harmonic[i] == 10]
+    assert len(at) == 1
+    width = edges.upper[at[0]] - edges.lower[at[0]]
+    assert np.all(width > 1e-4)
+    system = rig(**{"model.modes": 2})
+    for j, inertia in enumerate(edges.at):
+        middle = 0.5 * (edges.upper[at[0], j] + edges.lower[at[0], j])
+        assert not el.floquet_multipliers(system, middle, follower_inertia=inertia).stable
+
+
+def test_picture_labels_combinations(traced):
+    axes = traced.plot()
+    labels = {text.get_text() for text in axes.get_legend().get_texts()}
+    assert {"principal regions, traced", "sum regions, traced"} <= labels
+    assert any(text.get_text() == "1+2, 10" for text in axes.texts)
+    table = traced.to_dict()
+    assert "sum" in table["edges"]["kind"]
+
+
+def test_rows_of_a_long_axis_are_nine(monkeypatch):
+    seen = []
+
+    def fake(system, span, **parameters):
+        seen.append(parameters["b"])
+        raise el.BadInput("enough")
+
+    monkeypatch.setattr("elastolink.runtime.charts.edge_rows.stability_edges", fake)
+    with pytest.raises(el.BadInput, match="enough"):
+        edge_curves(None, ("speed", "b"), (np.array([1.0, 2.0]), np.linspace(0.0, 1.0, 500)))
+    assert seen == [0.0]
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        ({"order": 0}, "order"),
+        ({"order": 9}, "order"),
+        ({"order": 1.5}, "order"),
+        ({"order": True}, "order"),
+        ({"edges": True}, "edges"),
+        ({"rtol": 0.5}, "rtol"),
+    ],
+)
+def test_bad_options_are_one_clear_line(options, word):
+    axes = ("lam2", np.linspace(0.1, 0.6, 5)), ("mu", np.array([0.01, 0.02]))
+    with pytest.raises(el.BadInput, match=word) as caught:
+        el.stability_chart(mathieu(), *axes, **options)
+    assert "\n" not in str(caught.value)
+
+
+# Command line ------------------------------------------------------------------------------------
+
+LINE = ["chart", "mathieu", "--x", "lam2=0.1:1.4:21", "--y", "mu=0:0.5:9"]
+
+
+def test_command_takes_the_order(tmp_path, capsys):
+    picture = tmp_path / "chart.svg"
+    assert main([*LINE, "--order", "4", "--plot", str(picture)]) == 0
+    assert "boundary of order 4" in picture.read_text()
+    assert main([*LINE, "--order", "4", "--json"]) == 0
+    assert '"order": 4' in capsys.readouterr().out
+
+
+def test_command_refuses_a_bad_order(capsys):
+    assert main([*LINE, "--order", "9"]) == 2
+    assert "order" in capsys.readouterr().err
+
+
+def test_command_lists_traced_combinations(capsys):
+    line = [
+        "chart",
+        RIG,
+        "--set",
+        "model.modes=2",
+        "--x",
+        "speed=79:83:9rad/s",
+        "--y",
+        "follower_inertia=0.0006:0.0008:2",
+        "--edges",
+    ]
+    assert main(line) == 0
+    out = capsys.readouterr().out
+    assert "sum of 1 and 2" in out

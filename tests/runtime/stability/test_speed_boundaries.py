@@ -1,0 +1,312 @@
+"""Speeds of multipliers +1 and -1: Mathieu values, Hill boundaries, closed regions, damping."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.floquet.boundary_checks import parity
+from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
+from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from periodic_systems import named, wave
+from scipy.optimize import brentq
+from scipy.special import mathieu_a, mathieu_b
+
+
+def _beam(**changes) -> LinearPeriodic:
+    """Return qdd + C qd + (k + depth cos theta + w^2 pull cos theta) q = 0."""
+    values = {"k": 4.0, "depth": 0.0, "pull": 0.0, "C": 0.0, **changes}
+
+    def cosine(theta):
+        return np.cos(theta)[:, None, None]
+
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", "k", np.eye(1)),
+        Term("Kg", "depth", cosine),
+        Term("Kg", "pull", cosine, power=2),
+        Term("C", "C", np.eye(1)),
+    )
+    return LinearPeriodic(1, terms, values, named(values))
+
+
+def _coupled(**changes) -> LinearPeriodic:
+    """Two modes, periodic mass, Coriolis, centrifugal and axial terms."""
+    values = {"C": 0.0, "load": 1.0, **changes}
+
+    terms = (
+        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
+        Term("M", None, wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)),
+        Term("A", None, np.array([[0.1, -0.2], [0.3, 0.0]])),
+        Term("A", None, wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)),
+        Term("B", None, wave([[0.2, 0.1], [0.1, -0.3]], 1, 0.0)),
+        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
+        Term("Kg", "load", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        Term("C", "C", np.array([[0.4, 0.1], [0.1, 0.3]])),
+    )
+    return LinearPeriodic(2, terms, values, named(values))
+
+
+def test_mathieu_characteristic_values():
+    # x = theta/2: y'' + (a - 2 q cos 2x) y = 0 with a = 4 k/w^2, |q| = 2 depth/w^2.
+    found = speed_boundaries(_beam(depth=1.5), speed_range=(0.6, 10.0))
+    assert len(found.speed) == 12
+    assert found.passed
+    odd = np.repeat([1, 2, 3, 4, 5, 6], 2)[::-1]
+    for speed, sign, order in zip(found.speed, found.multiplier, odd, strict=True):
+        assert sign == (1 if order % 2 == 0 else -1)
+        a, q = 16.0 / speed**2, 3.0 / speed**2
+        gap = min(abs(mathieu_a(order, q) - a), abs(mathieu_b(order, q) - a))
+        assert gap < 1e-11 * a
+
+
+def test_inertial_pull_gives_the_hill_boundaries():
+    # Divided by w^2 the pull stands free of the speed: y'' + (lam2 + mu cos) y, lam2 = k/w^2.
+    function = PeriodicFunction(a=[0.0, 1.0], b=[0.0, 0.0])
+    regions = (1, 2, 3, 4)
+    bounds = hill_boundaries(function, np.array([0.2]), regions=regions)
+    found = speed_boundaries(_beam(pull=0.2), speed_range=(0.9, 20.0))
+    lam2 = np.sort(np.concatenate([bounds.lower[:, 0], bounds.upper[:, 0]]))
+    got = np.sort(4.0 / found.speed**2)
+    np.testing.assert_allclose(got[: len(lam2)], lam2, rtol=1e-11)
+
+
+def test_damped_boundaries_against_hill_and_against_bisection():
+    function = PeriodicFunction(a=[0.0, 1.0], b=[0.0, 0.0])
+    damping = 0.05
+    system = _beam(pull=0.3).with_terms(Term("C", None, 2 * damping * np.eye(1), power=1))
+    found = speed_boundaries(system, -1, speed_range=(2.0, 20.0))
+    bounds = hill_boundaries(function, np.array([0.3]), regions=(1,), damping=damping)
+    expected = 2.0 / np.sqrt([bounds.upper[0, 0], bounds.lower[0, 0]])
+    np.testing.assert_allclose(found.speed, expected, rtol=1e-11)
+
+    def distance(speed):
+        matrix = monodromy(system, speed).matrix
+        return np.linalg.det(matrix + np.eye(2))
+
+    middle = np.mean(found.speed)
+    assert brentq(distance, 2.0, middle, xtol=1e-14) == pytest.approx(found.speed[0], rel=1e-11)
+    assert brentq(distance, middle, 20.0, xtol=1e-14) == pytest.approx(found.speed[1], rel=1e-11)
+
+
+def test_damping_closes_the_regions():
+    # The first region of depth d closes at C = d/(2 sqrt k) to first order: 0.1/4 = 0.025.
+    system = _beam(depth=0.1)
+    assert len(speed_boundaries(system, -1, speed_range=(3.0, 6.0), C=0.02).speed) == 2
+    assert len(speed_boundaries(system, -1, speed_range=(3.0, 6.0), C=0.03).speed) == 0
+
+
+def test_constant_coefficients_have_closed_regions():
+    found = speed_boundaries(_beam(k=4.0), speed_range=(0.45, 5.0))
+    expected = np.repeat(4.0 / np.arange(8, 0, -1), 2)
+    np.testing.assert_allclose(found.speed, expected, rtol=1e-13)
+    np.testing.assert_array_equal(found.multiplier, np.tile([1, 1, -1, -1], 4))
+
+
+def test_divergence_of_a_whirling_shaft():
+    # qdd + (k - w^2) q: multiplier +1 at w = sqrt k by a constant motion, as B = 1.
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("B", None, np.eye(1)),
+        Term("K", None, 9.0 * np.eye(1)),
+    )
+    system = LinearPeriodic(1, terms, {}, lambda values: {})
+    found = speed_boundaries(system, 1, speed_range=(2.5, 10.0))
+    np.testing.assert_allclose(found.speed, [3.0], rtol=1e-13)
+    np.testing.assert_allclose(found.motion(0, [0.0, 1.0, 2.0])[:, 0] ** 2, 1.0, rtol=1e-12)
+    # Lower down it oscillates at sqrt(9 - w^2) = j w: w = 3/sqrt(1 + j^2).
+    more = speed_boundaries(system, 1, speed_range=(0.9, 10.0))
+    np.testing.assert_allclose(
+        more.speed, 3 / np.sqrt([10.0, 10.0, 5.0, 5.0, 2.0, 2.0, 1.0]), rtol=1e-13
+    )
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_coupled_modes_against_multipliers(damping):
+    system = _coupled(C=damping)
+    found = speed_boundaries(system, speed_range=(1.0, 12.0))
+    assert len(found.speed) >= (2 if damping else 8)
+    assert found.passed, found.checks
+    assert np.all(found.error < 1e-11 * found.speed)
+    values = floquet_multipliers(system, found.speed)
+    gap = np.abs(values.multipliers - found.multiplier[:, None])
+    nearest = np.argmin(gap, axis=1)
+    rows = np.arange(len(gap))
+    # At a boundary the multiplier is double and defective: its error is of square-root size.
+    assert np.all(gap[rows, nearest] <= values.error[rows, nearest] + 1e-6 * np.sqrt(found.error))
+
+
+def test_stability_changes_at_the_boundaries_of_an_open_region():
+    system = _coupled()
+    found = speed_boundaries(system, -1, speed_range=(4.0, 12.0))
+    widths = np.diff(found.speed)
+    k = int(np.argmax(widths[::2])) * 2
+    low, high = found.speed[k : k + 2]
+    just = 0.02 * (high - low)
+    stable = floquet_multipliers(system, [low - just, low + just, high - just, high + just]).stable
+    assert stable.tolist() == [True, False, False, True]
+
+
+def test_motion_solves_the_equation():
+    system = _coupled()
+    found = speed_boundaries(system, speed_range=(3.0, 12.0))
+    for index in range(len(found.speed)):
+        theta = np.linspace(0.0, 2 * np.pi, 3)
+        ends = found.motion(index, theta[[0, -1]])
+        np.testing.assert_allclose(ends[1], found.multiplier[index] * ends[0], atol=1e-12)
+        # p = M q' + A q, q' by the series itself.
+        step = 1e-4
+        slope = (found.motion(index, step) - found.motion(index, -step))[0] / (2 * step)
+        zero = np.zeros(1)
+        momentum = system.array("M", zero)[0] @ slope + system.array("A", zero)[0] @ ends[0]
+        start = np.concatenate([ends[0], momentum])
+        end = monodromy(system, found.speed[index]).matrix @ start
+        gap = np.max(np.abs(end - found.multiplier[index] * start))
+        assert gap < 1e-6 * np.max(np.abs(start))
+
+
+def test_error_figure_covers_a_wanted_truncation():
+    system = _beam(depth=3.0)
+    exact = speed_boundaries(system, -1, speed_range=(1.0, 10.0))
+    for harmonics in (6, 7, 8, 10):
+        rough = speed_boundaries(system, -1, speed_range=(1.0, 10.0), harmonics=harmonics)
+        assert rough.harmonics == harmonics
+        if len(rough.speed) == len(exact.speed):
+            actual = np.abs(rough.speed - exact.speed)
+            assert np.all(actual <= rough.error * 1.01 + exact.error)
+
+
+def test_another_period_and_another_parameter():
+    values = {"k": 4.0}
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", "k", np.eye(1)),
+        Term("Kg", None, lambda theta: np.cos(2 * theta)[:, None, None]),
+    )
+    double = LinearPeriodic(1, terms, values, named(values), period=np.pi)
+    single = _beam(depth=1.0)
+    found = speed_boundaries(double, speed_range=(0.5, 4.0), k=3.0)
+    # cos 2 theta at speed w is cos theta at speed 2 w.
+    other = speed_boundaries(single, speed_range=(1.0, 8.0), k=3.0)
+    np.testing.assert_allclose(2 * found.speed, other.speed, rtol=1e-12)
+
+
+def test_scaling_of_units_changes_nothing():
+    found = speed_boundaries(_coupled(), speed_range=(2.0, 12.0))
+    tiny = LinearPeriodic(
+        2,
+        tuple(
+            Term(
+                term.array,
+                term.scale,
+                (lambda theta, f=term.function: 1e-9 * f(theta))
+                if callable(term.function)
+                else 1e-9 * term.function,
+                term.power,
+            )
+            for term in _coupled().terms
+        ),
+        _coupled().parameters,
+        _coupled().scales,
+    )
+    scaled = speed_boundaries(tiny, speed_range=(2.0, 12.0))
+    np.testing.assert_allclose(scaled.speed, found.speed, rtol=1e-12)
+
+
+def test_record_plots_and_saves(tmp_path):
+    found = speed_boundaries(_beam(depth=1.0), speed_range=(2.0, 8.0))
+    assert found.plot().get_xlabel() == "crank speed [rpm]"
+    saved = np.load(found.save(tmp_path / "found.npz"))
+    np.testing.assert_array_equal(saved["speed"], found.speed)
+    again = speed_boundaries(_beam(depth=1.0), speed_range=(2.0, 8.0))
+    assert again.speed.tobytes() == found.speed.tobytes()
+
+
+def test_no_boundary_in_range_is_an_empty_result():
+    found = speed_boundaries(_beam(), speed_range=(100.0, 200.0))
+    assert found.speed.shape == (0,)
+    assert found.cosine.shape[0] == 0
+    assert found.passed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ({"multiplier": 2}, "multiplier"),
+        ({"multiplier": ()}, "multiplier"),
+        ({"speed_range": (0.0, 1.0)}, "speed_range"),
+        ({"speed_range": (2.0, 1.0)}, "speed_range"),
+        ({"speed_range": (1.0, np.inf)}, "speed_range"),
+        ({"speed_range": (1e-4, 1.0)}, "speed_range"),
+        ({"harmonics": 0}, "harmonics"),
+        ({"rtol": 0.0}, "rtol"),
+        ({"mass": 2.0}, "mass"),
+        ({"k": np.array([1.0, 2.0])}, "k"),
+    ],
+)
+def test_bad_input_is_one_clear_line(arguments, word):
+    with pytest.raises(BadInput, match=word) as caught:
+        speed_boundaries(_beam(), **{"speed_range": (1.0, 2.0), **arguments})
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("harmonics", [1, 2])
+def test_a_truncation_that_loses_boundaries_fails(harmonics):
+    system = _beam(depth=1.5)
+    exact = speed_boundaries(system, speed_range=(0.6, 2.5))
+    rough = speed_boundaries(system, speed_range=(0.6, 2.5), harmonics=harmonics)
+    assert exact.passed, exact.checks
+    assert len(rough.speed) < len(exact.speed)
+    # The check tells the worse of the two multipliers.
+    assert rough.checks["truncation"].value >= (len(exact.speed) - len(rough.speed)) / 2
+    assert not rough.passed
+
+
+def test_a_truncation_that_moves_boundaries_fails():
+    exact = speed_boundaries(_beam(depth=1.5), speed_range=(0.6, 2.5))
+    rough = speed_boundaries(_beam(depth=1.5), speed_range=(0.6, 2.5), harmonics=3)
+    assert len(rough.speed) == len(exact.speed)
+    moved = np.max(np.abs(rough.speed - exact.speed) / rough.speed)
+    assert moved > 0.01
+    assert rough.checks["truncation"].value == pytest.approx(moved, rel=1e-9)
+    assert not rough.passed
+
+
+def test_a_truncation_that_suffices_passes():
+    found = speed_boundaries(_beam(depth=1.5), speed_range=(2.0, 10.0), harmonics=12)
+    assert found.passed, found.checks
+
+
+def test_every_result_has_its_checks():
+    many = speed_boundaries(_beam(), speed_range=(0.02, 5.0))
+    assert len(many.speed) > 256
+    assert set(many.checks) == {"truncation", "parity", "monodromy"}
+    assert many.passed, many.checks
+    none = speed_boundaries(_beam(), speed_range=(100.0, 200.0))
+    assert set(none.checks) == {"truncation", "parity"}
+
+
+def test_parity_notices_a_boundary_left_out():
+    system = _beam(depth=1.5)
+    found = speed_boundaries(system, -1, speed_range=(1.0, 10.0))
+    whole = parity(system, [(-1, found.speed)], (1.0, 10.0), {})
+    assert whole.passed
+    for index in range(len(found.speed)):
+        left = np.delete(found.speed, index)
+        assert not parity(system, [(-1, left)], (1.0, 10.0), {}).passed
+
+
+def test_provenance_tells_changes():
+    found = speed_boundaries(_beam(), speed_range=(1.0, 2.0), k=3.0)
+    assert found.provenance["changed"] == "k=3.0"
+
+
+def test_a_high_harmonic_is_not_mistaken_for_a_mean():
+    # cos 64 theta at 32 even angles is one.
+    wave = Term("Kg", None, lambda theta: np.cos(64 * theta)[:, None, None])
+    found = speed_boundaries(_beam().with_terms(wave), -1, speed_range=(3.0, 5.0))
+    np.testing.assert_allclose(found.speed, [4.0, 4.0], rtol=1e-3)
+    assert found.passed, found.checks

@@ -1,0 +1,189 @@
+"""Tongues of the rod over the crank ratio: feet, ends, growth, bases, tension, lost ones."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.edges.over_geometry import tongue_curves
+from elastolink.runtime.floquet.edges.tracing import stability_edges
+
+SPEEDS = (500.0, 4000.0)
+# Six digits: roots of the pinned beam with an overhang, block at 0.59997 L.
+FIRST, SECOND = 858.228, 2630.18
+
+
+def _rod(modes=2, formulation="overhang", drop=()):
+    return el.load_scene(
+        "beale_1992_flexible_rod",
+        overrides={
+            "links.crank_ratio": 0.1,
+            "model.modes": modes,
+            "model.formulation": formulation,
+            "model.drop": list(drop),
+        },
+    ).linear_system()
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return _rod()
+
+
+@pytest.fixture(scope="module")
+def curves(rod):
+    return tongue_curves(rod, "crank_ratio", [0.02, 0.05, 0.1], SPEEDS)
+
+
+def _growth(system, speed):
+    values = el.floquet_multipliers(system, speed).multipliers
+    return np.log(np.max(np.abs(values), axis=-1)) * speed / (2 * np.pi)
+
+
+def test_every_tongue_stands_on_its_foot(curves):
+    """2 w1/n, (w1 + w2)/n, 2 w2/n, n to 3, as far as they reach the range; none is lost."""
+    totals = {"2 w1": 2 * FIRST, "w1 + w2": FIRST + SECOND, "2 w2": 2 * SECOND}
+    expected = {
+        f"{left} = {'' if n == 1 else f'{n} '}w": total / n
+        for left, total in totals.items()
+        for n in (1, 2, 3)
+        if total / n < 4000.0
+    }
+    assert set(curves.labels) == set(expected)
+    for label, foot in zip(curves.labels, curves.foot, strict=True):
+        assert foot == pytest.approx(expected[label], rel=1e-6)
+    assert np.all(np.isfinite(curves.lower + curves.upper))
+    assert curves.passed
+    assert np.all(np.diff(curves.foot) > 0)
+
+
+def test_ends_are_where_the_multipliers_leave_the_circle(rod, curves):
+    """Bisection on the growth alone, at every tongue of ratio 0.05."""
+    system = rod.with_geometry(crank_ratio=0.05)
+    width = curves.width[:, 1]
+    for ends, outward in ((curves.lower[:, 1], -1.0), (curves.upper[:, 1], 1.0)):
+        outside, inside = ends + outward * 0.05 * width, ends - outward * 0.05 * width
+        for _ in range(14):
+            middle = 0.5 * (outside + inside)
+            grows = _growth(system, middle) > 1e-7
+            inside, outside = np.where(grows, middle, inside), np.where(grows, outside, middle)
+        # Growth starts like a root: 1e-7 of it is seen far closer than the last bracket.
+        assert np.all(np.abs(0.5 * (inside + outside) - ends) < 1e-5 * width)
+
+
+def test_principal_ends_are_those_of_fouriers_method(rod, curves):
+    for column, ratio in ((0, 0.02), (2, 0.1)):
+        system = rod.with_geometry(crank_ratio=ratio)
+        found = el.speed_boundaries(system, -1, speed_range=(1400.0, 1730.0))
+        row = curves.labels.index("2 w1 = w")
+        for ends in (curves.lower, curves.upper):
+            gap = np.min(np.abs(found.speed - ends[row, column]))
+            assert gap <= curves.error[row, column] + np.max(found.error)
+
+
+def test_growth_is_that_of_the_multipliers(rod, curves):
+    system = rod.with_geometry(crank_ratio=0.1)
+    for row in range(len(curves.labels)):
+        low, high = curves.lower[row, 2], curves.upper[row, 2]
+        speed = np.linspace(low, high, 41)[1:-1]
+        best = np.max(_growth(system, speed))
+        # Nine places across miss the top of a parabola by 0.6 % at most, usually.
+        assert curves.growth[row, 2] == pytest.approx(best, rel=0.02)
+        assert curves.growth[row, 2] <= best * 1.0001
+
+
+def test_width_grows_like_the_power_of_the_harmonic(curves):
+    """Tongue n opens like the n-th power of the crank ratio (to the next order)."""
+    power = np.log(curves.width[:, 1] / curves.width[:, 0]) / np.log(2.5)
+    # Not those about 1750 rad/s, three beside each other.
+    own_powers = {"w1 + w2 = w": 1, "2 w1 = 2 w": 2, "2 w1 = 3 w": 3, "w1 + w2 = 3 w": 3}
+    for label, own in own_powers.items():
+        assert power[curves.labels.index(label)] == pytest.approx(own, abs=0.1)
+
+
+@pytest.mark.slow
+def test_without_tension_the_chart_is_another():
+    """As printed: at ratio 0.1 the first tongue's upper end is 40 rad/s lower, at 0.02 only 2."""
+    values = [0.02, 0.1]
+    found = [
+        tongue_curves(system, "crank_ratio", values, (1400.0, 1800.0), highest=1)
+        for system in (_rod(), _rod(drop=("as_printed",)))
+    ]
+    row = [one.labels.index("2 w1 = w") for one in found]
+    upper = [one.upper[i] for one, i in zip(found, row, strict=True)]
+    np.testing.assert_allclose(upper[0] - upper[1], [2.24, 42.8], rtol=0.02)
+
+
+@pytest.mark.slow
+def test_three_polynomials_put_the_combination_tongue_too_high():
+    """Beale & Scott's three modes: (w1 + w2) 22 % off, 2 w1 5 %; free-free modes about 1 %."""
+    foot = {}
+    for formulation, modes in (("overhang", 2), ("polynomial", 3), ("free_free_linear", 3)):
+        system = _rod(modes, formulation)
+        found = tongue_curves(system, "crank_ratio", [0.02], (1500.0, 4500.0), highest=1, modes=2)
+        foot[formulation] = dict(zip(found.labels, found.foot.tolist(), strict=True))
+    exact = foot["overhang"]
+    sums = {name: one["w1 + w2 = w"] / exact["w1 + w2 = w"] for name, one in foot.items()}
+    own = {name: one["2 w1 = w"] / exact["2 w1 = w"] for name, one in foot.items()}
+    assert sums["polynomial"] == pytest.approx(1.225, abs=2e-3)
+    assert own["polynomial"] == pytest.approx(1.053, abs=2e-3)
+    assert sums["free_free_linear"] == pytest.approx(1.010, abs=2e-3)
+
+
+def test_over_a_parameter_as_searched_anew_at_each_value():
+    """Two oscillators, 1 and 2.3 rad/s, coupled by a parameter: the same as stability_edges."""
+    both = np.array([[0.6, 1.0], [1.0, 0.6]])
+    system = LinearPeriodic(
+        2,
+        (
+            Term("M", None, np.eye(2)),
+            Term("K", None, np.diag([1.0, 2.3**2])),
+            Term("K", "pull", lambda theta: np.cos(theta)[:, None, None] * both),
+        ),
+        {"pull": 0.1},
+        lambda values: {"pull": np.asarray(values["pull"], dtype=float)},
+    )
+    found = tongue_curves(system, "pull", [0.1, 0.2], (1.9, 5.0), highest=2)
+    edges = stability_edges(system, (1.9, 5.0), pull=0.2)
+    wide = np.flatnonzero(edges.width > 1e-6)
+    assert len(wide) == 4
+    for i in wide:
+        low, high = edges.lower[i], edges.upper[i]
+        gap = np.abs(found.lower[:, 1] - low) + np.abs(found.upper[:, 1] - high)
+        row = int(np.nanargmin(gap))
+        assert gap[row] <= 2 * (edges.error[i] + found.error[row, 1])
+
+
+@pytest.mark.slow
+def test_a_lost_tongue_is_told_apart_from_a_closed_one(rod):
+    """w1 + w2 = w opens to half its speed: given up, and NaN from there on."""
+    found = tongue_curves(rod, "crank_ratio", [0.05, 0.3], (3000.0, 4000.0), highest=1)
+    row = found.labels.index("w1 + w2 = w")
+    assert np.isfinite(found.lower[row, 0])
+    assert np.isnan(found.lower[row, 1])
+    assert np.isnan(found.growth[row, 1])
+    assert found.checks["lost"].value == 1.0
+
+
+def test_plot_and_export(curves, tmp_path):
+    axes = curves.plot()
+    assert axes.get_xlabel().startswith("crank speed")
+    curves.save(tmp_path / "curves.json")
+    assert (tmp_path / "curves.json").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "span"),
+    [
+        ("crank", [0.1], SPEEDS),
+        ("crank_ratio", [0.2, 0.1], SPEEDS),
+        ("crank_ratio", [0.0, 0.1], SPEEDS),
+        ("crank_ratio", [0.1], (4000.0, 500.0)),
+        ("crank_ratio", [0.1], (0.0, 500.0)),
+    ],
+)
+def test_bad_arguments_are_refused(rod, name, values, span):
+    with pytest.raises(BadInput):
+        tongue_curves(rod, name, values, span)

@@ -1,0 +1,397 @@
+"""Unstable regions along the speed: heyoka, first-order widths, labels, rigs, damping, traces."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+import scipy.integrate
+import scipy.optimize
+from edge_truth import discriminant, region_of
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
+from elastolink.runtime.floquet.edges.over_parameter import trace_tongue
+from elastolink.runtime.floquet.edges.tracing import stability_edges
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+
+RIG = "smith_1972_5152_sixteenth_inch"
+LOW, HIGH = 1.0, 2.3
+
+
+def _scales(values):
+    return {name: np.asarray(value, dtype=float) for name, value in values.items()}
+
+
+def _pair(pull=0.02, own=0.0, damping=(0.0, 0.0)) -> LinearPeriodic:
+    """Two oscillators, 1 and 2.3 rad/s, coupled (and each pulled, by ``own``) by pull cos."""
+    matrix = np.array([[own, 1.0], [1.0, own]])
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag([LOW**2, HIGH**2])),
+        Term("Kg", "pull", lambda theta: np.cos(theta)[:, None, None] * matrix),
+        Term("C", "c1", np.diag([1.0, 0.0])),
+        Term("C", "c2", np.diag([0.0, 1.0])),
+    )
+    values = {"pull": pull, "c1": damping[0], "c2": damping[1]}
+    return LinearPeriodic(2, terms, values, _scales)
+
+
+# First order ---------------------------------------------------------------------------------
+
+
+def test_sum_region_has_the_width_of_first_order():
+    """Mettler: |speed - (w1 + w2)| < e/(2 sqrt(w1 w2)), corrections of the order e^2."""
+    for pull in (0.02, 0.04):
+        found = stability_edges(_pair(pull), (3.0, 3.6))
+        at = region_of(found, "sum", 1)
+        half = pull / (2 * np.sqrt(LOW * HIGH))
+        assert abs(0.5 * found.width[at] - half) < 0.5 * pull**2
+        assert abs(0.5 * (found.lower + found.upper)[at] - LOW - HIGH) < 0.5 * pull**2
+        assert found.modes[at].tolist() == [1, 2]
+        assert found.passed, found.checks
+
+
+def test_the_edges_are_where_multipliers_leave_the_circle():
+    """Multipliers from another tolerance, a hair on either side of each end."""
+    system = _pair(0.3, own=1.0)
+    found = stability_edges(system, (1.3, 6.0))
+    checked = 0
+    for i in range(len(found.kind)):
+        if not found.width[i] > 1e-5:
+            continue
+        step = 1e-4 * found.width[i]
+        ends = np.array([found.lower[i], found.upper[i]])
+        outside = floquet_multipliers(system, ends + step * np.array([-1, 1]), rtol=1e-13)
+        inside = floquet_multipliers(system, ends + step * np.array([1, -1]), rtol=1e-13)
+        assert outside.stable.tolist() == [True, True]
+        assert inside.stable.tolist() == [False, False]
+        checked += 1
+    assert checked >= 4
+    assert found.passed, found.checks
+
+
+def test_closed_meetings_are_listed_and_labelled():
+    """Second and third sum resonances of a pull of one harmonic are of higher order, not lost."""
+    found = stability_edges(_pair(0.02), (1.05, 3.6))
+    for harmonic in (1, 2, 3):
+        at = region_of(found, "sum", harmonic)
+        middle = 0.5 * (found.lower[at] + found.upper[at])
+        assert middle == pytest.approx((LOW + HIGH) / harmonic, rel=1e-3)
+    third = region_of(found, "sum", 3)
+    # Of third order in the pull: (e/2)^3 over distances of order 1.
+    assert 1e-9 < found.width[third] < 1e-5
+    assert found.width[region_of(found, "sum", 2)] <= 2 * found.error[region_of(found, "sum", 2)]
+    assert found.least_width < 1e-9
+
+
+def test_uncoupled_oscillators_have_only_closed_regions():
+    found = stability_edges(_pair(0.0), (0.9, 5.0))
+    assert np.all(found.width <= 2 * found.error)
+    expected = sorted(
+        [2 * w / n for w in (LOW, HIGH) for n in range(1, 8)] + [3.3 / n for n in range(1, 8)]
+    )
+    expected = [w for w in expected if 0.9 <= w <= 5.0]
+    np.testing.assert_allclose(np.sort(found.lower), expected, rtol=1e-9)
+    assert found.passed, found.checks
+    assert np.all(found.detuning < 1e-9)
+
+
+# heyoka ----------------------------------------------------------------------------------------
+
+
+def _heyoka_pair(hy, pull):
+    q = hy.make_vars("q1", "q2", "v1", "v2")
+    speed, wave = hy.par[0], hy.cos(hy.par[0] * hy.time)
+    equations = [
+        (q[0], q[2]),
+        (q[1], q[3]),
+        (q[2], -(LOW**2) * q[0] - pull * wave * q[1]),
+        (q[3], -(HIGH**2) * q[1] - pull * wave * q[0]),
+    ]
+    ta = hy.taylor_adaptive(equations, [0.0] * 4, tol=1e-18)
+
+    def matrix(value):
+        ta.pars[0] = value
+        columns = []
+        for index in range(4):
+            ta.time = 0.0
+            ta.state[:] = np.eye(4)[index]
+            ta.propagate_until(2 * np.pi / value)
+            columns.append(ta.state.copy())
+        return np.array(columns).T
+
+    assert speed is not None
+    return matrix
+
+
+@pytest.mark.parametrize("harmonic", [1, 2])
+def test_combination_edges_against_heyoka(harmonic):
+    """Taylor integration of order 20 in the time, the discriminant's zero by bisection."""
+    hy = pytest.importorskip("heyoka")
+    pull = 0.3
+    system = _pair(pull)
+    found = stability_edges(system, (3.3 / harmonic * 0.95, 3.3 / harmonic * 1.05))
+    at = region_of(found, "sum", harmonic)
+    if harmonic == 2:
+        # Even harmonics of a pull without squares stay closed by symmetry.
+        assert found.width[at] <= 2 * found.error[at]
+        return
+    matrix = _heyoka_pair(hy, pull)
+    width = found.width[at]
+    for end, sign in ((found.lower[at], 1), (found.upper[at], -1)):
+        exact = scipy.optimize.brentq(
+            lambda w: discriminant(matrix(w)),
+            end - 0.3 * sign * width,
+            end + 0.3 * sign * width,
+            xtol=1e-14,
+            rtol=1e-14,
+        )
+        assert abs(exact - end) < 1e-10
+        assert abs(exact - end) <= found.error[at] + 1e-12
+
+
+# Damping -------------------------------------------------------------------------------------
+
+
+def test_equal_damping_draws_a_sum_region_in():
+    """Mettler with damping c of both: |speed - w1 - w2| < sqrt(e^2/(4 w1 w2) - c^2)."""
+    pull, damping = 0.02, 0.004
+    found = stability_edges(_pair(pull, damping=(damping, damping)), (3.2, 3.4))
+    at = region_of(found, "sum", 1)
+    half = np.sqrt(pull**2 / (4 * LOW * HIGH) - damping**2)
+    assert 0.5 * found.width[at] == pytest.approx(half, rel=0.02)
+    assert found.passed, found.checks
+    for end in (found.lower[at], found.upper[at]):
+        modulus = np.abs(floquet_multipliers(_pair(pull, damping=(damping,) * 2), end).multipliers)
+        assert abs(np.max(modulus) - 1.0) < 1e-11
+
+
+def test_unequal_damping_widens_a_sum_region():
+    """Known since Schmidt and Weidenhammer: |speed - ...| < (c1 + c2)/(2 sqrt(c1 c2)) times."""
+    pull, first, second = 0.02, 0.004, 0.0004
+    found = stability_edges(_pair(pull, damping=(first, second)), (3.2, 3.4))
+    at = region_of(found, "sum", 1)
+    root = pull**2 / (4 * LOW * HIGH) - first * second
+    half = 0.5 * (first + second) / np.sqrt(first * second) * np.sqrt(root)
+    assert 0.5 * found.width[at] == pytest.approx(half, rel=0.02)
+    sharp = stability_edges(_pair(pull), (3.2, 3.4))
+    assert found.width[at] > 1.5 * sharp.width[region_of(sharp, "sum", 1)]
+
+
+def test_strong_damping_closes_every_region():
+    found = stability_edges(_pair(0.02, damping=(0.05, 0.05)), (1.3, 5.0))
+    assert len(found.kind) == 0
+    assert found.passed, found.checks
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("damping", [0.0, 1e-5])
+def test_narrow_regions_within_wide_ones(damping):
+    """The thinnest coupler, the heaviest follower: regions of mode 2 within those of mode 1."""
+    name = "smith_1972_5152_thirtysecond_inch"
+    scene = el.load_scene(name, overrides={"model.modes": 2, "coupler.damping_ratio": damping})
+    found = stability_edges(scene.system(), (23.56, 47.12), follower_inertia=2.14671e-3)
+    assert found.passed, found.checks
+    wide = found.labels.index("region 3 of mode 1")
+    assert found.lower[wide] == pytest.approx(40.328, abs=1e-3)
+    assert np.isnan(found.upper[wide])
+    nested = found.labels.index("region 17 of mode 2")
+    around = found.labels.index("region 6 of mode 1")
+    assert found.lower[around] < found.lower[nested] < found.upper[nested] < found.upper[around]
+    # Of like multiplier as the wider region, told by the number of those off the circle.
+    assert "region 15 of mode 2" in found.labels
+
+
+def test_damped_principal_regions_are_those_of_the_fourier_matrix():
+    system = _pair(0.3, own=1.0, damping=(0.01, 0.01))
+    found = stability_edges(system, (1.5, 6.0))
+    ends = speed_boundaries(system, speed_range=(1.5, 6.0)).speed
+    listed = [
+        end
+        for i, kind in enumerate(found.kind)
+        if kind == "principal"
+        for end in (found.lower[i], found.upper[i])
+        if 1.5 <= end <= 6.0
+    ]
+    assert len(ends) == len(listed) >= 4
+    np.testing.assert_allclose(np.sort(listed), ends, rtol=1e-10)
+
+
+# Random systems against a dense line of multipliers ---------------------------------------------
+
+
+def _wave(matrix, harmonic, phase):
+    return lambda theta: np.cos(harmonic * theta + phase)[:, None, None] * matrix
+
+
+def _random(seed, strength) -> LinearPeriodic:
+    """Two modes with gyroscopic terms, a periodic mass and two harmonics of stiffness."""
+    rng = np.random.default_rng(seed)
+
+    def symmetric(size):
+        base = rng.normal(size=(2, 2))
+        return (base + base.T) * size / 2
+
+    bulge, skew = symmetric(1.0), rng.normal(size=(2, 2)) * 0.3
+    terms = (
+        Term("M", None, np.eye(2) + 0.1 * bulge @ bulge),
+        Term("M", None, _wave(symmetric(0.05 * strength), 1, 0.3)),
+        Term("A", None, skew - skew.T),
+        Term("B", None, _wave(symmetric(0.1 * strength), 1, rng.uniform(0, 6))),
+        Term("K", None, np.diag(rng.uniform(1, 20, 2)) + symmetric(0.5)),
+        Term("Kg", None, _wave(symmetric(strength), 1, rng.uniform(0, 6))),
+        Term("Kg", None, _wave(symmetric(strength), 2, rng.uniform(0, 6))),
+    )
+    return LinearPeriodic(2, terms, {}, lambda values: {})
+
+
+def _whirl(pull) -> LinearPeriodic:
+    """Return a mass on a spring seen from the crank, of negative energy above sqrt(2) rad/s."""
+    matrix = pull * np.array([[1.0, 0.3], [0.3, -0.5]])
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("A", None, np.array([[0.0, -1.0], [1.0, 0.0]])),
+        Term("B", None, np.eye(2)),
+        Term("K", None, 2.0 * np.eye(2)),
+        Term("Kg", None, _wave(matrix, 1, 0.2)),
+    )
+    return LinearPeriodic(2, terms, {}, lambda values: {})
+
+
+@pytest.mark.parametrize(
+    "system", [_random(1, 0.5), _random(2, 2.0), _random(6, 3.0), _whirl(0.3), _whirl(1.0)]
+)
+def test_every_unstable_speed_is_in_a_region_and_no_other(system):
+    found = stability_edges(system, (1.2, 9.0))
+    speeds = np.linspace(1.2, 9.0, 1501)
+    direct = floquet_multipliers(system, speeds)
+    unstable = np.any(np.abs(direct.multipliers) > 1 + 4 * direct.error, axis=-1)
+    # A missing end is far above the range.
+    assert np.all(np.isfinite(found.lower))
+    end = np.where(np.isnan(found.upper), np.inf, found.upper)
+    inside = np.any((speeds[:, None] >= found.lower) & (speeds[:, None] <= end), axis=1)
+    assert unstable.sum() > 30
+    np.testing.assert_array_equal(inside, unstable)
+    assert found.passed, found.checks
+
+
+def test_a_mode_of_negative_energy_makes_a_difference_region():
+    """In turns the whirl w0/w - 1 is negative above w0; with an oscillator w3/w it sums to 1."""
+    pull, stiff = 0.05, np.diag([2.0, 2.0, 16.0])
+    cross = np.zeros((3, 3))
+    cross[0, 2] = cross[2, 0] = pull
+    gyro, whirl = np.zeros((3, 3)), np.diag([1.0, 1.0, 0.0])
+    gyro[0, 1], gyro[1, 0] = -1.0, 1.0
+    terms = (
+        Term("M", None, np.eye(3)),
+        Term("A", None, gyro),
+        Term("B", None, whirl),
+        Term("K", None, stiff),
+        Term("Kg", None, _wave(cross, 1, 0.0)),
+    )
+    system = LinearPeriodic(3, terms, {}, lambda values: {})
+    found = stability_edges(system, (2.6, 2.8))
+    assert found.passed, found.checks
+    at = region_of(found, "difference", 1)
+    assert 0.5 * (found.lower[at] + found.upper[at]) == pytest.approx(
+        (np.sqrt(2) + 4) / 2, rel=1e-3
+    )
+    inside = floquet_multipliers(system, 0.5 * (found.lower[at] + found.upper[at]))
+    assert not inside.stable
+    assert abs(inside.multipliers[0].imag) > 0.1
+    assert found.width[at] > 1e-3
+
+
+def test_boundaries_without_modes_are_paired():
+    """The averaged whirl diverges between its two natural frequencies, 1.41 and 1.52 rad/s."""
+    split = Term("K", None, np.diag([0.3, 0.0]))
+    found = stability_edges(_whirl(0.0).with_terms(split), (1.3, 1.7))
+    at = int(np.argmin(found.modes[:, 0]))
+    assert found.modes[at].tolist() == [0, 0]
+    assert found.lower[at] == pytest.approx(np.sqrt(2.0), rel=1e-12)
+    assert found.upper[at] == pytest.approx(np.sqrt(2.3), rel=1e-12)
+
+
+# One mode, traces, records -----------------------------------------------------------------------
+
+
+def test_one_mode_gives_its_principal_regions():
+    system = el.load_scene(RIG).system()
+    found = stability_edges(system, (40.0, 90.0))
+    ends = speed_boundaries(system, speed_range=(40.0, 90.0)).speed
+    assert set(found.kind) == {"principal"}
+    assert found.modes.min() == found.modes.max() == 1
+    inside = [e for e in (*found.lower, *found.upper) if 40.0 <= e <= 90.0]
+    np.testing.assert_allclose(np.sort(inside), ends, rtol=1e-12)
+
+
+def test_a_region_is_traced_over_a_parameter():
+    system = _pair(0.3)
+    found = stability_edges(system, (3.1, 3.5))
+    pulls = np.array([0.05, 0.1, 0.2, 0.4])
+    traced = trace_tongue(system, found, region_of(found, "sum", 1), "pull", pulls)
+    assert traced.passed, traced.checks
+    for k, pull in enumerate(pulls):
+        alone = stability_edges(_pair(pull), (3.1, 3.5))
+        at = region_of(alone, "sum", 1)
+        assert abs(traced.lower[k] - alone.lower[at]) < 1e-10
+        assert abs(traced.upper[k] - alone.upper[at]) < 1e-10
+    assert traced.label == "sum of 1 and 2, n = 1"
+    assert traced.plot().get_xlabel() == "crank speed [rpm]"
+
+
+def test_a_region_that_ends_is_a_gap_and_fails_its_check():
+    system = _pair(0.02, damping=(0.004, 0.004))
+    found = stability_edges(system, (3.2, 3.4))
+    traced = trace_tongue(system, found, region_of(found, "sum", 1), "c1", [0.004, 0.008, 0.3])
+    assert np.isfinite(traced.lower).tolist() == [True, True, False]
+    assert not traced.passed
+    assert traced.checks["found"].value == 1
+
+
+def test_result_draws_and_saves(tmp_path):
+    found = stability_edges(_pair(0.3), (2.0, 5.0))
+    assert found.plot().get_xlabel() == "crank speed [rpm]"
+    saved = np.load(found.save(tmp_path / "edges.npz"))
+    np.testing.assert_array_equal(saved["width"], found.width)
+    again = stability_edges(_pair(0.3), (2.0, 5.0))
+    assert again.lower.tobytes() == found.lower.tobytes()
+    assert found.to_dict()["kind"] == list(found.kind)
+
+
+def test_circulatory_forces_are_refused():
+    skew = Term("K", None, np.array([[0.0, 0.1], [-0.1, 0.0]]))
+    with pytest.raises(BadInput, match="not symmetric"):
+        stability_edges(_pair().with_terms(skew), (3.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ({"speed_range": (0.0, 1.0)}, "speed_range"),
+        ({"speed_range": (1e-4, 1.0)}, "speed_range"),
+        ({"rtol": 1.0}, "rtol"),
+        ({"margin": 1.0}, "margin"),
+        ({"mass": 1.0}, "mass"),
+    ],
+)
+def test_bad_input_is_one_clear_line(arguments, word):
+    with pytest.raises(BadInput, match=word) as caught:
+        stability_edges(_pair(), **{"speed_range": (3.0, 4.0), **arguments})
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("index", "name", "values", "word"),
+    [
+        (99, "pull", [0.1], "index"),
+        (0, "nothing", [0.1], "name"),
+        (0, "pull", [0.2, 0.1], "values"),
+    ],
+)
+def test_bad_traces_are_refused(index, name, values, word):
+    system = _pair(0.3)
+    found = stability_edges(system, (3.1, 3.5))
+    with pytest.raises(BadInput, match=word):
+        trace_tongue(system, found, index, name, values)

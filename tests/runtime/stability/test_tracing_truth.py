@@ -1,0 +1,194 @@
+"""Unstable regions beside a dense line of multipliers where regions touch, nest and meet."""
+
+from __future__ import annotations
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.floquet.edges.tracing import stability_edges
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+
+SWAP = np.array([[0.0, 1.0], [1.0, 0.0]])
+NONE = np.zeros((2, 2))
+
+
+def _system(stiffness, waves, damping=None) -> LinearPeriodic:
+    """Return unit masses on springs with a sum of waves (harmonic, cosine, sine matrices)."""
+    n = len(stiffness)
+
+    def pull(theta):
+        out = np.zeros((len(theta), n, n))
+        for harmonic, cosine, sine in waves:
+            out += np.cos(harmonic * theta)[:, None, None] * cosine
+            out += np.sin(harmonic * theta)[:, None, None] * sine
+        return out
+
+    terms = [Term("M", None, np.eye(n)), Term("K", None, np.diag(stiffness))]
+    terms.append(Term("Kg", None, pull))
+    if damping is not None:
+        terms.append(Term("C", None, damping))
+    return LinearPeriodic(n, tuple(terms), {}, lambda values: {})
+
+
+def _contradictions(system, found, low, high, count=1500):
+    speeds = np.linspace(low, high, count)
+    direct = floquet_multipliers(system, speeds)
+    grows = np.any(np.abs(direct.multipliers) > 1 + 4 * direct.error, axis=-1)
+    begin = np.where(np.isnan(found.lower), low, found.lower) - found.error
+    end = np.where(np.isnan(found.upper), high, found.upper) + found.error
+    inside = np.any((speeds[:, None] >= begin) & (speeds[:, None] <= end), axis=1)
+    return int(np.sum(grows != inside))
+
+
+def _busy(strength, damping):
+    rng = np.random.default_rng(0)
+
+    def matrix():
+        base = rng.normal(size=(2, 2))
+        return strength * (base + base.T) / np.sqrt(2)
+
+    waves = [(1, matrix(), matrix()), (2, 0.5 * matrix(), 0.2 * matrix())]
+    return _system([1.0, 5.29], waves, damping * np.eye(2))
+
+
+@pytest.mark.parametrize("strength", [0.6, 0.9])
+def test_damped_regions_leave_stable_gaps_open(strength):
+    """Regions 3 of mode 2 and of the sum, n = 2, lie side by side; one may not bridge the gap."""
+    system = _busy(strength, 0.02)
+    found = stability_edges(system, (1.2, 5.0))
+    assert found.passed, found.checks
+    assert _contradictions(system, found, 1.2, 5.0) == 0
+    upper = found.upper[found.labels.index("region 3 of mode 2")]
+    lower = found.lower[found.labels.index("sum of 1 and 2, n = 2")]
+    assert floquet_multipliers(system, 0.5 * (lower + upper)).stable
+
+
+def test_damped_ends_do_not_depend_on_the_range():
+    system = _busy(0.9, 0.02)
+    ends = []
+    for high in (1.9, 2.5, 5.0):
+        found = stability_edges(system, (1.2, high))
+        at = found.labels.index("sum of 1 and 2, n = 2")
+        ends.append((found.lower[at], found.upper[at]))
+    np.testing.assert_allclose(ends, ends[:1] * 3, rtol=1e-11)
+
+
+@pytest.mark.parametrize("damping", [1e-15, 1e-12])
+def test_tiny_damping_changes_next_to_nothing(damping):
+    wave = [(1, 0.1 * SWAP, NONE)]
+    sharp = stability_edges(_system([1.0, 5.29], wave), (3.0, 3.6))
+    found = stability_edges(_system([1.0, 5.29], wave, damping * np.eye(2)), (3.0, 3.6))
+    i, j = (e.labels.index("sum of 1 and 2, n = 1") for e in (sharp, found))
+    assert abs(found.lower[j] - sharp.lower[i]) < 1e-11
+    assert abs(found.upper[j] - sharp.upper[i]) < 1e-11
+
+
+@pytest.mark.parametrize("span", [(1.2, 6.0), (3.0, 3.6)])
+def test_damped_labels_do_not_depend_on_the_range(span):
+    found = stability_edges(_system([1.0, 5.29], [(1, 0.1 * SWAP, NONE)], 0.003 * np.eye(2)), span)
+    assert "sum of 1 and 2, n = 1" in found.labels
+    assert np.all(found.detuning < 0.5)
+    assert found.passed, found.checks
+
+
+@pytest.mark.parametrize("span", [(0.6, 2.5), (0.9, 1.2), (0.95, 1.3)])
+def test_boundaries_that_touch_within_a_region_do_not_split_it(span):
+    """A rotating stiffness: one region, in which another pair touches +1 at a double boundary."""
+    system = _system([1.0, 1.0], [(2, 0.1 * np.diag([1.0, -1.0]), 0.1 * SWAP)])
+    found = stability_edges(system, span)
+    assert found.passed, found.checks
+    assert np.all(np.isfinite(found.width))
+    wide = np.flatnonzero(found.width > 1e-3)
+    assert len(wide) == 1
+    # Seen from the turning axes the coefficients rest: w^2 = 1 -+ 0.1.
+    assert found.lower[wide[0]] == pytest.approx(np.sqrt(0.9), rel=1e-12)
+    assert found.upper[wide[0]] == pytest.approx(np.sqrt(1.1), rel=1e-12)
+
+
+@pytest.mark.parametrize(("pull", "width"), [(1e-3, 2.36e-4), (1e-4, 2.36e-5)])
+def test_sum_region_at_a_multiplier_of_one(pull, width):
+    """At w = 1 both modes turn through whole turns: four multipliers meet at +1."""
+    system = _system([1.0, 4.0], [(3, pull * SWAP, NONE)])
+    found = stability_edges(system, (0.9, 1.1))
+    at = found.labels.index("sum of 1 and 2, n = 3")
+    assert found.passed, found.checks
+    assert found.width[at] == pytest.approx(width, rel=0.01)
+    assert np.all(found.detuning < 0.5)
+    for end, sign in ((found.lower[at], 1), (found.upper[at], -1)):
+        step = sign * (10 * found.error[at] + 1e-4 * width)
+        sides = floquet_multipliers(system, end + np.array([-step, step]), rtol=1e-13)
+        grown = np.max(np.abs(sides.multipliers), axis=-1) - 1.0
+        assert grown[1] > 3 * grown[0]
+
+
+def test_nested_regions_of_a_rig_do_not_depend_on_the_range():
+    """A wide region of Smith's rig with narrow ones in it, speeds in rpm."""
+    rig = el.load_scene("smith_1972_5152_sixteenth_inch", overrides={"model.modes": 2}).system()
+    rpm = np.pi / 30
+    for low, high in ((1050, 2200), (1000, 1800)):
+        found = stability_edges(rig, (low * rpm, high * rpm))
+        assert found.passed, found.checks
+        at = int(np.argmin(np.abs(found.lower / rpm - 1099.485)))
+        assert found.kind[at] == "principal"
+        assert found.lower[at] / rpm == pytest.approx(1099.485, abs=1e-3)
+        assert found.upper[at] / rpm == pytest.approx(2031.401, abs=1e-3)
+
+
+@pytest.mark.parametrize("damping", [None, 1e-3 * np.eye(1)])
+def test_a_range_within_a_region_is_a_region_without_ends(damping):
+    system = _system([1.0], [(1, 0.9 * np.eye(1), np.zeros((1, 1)))], damping)
+    found = stability_edges(system, (1.9, 1.95), margin=1.01)
+    assert found.labels == ("region 1 of mode 1",) or damping is not None
+    assert len(found.kind) == 1
+    assert np.isnan(found.lower[0])
+    assert np.isnan(found.upper[0])
+    assert found.passed, found.checks
+
+
+def test_closed_regions_are_drawn_apart_from_open_ones():
+    found = stability_edges(_system([1.0, 5.29], [(1, 0.1 * SWAP, NONE)]), (1.2, 6.0))
+    axes = found.plot()
+    wide = found.width > 2 * found.error
+    assert 0 < wide.sum() < len(wide)
+    assert len(axes.collections) == wide.sum()
+    assert any("closed" in text for text in axes.get_legend_handles_labels()[1])
+
+
+def test_damping_that_feeds_energy_is_refused():
+    system = _system([1.0, 4.0], [(1, 0.1 * SWAP, NONE)], -0.01 * np.eye(2))
+    with pytest.raises(BadInput, match="feeds energy"):
+        stability_edges(system, (0.9, 1.1))
+
+
+@pytest.mark.parametrize("options", [{"margin": "a"}, {"rtol": None}, {"margin": [2.0]}])
+def test_options_that_are_no_numbers_are_refused(options):
+    with pytest.raises(BadInput, match=next(iter(options))):
+        stability_edges(_system([1.0], []), (0.9, 1.1), **options)
+
+
+def test_order_of_several_modes_is_refused_by_charts():
+    system = _system([1.0, 4.0], [(1, 0.1 * SWAP, NONE)])
+    speeds = ("speed", np.linspace(1.0, 2.0, 3))
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch", overrides={"model.modes": 2})
+    assert system.size == 2
+    with pytest.raises(BadInput, match="order"):
+        el.stability_chart(
+            scene.system(), speeds, ("follower_inertia", np.linspace(1e-4, 2e-4, 3)), order=3
+        )
+
+
+def test_chart_holds_the_end_of_region_0():
+    """Mathieu's a_0 = -mu^2/2 + ... at lam2 + mu cos: lam2 = -mu^2/2 to second order."""
+    chart = el.stability_chart(
+        el.load_scene("mathieu").system(),
+        ("lam2", np.linspace(-0.5, 2.0, 11)),
+        ("mu", np.array([0.05, 0.1])),
+        order=2,
+    )
+    at = chart.exact.regions.index(0)
+    assert np.all(np.isnan(chart.exact.lower[at]))
+    gap = np.abs(chart.exact.upper[at] - chart.perturbation.upper[at])
+    assert np.all(chart.exact.upper[at] < 0)
+    assert np.all(gap <= chart.perturbation.error[at] + chart.exact.error[at])

@@ -1,0 +1,226 @@
+"""Executors of the solvers themselves, Dask, the command line, a chart of 1e7 points."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.benchmarking.scaling import benchmark_scaling
+from elastolink.runtime.cli import main
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.sweeps.batches import _finer
+
+FIELDS = ("invariants", "stable", "largest", "slack", "undecided", "kind")
+# What a chart of 1e7 points may take [bytes], issue 7.
+MOST_MEMORY = 2e9
+
+
+@pytest.fixture(scope="module")
+def pool():
+    with el.process_pool(2) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return el.load_scene("beale_1992_flexible_rod", {"model.modes": 1}).system()
+
+
+@pytest.fixture(scope="module")
+def coupler():
+    return el.load_scene("smith_1972_5152_sixteenth_inch").system()
+
+
+def charts(rod, coupler):
+    """One chart of each path: lines at nodes, every line, a fixed speed, rows of half traces."""
+    few, more = np.linspace(0.02, 0.2, 5), np.linspace(0.02, 0.2, 14)
+    return [
+        (rod, ("speed", np.linspace(1500.0, 4000.0, 40)), ("crank_ratio", more), {}),
+        (rod, ("speed", np.linspace(1500.0, 4000.0, 8)), ("crank_ratio", few), {}),
+        (
+            rod,
+            ("bending_stiffness", np.linspace(3e4, 4e4, 12)),
+            ("crank_ratio", few),
+            {"speed": 2000.0},
+        ),
+        (
+            coupler,
+            ("speed", np.linspace(40.0, 90.0, 30)),
+            ("follower_inertia", np.linspace(1e-3, 5e-3, 20)),
+            {},
+        ),
+        (
+            coupler,
+            ("speed", np.linspace(40.0, 90.0, 9)),
+            ("damping", np.linspace(0.0, 1.0, 18)),
+            {},
+        ),
+    ]
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_a_chart_does_not_depend_on_who_works_it_out(rod, coupler, pool, number):
+    system, x, y, options = charts(rod, coupler)[number]
+    alone = el.stability_chart(system, x, y, **options)
+    with ThreadPoolExecutor(3) as threads:
+        others = [
+            el.stability_chart(system, x, y, executor=executor, **options)
+            for executor in (pool, threads)
+        ]
+    for other in others:
+        for name in FIELDS:
+            assert getattr(other, name).tobytes() == getattr(alone, name).tobytes(), name
+        assert (other.error, other.nodes) == (alone.error, alone.nodes)
+
+
+def test_multipliers_by_pieces(rod, pool):
+    speed = np.linspace(2000.0, 4000.0, 300).reshape(100, 3)
+    alone = el.floquet_multipliers(rod, speed)
+    with ThreadPoolExecutor(2) as threads:
+        first = el.floquet_multipliers(rod, speed, executor=threads)
+    second = el.floquet_multipliers(rod, speed, executor=pool)
+    assert first.multipliers.tobytes() == second.multipliers.tobytes()
+    assert first.error.tobytes() == second.error.tobytes()
+    assert np.all(np.abs(first.multipliers - alone.multipliers) <= first.error + alone.error)
+    assert first.multipliers.shape == (100, 3, 2)
+    assert np.array_equal(first.signatures, alone.signatures)
+    assert set(first.checks) == set(alone.checks)
+    assert first.passed
+
+
+def test_steady_states_by_pieces(coupler, pool):
+    speed = np.linspace(30.0, 90.0, 70)
+    inertia = np.array([[6.5e-4], [7e-4]])
+    with pytest.warns(el.LinearRangeWarning):
+        alone = el.steady_state(coupler, speed, follower_inertia=inertia)
+    with pytest.warns(el.LinearRangeWarning) as told:
+        found = el.steady_state(coupler, speed, follower_inertia=inertia, executor=pool)
+    assert len(told) == 1
+    with ThreadPoolExecutor(2) as threads, pytest.warns(el.LinearRangeWarning):
+        other = el.steady_state(coupler, speed, follower_inertia=inertia, executor=threads)
+    for name in ("q", "qd", "error", "multipliers", "distance"):
+        assert getattr(found, name).tobytes() == getattr(other, name).tobytes(), name
+    assert found.q.shape == alone.q.shape == (2, 70, len(alone.theta), 1)
+    assert np.array_equal(found.stable, alone.stable)
+    peak = np.max(np.abs(alone.q), axis=-2, keepdims=True)
+    both = (found.error + alone.error)[..., None, :] * peak
+    assert np.all(np.abs(found.q - alone.q) <= both)
+    assert np.all(found.peak() > 0.0)
+
+
+def test_more_angles_tell_the_same_motion():
+    """Of pieces with different numbers of angles, by a trigonometric polynomial known in full."""
+    theta = 2 * np.pi * np.arange(16) / 16
+    fine = 2 * np.pi * np.arange(64) / 64
+
+    def motion(t):
+        return 0.3 + np.cos(t) - 2.0 * np.sin(5 * t) + 0.5 * np.cos(8 * t)
+
+    found = _finer(motion(theta)[None, :, None], 64)[0, :, 0]
+    assert found == pytest.approx(motion(fine), abs=32 * np.finfo(float).eps * 3.8)
+
+
+def test_refusals_pass_through_an_executor(rod, pool):
+    with pytest.raises(BadInput, match="positive"):
+        el.floquet_multipliers(rod, [1000.0, -1.0], executor=pool)
+    with pytest.raises(BadInput, match="broadcast"):
+        el.floquet_multipliers(rod, [1.0, 2.0, 3.0], damping=[0.0, 1.0], executor=pool)
+    with pytest.raises(BadInput, match="speed"):
+        el.steady_state(rod, [], executor=pool)
+    with pytest.raises(BadInput, match="executor"):
+        el.floquet_multipliers(rod, 1000.0, executor=2)
+    with pytest.raises(BadInput, match="executor"):
+        mathieu = el.load_scene("mathieu").system()
+        el.stability_chart(mathieu, ("lam2", [0.0, 1.0]), ("mu", [0.0, 1.0]), executor=2)
+    with pytest.raises(BadInput, match="executor"):
+        el.stability_chart(rod, ("speed", [900.0, 1000.0]), ("crank_ratio", [0.1, 0.2]), executor=2)
+
+
+def test_the_command_line_keeps_and_finds_a_chart(tmp_path, capsys):
+    store = tmp_path / "chart"
+    words = [
+        "chart",
+        "mathieu",
+        "--x",
+        "lam2=-0.5:10:40",
+        "--y",
+        "mu=0:4:30",
+        "--store",
+        str(store),
+    ]
+    assert main([*words, "--estimate"]) == 0
+    assert "1200 points in 1 pieces" in capsys.readouterr().out
+    assert not store.exists()
+    assert main([*words, "--plot", str(tmp_path / "chart.png")]) == 0
+    assert "0 of them found there" in capsys.readouterr().out
+    assert main([*words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["resumed"] == told["pieces"] == 1
+    assert told["outputs"]["kind"] == {"shape": [30, 40], "type": "int8"}
+    for wrong in (["--order", "3"], ["--edges"], ["--workers", "none"], ["--set", "model.modes=0"]):
+        assert main([*words, *wrong]) == 2
+    assert main([*words[:-2], "--estimate"]) == 2
+    assert main([*words[:5], "mu=0:3:30", "--y", "mu=0:3:31", "--store", str(store)]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_an_executor_of_dask_gives_the_same_bytes(rod):
+    distributed = pytest.importorskip("distributed", reason="extra cluster is not installed")
+    values = {"speed": np.linspace(2000.0, 4000.0, 12)}
+    alone = el.sweep("floquet_multipliers", rod, values, chunk=4)
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        found = el.sweep(
+            "floquet_multipliers", rod, values, chunk=4, executor=client.get_executor()
+        )
+        direct = el.floquet_multipliers(rod, values["speed"], executor=client.get_executor())
+    for name in alone.outputs:
+        assert found[name].tobytes() == alone[name].tobytes()
+    assert (
+        direct.multipliers.tobytes()
+        == el.floquet_multipliers(rod, values["speed"]).multipliers.tobytes()
+    )
+
+
+TEN_MILLION = """
+import resource, sys, numpy as np, elastolink as el
+x, y = np.linspace(-0.5, 30.0, 4000), np.linspace(0.0, 4.0, 2500)
+system = el.load_scene("mathieu").system()
+if sys.argv[1] == "store":
+    chart = el.sweep("stability_chart", system, {"mu": y, "lam2": x}, store=sys.argv[2])
+    stable = chart["stable"]
+else:
+    chart = el.stability_chart(system, ("lam2", x), ("mu", y), boundaries=False)
+    stable = chart.stable
+assert chart.passed and stable.shape == (2500, 4000)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("way", ["store", "memory"])
+def test_ten_million_points_within_two_gigabytes(tmp_path, way):
+    pytest.importorskip("resource")
+    command = [sys.executable, "-c", TEN_MILLION, way, str(tmp_path / "store")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    unit = 1 if sys.platform == "darwin" else 1024
+    assert int(done.stdout) * unit < MOST_MEMORY
+
+
+@pytest.mark.slow
+def test_the_measurement_of_throughput_compares_bytes():
+    found = benchmark_scaling(rounds=1, scale=0.05)
+    assert len(found.rows) == 6
+    assert found.checks["same bytes"].passed
+    with pytest.raises(BadInput, match="workers"):
+        benchmark_scaling(1)

@@ -1,0 +1,411 @@
+"""Sweeps: the same bytes by any workers and order, stores, refusals, estimates."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.sweeps import Sweep, WorkersLost
+from elastolink.runtime.sweeps.pieces import grid_of
+from elastolink.runtime.sweeps.requests import digest
+
+MU, LAM2 = np.linspace(0.0, 3.0, 23), np.linspace(-0.5, 6.0, 31)
+VALUES = {"mu": MU, "lam2": LAM2}
+
+
+def square_sum(subject, a, b=1.0):
+    """A function of one's own: a number and an array at each point."""
+    return {"sum": subject * a**2 + b, "pair": np.array([a, b])}
+
+
+def fails_at_two(subject, a):
+    if a == 2.0:
+        raise BadInput("a is two")
+    return a
+
+
+def ends_the_process(subject, a):
+    os._exit(3)
+
+
+@pytest.fixture(scope="module")
+def mathieu():
+    return el.load_scene("mathieu").system()
+
+
+@pytest.fixture(scope="module")
+def chart(mathieu) -> Sweep:
+    return el.sweep("stability_chart", mathieu, VALUES, chunk=150)
+
+
+@pytest.fixture(scope="module")
+def pool():
+    with el.process_pool(2) as found:
+        yield found
+
+
+def same_bytes(one: Sweep, other: Sweep) -> bool:
+    return sorted(one.outputs) == sorted(other.outputs) and all(
+        one[name].tobytes() == other[name].tobytes() for name in one.outputs
+    )
+
+
+def contents(path: Path) -> dict[str, bytes]:
+    files = [path] if path.is_file() else sorted(path.rglob("*"))
+    return {str(p.relative_to(path)): p.read_bytes() for p in files if p.is_file()}
+
+
+@pytest.mark.parametrize("chunk", [1, 2, 5, 7, 12, 40, 1000])
+@pytest.mark.parametrize("rows", [False, True])
+@pytest.mark.parametrize("shape", [(4, 5), (3, 2), (7, 3)])
+def test_pieces_are_runs_that_cover_the_grid_once(chunk, rows, shape):
+    axes = {name: np.arange(float(n)) for name, n in zip("ab", shape, strict=True)}
+    grid = grid_of(axes, chunk, rows=rows)
+    runs = [grid.run(number) for number in range(grid.pieces)]
+    assert [i for run in runs for i in range(run.start, run.stop)] == list(range(grid.points))
+    mesh = np.stack(np.meshgrid(*axes.values(), indexing="ij"), axis=-1).reshape(-1, 2)
+    for number, run in enumerate(runs):
+        values = grid.values(number)
+        own = np.stack(np.meshgrid(*values.values(), indexing="ij"), axis=-1).reshape(-1, 2)
+        assert np.array_equal(own, mesh[run])
+        if rows:
+            assert len(values["b"]) == shape[1]
+            assert len(values["a"]) >= 2
+    if not rows:
+        assert max(run.stop - run.start for run in runs) <= chunk
+
+
+def test_three_axes_are_cut_into_runs():
+    grid = grid_of({"a": np.arange(3.0), "b": np.arange(4.0), "c": np.arange(5.0)}, 10)
+    runs = [grid.run(number) for number in range(grid.pieces)]
+    assert [i for run in runs for i in range(run.start, run.stop)] == list(range(60))
+    assert grid.parts == (3, 2, 1)
+
+
+def test_a_chart_in_pieces_is_the_chart(mathieu, chart):
+    whole = el.stability_chart(mathieu, ("lam2", LAM2), ("mu", MU), boundaries=False)
+    assert chart.pieces > 3
+    assert np.array_equal(chart["stable"], whole.stable)
+    assert np.array_equal(chart["kind"], whole.kind)
+    # Both errors, of half traces X, as the modulus X + sqrt(X^2 - 1) moves with them.
+    moved = 2.0 * (chart["slack"] + whole.slack) * chart["largest"]
+    assert np.all(np.abs(chart["largest"] - whole.largest) <= moved)
+    assert chart.passed
+    assert chart.error <= 1e-9
+
+
+def test_any_executor_gives_the_same_bytes(mathieu, chart, pool):
+    with ThreadPoolExecutor(3) as threads:
+        assert same_bytes(
+            el.sweep("stability_chart", mathieu, VALUES, chunk=150, executor=threads), chart
+        )
+    assert same_bytes(el.sweep("stability_chart", mathieu, VALUES, chunk=150, executor=pool), chart)
+
+
+@pytest.mark.parametrize("name", ["whole.npz", "folder"])
+def test_a_store_gives_the_same_bytes_and_is_found_again(tmp_path, mathieu, chart, name):
+    store = tmp_path / name
+    first = el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store)
+    before = contents(store)
+    again = el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store)
+    assert same_bytes(first, chart)
+    assert same_bytes(again, chart)
+    assert (first.resumed, again.resumed) == (0, first.pieces)
+    assert (again.error, again.checks) == (first.error, first.checks) == (chart.error, chart.checks)
+    assert contents(store) == before
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+    assert isinstance(first["stable"], np.memmap) == (name == "folder")
+
+
+@pytest.mark.parametrize("name", ["whole.npz", "folder"])
+def test_a_resumed_sweep_ends_with_the_same_bytes(tmp_path, mathieu, name):
+    """Pieces missing, cut short, and a file that a killed process had begun."""
+    store, other = tmp_path / name, tmp_path / "other" / name
+    other.parent.mkdir()
+    el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=other)
+    grid = grid_of(VALUES, 150, rows=True)
+    stopped = _Stopping(after=3)
+    with pytest.raises(KeyboardInterrupt):
+        el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store, executor=stopped)
+    folder = (store if name == "folder" else tmp_path / f"{name}.parts") / "pieces"
+    pieces = sorted(folder.iterdir())
+    # What was done and not yet fetched when the program was stopped is done again.
+    assert 2 <= len(pieces) <= 3 < grid.pieces
+    pieces[1].write_bytes(pieces[1].read_bytes()[:-100])
+    (folder / ".00000004.npz.abcd1234").write_bytes(b"half")
+    found = el.sweep("stability_chart", mathieu, VALUES, chunk=150, store=store)
+    assert found.resumed == len(pieces) - 1
+    assert contents(store) == contents(other)
+
+
+class _Stopping(ThreadPoolExecutor):
+    """An executor under which the user stops the program."""
+
+    def __init__(self, after: int) -> None:
+        super().__init__(1)
+        self.left = after
+
+    def submit(self, fn, /, *args, **kwargs):
+        if not self.left:
+            raise KeyboardInterrupt
+        self.left -= 1
+        future = super().submit(fn, *args, **kwargs)
+        future.result()
+        return future
+
+
+KILLED = """
+import sys, time, numpy as np, elastolink as el
+from elastolink.runtime.sweeps import sweeping
+quick = sweeping.Store.write
+def write(self, number, piece):
+    quick(self, number, piece)
+    time.sleep(0.2)
+sweeping.Store.write = write
+values = {"mu": np.linspace(0.0, 3.0, 60), "lam2": np.linspace(-0.5, 6.0, 50)}
+el.sweep("stability_chart", el.load_scene("mathieu"), values, chunk=100, store=sys.argv[1])
+"""
+
+
+@pytest.mark.parametrize("name", ["folder", pytest.param("whole.npz", marks=pytest.mark.slow)])
+def test_a_killed_process_is_taken_up_by_another(tmp_path, name):
+    """While it runs its store is its own; killed, another process ends with the same bytes."""
+    store, other = tmp_path / "killed" / name, tmp_path / "other" / name
+    store.parent.mkdir()
+    other.parent.mkdir()
+    values = {"mu": np.linspace(0.0, 3.0, 60), "lam2": np.linspace(-0.5, 6.0, 50)}
+    request = ("stability_chart", el.load_scene("mathieu"), values)
+    folder = (store if name == "folder" else store.with_name(f"{name}.parts")) / "pieces"
+    running = subprocess.Popen([sys.executable, "-c", KILLED, str(store)])
+    try:
+        until = time.monotonic() + 60.0
+        while time.monotonic() < until and len(list(folder.glob("0*.npz"))) < 4:
+            time.sleep(0.01)
+        if sys.platform != "win32":
+            with pytest.raises(BadInput, match="another process at work"):
+                el.sweep(*request, chunk=100, store=store)
+    finally:
+        running.send_signal(signal.SIGKILL)
+    assert running.wait() == -signal.SIGKILL
+    had = len(list(folder.glob("0*.npz")))
+    found = el.sweep(*request, chunk=100, store=store)
+    assert 4 <= found.resumed == had < found.pieces == 30
+    el.sweep(*request, chunk=100, store=other)
+    assert contents(store.parent) == contents(other.parent)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"values": {"mu": MU, "lam2": LAM2 + 1e-9}}, "values"),
+        ({"chunk": 140}, "pieces"),
+        ({"options": {"rtol": 1e-9}}, "options"),
+        ({"outputs": ("stable",)}, "outputs"),
+        ({"subject": 0.5}, "subject"),
+        ({"what": "steady_state", "subject": None}, "task"),
+    ],
+)
+def test_a_store_of_another_request_is_refused(tmp_path, mathieu, changed, told):
+    store = tmp_path / "store"
+    el.sweep("stability_chart", mathieu, VALUES, chunk=200, store=store)
+    before = contents(store)
+    asked = {"what": "stability_chart", "subject": mathieu, "values": VALUES, "chunk": 200}
+    asked |= changed
+    if told == "subject":
+        asked["subject"] = mathieu.with_parameters(damping=changed["subject"])
+    if told == "task":
+        asked = {**asked, "subject": 1.0, "what": square_sum, "values": {"a": [1.0, 2.0]}}
+    what, subject, values = (asked.pop(name) for name in ("what", "subject", "values"))
+    with pytest.raises(BadInput, match=f"a sweep that differs in .*{told}") as refusal:
+        el.sweep(what, subject, values, store=store, **asked)
+    assert len(refusal.value.problems) == 1
+    assert contents(store) == before
+
+
+@pytest.mark.parametrize("name", ["taken.npz", "taken"])
+def test_what_is_no_store_is_left_alone(tmp_path, mathieu, name):
+    place = tmp_path / name
+    if name == "taken":
+        place.mkdir()
+        (place / "letter.txt").write_text("dear")
+    else:
+        np.savez(place, a=np.zeros(3))
+    before = contents(place)
+    with pytest.raises(BadInput, match="taken"):
+        el.sweep("stability_chart", mathieu, VALUES, store=place)
+    assert contents(place) == before
+
+
+def test_a_function_of_ones_own_and_results_of_public_ones(tmp_path, pool):
+    values = {"a": [1.0, 2.0, 3.0], "b": [0.0, 1.0]}
+    own = el.sweep(square_sum, 2.0, values, chunk=4)
+    assert np.array_equal(own["sum"], 2.0 * np.array([[1.0], [4.0], [9.0]]) + [0.0, 1.0])
+    assert own["pair"].shape == (3, 2, 2)
+    assert np.isnan(own.error)
+    cranks = {"crank": [0.8, 0.9, 1.0]}
+    linkage = el.FourBar(5.0, 1.0, 5.0, 2.0)
+    angles = el.sweep("transmission_angle", linkage, cranks, outputs=("least",), chunk=2)
+    for crank, least in zip(cranks["crank"], angles["least"], strict=True):
+        assert least == el.transmission_angle(el.FourBar(5.0, crank, 5.0, 2.0)).least
+    many = el.sweep(
+        "transmission_angle", linkage, cranks, outputs=("least",), chunk=2, executor=pool
+    )
+    assert same_bytes(many, angles)
+
+
+def test_a_store_of_a_function_without_error_figures(tmp_path):
+    values = {"a": [1.0, 2.0, 3.0]}
+    first = el.sweep(square_sum, 2.0, values, chunk=2, store=tmp_path / "store")
+    again = el.sweep(square_sum, 2.0, values, chunk=2, store=tmp_path / "store")
+    assert np.isnan([first.error, again.error]).all()
+    assert same_bytes(first, again)
+
+    def refuse(word):
+        raise AssertionError(word)
+
+    # Plain JSON: no NaN.
+    json.loads((tmp_path / "store" / "manifest.json").read_text(), parse_constant=refuse)
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
+def test_multipliers_and_steady_states_over_parameters():
+    scene = el.load_scene("smith_1972_5152_sixteenth_inch")
+    values = {"follower_inertia": [1e-3, 2e-3], "speed": np.linspace(31.0, 40.0, 7)}
+    found = el.sweep("floquet_multipliers", scene, values, chunk=3)
+    motion = el.sweep("steady_state", scene, values, chunk=3)
+    for i, inertia in enumerate(values["follower_inertia"]):
+        direct = el.floquet_multipliers(scene.system(), values["speed"], follower_inertia=inertia)
+        assert np.all(np.abs(found["multipliers"][i] - direct.multipliers) <= 2 * direct.error)
+        assert np.array_equal(found["stable"][i], direct.stable)
+        steady = el.steady_state(scene.system(), values["speed"], follower_inertia=inertia)
+        peak = np.max(np.abs(steady.q), axis=1)
+        assert motion["peak"][i] == pytest.approx(peak, rel=1e-8)
+
+
+def test_geometry_is_made_anew_within_a_piece():
+    rod = el.load_scene("beale_1992_flexible_rod", {"model.modes": 1}).system()
+    values = {"speed": [900.0, 1100.0], "crank_ratio": [0.05, 0.1]}
+    found = el.sweep("floquet_multipliers", rod, values, chunk=4)
+    for i, speed in enumerate(values["speed"]):
+        for j, ratio in enumerate(values["crank_ratio"]):
+            direct = el.floquet_multipliers(rod.with_geometry(crank_ratio=ratio), speed)
+            gap = np.abs(found["multipliers"][i, j] - direct.multipliers)
+            assert np.all(gap <= 2 * direct.error + 1e-15)
+
+
+def test_digests_tell_content_and_nothing_else(mathieu):
+    again = el.load_scene("mathieu").system()
+    assert digest(mathieu) == digest(again)
+    assert digest(mathieu) != digest(mathieu.with_parameters(damping=1e-12))
+    assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
+    assert digest({"x", "y", "z"}) == digest({"z", "y", "x"})
+    assert digest([1.0]) != digest([1])
+    code = "import elastolink as el; from elastolink.runtime.sweeps.requests import digest;"
+    code += "print(digest((el.load_scene('mathieu').system(), {'a', 'b', 'c'}, el.load_scene)))"
+    seen = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert seen == {digest((mathieu, {"a", "b", "c"}, el.load_scene)) + "\n"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("nothing_such", 1.0, {"a": [1.0]}), "name of a public function"),
+        ((3, 1.0, {"a": [1.0]}), "a name or a function"),
+        ((square_sum, 1.0, {}), "at least one named axis"),
+        ((square_sum, 1.0, {"a": []}), "at least one finite value"),
+        ((square_sum, 1.0, {"a": [1.0, np.nan]}), "at least one finite value"),
+        ((square_sum, 1.0, {"a": "x"}), "numbers"),
+        ((square_sum, 1.0, {"a": [1.0], "c": [1.0]}), "axes"),
+        (("stability_chart", 1.0, VALUES), "a linear periodic system"),
+        ((fails_at_two, 1.0, {"a": [1.0, 2.0]}), "a is two"),
+    ],
+)
+def test_bad_input_is_refused_by_name(arguments, message):
+    with pytest.raises(BadInput, match=message):
+        el.sweep(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"chunk": 0}, "chunk"),
+        ({"chunk": 2.5}, "chunk"),
+        ({"executor": 4}, "executor"),
+        ({"outputs": ()}, "outputs"),
+        ({"outputs": ("stabel",)}, "outputs"),
+        ({"options": {"mu": 1.0}}, "options"),
+        ({"store": 3}, "store"),
+        ({"store": "/proc/none/such"}, "writable"),
+    ],
+)
+def test_bad_options_are_refused_by_name(mathieu, options, message):
+    with pytest.raises(BadInput, match=message):
+        el.sweep("stability_chart", mathieu, VALUES, **options)
+
+
+def test_bad_axes_are_refused_before_work(mathieu):
+    with pytest.raises(BadInput, match="two axes"):
+        el.sweep("stability_chart", mathieu, {"mu": MU})
+    with pytest.raises(BadInput, match="correct the names"):
+        el.sweep("stability_chart", mathieu, {"mu": MU, "lam": LAM2})
+    with pytest.raises(BadInput, match="a crank speed"):
+        el.sweep("floquet_multipliers", mathieu, {"mu": MU})
+    with pytest.raises(BadInput, match="workers"), el.process_pool(0):
+        pass
+
+
+def test_workers_that_end_and_pools_that_are_shut_are_told():
+    with el.process_pool(1) as ending, pytest.raises(WorkersLost, match="the same store"):
+        el.sweep(ends_the_process, 1.0, {"a": [1.0]}, executor=ending)
+    shut = ThreadPoolExecutor(1)
+    shut.shutdown()
+    with pytest.raises(BadInput, match="with block"):
+        el.sweep(square_sum, 1.0, {"a": [1.0]}, executor=shut)
+
+
+def test_what_cannot_be_sent_is_told(pool):
+    with pytest.raises(BadInput, match="ThreadPoolExecutor"):
+        el.sweep(lambda subject, a: a, 1.0, {"a": [1.0]}, executor=pool)
+
+
+def test_an_estimate_counts_what_the_sweep_holds(mathieu, chart):
+    found = el.estimate_sweep("stability_chart", mathieu, VALUES, chunk=150, workers=2)
+    assert (found.points, found.pieces) == (len(MU) * len(LAM2), chart.pieces)
+    assert found.bytes == sum(array.nbytes for array in chart.outputs.values())
+    assert found.piece_bytes > 0
+    assert found.seconds > 0
+    assert str(found.points) in str(found)
+
+
+def test_the_result_is_drawn_and_exported(tmp_path, mathieu, chart):
+    assert chart.plot().get_title() == "white: stable"
+    assert chart.plot(output="largest").get_xlabel() == "lam2"
+    with pytest.raises(BadInput, match="output 'none'"):
+        chart.plot(output="none")
+    data = chart.to_xarray()
+    assert data["stable"].dims == ("mu", "lam2")
+    assert np.array_equal(data["mu"], MU)
+    with np.load(chart.save(tmp_path / "chart.npz")) as held:
+        assert np.array_equal(held["stable"], chart["stable"])
+    kept = el.sweep("stability_chart", mathieu, VALUES, store=tmp_path / "store")
+    told = json.loads(json.dumps(kept.to_dict()))
+    assert told["outputs"]["stable"] == {"shape": [23, 31], "type": "bool"}

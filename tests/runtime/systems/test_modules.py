@@ -1,0 +1,190 @@
+"""Finding emitted modules: order of folders, honesty about old and edited ones, the way out."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import elastolink as el
+import elastolink.generated
+import pytest
+from elastolink.derive.regenerate import main
+from elastolink.derive.spec import MANIFEST, ModelSpec
+from elastolink.runtime.systems.modules import find_module, search_path
+
+PACKAGED = Path(elastolink.generated.__path__[0])
+HILL = ModelSpec("hill", "plain")
+EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
+SCENE = "smith_1972_5152_sixteenth_inch"
+
+
+@pytest.fixture(autouse=True)
+def empty_cache(tmp_path, monkeypatch):
+    """Keep the user's own cache out of these tests."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.delenv("ELASTOLINK_GENERATED", raising=False)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "cache" / "elastolink" / "modules"
+
+
+def test_the_packaged_modules_are_found():
+    found = find_module(HILL)
+    assert found.module.__name__ == "elastolink.generated.hill_plain"
+    assert found.folder == PACKAGED
+    assert found.entry.content == found.module.CONTENT
+    assert found.provenance == {"module": "hill_plain", "module_hash": found.entry.content}
+
+
+def test_folders_are_searched_in_the_order_of_the_design(monkeypatch, empty_cache):
+    monkeypatch.setenv("ELASTOLINK_GENERATED", "named")
+    assert list(search_path(["given", Path("second")])) == [
+        Path("given"),
+        Path("second"),
+        Path("named"),
+        empty_cache,
+        PACKAGED,
+    ]
+
+
+def test_the_first_folder_that_has_it_wins(tmp_path, monkeypatch, empty_cache):
+    for folder in ("given", "named", empty_cache):
+        assert main(["hill_plain", "--out", str(folder)]) == 0
+    monkeypatch.setenv("ELASTOLINK_GENERATED", "named")
+    assert find_module(HILL, ["given"]).folder == Path("given")
+    assert find_module(HILL).folder == Path("named")
+    monkeypatch.delenv("ELASTOLINK_GENERATED")
+    found = find_module(HILL)
+    assert found.folder == empty_cache
+    assert find_module(HILL, ["given"]).module is found.module  # equal texts are loaded once
+    (empty_cache / "hill_plain.py").unlink()
+    assert find_module(HILL).folder == PACKAGED
+
+
+def test_a_module_for_any_number_of_modes_serves_each():
+    spec = ModelSpec("four_bar", "reduced", flexible=("coupler",), modes=4)
+    assert find_module(spec).entry.module == "four_bar_coupler_reduced"
+
+
+def test_an_old_module_in_the_cache_is_not_used(empty_cache, capsys):
+    """What another version of the sources emitted counts as missing."""
+    assert main(["hill_plain"]) == 0
+    manifest = empty_cache / MANIFEST
+    manifest.write_text(
+        re.sub(r'"content": "\w+"', f'"content": "{"0" * 32}"', manifest.read_text())
+    )
+    assert find_module(HILL).folder == PACKAGED
+    assert main(["hill_plain"]) == 0
+    assert find_module(HILL).folder == empty_cache
+
+
+def test_an_old_module_is_mentioned_where_there_is_no_other(empty_cache):
+    table = '{"mechanism": "hill", "formulation": "plain", "outputs": ["stability"]}'
+    assert main(["--spec", table]) == 0
+    spec = HILL.with_(outputs=("stability",))
+    assert find_module(spec).folder == empty_cache
+    manifest = empty_cache / MANIFEST
+    manifest.write_text(re.sub(r'"content": "\w+"', '"content": "0"', manifest.read_text()))
+    with pytest.raises(el.BadInput, match="only an outdated one in"):
+        find_module(spec)
+
+
+def test_an_edited_module_is_refused(empty_cache):
+    assert main(["hill_plain"]) == 0
+    path = empty_cache / "hill_plain.py"
+    path.write_text(path.read_text().replace("lam2", "lam_2"))
+    with pytest.raises(el.BadInput, match="changed by hand") as caught:
+        find_module(HILL)
+    assert str(path) in str(caught.value)
+    assert main(["hill_plain"]) == 0
+    assert find_module(HILL).folder == empty_cache
+
+
+def test_a_broken_manifest_is_as_good_as_none(tmp_path, monkeypatch):
+    (tmp_path / MANIFEST).write_text("{")
+    monkeypatch.setenv("ELASTOLINK_GENERATED", str(tmp_path))
+    assert find_module(HILL).folder == PACKAGED
+
+
+def test_a_model_that_nothing_can_derive_is_refused_at_once():
+    with pytest.raises(el.BadInput) as caught:
+        el.load_scene(SCENE, overrides={"model.drop": ["spni"]}).system()
+    (problem,) = caught.value.problems
+    assert (problem.where, problem.found) == ("model.drop", "['spni']")
+    assert "'spin'" in problem.expected
+
+
+def test_a_users_own_model_is_asked_for_by_its_file():
+    with pytest.raises(el.BadInput) as caught:
+        el.load_scene(EXAMPLES / "slider_crank_example.toml").system()
+    fix = caught.value.problems[0].fix
+    assert fix == "run: regenerate-equations --model FILE.py, with the file of slider_crank"
+
+
+def command_of(problem: el.BadInput) -> list[str]:
+    """Return the arguments of the command that an error names, read as a shell does."""
+    words = shlex.split(str(problem).rpartition("run: ")[2])
+    assert words[0] == "regenerate-equations"
+    return words[1:]
+
+
+OVERRIDES = [
+    {"model.outputs": ["stability"]},
+    {"model.drop": ["spin", "axial_inertia"], "model.formulation": "complete"},
+    {"model.balanced": ["coupler"], "coupler.first_moment": None, "model.modes": 2},
+]
+
+
+@pytest.mark.parametrize("overrides", OVERRIDES, ids=lambda o: next(iter(o)))
+def test_the_command_that_an_error_names_makes_the_module(overrides, tmp_path, empty_cache):
+    scene = el.load_scene(SCENE, overrides=overrides)
+    with pytest.raises(el.BadInput, match="no emitted module") as caught:
+        scene.system()
+    code = "import sys; from elastolink.derive.regenerate import main; sys.exit(main(sys.argv[1:]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *command_of(caught.value)],
+        cwd=tmp_path,
+        env=os.environ.copy(),
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert scene.system().provenance["module"] == scene.model_spec().name()
+    assert (empty_cache / f"{scene.model_spec().name()}.py").exists()
+
+
+def test_the_command_reaches_past_a_checkout_that_is_not_searched(
+    tmp_path, monkeypatch, empty_cache
+):
+    """Inside a checkout modules go to its own folder; an installed package does not look there."""
+    (tmp_path / "generated").mkdir()
+    (tmp_path / "pyproject.toml").write_text('name = "elastolink"\n')
+    scene = el.load_scene(SCENE, overrides={"model.outputs": ["stability"]})
+    with pytest.raises(el.BadInput) as caught:
+        scene.system()
+    arguments = command_of(caught.value)
+    assert arguments[:2] == ["--out", str(empty_cache)]
+    assert main(arguments) == 0
+    assert not list((tmp_path / "generated").iterdir())
+    assert scene.system().size == 1
+
+
+def test_the_forcing_is_not_there_where_it_was_not_asked_for(empty_cache):
+    scene = el.load_scene(SCENE, overrides={"model.outputs": ["stability"]})
+    spec = scene.model_spec()
+    assert main(["--spec", spec.canonical()]) == 0
+    slim, full = scene.system(), el.load_scene(SCENE).system()
+    assert full.has("f")
+    assert not any(slim.has(name) for name in ("f", "h", "g", "p"))
+    angles = [0.3, 4.0]
+    assert (slim.array("B", angles) == full.array("B", angles)).all()
+
+
+def test_a_folder_may_move(tmp_path, monkeypatch):
+    assert main(["hill_plain", "--out", "here"]) == 0
+    shutil.move("here", "there")
+    assert find_module(HILL, ["there"]).folder == Path("there")

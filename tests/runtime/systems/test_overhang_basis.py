@@ -1,0 +1,310 @@
+"""The rod's overhang modes: every root, orthonormality to mode 60, drift, integrals."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.systems.rod import (
+    MovingBasis,
+    OverhangBasis,
+    overhang_frequencies,
+    overhang_roots,
+)
+from elastolink.runtime.systems.rod.overhang_spectrum import root_count
+from overhang_reference import DIGITS, Drift, gauss, mode_at, naive_modes, product, root
+from overhang_truth import NAMED
+
+EPS = float(np.finfo(float).eps)
+PLACES = np.array(
+    [*sorted(NAMED.values()), *np.random.default_rng(60).uniform(0.03, 1.0, 8), 0.1, 0.999999]
+)
+
+
+def defect(modes, weights):
+    """Return the largest entry of each mode's row of the Gram matrix less the identity."""
+    gram = (modes.T * weights) @ modes
+    return np.max(np.abs(gram - np.eye(gram.shape[0])), axis=1)
+
+
+# ---------------------------------------------------------------- roots
+
+
+def test_every_root_is_found_and_counted():
+    roots = overhang_roots(PLACES, 60)
+    assert np.all(np.diff(roots, axis=1) > 1.5)  # the closest approach is 1.557, at xi = 0.452
+    number = np.arange(60)
+    places = PLACES[:, None]
+    assert np.array_equal(root_count(places, roots * (1 + 1e-14)), number + 1 + 0 * places)
+    assert np.array_equal(root_count(places, roots * (1 - 1e-14)), number + 0 * places)
+
+
+def test_roots_at_the_ends_of_the_rod():
+    """On two pins n pi; with the block at the pin, those of a cantilever."""
+    on_pins = overhang_roots(1.0, 100)[0]
+    np.testing.assert_allclose(on_pins, np.arange(1, 101) * np.pi, rtol=2 * EPS)
+    clamped = overhang_roots(1e-7, 3)[0]
+    # Relative change with the short bay's length: of the order xi.
+    cantilever = [1.8751040687119611, 4.694091132974175, 7.854757438237613]
+    np.testing.assert_allclose(clamped, cantilever, rtol=3e-6)
+
+
+def test_roots_do_not_depend_on_their_company():
+    alone = np.concatenate([overhang_roots(place, 9) for place in PLACES])
+    np.testing.assert_allclose(overhang_roots(PLACES, 30)[:, :9], alone, rtol=4 * EPS)
+
+
+@pytest.mark.parametrize("place", [0.05, 0.3, NAMED["a node of slope"], 0.77, 0.999])
+def test_roots_against_many_digits(place):
+    for mode in (1, 3, 8):
+        found = overhang_roots(place, mode)[0, -1]
+        with mpmath.workdps(DIGITS):
+            exact = root(mpmath.mpf(place), found)
+            assert abs(exact - found) < 2 * EPS * found
+
+
+# ---------------------------------------------------------------- shapes
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_modes_are_orthonormal_to_mode_60(place):
+    x, weights = gauss(place, 230)
+    modes = OverhangBasis(60).shapes(x, np.array([place]))[0]
+    assert np.max(defect(modes, weights)) < 1e-12
+    curvatures = OverhangBasis(60).shapes(x, np.array([place]), 2)[0]
+    beta = overhang_roots(place, 60)[0]
+    assert np.max(defect(curvatures / beta**2, weights)) < 1e-11
+
+
+def test_the_textbook_formula_loses_all_digits():
+    """Six conditions on sin, cos, sinh, cosh in doubles: nothing is left from mode 8 on."""
+    place = 0.6
+    x, weights = gauss(place, 160)
+    roots = overhang_roots(place, 30)[0]
+    textbook = naive_modes(place, roots, x)
+    ours = OverhangBasis(30).shapes(x, np.array([place]))[0]
+    assert np.max(defect(textbook[:, :4], weights)) < 1e-8
+    assert np.max(defect(textbook[:, :6], weights)) > 1e-7
+    # Null vectors of singular matrices: arbitrary, mostly not orthogonal at all.
+    assert np.mean(defect(textbook[:, 7:], weights) > 0.1) > 0.8
+    assert np.max(defect(ours, weights)) < 1e-13
+
+
+@pytest.mark.parametrize("place", [0.05, 0.4, NAMED["a node of slope"], 0.999])
+def test_conditions_at_pin_block_and_tip(place):
+    basis, xi = OverhangBasis(12), np.array([place])
+    beta = basis.roots(xi)[0]
+    x = np.array([0.0, place, 1.0])
+    pin, block, tip = np.stack([basis.shapes(x, xi, k)[0] / beta**k for k in range(4)], axis=1)
+    assert np.all(pin[[0, 2]] == 0.0)
+    assert np.max(np.abs(block[0])) < 1e-14
+    assert np.max(np.abs(tip[2:])) < 1e-14
+
+
+def test_the_sign_is_that_of_the_tip():
+    ends = OverhangBasis(60).end_values(np.linspace(0.01, 0.999, 400))
+    assert np.all(ends["tip"] > 0)
+    assert np.all(np.sign(ends["root_slope"]) == (-1.0) ** np.arange(1, 61))
+
+
+def test_slope_and_moment_are_continuous_at_the_block():
+    basis, nudge = OverhangBasis(8), 1e-13
+    for place in (0.2, 0.55, NAMED["a node of moment"], 0.9):
+        around = np.array([place, place + nudge])
+        for order in (1, 2):
+            before, beyond = basis.shapes(around, np.array([place]), order)[0]
+            size = basis.roots(np.array([place]))[0] ** order
+            assert np.max(np.abs(beyond - before) / size) < 1e-10
+
+
+@pytest.mark.parametrize("place", [0.31, NAMED["a node of slope"], 0.95])
+def test_drift_against_differences_in_many_digits(place):
+    """A central difference with the step 1e-12 errs by 1e-24 times the third derivative."""
+    basis, xi = OverhangBasis(4), np.array([place])
+    x = np.array([0.1, 0.7 * place, 0.5 * (1 + place), 1.0])
+    for order in range(3):
+        found = basis.drift(x, xi, order)[0]
+        for mode, start in enumerate(basis.roots(xi)[0]):
+            with mpmath.workdps(DIGITS):
+                moved = Drift(mpmath.mpf(place), float(start))
+                exact = [float(moved.side(mpmath.mpf(eta), order, eta > place)) for eta in x]
+            size = start ** (order + 1)
+            np.testing.assert_allclose(found[:, mode], exact, rtol=0, atol=1e-13 * size)
+
+
+def test_rates_of_roots_against_differences_in_many_digits():
+    basis = OverhangBasis(6)
+    for place in (0.12, 0.43, NAMED["a node of slope"], 0.8, 0.999):
+        xi = np.array([place])
+        for start, rate in zip(basis.roots(xi)[0], basis.root_rates(xi)[0], strict=True):
+            with mpmath.workdps(50):
+                step = mpmath.mpf(10) ** -15
+                ahead, behind = (root(place + k * step, start) for k in (1, -1))
+                exact = (ahead - behind) / (2 * step)
+            # The rate changes by beta^2 times what round-off changes in the place.
+            assert abs(float(exact) - rate) < 8 * EPS * start**2
+
+
+# ---------------------------------------------------------------- integrals
+
+PRODUCTS = {
+    "overlap": (("e", 0), ("e", 0)),
+    "drift": (("e", 0), ("f", 0)),
+    "drift_drift": (("f", 0), ("f", 0)),
+    "bending": (("e", 2), ("e", 2)),
+    "bending_drift": (("e", 2), ("f", 2)),
+    "tension": (("e", 1), ("e", 1)),
+}
+
+
+def power_of_root(name):
+    """Return what an array grows with: each derivative of a mode along eta or xi."""
+    return sum(order + (kind == "f") for kind, order in PRODUCTS.get(name, ()))
+
+
+def by_quadrature(basis, name, place, count):
+    """Return an array from the shapes at Gauss nodes on both sides of the block."""
+    xi = np.array([place])
+    x, weights = gauss(place, count)
+    sources = {"e": basis.shapes, "f": basis.drift}
+    if name in ("moment", "mean"):
+        mode = basis.shapes(x, xi)[0]
+        return (weights * (x if name == "moment" else 1.0)) @ mode
+    if name == "tension":
+        weights = weights * (1 - x) * (1 + x) / 2
+    one, two = (sources[kind](x, xi, order)[0] for kind, order in PRODUCTS[name])
+    return (one.T * weights) @ two
+
+
+@pytest.mark.parametrize("place", PLACES[::3])
+def test_closed_forms_against_quadrature(place):
+    """All arrays to mode 60, each entry over the product of the sizes of its two factors."""
+    basis, xi = OverhangBasis(60), np.array([place])
+    beta = basis.roots(xi)[0]
+    for name in (*PRODUCTS, "moment", "mean"):
+        found = basis.array(name, xi)[0]
+        exact = by_quadrature(basis, name, place, 230)
+        power = power_of_root(name) / 2
+        size = np.outer(beta**power, beta**power) if found.ndim == 2 else np.ones_like(beta)
+        assert np.max(np.abs(found - exact) / size) < 1e-12, name
+
+
+def test_closed_forms_against_many_digits():
+    place, basis = 0.43, OverhangBasis(3)
+    xi = np.array([place])
+    roots = basis.roots(xi)[0]
+    with mpmath.workdps(DIGITS):
+        at = mpmath.mpf(place)
+        kinds = {
+            "e": [mode_at(at, float(start)) for start in roots],
+            "f": [Drift(at, float(start)) for start in roots],
+        }
+        for name, ((one, m), (two, n)) in PRODUCTS.items():
+            weight = (lambda eta: (1 - eta**2) / 2) if name == "tension" else (lambda eta: 1)
+            found = basis.array(name, xi)[0]
+            for i, j in ((0, 0), (2, 1)):
+                exact = product(kinds[one][i], kinds[two][j], (m, n), weight)
+                size = float(roots[i] * roots[j]) ** (power_of_root(name) / 2)
+                assert abs(float(exact) - found[i, j]) < 40 * EPS * size, (name, i, j)
+
+
+def test_integrals_agree_where_the_block_is_at_the_tip():
+    """On two pins: sqrt 2 sin(n pi eta), positive in front of the tip; textbook integrals."""
+    basis, xi = OverhangBasis(5), np.array([1.0])
+    n = np.arange(1, 6)
+    sign = (-1.0) ** n
+    x = np.linspace(0.0, 1.0, 7)
+    exact = np.sqrt(2) * sign * np.sin(np.pi * np.outer(x, n))
+    np.testing.assert_allclose(basis.shapes(x, xi)[0], exact, atol=4e-15)
+    moment = sign * np.sqrt(2) * -sign / (n * np.pi)
+    np.testing.assert_allclose(basis.array("moment", xi)[0], moment, rtol=1e-14)
+    mean = sign * np.sqrt(2) * (1 - sign) / (n * np.pi)
+    np.testing.assert_allclose(basis.array("mean", xi)[0], mean, atol=1e-15)
+    np.testing.assert_allclose(basis.root_rates(xi)[0], -n * np.pi, rtol=1e-14)
+
+
+def test_drift_rate_is_the_derivative_of_the_drift():
+    """Chebyshev interpolation of the drift over a stretch of places, differentiated."""
+    basis = OverhangBasis(6)
+    nodes = np.cos(np.pi * (np.arange(129) + 0.5) / 129)
+    series = np.polynomial.chebyshev.Chebyshev
+    drift = basis.array("drift", 0.5 + 0.04 * nodes).reshape(129, -1)
+    at = np.array([0.465, 0.5, 0.53])
+    found = basis.drift_rate(at).reshape(3, -1)
+    for entry in range(36):
+        fit = series.fit(nodes, drift[:, entry], 128, domain=[-1, 1])
+        exact = fit.deriv()((at - 0.5) / 0.04) / 0.04
+        np.testing.assert_allclose(found[:, entry], exact, rtol=0, atol=3e-9)
+
+
+# ---------------------------------------------------------------- the protocol
+
+
+def test_the_protocol_is_kept():
+    basis = OverhangBasis(3)
+    assert isinstance(basis, MovingBasis)
+    assert basis.size == len(basis.labels) == 3
+    places = np.linspace(0.4, 0.8, 5)
+    for name in (*PRODUCTS, "moment", "mean"):
+        found = basis.array(name, places)
+        assert found.shape == ((5, 3) if name in ("moment", "mean") else (5, 3, 3))
+        assert found is basis.array(name, places.copy())
+        with pytest.raises(ValueError, match="read-only"):
+            found[...] = 0.0
+    for k in range(20):  # more than are kept
+        basis.array("drift", places + 0.001 * k)
+    assert basis.shapes(np.array([0.2]), places, 3).shape == (5, 1, 3)
+    assert OverhangBasis(1).array("drift", places).shape == (5, 1, 1)
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: OverhangBasis(0), "modes: found 0"),
+        (lambda: OverhangBasis(True), "modes: found True"),
+        (lambda: overhang_roots(0.5, 1.5), "modes: found 1.5"),
+        (lambda: overhang_roots(1.1, 2), "keep the block on the rod"),
+        (lambda: overhang_roots(float("nan"), 2), "keep the block on the rod"),
+        (lambda: OverhangBasis(2).array("mass", np.array([0.5])), "array: found mass"),
+        (lambda: OverhangBasis(2).array("drift", np.array([0.0])), "keep the block on the rod"),
+        (lambda: OverhangBasis(2).shapes(np.array([1.2]), np.array([0.5])), "stay on the rod"),
+        (lambda: OverhangBasis(2).shapes(np.array([0.2]), np.array([0.5]), 4), "0, 1, 2 or 3"),
+        (lambda: OverhangBasis(2).drift(np.array([0.2]), np.array([0.5]), 3), "0, 1 or 2"),
+        (
+            lambda: overhang_frequencies(
+                0.5, 2, length=-1.0, bending_stiffness=1.0, mass_per_length=1.0
+            ),
+            "length: found -1.0",
+        ),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(call, words):
+    with pytest.raises(BadInput, match=words) as refusal:
+        call()
+    assert len(str(refusal.value).splitlines()) == 1
+
+
+def test_frequencies_of_the_flexible_rod():
+    """At xi = 1 those of a beam on two pins, (n pi)^2 sqrt(EI / (m L^4))."""
+    rod = {"length": 1.0, "bending_stiffness": 0.7e11 * 0.5208e-6, "mass_per_length": 7.15}
+    found = overhang_frequencies([0.5, 1.0], 3, **rod)
+    speed = np.sqrt(rod["bending_stiffness"] / rod["mass_per_length"])
+    expected = (np.arange(1, 4) * np.pi) ** 2 * speed
+    np.testing.assert_allclose(found.frequencies[1], expected, rtol=1e-14)
+    assert found.passed and found.frequencies.shape == found.error.shape == (2, 3)
+    import matplotlib.pyplot as plt
+
+    plt.close(found.plot().figure)
+
+
+def test_modes_so_high_that_exponentials_underflow():
+    """Orthonormal by quadrature, without a warning."""
+    place, basis = np.array([0.6]), OverhangBasis(400)
+    s, weights = np.polynomial.legendre.leggauss(1000)
+    found = np.zeros((400, 400))
+    with np.errstate(all="raise", under="ignore"):
+        for start, end in ((0.0, 0.6), (0.6, 1.0)):
+            mode = basis.shapes(start + (end - start) * (1 + s) / 2, place)[0]
+            found += (end - start) / 2 * (mode.T * weights) @ mode
+    np.testing.assert_allclose(found, np.eye(400), rtol=0, atol=1e-11)

@@ -1,0 +1,181 @@
+"""Polynomial and two-segment bases: exact integrals, span, condition, continuity, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.systems.rod import MovingBasis, PolynomialBasis, TwoSegmentBasis
+from elastolink.runtime.systems.rod.jacobi import jacobi
+from elastolink.runtime.systems.rod.overhang import overhang_roots
+from elastolink.runtime.systems.rod.segments import integrals, nodes
+from rod_bases import condition, frequencies
+from rod_integrals_truth import FACTORS, entry, eta, polynomial_shapes, two_segment_shapes, xi
+
+PLACES = np.array([0.2, 0.3999, 0.59997, 0.75, 0.9])
+BASES = (
+    PolynomialBasis(3),
+    PolynomialBasis(4, orthogonal=False),
+    TwoSegmentBasis(1),
+    TwoSegmentBasis(2),
+    TwoSegmentBasis(5),
+)
+CASES = [
+    (PolynomialBasis(3), lambda: polynomial_shapes(3, True)),
+    (PolynomialBasis(4, orthogonal=False), lambda: polynomial_shapes(4, False)),
+    (TwoSegmentBasis(4), lambda: two_segment_shapes(4)),
+]
+
+
+def exact(name, shapes, place):
+    """Return one array at a rational place of the block."""
+    columns = range(1 if name in ("moment", "mean") else len(shapes))
+    found = [[float(entry(name, shapes, place, m, n)) for n in columns] for m in range(len(shapes))]
+    return np.array(found) if len(columns) > 1 else np.array(found)[:, 0]
+
+
+@pytest.mark.parametrize("name", FACTORS)
+@pytest.mark.parametrize(("basis", "shapes"), CASES, ids=[repr(case[0]) for case in CASES])
+def test_integrals_are_those_of_exact_fractions(basis, shapes, name):
+    """To 16 roundings of the largest entry; 6 are the most that were seen."""
+    for place in (sp.Rational(1, 4), sp.Rational(5, 8), sp.Rational(15, 16)):
+        ours = basis.array(name, np.array([float(place)]))[0]
+        truth = exact(name, shapes(), place)
+        assert np.abs(ours - truth).max() <= 16 * 2.0**-53 * np.abs(truth).max()
+
+
+@pytest.mark.parametrize("name", FACTORS)
+@pytest.mark.parametrize("basis", [PolynomialBasis(20), TwoSegmentBasis(20)], ids=repr)
+def test_integrals_of_many_shapes_against_quadrature(basis, name):
+    """Tables against integrals at each place in long doubles, to 64 roundings of the largest."""
+    truth = integrals(name, basis._sampler, PLACES.astype(np.longdouble), 2 * basis.size + 31)
+    ours = basis.array(name, PLACES)
+    size = np.abs(truth).max(axis=tuple(range(1, truth.ndim)), keepdims=True)
+    assert np.max(np.abs(ours - truth) / size) <= 64 * 2.0**-53
+
+
+def betas(basis, place):
+    """Return beta of frozen vibration, beta^4 = EI-free eigenvalue, at one place of the block."""
+    return np.sqrt(frequencies(basis, place))
+
+
+def test_powers_and_jacobi_span_the_same():
+    for place in PLACES:
+        powers = betas(PolynomialBasis(5, orthogonal=False), place)
+        ours = betas(PolynomialBasis(5), place)
+        # The powers' mass matrix has a condition near 1e6 once scaled.
+        assert ours == pytest.approx(powers, rel=1e-8)
+
+
+def test_condition_of_the_mass_matrix():
+    for place in PLACES:
+        assert condition(PolynomialBasis(12), place) < 130
+        assert condition(PolynomialBasis(20), place) < 300
+        assert condition(PolynomialBasis(12, orthogonal=False), place) > 1e13
+        overlap = TwoSegmentBasis(20).array("overlap", np.array([place]))[0]
+        assert np.abs(overlap - np.diag(np.diag(overlap))).max() < 1e-15
+        assert np.diag(overlap).min() > 0
+
+
+@pytest.mark.parametrize("basis", BASES, ids=repr)
+def test_shapes_hold_at_pin_and_block_and_keep_their_slope(basis):
+    for place in PLACES:
+        at = np.array([place])
+        ends = basis.shapes(np.array([0.0, place]), at)
+        assert np.abs(ends).max() == 0.0
+        near = np.array([place, np.nextafter(place, 1.0)])
+        slopes = basis.shapes(near, at, derivative=1)[0]
+        assert slopes[0] == pytest.approx(slopes[1], rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize(("basis", "shapes"), CASES, ids=[repr(case[0]) for case in CASES])
+@pytest.mark.parametrize("order", [0, 1, 2, 3])
+def test_derivatives_along_the_rod(basis, shapes, order):
+    place, points = sp.Rational(5, 8), [sp.Rational(k, 16) for k in (0, 3, 9, 10, 11, 16)]
+    ours = basis.shapes(np.array(points, dtype=float), np.array([float(place)]), order)[0]
+    for point, row in zip(points, ours, strict=True):
+        side = 0 if point <= place else 1
+        truth = [
+            sp.diff(shape[side], eta, order).subs({xi: place, eta: point}) for shape in shapes()
+        ]
+        assert row == pytest.approx([float(value) for value in truth], rel=1e-13, abs=1e-13)
+
+
+@pytest.mark.parametrize("basis", [PolynomialBasis(6), TwoSegmentBasis(6)], ids=repr)
+def test_drift_follows_the_moving_block(basis):
+    """d/dxi of overlap and mean, by differences, against drift."""
+    step = 1e-5
+    ahead, behind = (basis.array("overlap", PLACES + s) for s in (step, -step))
+    drift = basis.array("drift", PLACES)
+    assert (ahead - behind) / (2 * step) == pytest.approx(
+        drift + np.swapaxes(drift, 1, 2), abs=1e-8 * np.abs(drift).max()
+    )
+
+
+def test_frequencies_fall_to_those_of_the_beam_with_an_overhang():
+    for k, exact_root in enumerate(overhang_roots(0.6, 3)[0]):
+        found = [betas(TwoSegmentBasis(n), 0.6)[k] for n in (4, 8, 12, 16)]
+        assert found == sorted(found, reverse=True)
+        assert found[-1] == pytest.approx(exact_root, rel=1e-8)
+        # One polynomial through the block: always above, and far.
+        ours = betas(PolynomialBasis(16), 0.6)[k]
+        assert 1e-4 < ours / exact_root - 1 < 0.1
+
+
+def test_bases_are_what_the_equations_ask_for():
+    for basis in BASES:
+        assert isinstance(basis, MovingBasis)
+        assert len(basis.labels) == basis.size == len(set(basis.labels))
+        assert basis.shapes(np.linspace(0, 1, 7), PLACES).shape == (5, 7, basis.size)
+        assert basis.array("drift", PLACES).shape == (5, basis.size, basis.size)
+        assert basis.array("moment", PLACES).shape == (5, basis.size)
+
+
+def test_block_at_the_tip():
+    """The tail vanishes: a pinned beam of full length, beta = pi; two segments have no meaning."""
+    assert betas(PolynomialBasis(10), 1.0)[:2] == pytest.approx([np.pi, 2 * np.pi], rel=1e-6)
+    assert np.all(np.isfinite(PolynomialBasis(3).shapes(np.array([0.5, 1.0]), np.array([1.0]))))
+    with pytest.raises(BadInput, match="lengthen the rod"):
+        TwoSegmentBasis(3).array("overlap", np.array([0.5, 1.0]))
+    with pytest.raises(BadInput, match="lengthen the rod"):
+        TwoSegmentBasis(3).shapes(np.array([0.5]), np.array([1.0]))
+
+
+@pytest.mark.parametrize("make", [PolynomialBasis, TwoSegmentBasis])
+@pytest.mark.parametrize("size", [0, -1, 2.0, True, "3"])
+def test_a_size_that_is_no_count_is_refused(make, size):
+    with pytest.raises(BadInput, match="whole number from 1"):
+        make(size)
+
+
+@pytest.mark.parametrize("basis", [PolynomialBasis(2), TwoSegmentBasis(2)], ids=repr)
+def test_bad_requests_are_refused(basis):
+    with pytest.raises(BadInput, match="one of overlap, drift"):
+        basis.array("mass", PLACES)
+    for place in (0.0, -0.1, 1.2, np.nan):
+        with pytest.raises(BadInput, match="keep the block on the rod"):
+            basis.array("overlap", np.array([0.5, place]))
+    with pytest.raises(BadInput, match="0, 1, 2 or 3"):
+        basis.shapes(np.array([0.5]), PLACES, derivative=4)
+
+
+@pytest.mark.parametrize(("upper", "lower"), [(0, 0), (0, 1), (4, 2), (0, 4), (3, 2), (0, 3)])
+def test_jacobi_polynomials_are_orthonormal(upper, lower):
+    x, weights = nodes(60)
+    rows = jacobi(25, x, upper, lower)
+    p = rows[0]
+    gram = (p * (weights * (1 - x) ** upper * x**lower)[:, None]).T @ p
+    assert np.abs(gram - np.eye(25)).max() < 1e-14
+    step = np.longdouble(1e-6)
+    ahead, behind = (jacobi(8, x + s, upper, lower) for s in (step, -step))
+    for low in range(3):
+        found = (ahead[low] - behind[low]) / (2 * step)
+        assert np.abs(found - rows[low + 1][:, :8]).max() < 1e-8 * np.abs(found).max()
+
+
+def test_nodes_integrate_powers():
+    for degree in (1, 6, 31, 80):
+        x, weights = nodes(degree)
+        for power in {0, 1, degree // 2, degree}:
+            assert float(weights @ x**power) == pytest.approx(1 / (power + 1), rel=4e-16)

@@ -1,0 +1,343 @@
+"""The linear system of the flexible rod: Newton's law, tension and frame, damping, geometry."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import DAMPING, Term
+from elastolink.runtime.floquet.first_order import canonical_form
+from elastolink.runtime.hill.form import is_hill
+from elastolink.runtime.simulation.energy import energy_balance
+from elastolink.runtime.systems.rod import OverhangBasis, TwoSegmentBasis, rod_system
+from numpy.polynomial.legendre import leggauss
+from rod_newton import PlainBasis, Rod, linear_forces, second_order
+from scipy.integrate import solve_ivp
+
+PRINTED = ("frame", "tension")
+NUMBERS = {
+    "crank_ratio": 0.3,
+    "frame": 0.6,
+    "length": 1.3,
+    "bending_stiffness": 40.0,
+    "mass_per_length": 2.5,
+    "damping": 3.0,
+    "internal_damping": 0.07,
+}
+FLEXIBLE = {
+    "crank_ratio": 0.2,
+    "frame": 0.59997,
+    "length": 1.0,
+    "bending_stiffness": 0.7e11 * 0.5208e-6,
+    "mass_per_length": 7.15,
+}
+
+
+# ---------------------------------------------------------------- against Newton's law
+
+
+@pytest.mark.parametrize("drop", [(), PRINTED])
+@pytest.mark.parametrize("rates", [(7.0, 0.0), (5.0, 11.0)], ids=["steady", "accelerating"])
+def test_equations_are_newtons_law(drop, rates):
+    """Every matrix, for motions in coordinates, rates and accelerations one by one."""
+    theta = 0.9
+    found = second_order(rod_system(PlainBasis(2), **NUMBERS, drop=drop), theta, *rates)
+    numbers = {k: v for k, v in NUMBERS.items() if k != "crank_ratio"}
+    rod = Rod(**numbers, crank=NUMBERS["crank_ratio"] * NUMBERS["frame"], taut=not drop)
+    unit = NUMBERS["mass_per_length"] * NUMBERS["length"] ** 3
+    for matrix, expected in zip(found, linear_forces(rod, 2, theta, *rates), strict=True):
+        size = np.max(np.abs(expected / unit))
+        np.testing.assert_allclose(matrix, expected / unit, rtol=0, atol=1e-11 * size)
+
+
+def test_terms_of_damping_and_drift_matter_in_that_comparison():
+    """Each array is large enough at that place for its loss to be seen."""
+    system = rod_system(PlainBasis(2), **NUMBERS)
+    whole = second_order(system, 0.9, 5.0, 11.0)
+    for name in ("A", "B", "C", "D", "K", "f", "g"):
+        part = second_order(system.without(name), 0.9, 5.0, 11.0)
+        change = max(
+            np.max(np.abs(w - p)) / np.max(np.abs(w)) for w, p in zip(whole, part, strict=True)
+        )
+        assert change > 1e-4, name
+
+
+# ---------------------------------------------------------------- a crank longer than the base
+
+LONG_CRANK = {**NUMBERS, "crank_ratio": 1.5, "frame": 0.4}
+
+
+@pytest.mark.parametrize("drop", [(), PRINTED])
+@pytest.mark.parametrize("theta", [0.9, 2.8])
+def test_equations_are_newtons_law_where_the_rod_turns_round(drop, theta):
+    found = second_order(rod_system(PlainBasis(2), **LONG_CRANK, drop=drop), theta, 5.0, 11.0)
+    numbers = {k: v for k, v in LONG_CRANK.items() if k != "crank_ratio"}
+    rod = Rod(**numbers, crank=0.6, taut=not drop)
+    unit = NUMBERS["mass_per_length"] * NUMBERS["length"] ** 3
+    for matrix, expected in zip(found, linear_forces(rod, 2, theta, 5.0, 11.0), strict=True):
+        size = np.max(np.abs(expected / unit))
+        np.testing.assert_allclose(matrix, expected / unit, rtol=0, atol=1e-11 * size)
+
+
+def test_steady_motion_where_the_rod_turns_round_does_not_depend_on_the_basis():
+    """The tip's motion on two bases; their truncations there are 5e-4 and 8e-4 of its size."""
+    numbers = {**FLEXIBLE, "crank_ratio": 4.0, "frame": 0.15, "damping": 300.0}
+    tips = []
+    for basis in (OverhangBasis(4), TwoSegmentBasis(7)):
+        found = el.steady_state(rod_system(basis, **numbers), 120.0, rtol=1e-7, samples=64)
+        tip = found.deflection(1.0).ravel()
+        tips.append(tip[:: len(tip) // 64])
+    assert np.max(np.abs(tips[0] - tips[1])) < 2e-3 * np.max(np.abs(tips[0]))
+    assert np.max(np.abs(tips[0])) > 0.01
+
+
+# ---------------------------------------------------------------- tension and frame
+
+
+def tension_from_frame(basis, place):
+    """Return ``int (1 - eta^2)/2 u_i' u_j'``, u from the straight line of least squares."""
+    nodes, weights = leggauss(basis.size + 4)
+    x, w = (nodes + 1) / 2, weights / 2
+    line = np.stack([np.ones_like(x), x], -1)
+    projector = np.linalg.solve(line.T @ (w[:, None] * line), (w[:, None] * line).T)
+    fitted = projector @ basis.shapes(x, place)
+    slopes = basis.shapes(x, place, 1) - fitted[:, 1:2, :]
+    return np.einsum("x,txi,txj->tij", w * (1 - x**2) / 2, slopes, slopes)
+
+
+def test_tension_is_that_from_the_frame_and_the_frames_own():
+    basis, theta = PlainBasis(4), np.linspace(0.0, 2 * np.pi, 9)
+    made = {
+        drop: rod_system(basis, **NUMBERS, drop=drop).array("B", theta)
+        for drop in ((), PRINTED, ("tension",), ("frame",))
+    }
+    linkage = el.QuickReturn(
+        frame=NUMBERS["frame"],
+        crank=NUMBERS["crank_ratio"] * NUMBERS["frame"],
+        rod=NUMBERS["length"],
+    )
+    motion = linkage.motion(theta)
+    place, square = motion.slide / NUMBERS["length"], motion.omega4[:, None, None] ** 2
+    size = np.max(square) * np.max(np.abs(basis.array("tension", place)))
+    from_line = square * basis.array("tension", place)
+    from_frame = square * tension_from_frame(basis, place)
+    for found, expected in (
+        (made[PRINTED] - made[()], from_line),
+        (made[PRINTED] - made[("frame",)], from_frame),
+        (made[("tension",)] - made[()], from_frame),
+    ):
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14 * size)
+    # Both parts together are the whole, to round-off.
+    together = made[("tension",)] + made[("frame",)] - made[PRINTED]
+    np.testing.assert_allclose(together, made[()], rtol=0, atol=1e-15 * size)
+    assert np.max(np.abs(made[("tension",)] - made[PRINTED])) > 0.1 * size
+
+
+@pytest.mark.parametrize("drop", [(), ("tension",)])
+def test_a_rigid_turn_sees_the_frame_alone(drop):
+    """A shape that turns as a whole has tension work m phi'^2 L^3/3, all of it the frame's."""
+
+    class Line(PlainBasis):
+        def array(self, name, place):
+            one = np.ones(len(place))
+            values = {"overlap": 1 / 3, "tension": 1 / 3, "moment": 1 / 3, "mean": 1 / 2}
+            return values.get(name, 0.0) * (
+                one[:, None]
+                if name in values and name in ("moment", "mean")
+                else one[:, None, None]
+            )
+
+    theta = np.array([0.4, 2.0])
+    system = rod_system(Line(1), **NUMBERS, drop=drop)
+    np.testing.assert_allclose(system.array("B", theta), 0.0, atol=1e-16)
+
+
+# ---------------------------------------------------------------- damping through D
+
+
+@pytest.mark.parametrize("name, value", [("damping", 500.0), ("internal_damping", 1.0)])
+def test_canonical_form_with_d_is_the_second_order_form(name, value):
+    numbers = {**NUMBERS, "damping": 0.0, "internal_damping": 0.0, name: value}
+    system, speed = rod_system(PlainBasis(2), **numbers), 100.0
+    start = np.array([1e-3, -2e-3, 0.0, 0.0])
+
+    def rates(theta, state):
+        stiffness, damping, mass, force = second_order(system, theta, speed, 0.0)
+        q, slope = state[:2], state[2:]
+        push = force - damping @ (slope * speed) - stiffness @ q
+        return np.concatenate([slope, np.linalg.solve(mass, push) / speed**2])
+
+    span = (1.2, 1.7)  # where the block slides fast
+    truth = solve_ivp(rates, span, start, method="DOP853", rtol=1e-9, atol=1e-12).y[:2, -1]
+    form = canonical_form(system, [speed], forcing=True)
+    momentum = form.momentum(span[0], start[:2], start[2:])
+    scale = form.scale[0]
+
+    def canonical(theta, state):
+        return form.generator(np.array([theta]))[0, 0] @ state
+
+    first = np.concatenate([start[:2], momentum, [1.0]]) / scale
+    found = solve_ivp(canonical, span, first, method="DOP853", rtol=1e-9, atol=1e-12)
+    found = found.y[:2, -1] * scale[:2]
+    np.testing.assert_allclose(found, truth, rtol=1e-7)
+    without = canonical_form(system.without("D"), [speed], forcing=True)
+    other = solve_ivp(
+        lambda theta, state: without.generator(np.array([theta]))[0, 0] @ state,
+        span,
+        first,
+        method="DOP853",
+        rtol=1e-6,
+    )
+    assert np.max(np.abs(other.y[:2, -1] * scale[:2] - truth)) > 1e-4 * np.max(np.abs(truth))
+
+
+def test_energy_of_a_damped_motion_is_balanced():
+    """The balance holds with D, and fails where the motion had D and the balance has not."""
+    system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 400.0})
+    motion = el.simulate(system, 40.0, 1.0, samples=800)
+    assert motion.checks["energy balance"].value < motion.checks["energy balance"].limit < 1e-4
+    theta, q, slope = motion.theta, motion.q, motion.qd / 40.0
+    whole = energy_balance(canonical_form(system, 40.0, forcing=True), theta, q, slope, 1e-12)
+    bare = canonical_form(system.without("D"), 40.0, forcing=True)
+    part = energy_balance(bare, theta, q, slope, 1e-12)
+    assert whole.value < 1e-6 < 1e-4 < part.value
+
+
+def test_damping_through_d_alone_counts_as_damping():
+    system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 1.0}).without("C")
+    assert system.is_damped()
+    assert not system.without(*DAMPING).is_damped()
+    assert canonical_form(system, 100.0).damped
+    assert not canonical_form(system, 100.0).conservative
+    one = rod_system(PlainBasis(1), **{**FLEXIBLE, "damping": 1.0}).without("A")
+    constant = Term("M", None, np.ones((1, 1)))
+    still = replace(one.without("A", "M", "C", "K"), terms=(constant, *one.without("M").terms))
+    assert not is_hill(still)
+
+
+def test_multipliers_with_d_multiply_to_liouvilles_determinant():
+    """trace(M^-1 C) alone: with viscous damping c/m for each coordinate, whatever D does."""
+    system = rod_system(PlainBasis(3), **{**FLEXIBLE, "damping": 50.0})
+    found = el.floquet_multipliers(system, 300.0)
+    expected = np.exp(-3 * 50.0 / 7.15 * 2 * np.pi / 300.0)
+    assert np.prod(found.multipliers) == pytest.approx(expected, rel=1e-10)
+    assert found.passed
+
+
+def test_speed_boundaries_and_series_see_d():
+    """The Fourier matrix and the monodromy matrix agree on an end of a damped region."""
+    system = rod_system(PlainBasis(1), **{**FLEXIBLE, "damping": 20.0})
+    edges = el.stability_edges(system, (700.0, 2500.0))
+    ends = [e for pair in zip(edges.lower, edges.upper, strict=True) for e in pair]
+    assert len(ends) >= 2
+    for end in ends:
+        size = np.max(np.abs(el.floquet_multipliers(system, end).multipliers))
+        assert size == pytest.approx(1.0, abs=1e-8)
+    bare = el.stability_edges(system.without("D"), (700.0, 2500.0))
+    assert np.abs(edges.lower[-1] - bare.lower[-1]) > 1e3 * edges.error[-1]
+
+
+# ---------------------------------------------------------------- geometry and arguments
+
+
+def test_another_geometry_is_another_system_with_the_same_rest():
+    damped = rod_system(PlainBasis(2), **FLEXIBLE, provenance={"scene": "one"})
+    extra = Term("C", "more", np.eye(2))
+    system = damped.with_terms(extra, scales={"more": 3.0}).with_parameters(damping=7.0)
+    moved = system.with_geometry(crank_ratio=0.1, length=1.1)
+    straight = rod_system(
+        PlainBasis(2), **{**FLEXIBLE, "crank_ratio": 0.1, "length": 1.1, "damping": 7.0}
+    ).with_terms(extra, scales={"more": 3.0})
+    theta = np.linspace(0.0, 6.0, 5)
+    for name in ("M", "A", "B", "C", "D", "K", "f", "g"):
+        np.testing.assert_array_equal(moved.array(name, theta), straight.array(name, theta))
+    assert moved.geometry == {"crank_ratio": 0.1, "frame": 0.59997, "length": 1.1}
+    assert moved.reference_length == 1.1
+    assert moved.parameters["damping"] == 7.0
+    assert moved.provenance["scene"] == "one"
+    assert "crank_ratio=0.1" in moved.provenance["changed"]
+    assert not system.without("C").with_geometry(crank_ratio=0.1).has("C")
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"crank_ratio": 1.0}, "eps = 1"),
+        ({"crank_ratio": 0.9, "length": 1.1}, "the block leaves the rod"),
+        ({"crank_ratio": -0.1}, "crank_ratio"),
+        ({"length": float("nan")}, "length"),
+        ({"damping": -1.0}, "damping"),
+        ({"mass_per_length": 0.0}, "mass_per_length"),
+        ({"bending_stiffness": "soft"}, "bending_stiffness"),
+    ],
+)
+def test_numbers_that_cannot_be(change, words):
+    with pytest.raises(BadInput, match=words):
+        rod_system(PlainBasis(1), **{**FLEXIBLE, **change})
+
+
+@pytest.mark.parametrize("drop", ["tension", ("tension", "spin"), ("axial",)])
+def test_terms_that_cannot_be_dropped(drop):
+    with pytest.raises(BadInput, match="drop"):
+        rod_system(PlainBasis(1), **FLEXIBLE, drop=drop)
+
+
+def test_geometry_that_cannot_be_changed():
+    system = rod_system(PlainBasis(1), **FLEXIBLE)
+    with pytest.raises(BadInput, match="crank_ratio"):
+        system.with_geometry(crank=0.1)
+    with pytest.raises(BadInput, match="eps = 1"):
+        system.with_geometry(crank_ratio=1.0)
+    coupler = el.load_scene("smith_1972_5152_sixteenth_inch").system()
+    with pytest.raises(BadInput, match="with_geometry"):
+        coupler.with_geometry(crank=0.1)
+
+
+def test_integrals_are_found_once_for_all_terms():
+    class Counting(PlainBasis):
+        calls = 0
+
+        def array(self, name, place):
+            Counting.calls += 1
+            return super().array(name, place)
+
+    system = rod_system(Counting(2), **FLEXIBLE, drop=("frame",))
+    Counting.calls = 0
+    theta = np.linspace(0.0, 1.0, 7)
+    for name in ("M", "A", "B", "C", "D", "K", "f", "g"):
+        system.array(name, theta)
+    assert Counting.calls == 8  # each name once
+
+
+def test_a_rod_that_just_reaches_the_block():
+    """0.1 + 0.2 is more than 0.3 in doubles, which is no reason to refuse the rod."""
+    numbers = {**FLEXIBLE, "frame": 0.2, "crank_ratio": 0.5, "length": 0.3}
+    assert 0.5 * 0.2 + 0.2 > 0.3
+    system = rod_system(OverhangBasis(2), **numbers)
+    assert np.all(np.isfinite(system.array("K", np.zeros(1))))
+
+
+# ---------------------------------------------------------------- other ways to the exponents
+
+
+def test_series_of_a_tongue_and_exponents_see_d():
+    """Internal damping on a mode that changes with the block: ends to order 6, and exponents."""
+    numbers = {**FLEXIBLE, "crank_ratio": 0.05, "internal_damping": 1.0}
+    system, span = rod_system(OverhangBasis(1), **numbers), (1500.0, 1900.0)
+    (resonance,) = el.resonances(system, span)
+    exact = el.stability_edges(system, span)
+    found = el.tongue(system, resonance, order=6)
+    without = el.tongue(system.without("D"), resonance, order=6)
+    for end in ("lower", "upper"):
+        value, truth = getattr(found, end), getattr(exact, end)[0]
+        assert abs(value - truth) < found.error
+        assert abs(getattr(without, end) - truth) > 30 * found.error
+    both = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 200.0})
+    multipliers = el.floquet_multipliers(both, 700.0).multipliers
+    exponents = el.hill_exponents(both, 700.0).exponents
+    # By their characteristic polynomials, which know no order.
+    found = np.poly(np.exp(2 * np.pi * exponents))
+    np.testing.assert_allclose(found, np.poly(multipliers), rtol=0, atol=1e-10)

@@ -1,0 +1,238 @@
+"""The linear-periodic family, many modes: a blade of emitted elements, joined at run time."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+import scipy.linalg
+from elastolink.derive.spec import ModelSpec
+from elastolink.runtime.core.families import LinearPeriodic, Term, array_function
+from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
+from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.simulation.trajectory import simulate
+from scipy.integrate import solve_ivp
+
+UNIT = {
+    "mass_per_length": 1.0,
+    "axial_stiffness": 400.0,
+    "lag_stiffness": 1.0,
+    "flap_stiffness": 1.0,
+    "damping": 1.0,
+}
+LABELS = ("u", "v", "v_slope", "w", "w_slope")
+# Element degrees of freedom as (node of the element, label of the node).
+PLACES = [(0, 0), (1, 0), (0, 1), (0, 2), (1, 1), (1, 2), (0, 3), (0, 4), (1, 3), (1, 4)]
+
+
+@pytest.fixture(scope="module")
+def element(emit):
+    found = emit("rotating_beam_element", ModelSpec("rotating_beam", "element"))
+    return array_function(found.module, "element")
+
+
+def joined(matrices: np.ndarray) -> np.ndarray:
+    """Sum element arrays ``(count, 10, columns)`` up over the nodes; node 0 is clamped."""
+    count = len(matrices)
+    place = np.array([[5 * (e + node) + label for node, label in PLACES] for e in range(count)])
+    size = 5 * (count + 1)
+    if matrices.shape[-1] == 1:
+        vector = np.zeros(size)
+        np.add.at(vector, place, matrices[..., 0])
+        return vector[5:]
+    matrix = np.zeros((size, size))
+    np.add.at(matrix, (place[:, :, None], place[:, None, :]), matrices)
+    return matrix[5:, 5:]
+
+
+def blade(
+    element, count: int = 2, *, gravity=0.0, damping=0.0, forcing=False, **changes
+) -> LinearPeriodic:
+    """Return a clamped blade of unit length on a hub of no radius, its axis horizontal."""
+    numbers = {**UNIT, **changes}
+    length = np.full(count, 1.0 / count)
+    inner = np.arange(count) / count
+
+    def arrays(tension_0=0.0, tension_1=0.0, tension_2=0.0):
+        return element(length, inner, tension_0, tension_1, tension_2, **numbers)
+
+    whole = {name: joined(value) for name, value in arrays().items()}
+    # mu w^2 (1 - r^2)/2 of the rotation, and -mu g (1 - r) cos theta of the weight
+    spun = joined(arrays((1 - inner**2) / 2, -inner * length, -(length**2) / 2)["Kg"])
+    hung = joined(arrays(-(1 - inner), length)["Kg"])
+    terms = [Term(name, None, whole[name]) for name in ("M", "A", "B", "K")]
+    terms += [
+        Term("Kg", None, spun, power=2),
+        Term("Kg", "gravity", lambda theta: np.cos(theta)[:, None, None] * hung),
+        Term("C", "damping", whole["C"]),
+    ]
+    if forcing:
+        terms.append(Term("f", None, whole["f"]))
+    return LinearPeriodic(
+        size=5 * count,
+        terms=tuple(terms),
+        parameters={"gravity": gravity, "damping": damping},
+        scales=lambda values: {name: np.asarray(values[name]) for name in ("gravity", "damping")},
+        labels=tuple(f"{label}{node + 1}" for node in range(count) for label in LABELS),
+    )
+
+
+def second_order(system: LinearPeriodic, speed: float, theta: float = 0.0):
+    """Return M, the factor of qd, and that of q; every array but Kg is constant here."""
+    m, a, b, c, k, kg = (
+        system.array(name, theta, speed)[0] for name in ("M", "A", "B", "C", "K", "Kg")
+    )
+    return m, c + speed * (a - a.T), k + kg - speed**2 * b
+
+
+def flap_frequencies(system: LinearPeriodic, speed: float) -> np.ndarray:
+    m, _, k = second_order(system, speed)
+    rows = [i for i, label in enumerate(system.labels) if label.startswith("w")]
+    return np.sqrt(scipy.linalg.eigvalsh(k[np.ix_(rows, rows)], m[np.ix_(rows, rows)]))
+
+
+def frobenius(speed: float, guess: float) -> float:
+    """Frequency of ``w'''' - speed^2/2 ((1 - x^2) w')' = omega^2 w``, clamped and free, 40 digits.
+
+    The power series about the hub converges everywhere; both conditions at the tip give omega.
+    """
+    with mpmath.workdps(40):
+        eta2 = mpmath.mpf(speed) ** 2 / 2
+
+        def defect(omega):
+            rows = []
+            for start in ((1, 0), (0, 1)):
+                a = [mpmath.mpf(0), mpmath.mpf(0), *map(mpmath.mpf, start)]
+                for k in range(160):
+                    side = eta2 * ((k + 2) * (k + 1) * a[k + 2] - k * (k + 1) * a[k])
+                    side += omega**2 * a[k]
+                    a.append(side / ((k + 4) * (k + 3) * (k + 2) * (k + 1)))
+                rows.append(
+                    (
+                        mpmath.fsum(k * (k - 1) * value for k, value in enumerate(a)),
+                        mpmath.fsum(k * (k - 1) * (k - 2) * value for k, value in enumerate(a)),
+                    )
+                )
+            return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
+
+        return float(mpmath.findroot(defect, guess))
+
+
+# Wright, Smith, Thresher and Wang 1982, table of the uniform beam without hub: 4 decimals.
+@pytest.mark.parametrize(
+    ("speed", "published"),
+    [
+        (0, (3.5160, 22.0345)),
+        (3, (4.7973, 23.3203)),
+        (6, (7.3604, 26.8091)),
+        (12, (13.1702, 37.6031)),
+    ],
+)
+def test_flap_frequencies_against_publication_and_power_series(element, speed, published):
+    fine = flap_frequencies(blade(element, 24), float(speed))[:2]
+    exact = [frobenius(speed, guess) for guess in published]
+    np.testing.assert_allclose(exact, published, atol=0.7e-4)
+    np.testing.assert_allclose(fine, exact, rtol=2e-6)
+    # Two elements are the tenant: Rayleigh's bound from above, within the cubic's error.
+    coarse = flap_frequencies(blade(element), float(speed))[:2]
+    excess = coarse / exact - 1.0
+    assert np.all(excess > 0.0)
+    assert np.all(excess < 1.2e-2)
+
+
+def test_elements_converge_with_fourth_order(element):
+    exact = frobenius(5.0, 6.4495)
+    counts = np.array([4, 8, 16])
+    errors = [flap_frequencies(blade(element, n), 5.0)[0] / exact - 1 for n in counts]
+    slopes = np.diff(np.log(errors)) / np.diff(np.log(1 / counts))
+    np.testing.assert_allclose(slopes, 4.0, atol=0.1)
+
+
+def test_lag_is_flap_less_the_rotation(element):
+    """Stiff in stretch, omega_lag^2 = omega_flap^2 - w^2; the shift goes as 1/EA."""
+    speed, shifts = 2.0, []
+    for axial in (4e3, 4e5):
+        system = blade(element, 4, axial_stiffness=axial)
+        m, gyro, k = second_order(system, speed)
+        n = system.size
+        block = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -gyro]])
+        found = np.abs(scipy.linalg.eigvals(block, scipy.linalg.block_diag(np.eye(n), m)).imag)
+        flap = flap_frequencies(system, speed)[0]
+        assert np.min(np.abs(found - flap)) < 1e-9
+        shifts.append(np.min(found) - np.sqrt(flap**2 - speed**2))
+    assert abs(shifts[1]) < 1e-4
+    assert shifts[0] / shifts[1] == pytest.approx(100.0, rel=0.02)
+
+
+def test_stretch_of_the_steady_rotation(element):
+    system = blade(element, 8, forcing=True)
+    speed = 0.5
+    _, _, k = second_order(system, speed)
+    f = system.array("f", 0.0)[0]
+    steady = np.linalg.solve(k, speed**2 * f)
+    # u'' = -w^2 (r + u)/EA by hand: u = sin(kr)/(k cos k) - r, k = w/sqrt(EA)
+    wave = speed / np.sqrt(UNIT["axial_stiffness"])
+    tip = np.sin(wave) / (wave * np.cos(wave)) - 1.0
+    assert steady[system.labels.index("u8")] == pytest.approx(tip, rel=2e-3)
+    system = blade(element, forcing=True)
+    steady = np.linalg.solve(second_order(system, 4.0)[2], 16.0 * system.array("f", 0.0)[0])
+    moved = simulate(system, 4.0, 1.0, initial=(steady, np.zeros(system.size)))
+    assert np.max(np.abs(moved.q - steady)) < 1e-9 * np.max(np.abs(steady))
+
+
+def test_multipliers_of_the_constant_blade(element):
+    system, speed = blade(element, damping=0.3), 4.0
+    m, first, k = second_order(system, speed)
+    n = system.size
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -first]])
+    roots = scipy.linalg.eigvals(state, scipy.linalg.block_diag(np.eye(n), m))
+    expected = np.exp(roots * 2 * np.pi / speed)
+    found = floquet_multipliers(system, speed)
+    assert all(check.passed for check in found.checks.values())
+    assert nearest(found.multipliers, expected) < 1e-9
+
+
+def nearest(found: np.ndarray, expected: np.ndarray) -> float:
+    """Return the largest distance from a found number to an expected one, and the reverse."""
+    distance = np.abs(found[:, None] - expected[None, :])
+    return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))
+
+
+def test_undamped_blade_under_gravity_is_symplectic(element):
+    found = floquet_multipliers(blade(element, gravity=9.0), [3.0, 5.0, 11.0])
+    assert found.checks["symplectic"].passed
+    assert found.checks["reciprocal pairs"].passed
+    assert found.checks["liouville"].passed
+
+
+def test_multipliers_under_gravity_against_plain_integration(element):
+    system, speed = blade(element, gravity=9.0, damping=0.4), 5.0
+    n = system.size
+
+    def rate(t, y):
+        m, first, k = second_order(system, speed, speed * t)
+        q, qd = y.reshape(2, n, -1)
+        return np.concatenate([qd, np.linalg.solve(m, -first @ qd - k @ q)]).ravel()
+
+    period = 2 * np.pi / speed
+    run = solve_ivp(rate, (0.0, period), np.eye(2 * n).ravel(), "DOP853", rtol=1e-10, atol=1e-11)
+    expected = np.linalg.eigvals(run.y[:, -1].reshape(2 * n, 2 * n))
+    found = floquet_multipliers(system, speed)
+    assert found.checks["product"].passed
+    assert nearest(found.multipliers, expected) < 1e-7
+    start = np.linspace(-1.0, 1.0, n) * 1e-3
+    moved = simulate(system, speed, 1.0, initial=(start, np.zeros(n)))
+    final = run.y[:, -1].reshape(2 * n, 2 * n)[:, :n] @ start
+    np.testing.assert_allclose(moved.q[-1], final[:n], atol=1e-9)
+    np.testing.assert_allclose(moved.qd[-1], final[n:], atol=1e-7)
+
+
+def test_speed_boundaries_under_gravity(element):
+    system = blade(element, gravity=9.0)
+    found = speed_boundaries(system, speed_range=(20.0, 24.0))
+    assert len(found.speed) > 0
+    assert found.checks["monodromy"].passed
+    for speed, sign in zip(found.speed, found.multiplier, strict=True):
+        multipliers = floquet_multipliers(system, speed).multipliers
+        # A double multiplier moves as the root of the error.
+        assert np.min(np.abs(multipliers - sign)) < 1e-4

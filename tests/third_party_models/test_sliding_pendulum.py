@@ -1,0 +1,190 @@
+"""The constrained family: a sliding pendulum with a multiplier, with none, and driven."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.derive.spec import ModelSpec
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import Constrained
+from pendulum_truth import NUMBERS, STROKE, cartesian, drives, energy_of
+from scipy.integrate import solve_ivp
+
+DRIVE = 3.1  # rad/s
+DRIVES = drives(DRIVE)
+
+
+@pytest.fixture(scope="module")
+def systems(emit):
+    def system(formulation: str, **changes) -> Constrained:
+        found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", formulation))
+        external = DRIVES if formulation == "driven" else None
+        values = {**NUMBERS, **changes}
+        return Constrained.from_module(
+            found.module, values, external=external, provenance=found.provenance
+        )
+
+    return system
+
+
+def march(system: Constrained, q, qd, times):
+    def rate(t, state):
+        q, qd = np.split(state, 2)
+        return np.concatenate([qd, system.accelerations(q, qd, t)[0]])
+
+    run = solve_ivp(
+        rate, times[[0, -1]], np.concatenate([q, qd]), "DOP853", times, rtol=1e-11, atol=1e-12
+    )
+    assert run.success
+    return np.split(run.y.T, 2, axis=1)
+
+
+def textbook(state, m=NUMBERS):
+    """Accelerations of block and rod angle by hand: momentum along the line, moment about it."""
+    s, a, sd, ad = state
+    total, ml = m["block"] + m["bob"], m["bob"] * m["rod"]
+    matrix = np.array([[total, ml * np.cos(a)], [np.cos(a), m["rod"]]])
+    right = [
+        ml * ad**2 * np.sin(a) - m["spring"] * s - m["damping"] * sd,
+        -m["gravity"] * np.sin(a),
+    ]
+    return np.linalg.solve(matrix, right)
+
+
+def test_rest_is_held_by_the_weight(systems):
+    system = systems("multiplier")
+    q, qd = cartesian(0.0, 0.0, 0.0, 0.0)
+    accelerations, multipliers = system.accelerations(q, qd)
+    # lam d/dpy ((px - s)^2 + py^2 - rod^2) = bob gravity at py = -rod
+    by_hand = -NUMBERS["bob"] * NUMBERS["gravity"] / (2 * NUMBERS["rod"])
+    np.testing.assert_allclose(accelerations, 0.0, atol=1e-14)
+    np.testing.assert_allclose(multipliers, [by_hand], rtol=1e-14)
+
+
+def test_redundant_and_minimal_coordinates_agree(systems):
+    rng = np.random.default_rng(1)
+    states = rng.normal(size=(4, 3, 50))
+    q, qd = cartesian(*states)
+    found, multipliers = systems("multiplier", damping=2.0).accelerations(q, qd)
+    place, angle, speed, turning = states
+    minimal, none = systems("minimal", damping=2.0).accelerations(
+        np.stack([place, angle], axis=-1), np.stack([speed, turning], axis=-1)
+    )
+    assert found.shape == (3, 50, 3)
+    assert multipliers.shape == (3, 50, 1)
+    assert none.shape == (3, 50, 0)
+    rod, bob = NUMBERS["rod"], NUMBERS["bob"]
+    sin, cos = np.sin(angle), np.cos(angle)
+    along = minimal[..., 0] + rod * (minimal[..., 1] * cos - turning**2 * sin)
+    down = rod * (minimal[..., 1] * sin + turning**2 * cos)
+    np.testing.assert_allclose(found[..., 0], minimal[..., 0], rtol=1e-11, atol=1e-11)
+    np.testing.assert_allclose(found[..., 1], along, rtol=1e-11, atol=1e-11)
+    np.testing.assert_allclose(found[..., 2], down, rtol=1e-11, atol=1e-11)
+    # Newton for the bob along the rod: tension = bob (g cos + rod turning^2 - s'' sin)
+    pull = bob * (NUMBERS["gravity"] * cos + rod * turning**2 - minimal[..., 0] * sin)
+    np.testing.assert_allclose(-2 * rod * multipliers[..., 0], pull, rtol=1e-11, atol=1e-11)
+    one = (0.1, 0.4, -0.3, 2.0)
+    by_hand = textbook(one, {**NUMBERS, "damping": 2.0})
+    emitted = systems("minimal", damping=2.0).accelerations(np.array(one[:2]), np.array(one[2:]))
+    np.testing.assert_allclose(emitted[0], by_hand, rtol=1e-13)
+
+
+def test_motion_keeps_energy_and_length(systems):
+    system = systems("multiplier")
+    start = (0.05, 1.1, 0.0, 0.4)
+    times = np.linspace(0.0, 6.0, 121)
+    q, qd = march(system, *cartesian(*start), times)
+    energy = energy_of(q, qd)
+    np.testing.assert_allclose(energy, energy[0], atol=1e-8)
+    # Nothing pulls back to the constraint at acceleration level: the drift is the integrator's.
+    drift = system.violation(q, times)["constraints"][:, 0, 0]
+    assert np.max(np.abs(drift)) < 1e-8
+    minimal = solve_ivp(
+        lambda t, y: [*y[2:], *textbook(y)],
+        (0.0, 6.0),
+        start,
+        "DOP853",
+        times,
+        rtol=1e-11,
+        atol=1e-12,
+    )
+    expected, _ = cartesian(*minimal.y)
+    np.testing.assert_allclose(q, expected, atol=2e-8)
+
+
+def test_prescribed_motion_is_passed_in(systems):
+    system = systems("driven")
+    start = 0.7
+    q, qd = cartesian(0.0, start, STROKE * DRIVE, 0.2)
+    times = np.linspace(0.0, 3.0, 61)
+    q, qd = march(system, q, qd, times)
+    np.testing.assert_allclose(q[:, 0], STROKE * np.sin(DRIVE * times), atol=1e-9)
+    rate = system.dynamics(q, qd, times)
+    defect = rate["jacobian"] @ qd[..., None] - rate["velocity_rhs"]
+    assert np.max(np.abs(defect)) < 1e-8
+    # What the drive gives is what the energy gains.
+    _, multipliers = system.accelerations(q, qd, times)
+    energy = energy_of(q, qd)
+    power = multipliers[:, 1] * qd[:, 0]
+    work = solve_work(times, power)
+    np.testing.assert_allclose(energy - energy[0], work, atol=2e-5)
+
+
+def solve_work(times, power):
+    """Integrate samples by the cubic spline through them."""
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(times, power).antiderivative()(times)
+
+
+def test_variational_equations_are_the_derivative_of_the_motion(systems):
+    system = systems("multiplier", damping=1.3)
+    q, qd = cartesian(0.2, 0.9, -0.5, 1.4)
+    accelerations, multipliers = system.accelerations(q, qd)
+    found = system.variations(q, qd, accelerations, multipliers, 0.0)
+
+    def residual(q, qd):
+        a = system.dynamics(q, qd, 0.0)
+        side = a["mass"] @ accelerations[:, None] + a["rest"] - a["forces"]
+        return (side - a["jacobian"].T @ multipliers[:, None])[:, 0]
+
+    step = 1e-6
+    for k, unit in enumerate(np.eye(3) * step):
+        stiffness = (residual(q + unit, qd) - residual(q - unit, qd)) / (2 * step)
+        damping = (residual(q, qd + unit) - residual(q, qd - unit)) / (2 * step)
+        np.testing.assert_allclose(found["stiffness"][:, k], stiffness, atol=1e-8)
+        np.testing.assert_allclose(found["damping"][:, k], damping, atol=1e-8)
+
+
+def test_the_jacobian_is_differentiated_along_the_motion(systems):
+    system = systems("driven")
+    t, step = 0.3, 1e-4
+    q, qd = cartesian(STROKE * np.sin(DRIVE * t), 0.9, STROKE * DRIVE * np.cos(DRIVE * t), 1.4)
+    qdd, multipliers = system.accelerations(q, qd, t)
+    found = system.variations(q, qd, qdd, multipliers, t)
+    before, now, after = (
+        system.violation(q + s * qd + s**2 / 2 * qdd, t + s)["jacobian"] for s in (-step, 0.0, step)
+    )
+    np.testing.assert_allclose(found["jacobian_rate"], (after - before) / (2 * step), atol=1e-8)
+    second = (after - 2 * now + before) / step**2
+    np.testing.assert_allclose(found["jacobian_acceleration"], second, atol=1e-6)
+
+
+def test_names_and_parameters(systems, emit):
+    system = systems("multiplier")
+    assert system.labels == ("s", "px", "py")
+    assert system.provenance["module"] == "sliding_pendulum_multiplier"
+    module = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "driven")).module
+    with pytest.raises(BadInput, match="drive_d1"):
+        Constrained.from_module(module, NUMBERS, external={"drive": DRIVES["drive"]})
+    with pytest.raises(BadInput, match="gravity"):
+        Constrained.from_module(module, {"rod": 1.0}, external=DRIVES)
+
+
+def test_parameters_broadcast(systems):
+    rods = np.array([0.5, 0.8, 1.2])
+    q, qd = cartesian(np.zeros(3), np.full(3, 0.3), np.zeros(3), np.ones(3), rods)
+    together, _ = systems("multiplier", rod=rods).accelerations(q, qd)
+    for k, rod in enumerate(rods):
+        alone, _ = systems("multiplier", rod=rod).accelerations(q[k], qd[k])
+        np.testing.assert_allclose(together[k], alone, rtol=1e-13)

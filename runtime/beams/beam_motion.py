@@ -16,8 +16,7 @@ from .assembly import Array
 from .element_forms import required_structure
 
 if TYPE_CHECKING:
-    from ..response.result import SteadyState
-    from ..simulation.trajectory import Trajectory
+    from ..periodic import SteadyState, Trajectory
 
     Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
 
@@ -115,8 +114,7 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
         If it is none of these, has another number of coordinates, holds many speeds, or has NaN.
     """
     # Loaded here: the response knows frequencies, and these know beams.
-    from ..response.result import SteadyState
-    from ..simulation.trajectory import Trajectory
+    from ..periodic import SteadyState, Trajectory
 
     structure = required_structure(system)
     if motion is None or not structure.moving:
@@ -153,7 +151,7 @@ def chunks(motion: BeamMotion) -> list[slice]:
 
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
-    """Return the steady state by the cyclic system; the caller looks at the linear range.
+    """Return the steady state; the caller looks at the linear range.
 
     Parameters
     ----------
@@ -162,11 +160,11 @@ def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
     speed : float
         Crank speed [rad/s].
     """
-    from ..response.steady_state import steady_state
+    from ..periodic import steady_state
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, method="cyclic", rtol=_RTOL, stability=False)
+        return steady_state(system, speed, rtol=_RTOL)
 
 
 def _steady(motion: SteadyState) -> BeamMotion:

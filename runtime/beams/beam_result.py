@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.deferred import DeferredField, DeferredGroup
-from ..core.errors import LinearRangeWarning, bad
+from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result, provenance
-from ..simulation.trajectory import LINEAR_RANGE
 from .assembly import Array
 from .beam_motion import BeamMotion, chunks
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..core.families import Array, LinearPeriodic
 from ..core.results import Check
-from ..floquet.monodromy_matrix import floquet_multipliers
+from ..periodic import floquet_multipliers
 from ..sweeps.workers import Workers
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 from .sampling import Sampler, Series

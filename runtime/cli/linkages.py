@@ -50,7 +50,7 @@ def add(commands: Any) -> None:
         summary="Vibration of a flexible link in the time domain.",
         example=(
             "elastolink simulate smith_1972_5152_sixteenth_inch --speed '195 rpm'"
-            " --revolutions 3 --method magnus4 --plot wave.png"
+            " --revolutions 3 --method DOP853 --plot wave.png"
         ),
     )
     opt.scene_options(simulate)
@@ -65,19 +65,13 @@ def add(commands: Any) -> None:
     simulate.add_argument(
         "--method",
         metavar="NAME",
-        help="auto (default: power_series, gauss_legendre where coefficients are not smooth or "
-        "--steps is given), power_series, gauss_legendre[4 to 16 by 2], magnus4/6/8, cf4, cf6, "
-        "srkn4, srkn6, rk4, kutta_merson, de_vogelaere, newmark, generalized_alpha, or SciPy's "
-        "RK45, DOP853, Radau, BDF, LSODA",
+        help="auto (default), or SciPy's RK45, DOP853, Radau, BDF, LSODA",
     )
     simulate.add_argument(
         "--initial",
         type=_pair,
         metavar="Q,QD",
         help="coordinates and their rates [1/s] at the start, e.g. 0.001,0; default at rest",
-    )
-    simulate.add_argument(
-        "--steps", type=int, metavar="N", help="fixed steps per revolution; default by the method"
     )
 
 
@@ -218,9 +212,9 @@ def _simulate(options: argparse.Namespace) -> int:
         return constrained.simulate(options, scene)
     speed = 1.0 if _without_crank(scene, options) else speed_of(options, scene)
     system = scene.linear_system()
-    from ..simulation.trajectory import simulate
+    from ..periodic import simulate
 
-    chosen = {name: getattr(options, name) for name in ("method", "initial", "steps")}
+    chosen = {name: getattr(options, name) for name in ("method", "initial")}
     given = {name: value for name, value in chosen.items() if value is not None}
     shown = sys.stderr.isatty()
     try:

@@ -12,7 +12,7 @@ from .linkages import refuse_frame, speed_of
 
 if TYPE_CHECKING:
     from ..core.families import Array, LinearPeriodic
-    from ..response import SteadyPeaks, SteadyState
+    from ..periodic import SteadyState
 
 _PLACES = 41
 _ROWS = 25
@@ -50,7 +50,7 @@ def add(commands: Any) -> None:
     steady.add_argument(
         "--method",
         default=None,
-        help="see steady_state; default shooting, for beams harmonic_balance",
+        help="auto (default) or harmonic_balance",
     )
 
 
@@ -70,24 +70,14 @@ def _steady_state(options: argparse.Namespace) -> int:
     shown = sys.stderr.isatty() and not options.json
     if system.structure is not None:
         return _of_beams(options, system, np.array(speeds), shown)
-    opt.refuse_unused(options, ("method",) if len(speeds) > 1 else (), "one speed")
-    if len(speeds) > 1:
-        from ..response import steady_peaks
+    from ..periodic import steady_state
 
-        # Of many motions the largest deflections are kept, not the motions.
-        found = steady_peaks(system, np.array(speeds), x=options.at, progress=shown)
-        more = {"peak_deflection": found.peak.tolist()}
-        return opt.finish(options, found, _lines(found), more=more)
-    from ..response import steady_state
-
-    result = steady_state(
-        system, np.array(speeds), method=options.method or "shooting", progress=shown
-    )
+    result = steady_state(system, np.array(speeds), method=options.method or "auto", progress=shown)
     places = np.linspace(0.0, 1.0, _PLACES) if options.at is None else np.array([options.at])
-    reached = result.peak(places)[0]
-    rows = [_row(result, 0, float(np.max(reached)), float(places[np.argmax(reached)]))]
-    more = {"peak_deflection": [float(np.max(reached))]}
-    return opt.finish(options, result, opt.table(_HEADER, rows), more=more)
+    reached = result.peak(places)
+    largest, place = np.max(reached, axis=1), places[np.argmax(reached, axis=1)]
+    more = {"peak_deflection": largest.tolist()}
+    return opt.finish(options, result, _lines(result, largest, place), more=more)
 
 
 def _of_beams(
@@ -96,14 +86,13 @@ def _of_beams(
     """Show the motion of a linkage of beams: the largest values of its coordinates."""
     import numpy as np
 
-    from ..response import steady_state
+    from ..periodic import steady_state
 
     opt.refuse_unused(options, ("at",), "a link with mode shapes")
     if len(speeds) > 1:
         fix = "elastolink stress takes many: --speed START:STOP:COUNT"
         raise bad("--speed", f"{len(speeds)} speeds", "one for a linkage of beams", fix)
-    method = options.method or "harmonic_balance"
-    result = steady_state(system, speeds, method=method, stability=False, progress=shown)
+    result = steady_state(system, speeds, method=options.method or "auto", progress=shown)
     peaks = np.max(np.abs(result.q[0]), axis=0)
     rows = [
         (label, f"{peak:.6g}", _UNITS.get(label.rpartition(".")[2], "rad"))
@@ -112,23 +101,11 @@ def _of_beams(
     return opt.finish(options, result, opt.table(("coordinate", "largest", ""), rows))
 
 
-def _row(
-    found: SteadyState | SteadyPeaks, index: int, peak: float, place: float
-) -> tuple[str, str, str, str, str]:
-    return (
-        f"{found.speed[index]:.6g}",
-        f"{peak:.6g}",
-        f"{place:.2f}",
-        f"{found.distance[index]:.3g}",
-        "unknown" if found.stable is None else "stable" if found.stable[index] else "unstable",
-    )
-
-
-def _lines(found: SteadyPeaks) -> list[str]:
+def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:
     """Return a row per speed, or per resonance where there are many."""
     import numpy as np
 
-    speeds, peaks = found.speed, found.peak
+    speeds = found.speed
     chosen = np.arange(len(speeds))
     title: list[str] = []
     if len(speeds) > _ROWS:
@@ -136,5 +113,14 @@ def _lines(found: SteadyPeaks) -> list[str]:
         chosen = np.flatnonzero(inner) + 1
         chosen = np.sort(chosen[np.argsort(-peaks[chosen], kind="stable")[:_ROWS]])
         title = [f"{len(speeds)} speeds; where the deflection is larger than beside:", ""]
-    rows = [_row(found, int(i), float(peaks[i]), float(found.place[i])) for i in chosen]
+    rows = [
+        (
+            f"{speeds[i]:.6g}",
+            f"{peaks[i]:.6g}",
+            f"{places[i]:.2f}",
+            f"{found.distance[i]:.3g}",
+            "stable" if found.stable[i] else "unstable",
+        )
+        for i in chosen
+    ]
     return [*title, *opt.table(_HEADER, rows)]

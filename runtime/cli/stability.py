@@ -13,7 +13,7 @@ from .linkages import speed_of
 
 if TYPE_CHECKING:
     from ..charts.chart import StabilityChart
-    from ..floquet.monodromy_matrix import FloquetMultipliers
+    from ..periodic import FloquetMultipliers
     from ..scenes import Scene
 
 _POINTS = 201
@@ -84,7 +84,7 @@ def _stability(options: argparse.Namespace) -> int:
         return constrained.stability(options, scene)
     speeds = _speeds(options, scene)
     system = scene.linear_system()
-    from ..floquet.monodromy_matrix import floquet_multipliers
+    from ..periodic import floquet_multipliers
 
     result = floquet_multipliers(system, speeds if len(speeds) > 1 else speeds[0])
     return opt.finish(options, result, _multiplier_lines(result, scene))

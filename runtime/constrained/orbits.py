@@ -269,7 +269,7 @@ def _result(
     }
     deflection = float("nan")
     if watch is not None:
-        from ..simulation.trajectory import LINEAR_RANGE
+        from ..core.errors import LINEAR_RANGE
 
         watched = np.asarray(watch(inside[0], times), dtype=float)
         deflection = float(np.max(np.abs(watched)))

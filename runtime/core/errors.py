@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
+# Deflection over the length of its link beyond which linear equations are no longer believed.
+LINEAR_RANGE = 0.05
 # Characters of what was given that a message shows.
 _LONGEST = 200
 
@@ -79,3 +82,14 @@ class LinearRangeWarning(ElastolinkWarning):
 def bad(where: str, found: object, expected: str, fix: str) -> BadInput:
     """Return a :class:`BadInput` with one problem."""
     return BadInput(Problem(where, str(found), expected, fix))
+
+
+def warn_of_large_deflection(largest: float | None) -> None:
+    """Warn whoever called the caller where a deflection over the length is beyond 5 %."""
+    if largest is not None and largest > LINEAR_RANGE:
+        warnings.warn(
+            f"deflection reaches {largest:.3g} of the reference length; the linear equations "
+            f"hold to about {LINEAR_RANGE}: leave out resonant speeds or add damping",
+            LinearRangeWarning,
+            stacklevel=3,
+        )

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, LinearRangeWarning, Problem, bad
+from ..core.errors import LINEAR_RANGE, BadInput, LinearRangeWarning, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
 from ..core.results import Check, Result, provenance
+from ..periodic import steady_state
 from ..reduction import ReducedSystem, reduced_system
-from ..response import steady_state
-from ..simulation.trajectory import LINEAR_RANGE
 from .changing_length import ChangingLength
 from .shape_stress import largest_by_shape
 from .speed_profile import Array, SpeedProfile
@@ -322,7 +321,7 @@ class _Run:
         own = self.followed
         for name, values in self.profile.geometry.items():
             own = own.with_geometry(**{name: values[0]})
-        steady = steady_state(own, speed, method="cyclic", rtol=1e-8, stability=False)
+        steady = steady_state(own, speed, rtol=1e-8)
         self.start_error += float(np.max(steady.error))
         q, qd = steady.q.reshape(-1, size)[0], steady.qd.reshape(-1, size)[0]
         zero = np.zeros(1)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..core.families import LinearPeriodic
 from ..core.results import Check
+from ..periodic import Monodromy, monodromy
 from .first_order import canonical_form
-from .monodromy_matrix import Monodromy, monodromy
 
 Array = NDArray[np.float64]
 

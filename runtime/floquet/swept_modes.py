@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..core.errors import BadInput
 from ..core.families import LinearPeriodic
+from ..periodic import monodromy
 from .decoupled.frames import held_modes
 from .first_order import canonical_form, even_angles
-from .monodromy_matrix import monodromy
 from .speed_tables import tabulated
 
 Array = NDArray[np.float64]

@@ -100,17 +100,16 @@ def _measured(
     system: LinearPeriodic, speeds: Array, measure: Measure, progress: bool = False
 ) -> tuple[Array, Array]:
     """Return the measure at speeds and the relative error of the motions, part by part."""
-    from ..response import steady_state
+    from ..periodic import steady_state
 
-    # Of a structure of beams the slow modes lead the way, whatever the number of freedoms.
-    method, rtol = ("cyclic", _FINE) if system.structure is None else ("harmonic_balance", _RTOL)
+    rtol = _FINE if system.structure is None else _RTOL
     out, error = np.empty((2, len(speeds)))
     with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
         # At a critical speed the linear range is left as a matter of course.
         warnings.simplefilter("ignore", LinearRangeWarning)
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, min(begin + _TOGETHER, len(speeds)))
-            state = steady_state(system, speeds[part], method=method, rtol=rtol, stability=False)
+            state = steady_state(system, speeds[part], rtol=rtol)
             out[part] = measure(state)
             error[part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
             if tick is not None:

@@ -15,7 +15,7 @@ from ..core.results import Result, provenance
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..response import SteadyState
+    from ..periodic import SteadyState
 
 Array = NDArray[np.float64]
 Measure = Callable[["SteadyState"], Array]

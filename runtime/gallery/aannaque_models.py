@@ -14,8 +14,8 @@ from ..core.families import Array, LinearPeriodic
 from ..scenes import load_scene
 
 if TYPE_CHECKING:
+    from ..periodic import SteadyState
     from ..reduction import StressCurve
-    from ..response import SteadyState
 
 SCENE = "aannaque_1996_table_4_1"
 # The thesis' form (7.1), without stiffening; and the whole of the equations.
@@ -78,22 +78,13 @@ def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> Stres
         return stress_curve(system, speeds, rtol=rtol, method="shape")
 
 
-def periodic(
-    system: LinearPeriodic, speed: Array | float, rtol: float = 1e-5, **options: object
-) -> SteadyState:
-    """Return steady states by the cyclic solve, stability left out."""
-    from ..response import steady_state
+def periodic(system: LinearPeriodic, speed: Array | float, rtol: float = 1e-5) -> SteadyState:
+    """Return steady states, whatever their deflections."""
+    from ..periodic import steady_state
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(
-            system,
-            speed,
-            method="cyclic",
-            rtol=None if options else rtol,
-            stability=False,
-            options=options or None,
-        )
+        return steady_state(system, speed, rtol=rtol)
 
 
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:

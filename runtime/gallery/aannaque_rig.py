@@ -16,8 +16,8 @@ from ..core.families import LinearPeriodic
 from ..scenes import load_scene
 
 if TYPE_CHECKING:
+    from ..periodic import SteadyState
     from ..reduction import StressCurve
-    from ..response import SteadyState
 
 Array = NDArray[np.float64]
 
@@ -77,12 +77,12 @@ def rig(scene: str = SHORT, frame: float = FRAME) -> LinearPeriodic:
 
 def quiet_motion(system: LinearPeriodic, speed: float | tuple[float, ...]) -> SteadyState:
     """Return the periodic motion at a crank speed [rad/s], or at each of some."""
-    from ..response import steady_state
+    from ..periodic import steady_state
 
     with warnings.catch_warnings():
         # At a critical speed the linear range may be left; the figures' notes say so.
         warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, method="cyclic", rtol=_MOTION, stability=False)
+        return steady_state(system, speed, rtol=_MOTION)
 
 
 @lru_cache(maxsize=16)

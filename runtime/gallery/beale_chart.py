@@ -11,7 +11,7 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, stability_chart
 from ..core.families import Array
-from ..floquet.monodromy_matrix import floquet_multipliers
+from ..periodic import floquet_multipliers
 from ..response.frozen import frozen_frequencies
 from .beale_tip import FLEXIBLE, rod
 from .records import Drawn, Quoted, Table

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
-from ..floquet.monodromy_matrix import floquet_multipliers
+from ..periodic import floquet_multipliers
 from ..response.frozen import frozen_frequencies
 from ..response.resonances import ResonanceCurve, resonance_curve
 from .beale_tip import FLEXIBLE, rod, tip_from_rest

@@ -22,7 +22,7 @@ from .style import COLOURS, crank_axis, legend_below, panel_title
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..response import SteadyState
+    from ..periodic import SteadyState
 
 _LEAST, _MOST = 0.0058, 0.0190
 _POINTS = 241
@@ -142,7 +142,7 @@ def coupler(scene: str, inertia: float, decrement: float) -> LinearPeriodic:
 
 def quiet_state(system: LinearPeriodic, speed: float | Array, samples: int = 256) -> SteadyState:
     """Return the periodic motion, warning of nothing."""
-    from ..response import steady_state
+    from ..periodic import steady_state
 
     with warnings.catch_warnings():
         # At a resonance the linear range is left; the figures' notes say so.

@@ -13,8 +13,8 @@ import numpy as np
 from ..core.errors import StepTooLongWarning
 from ..core.families import LinearPeriodic
 from ..hill.half_trace import discriminant
+from ..periodic import Trajectory, simulate
 from ..scenes import load_scene
-from ..simulation.trajectory import Trajectory, simulate
 from .records import Drawn, Quoted
 from .smith_linkages import Array, f3_series, linkage_of
 from .style import COLOURS, crank_axis, legend_below, panel_title

@@ -13,8 +13,8 @@ import numpy as np
 from ..core.errors import LinearRangeWarning
 from ..core.families import LinearPeriodic
 from ..hill.half_trace import discriminant
+from ..periodic import simulate
 from ..scenes import load_scene
-from ..simulation.trajectory import simulate
 from .records import Drawn, Quoted
 from .smith_linkages import RIG, Array
 from .style import COLOURS, crank_axis, legend_below
@@ -55,7 +55,7 @@ def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Arra
     speed : float
         Crank speed [rad/s].
     """
-    from ..response import steady_state
+    from ..periodic import steady_state
 
     with warnings.catch_warnings():
         # Resonant amplitudes may pass the linear range; the figure's own note says so.

@@ -11,6 +11,7 @@ from .expm import expm
 from .newmark import SECOND_ORDER
 from .nystroem import KickDrift
 from .protocol import Generator, OneStep
+from .radau import RadauTableau, legendre_integrals, radau_tableau
 from .tableau import ExplicitTableau, GaussTableau, gauss_tableau, rooted_trees
 
 METHODS: Mapping[str, OneStep] = MappingProxyType(
@@ -40,7 +41,10 @@ __all__ = [
     "KickDrift",
     "MagnusExponent",
     "OneStep",
+    "RadauTableau",
     "expm",
     "gauss_tableau",
+    "legendre_integrals",
+    "radau_tableau",
     "rooted_trees",
 ]

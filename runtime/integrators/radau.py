@@ -44,13 +44,13 @@ def radau_tableau(stages: int) -> RadauTableau:
     for _ in range(3):
         x = x - legendre.legval(x, ends) / legendre.legval(x, legendre.legder(ends))
     x[-1] = 1.0
-    a = 0.5 * integrals(x) @ np.linalg.inv(legendre.legvander(x, stages - 1))
+    a = 0.5 * legendre_integrals(x) @ np.linalg.inv(legendre.legvander(x, stages - 1))
     for array in (x, a):
         array.flags.writeable = False
     return RadauTableau(stages, (1 + x) / 2, a[-1], a)
 
 
-def integrals(x: Array, stages: int | None = None) -> Array:
+def legendre_integrals(x: Array, stages: int | None = None) -> Array:
     """Return the integrals from -1 to x of the Legendre polynomials 0 to s - 1, ``(nx, s)``."""
     count = len(x) if stages is None else stages
     values = np.polynomial.legendre.legvander(x, count)

@@ -13,11 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..beams.element_forms import required_structure
 from ..beams.recovery import METHODS
-from ..core.errors import bad
+from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.results import Check, Result, provenance
 from ..floquet.first_order import numbers
-from ..simulation.trajectory import LINEAR_RANGE
 from .balance import Balance
 from .condensed import Condensed
 from .growth import MultiplierSweep

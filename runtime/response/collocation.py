@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import combined, even_samples, term_samples
-from ..integrators.radau import integrals, radau_tableau
+from ..integrators.radau import legendre_integrals as integrals
+from ..integrators.radau import radau_tableau
 from ..integrators.tableau import gauss_tableau
-from .cyclic import solve_ring
+from ..periodic.ring import solve_ring
 from .request import Found, Request, peaks, resampled, whole_option, word_option
 from .stepped import ring_closing, stepped
 

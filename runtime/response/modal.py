@@ -19,7 +19,7 @@ from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import even_count, second_order
 from ..integrators.expm import expm
-from .cyclic import solve_ring
+from ..periodic.ring import solve_ring
 from .harmonic_balance import by_harmonic_balance
 from .request import Found, Request, peaks, resampled, whole_option
 

@@ -12,7 +12,7 @@ from ..core.errors import bad
 from ..floquet.first_order import CanonicalForm
 from ..floquet.period_products import STAGES
 from ..integrators.gauss_legendre import gauss_maps
-from .cyclic import solve_ring
+from ..periodic.ring import solve_ring
 
 Array = NDArray[np.float64]
 

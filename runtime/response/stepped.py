@@ -13,7 +13,7 @@ from ..core.results import Check
 from ..floquet.first_order import CanonicalForm, even_angles
 from ..floquet.second_order import even_count, second_order
 from ..integrators.newmark import StepRule, generalized_alpha_rule, newmark_rule, step_maps
-from .cyclic import solve_ring
+from ..periodic.ring import solve_ring
 from .request import Found, Request, number_option, peaks, resampled, whole_option, word_option
 
 Array = NDArray[np.float64]

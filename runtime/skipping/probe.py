@@ -169,7 +169,7 @@ def _linear(system: Any, speed: float) -> Iterator[tuple[str, Callable[[], objec
         return floquet_multipliers(system, speed)
 
     def response() -> object:
-        from ..response import steady_state
+        from ..periodic import steady_state
 
         return steady_state(system, speed)
 

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
+from ..core.errors import bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.progress import bar
 from ..core.results import Check, provenance
-from ..response.checks import warn_beyond
 from ..scenes import Scene
 from .pieces import Grid, check_chunk, grid_of
 from .requests import request_of
@@ -99,7 +98,7 @@ def sweep(
     check_executor(executor)
     found = _swept(plan, executor, store, progress)
     if plan.task.name == "steady_state" and "linear range" in found.checks:
-        warn_beyond(found.checks["linear range"].value)
+        warn_of_large_deflection(found.checks["linear range"].value)
     return found
 
 

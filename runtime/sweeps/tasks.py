@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import bad
+from ..core.errors import LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result
 
@@ -196,7 +197,7 @@ def _multipliers(
     outputs: Outputs,
 ) -> Piece:
     def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        from ..floquet.monodromy_matrix import floquet_multipliers
+        from ..periodic import floquet_multipliers
 
         result = floquet_multipliers(made, **values)
         arrays = {
@@ -217,19 +218,16 @@ def _steady(
     outputs: Outputs,
 ) -> Piece:
     def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        from ..response.steady_state import without_warning
+        from ..periodic import steady_state
 
-        # What costs little at one speed may not at another: asked for or not, but everywhere.
-        asked = {"method": None, "rtol": None, "samples": 256, "options": None, "stability": False}
-        asked |= {name: values.pop(name) for name in list(values) if name in asked}
-        result = without_warning(made, values.pop("speed"), asked, values)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinearRangeWarning)
+            result = steady_state(made, **values)
         arrays = {
             "peak": np.max(np.abs(result.q), axis=-2),
             "rms": np.sqrt(np.mean(result.q**2, axis=-2)),
             "error": np.asarray(result.error),
         }
-        if result.stable is not None:
-            arrays |= {"stable": result.stable, "distance": result.distance}
         return arrays, result
 
     return _by_geometry(system, axes, options, outputs, solve)

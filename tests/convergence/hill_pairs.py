@@ -9,9 +9,9 @@ of the two equations, from Taylor series in extended precision, know nothing of 
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
+from half_trace_truth import half_traces
 
 
 class HillPair:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.scenes import load_scene
 
 # Formulation, number of shapes, a number that is larger by half or so.

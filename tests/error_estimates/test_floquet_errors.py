@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
+from elastolink.runtime.periodic import floquet_multipliers, monodromy
 from elastolink.runtime.simulation.trajectory import simulate
 from wavy_springs import Wavy, tame, verdict
 

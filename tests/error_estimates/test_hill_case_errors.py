@@ -5,13 +5,13 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.cases.meissner import meissner_boundaries
 from elastolink.runtime.hill.cases.named import mathieu_characteristic
 from elastolink.runtime.hill.cases.piecewise import piecewise_approximation, piecewise_monodromy
 from elastolink.runtime.hill.cases.strutt import strutt_chart
 from elastolink.runtime.hill.cases.surfaces import multiplier_surfaces
+from half_trace_truth import half_traces
 from honesty import verdict
 
 SCENES = 200

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from elastolink.derive.perturbation.exact import exact_operator, exact_series
 from elastolink.derive.perturbation.surd import ExactHarmonics
-from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.perturbation.coefficients import boundary_series
 from elastolink.runtime.hill.perturbation.thresholds import critical_damping, least_parameter
+from half_trace_truth import half_traces
 from honesty import verdict
 
 SCENES = 200

@@ -10,8 +10,8 @@ import pytest
 from elastolink.runtime.beams import Section, frame, linear_system
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
 from elastolink.runtime.frequencies import dynamic_stiffness, natural_frequencies, wittrick_williams
+from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.response import steady_state
 
 pytestmark = pytest.mark.filterwarnings("error")

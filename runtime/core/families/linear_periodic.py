@@ -23,6 +23,8 @@ VECTORS = ("f", "h", "g", "p")
 # Those through which forces without a potential act: drag on the rates, and on what a moving
 # basis carries along.
 DAMPING = ("C", "D")
+# Places along a link at which its deflection is watched.
+_PLACES = np.linspace(0.0, 1.0, 26)
 # What a limit of a parameter's values allows.
 _LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
     "positive": lambda values: values > 0.0,
@@ -178,6 +180,29 @@ class LinearPeriodic:
             return None
         fixed = np.asarray(self.shape(x), dtype=float)
         return np.broadcast_to(fixed, (len(theta), *fixed.shape))
+
+    def largest_deflection(self, theta: Array, q: Array) -> float | None:
+        """Return the largest deflection over the length of its link; None where none is known.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+        q : ndarray
+            Motions, shape ``(nb, nt, n)``; one that is not finite counts for nothing.
+        """
+        if self.relative_deflection is not None:
+            shapes: Array | None = np.asarray(self.relative_deflection(theta), dtype=float)
+        else:
+            shapes = self.shapes(_PLACES, theta)
+        if shapes is None:
+            return None
+        sizes = [
+            float(np.max(np.abs(np.einsum("txn,tn->tx", shapes, one)), initial=0.0))
+            for one in q
+            if np.all(np.isfinite(one))
+        ]
+        return max(sizes, default=0.0)
 
     def has(self, array: str) -> bool:
         """Return True where some term belongs to ``array``."""

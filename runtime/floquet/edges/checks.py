@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
 from ...core.results import Check
-from ..monodromy_matrix import FloquetMultipliers, floquet_multipliers
+from ...periodic import FloquetMultipliers, floquet_multipliers
 from .regions import Regions
 
 Array = NDArray[np.float64]

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
+from ...periodic import monodromy
 from ..eigenvalues import conditions
-from ..monodromy_matrix import monodromy
 from .pair_roots import bracketed_roots, perturbation_size
 
 Array = NDArray[np.float64]

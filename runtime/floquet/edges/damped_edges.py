@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
+from ...periodic import monodromy
 from ..eigenvalues import conditions
-from ..monodromy_matrix import monodromy
 from .crossings import Crossings, Span
 from .pair_roots import perturbation_size
 from .phase_events import phase_grid

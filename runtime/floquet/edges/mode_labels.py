@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
+from ...periodic import floquet_multipliers
 from ..boundary_speeds import SpeedBoundaries
 from ..first_order import canonical_form
 from ..krein import form_matrix
-from ..monodromy_matrix import floquet_multipliers
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

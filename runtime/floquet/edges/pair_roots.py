@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
+from ...periodic import monodromy
 from ..eigenvalues import conditions
 from ..krein import form_matrix
-from ..monodromy_matrix import monodromy
 from .phase_events import Events
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...core.errors import bad
 from ...core.families import LinearPeriodic
+from ...periodic import monodromy
 from ..first_order import canonical_form
 from ..krein import krein_signatures
-from ..monodromy_matrix import monodromy
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from ...core.errors import bad
 from ...core.families import DAMPING, LinearPeriodic
 from ...core.results import Result, provenance
+from ...periodic import floquet_multipliers
 from ..boundary_speeds import SpeedBoundaries, speed_boundaries, speed_span
 from ..first_order import at_geometry, canonical_form, numbers
-from ..monodromy_matrix import floquet_multipliers
 from .checks import edge_checks
 from .damped_edges import damped_regions
 from .mended import mended

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...core.families import DAMPING, LinearPeriodic, Term
 from ...core.results import Check
-from ..monodromy_matrix import floquet_multipliers
+from ...periodic import floquet_multipliers
 from .ends import expected
 from .operator import ResonantOperator
 from .resonances import Resonance

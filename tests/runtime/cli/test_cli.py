@@ -29,7 +29,6 @@ COMMANDS = (
     "stability",
     "chart",
     "reproduce",
-    "benchmark",
     "explain",
 )
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 from elastolink.runtime.cli import main
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.response import steady_state
 from elastolink.runtime.scenes import load_scene
 

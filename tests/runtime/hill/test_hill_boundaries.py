@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.exact.verification import boundary_checks
 from elastolink.runtime.hill.half_trace import discriminant
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -92,7 +92,7 @@ def test_boundaries_against_mpmath_eigenvalues(mu):
 @pytest.mark.parametrize("name", FUNCTIONS)
 @pytest.mark.parametrize("mu", [1.0, -1.6, 0.01])
 def test_boundaries_against_roots_of_heyokas_half_trace(name, mu):
-    from elastolink.runtime.benchmarking.chart import batched_heyoka
+    from hill_functions import batched_heyoka
 
     pytest.importorskip("heyoka")
     f = FUNCTIONS[name]

@@ -6,11 +6,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from boundary_cases import closing_damping
-from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.certified import CertifiedBoundaries
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

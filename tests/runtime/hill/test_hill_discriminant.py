@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.records import functions
-from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
+from half_trace_truth import half_traces
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -30,7 +30,7 @@ def test_half_traces_against_a_taylor_series_in_extended_precision(name):
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_half_traces_against_heyoka(name):
-    from elastolink.runtime.benchmarking.chart import batched_heyoka
+    from hill_functions import batched_heyoka
 
     pytest.importorskip("heyoka")
     f = FUNCTIONS[name]

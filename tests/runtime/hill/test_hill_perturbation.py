@@ -3,11 +3,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from elastolink.generated import hill_boundaries_first_order
-from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from hill_functions import functions
 
 FUNCTIONS = functions()
 

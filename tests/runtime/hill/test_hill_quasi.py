@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.exact.quasi import bloch_bands, characteristic_exponents
 from elastolink.runtime.hill.half_trace import discriminant
+from hill_functions import functions
 
 FUNCTIONS = functions()
 COSINE = PeriodicFunction([0.0, 1.0])

@@ -5,10 +5,10 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
 from elastolink.runtime.hill.exact import systems
 from elastolink.runtime.hill.exact.quasi import characteristic_exponents
 from elastolink.runtime.hill.exact.systems import hill_exponents
+from elastolink.runtime.periodic import floquet_multipliers
 from scipy.optimize import linear_sum_assignment
 
 

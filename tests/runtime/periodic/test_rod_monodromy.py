@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.charts.invariants import characteristic, from_sum, in_sum
 from elastolink.runtime.floquet.first_order import canonical_form
-from elastolink.runtime.floquet.monodromy_matrix import symplectic_unit
 from elastolink.runtime.floquet.turn_series import Turn, mirrored_sums
+from elastolink.runtime.periodic import symplectic_unit
 from elastolink.runtime.systems.rod import (
     FreeFreeBasis,
     OverhangBasis,

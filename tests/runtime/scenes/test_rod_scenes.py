@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Constrained, LinearPeriodic
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.scenes import load_scene
 from elastolink.runtime.systems.rod import rod_system
 from elastolink.runtime.systems.rod.from_scene import first_frequency, moving_basis

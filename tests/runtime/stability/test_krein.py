@@ -8,7 +8,7 @@ import scipy.linalg
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.krein import krein_signatures
-from elastolink.runtime.floquet.monodromy_matrix import (
+from elastolink.runtime.periodic.multipliers import (
     floquet_multipliers,
     monodromy,
     symplectic_unit,

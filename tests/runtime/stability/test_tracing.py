@@ -13,7 +13,7 @@ from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.edges.over_parameter import trace_tongue
 from elastolink.runtime.floquet.edges.tracing import stability_edges
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 
 RIG = "smith_1972_5152_sixteenth_inch"
 LOW, HIGH = 1.0, 2.3

@@ -10,7 +10,7 @@ import scipy.optimize
 from edge_truth import discriminant, region_of
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.floquet.edges.tracing import stability_edges
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 
 RIG = "smith_1972_5152_sixteenth_inch"
 

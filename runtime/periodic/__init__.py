@@ -1,0 +1,54 @@
+"""Linear periodic systems: the transition matrices of a revolution, and what follows from them.
+
+``floquet_multipliers``, ``monodromy``
+    Stability at given speeds, with the error of every multiplier.
+``steady_state``
+    The periodic motion of a forced system, however stiff.
+``simulate``
+    The motion from a start, over any number of revolutions.
+``prepare``
+    Tables for a range of speeds: later answers take micro- or milliseconds.
+
+All of them rest on :mod:`~.transition`: collocation over segments of the period, in steps that suit
+the modes that are still alive after it.  The names load on first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..core.lazy import on_first_use
+
+if TYPE_CHECKING:
+    from .motion import Trajectory, simulate
+    from .multipliers import FloquetMultipliers, Monodromy, floquet_multipliers, monodromy
+    from .periodic_motion import SteadyState, steady_state
+    from .prepared import Prepared, prepare
+
+_PUBLIC = {
+    "FloquetMultipliers": "multipliers",
+    "Monodromy": "multipliers",
+    "Prepared": "prepared",
+    "SteadyState": "periodic_motion",
+    "Trajectory": "motion",
+    "floquet_multipliers": "multipliers",
+    "monodromy": "multipliers",
+    "prepare": "prepared",
+    "simulate": "motion",
+    "steady_state": "periodic_motion",
+}
+
+__all__ = [
+    "FloquetMultipliers",
+    "Monodromy",
+    "Prepared",
+    "SteadyState",
+    "Trajectory",
+    "floquet_multipliers",
+    "monodromy",
+    "prepare",
+    "simulate",
+    "steady_state",
+]
+
+__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -1,0 +1,84 @@
+"""Energy balance of a motion: what the energy gained against the power that went in."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.results import Check
+from .equation import Equation
+
+Array = NDArray[np.float64]
+
+# Phase of the fastest living mode between given angles from which they do not tell an integral.
+_MOST_PHASE = 0.5
+
+
+def energy_balance(
+    equation: Equation, theta: Array, q: Array, slope: Array, error: float
+) -> Check | None:
+    """Return the defect of the energy balance over its largest term; None where angles are too few.
+
+    With v = dq/dtheta the energy is ``E = v^T M v/2 - q^T N_s q/2``, N_s the symmetric part of N,
+    and ``dE/dtheta = v^T (N - N_s) q - v^T C v/w + v^T F - v^T A' q - v^T M' v/2 - q^T N_s' q/2``.
+
+    Parameters
+    ----------
+    equation : Equation
+        Its first member moves.
+    theta : ndarray
+        Crank angles [rad], evenly spaced but for the last, ``(nt,)``.
+    q, slope : ndarray
+        Coordinates and dq/dtheta, ``(nt, n)``.
+    error : float
+        Error of the motion over its peak.
+    """
+    even = 4 * ((len(theta) - 2) // 4) + 1
+    if even < 9 or equation.harmonics < 0:
+        return None
+    theta, q, slope = theta[:even], q[:even], slope[:even]
+    step = float(theta[1] - theta[0])
+    living = np.where(equation.decay[0] < 20.0, equation.frequency[0], 0.0)
+    if step * float(np.max(living, initial=0.0)) > _MOST_PHASE:
+        return None
+    unit = equation.scale[0]
+    place, rate = q / unit, slope / unit
+    power = np.zeros(even)
+    energy = 0.5 * _form(equation.at("mass", theta)[0], rate, rate)
+    power -= 0.5 * _form(equation.slope("mass", theta), rate, rate)
+    if "stiffness" in equation.fields:
+        stiffness = equation.at("stiffness", theta)[0]
+        energy -= 0.5 * _form(stiffness, place, place)
+        turned = stiffness - np.swapaxes(stiffness, -1, -2)
+        power += 0.5 * _form(turned, rate, place)
+        power -= 0.5 * _form(equation.slope("stiffness", theta), place, place)
+    if "gyroscopic" in equation.fields:
+        power -= _form(equation.slope("gyroscopic", theta), rate, place)
+    if "damping" in equation.fields:
+        power -= _form(equation.at("damping", theta)[0], rate, rate)
+    if equation.forced:
+        power += np.sum(equation.at("force", theta)[0] * rate, axis=-1)
+    work, coarse = _integral(power, step, 1), _integral(power, step, 2)
+    size = float(np.max(np.abs(energy))) + step * float(np.sum(np.abs(power)))
+    if not 0.0 < size < np.inf:
+        return None
+    defect = abs(float(energy[-1] - energy[0]) - work) / size
+    # Simpson's rule on twice the step is in error by far more than Boole's.
+    return Check(defect, 20.0 * error + abs(work - coarse) / size + 1e-12)
+
+
+def _form(matrices: Array, left: Array, right: Array) -> Array:
+    value: Array = np.sum(left * (matrices @ right[..., None])[..., 0], axis=-1)
+    return value
+
+
+def _integral(values: Array, step: float, every: int) -> float:
+    """Return the integral by Boole's rule, or Simpson's where every other value is left out."""
+    chosen, h = values[::every], step * every
+    if every == 1:
+        weights = np.tile([14.0, 32.0, 12.0, 32.0], (len(chosen) - 1) // 4)
+        weights[0] = 7.0
+        return float(2.0 * h / 45.0 * (weights @ chosen[:-1] + 7.0 * chosen[-1]))
+    weights = np.tile([2.0, 4.0], (len(chosen) - 1) // 2)
+    weights[0] = 1.0
+    return float(h / 3.0 * (weights @ chosen[:-1] + chosen[-1]))

@@ -1,0 +1,720 @@
+"""The equation of a linear periodic system at given speeds, sampled once over the period.
+
+The state is (q, p) with p = M q' + A q and the crank angle as variable, so that no derivative of a
+coefficient occurs and the flow is symplectic where the system is undamped:
+
+    p' = (A^T - C/w) q' + N q + F,   N = B - D/w - (K + Kg)/w^2,   F = f + h/w + p_ext/w^2.
+
+Every array is a sum of terms, factor times function of angle.  The functions are sampled at even
+angles until their Fourier series have ended, and interpolated from there: however many segments,
+speeds or refinements follow, no function is evaluated again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import BadInput, bad
+from ..core.families import LinearPeriodic, Term
+from ..core.inputs import numbers
+
+Array = NDArray[np.float64]
+
+# Power of the speed that an array carries once d/dt = speed * d/dtheta and the equation has been
+# divided by speed^2; S and g act only when the crank accelerates.
+SPEED_POWER = {
+    **{"M": 0, "A": 0, "B": 0, "C": -1, "D": -1, "K": -2, "Kg": -2},
+    **{"f": 0, "h": -1, "p": -2},
+}
+# The field of the equation that an array belongs to, and its sign there.
+_FIELD = {
+    **{"M": ("mass", 1.0), "A": ("gyroscopic", 1.0), "C": ("damping", 1.0)},
+    **{"B": ("stiffness", 1.0), "D": ("stiffness", -1.0), "K": ("stiffness", -1.0)},
+    **{"Kg": ("stiffness", -1.0), "f": ("force", 1.0), "h": ("force", 1.0), "p": ("force", 1.0)},
+}
+# Even angles to begin with, by the number of coordinates up to which, so that a narrow wave of a
+# small system is seen; and at the most.  A Fourier series has ended where its last quarter is
+# below the first bound, or does not fall any more and is below the second: round-off of the terms.
+_FIRST, _MOST = {4: 256, 12: 128}, 4096
+_FEWEST = 64
+_ENDED, _ROUNDING = 16.0 * float(np.finfo(float).eps), 1e-12
+# Amplitude over the largest from which the nodes of a method have to see a harmonic.
+_SEEN = 1e-6
+# Angles over the period by the golden section, which no wave shares.
+_BETWEEN = np.arange(1.0, 14.0) * ((np.sqrt(5.0) - 1.0) / 2.0) % 1.0
+# Places of the period at which frozen modes are computed, and the most members times modes cubed
+# for which each member has its own.
+_PLACES, _EACH = 8, 2_000_000
+
+
+@dataclass(frozen=True)
+class Field:
+    """One array of the equation for all members: constant part, and varying terms by factor.
+
+    Attributes
+    ----------
+    constant : ndarray or None
+        Shape ``(nb, n, n)``, or ``(nb, n)`` for the force.
+    factors : ndarray
+        Of the varying terms, shape ``(nb, k)``.
+    series : ndarray
+        Fourier coefficients of the varying terms, as :func:`waves` multiplies them, shape
+        ``(k, 2 H + 1, n, n)``.
+    terms : tuple of Term
+        The varying terms themselves.
+    """
+
+    constant: Array | None
+    factors: Array
+    series: Array
+    terms: tuple[Term, ...]
+
+    def take(self, members: slice | NDArray[np.intp]) -> Field:
+        """Return the field of some members."""
+        constant = None if self.constant is None else self.constant[members]
+        return replace(self, constant=constant, factors=self.factors[members])
+
+    def at(self, table: Array | None, angles: Array) -> Array:
+        """Return the field at angles, shape ``(nb, nt, ...)``; nt is 1 where it is constant.
+
+        Parameters
+        ----------
+        table : ndarray or None
+            :func:`waves` at the angles, ``(nt, 2 H + 1)``; None where the terms are not smooth and
+            are evaluated anew.
+        angles : ndarray
+            The wanted angles [rad], shape ``(nt,)``.
+        """
+        if not self.terms:
+            return cast(Array, self.constant)[:, None]
+        count, places, nb = len(self.terms), len(angles), len(self.factors)
+        if table is None:
+            values = np.stack([term(angles) for term in self.terms])
+            shape = values.shape[2:]
+            total = self.factors @ values.reshape(count, -1)
+        else:
+            shape, used = self.series.shape[2:], self.series.shape[1]
+            series = self.series.reshape(count, -1)
+            if nb <= count:
+                mixed = (self.factors @ series).reshape(nb, used, -1)
+                total = table[:, :used] @ mixed
+            else:
+                values = table[:, :used] @ series.reshape(count, used, -1)
+                total = self.factors @ values.reshape(count, -1)
+        out: Array = total.reshape(nb, places, *shape)
+        if self.constant is not None:
+            out += self.constant[:, None]
+        return out
+
+    def mean(self) -> Array:
+        """Return the mean over the period, shape ``(nb, ...)``."""
+        if not self.terms:
+            return cast(Array, self.constant)
+        first = self.series[:, 0]
+        value: Array = (self.factors @ first.reshape(len(first), -1)).reshape(-1, *first.shape[1:])
+        return value if self.constant is None else value + self.constant
+
+
+@dataclass(frozen=True)
+class Equation:
+    """The equation of a batch of members: one system at speeds and parameter values.
+
+    Make it with :func:`equation_of`.  Inside it the batch is flat.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        The system.
+    speed : ndarray
+        Crank speeds [rad/s], shape ``(nb,)``.
+    batch : tuple of int
+        Shape of the batch seen from outside.
+    fields : mapping
+        ``mass``, ``gyroscopic``, ``damping``, ``stiffness``, ``force``: those that are not zero.
+    harmonics : int
+        Harmonics H that the Fourier series of the terms have; -1 where these are not smooth.
+    reach : int
+        Highest harmonic that the nodes of a method have to see.
+    scale : ndarray
+        Unit of each coordinate, powers of two, ``(nb, n)``: q and p of an oscillator of the mean
+        mass and stiffness get like sizes in (q/scale, p scale), and no rounding is added.
+    frequency, decay : ndarray
+        Of frozen modes, ``(nb, n)``: the largest frequency [1/rad] over the period, of the
+        symmetric part of the stiffness field beside the mass, and the mean decay of the amplitude
+        in a period.  They choose the number of segments; whether it was enough is seen afterwards.
+    damped : bool
+        Whether something takes energy out or puts it in: damping, or forces that turn.
+    """
+
+    system: LinearPeriodic
+    speed: Array
+    batch: tuple[int, ...]
+    fields: Mapping[str, Field]
+    harmonics: int
+    reach: int
+    scale: Array
+    frequency: Array
+    decay: Array
+    damped: bool
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return self.system.size
+
+    @property
+    def period(self) -> float:
+        """Period of the coefficients [rad]."""
+        return self.system.period
+
+    @property
+    def forced(self) -> bool:
+        """True where a force acts."""
+        return "force" in self.fields
+
+    def take(self, members: slice | NDArray[np.intp]) -> Equation:
+        """Return the equation of some members."""
+        speed = self.speed[members]
+        fields = {name: field.take(members) for name, field in self.fields.items()}
+        return replace(
+            self,
+            speed=speed,
+            batch=speed.shape,
+            fields=fields,
+            scale=self.scale[members],
+            frequency=self.frequency[members],
+            decay=self.decay[members],
+        )
+
+    def without_force(self) -> Equation:
+        """Return the equation of free motion."""
+        fields = {name: field for name, field in self.fields.items() if name != "force"}
+        return replace(self, fields=fields)
+
+    def with_force_unit(self, unit: float) -> Equation:
+        """Return the equation whose state has 1/unit for the 1 that the force acts on."""
+        if not self.forced:
+            return self
+        force = self.fields["force"]
+        constant = None if force.constant is None else unit * force.constant
+        scaled = replace(force, constant=constant, factors=unit * force.factors)
+        return replace(self, fields={**self.fields, "force": scaled})
+
+    def with_slow_modes(self, most: float) -> Equation:
+        """Return the equation whose segments suit modes of at most a frequency [1/rad]."""
+        return replace(
+            self, frequency=np.minimum(self.frequency, most), decay=np.zeros_like(self.decay)
+        )
+
+    def largest_force(self) -> Array:
+        """Return the largest entry of the force, shape ``(nb,)``; 0 where none acts."""
+        if not self.forced:
+            return np.zeros(len(self.speed))
+        values = self.at("force", self.even_angles())
+        return np.asarray(np.max(np.abs(values), axis=(1, 2)))
+
+    def even_angles(self) -> Array:
+        """Return angles that divide the period evenly and see every harmonic, from 0 [rad]."""
+        count = _MOST if self.harmonics < 0 else max(_FEWEST, 4 * (self.harmonics // 2 + 1))
+        return self.period * np.arange(float(count)) / count
+
+    def at(self, name: str, angles: Array, table: Array | None = None) -> Array:
+        """Return a field in scaled coordinates at angles, ``(nb, nt, n, n)`` or ``(nb, nt, n)``.
+
+        Parameters
+        ----------
+        name : str
+            One of :attr:`fields`.
+        angles : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+        table : ndarray, optional
+            :func:`waves` at these angles, where it is at hand.
+        """
+        if table is None and self.harmonics >= 0 and self.fields[name].terms:
+            table = waves(self.harmonics, angles * (2 * np.pi / self.period))
+        value = self.fields[name].at(table, angles)
+        unit = self.scale[:, None, :]
+        if name == "force":
+            return value * unit
+        return value * (unit[..., :, None] * unit[..., None, :])
+
+    def slope(self, name: str, angles: Array) -> Array:
+        """Return the derivative of a matrix field of the first member, ``(nt, n, n)``."""
+        field, order = self.fields[name].take(slice(0, 1)), np.arange(1.0, self.harmonics + 1.0)
+        table = waves(self.harmonics, angles * (2 * np.pi / self.period))
+        cosines, sines = table[:, 1 : self.harmonics + 1], table[:, self.harmonics + 1 :]
+        turned = np.concatenate([0.0 * table[:, :1], -order * sines, order * cosines], axis=1)
+        turned *= 2 * np.pi / self.period
+        if not field.terms:
+            return np.zeros((len(angles), self.size, self.size))
+        value = replace(field, constant=None).at(turned, angles)[0]
+        unit = self.scale[0]
+        return value * (unit[:, None] * unit)
+
+    def mean(self, name: str) -> Array:
+        """Return the mean of a field in scaled coordinates, ``(nb, n, n)``; zeros without it."""
+        n = self.size
+        if name not in self.fields:
+            return np.zeros((len(self.speed), n, n))
+        unit = self.scale
+        return self.fields[name].mean() * unit[:, :, None] * unit[:, None, :]
+
+    def cholesky_of_mass(self, angles: Array) -> Array:
+        """Return the Cholesky factors of the scaled mass at angles, ``(nb, nt, n, n)``.
+
+        Raises
+        ------
+        BadInput
+            If a mass matrix is not symmetric and positive definite.
+        """
+        mass = self.at("mass", angles)
+        gap = np.max(np.abs(mass - np.swapaxes(mass, -1, -2)), initial=0.0)
+        if not gap <= 1e-10 * np.max(np.abs(mass), initial=0.0):
+            raise _bad_mass(f"asymmetry {gap:.3g}")
+        try:
+            return np.linalg.cholesky(mass)
+        except np.linalg.LinAlgError:
+            lowest = float(np.min(np.linalg.eigvalsh(mass)))
+            raise _bad_mass(f"smallest eigenvalue {lowest:.3g}") from None
+
+    def generator(self, angles: Array) -> Array:
+        """Return L of y' = L y in the scaled state (q/scale, p scale), and 1 where forced.
+
+        Parameters
+        ----------
+        angles : ndarray
+            Crank angles [rad], shape ``(nt,)``.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(nb, nt, m, m)``, m = 2n or 2n + 1.
+        """
+        n, count, places = self.size, len(self.speed), len(angles)
+        mass = np.broadcast_to(self.at("mass", angles), (count, places, n, n))
+        flexibility = np.linalg.inv(mass)
+        out = np.zeros((count, places, 2 * n + self.forced, 2 * n + self.forced))
+        out[..., :n, n : 2 * n] = flexibility
+        if "stiffness" in self.fields:
+            out[..., n : 2 * n, :n] = self.at("stiffness", angles)
+        feedback = self.feedback(angles)
+        if "gyroscopic" in self.fields:
+            out[..., :n, :n] = -flexibility @ self.at("gyroscopic", angles)
+        if feedback is not None:
+            out[..., n : 2 * n, n : 2 * n] = feedback @ flexibility
+            out[..., n : 2 * n, :n] += feedback @ out[..., :n, :n]
+        if self.forced:
+            out[..., n : 2 * n, 2 * n] = self.at("force", angles)
+        return out
+
+    def feedback(
+        self, angles: Array, table: Array | None = None, gyroscopic: Array | None = None
+    ) -> Array | None:
+        """Return A^T - C/w, by which rates act on the momenta; None where there is none."""
+        if gyroscopic is None and "gyroscopic" in self.fields:
+            gyroscopic = self.at("gyroscopic", angles, table)
+        value = None if gyroscopic is None else np.swapaxes(gyroscopic, -1, -2)
+        if "damping" in self.fields:
+            damping = self.at("damping", angles, table)
+            value = -damping if value is None else value - damping
+        return value
+
+    def state(self, angle: float, q: Array, slope: Array) -> Array:
+        """Return the scaled state of the first member from coordinates and dq/dtheta, ``(2n,)``."""
+        place = np.array([angle])
+        unit = self.scale[0]
+        momentum = self.at("mass", place)[0, 0] @ (slope / unit)
+        if "gyroscopic" in self.fields:
+            momentum = momentum + self.at("gyroscopic", place)[0, 0] @ (q / unit)
+        return np.concatenate([q / unit, momentum])
+
+    def divergence(self) -> Array:
+        """Return the integral of the trace of L over a period, ``(nb,)``; Liouville's exponent."""
+        if "damping" not in self.fields:
+            return np.zeros(len(self.speed))
+        angles = self.even_angles()
+        mass, damping = self.at("mass", angles), self.at("damping", angles)
+        if self.size == 1:
+            trace = (damping / mass)[..., 0, 0]
+        else:
+            trace = np.trace(np.linalg.solve(mass, damping), axis1=-2, axis2=-1)
+        value: Array = -self.period * np.mean(trace, axis=1)
+        return value
+
+
+@dataclass(frozen=True)
+class SampledSystem:
+    """A system with the Fourier series of its terms, for equations at any speeds and parameters.
+
+    Make it with :func:`sampled`.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        The system.
+    forcing : bool
+        Whether the force is taken along.
+    series : mapping
+        Series of the terms that vary, by place among the terms.
+    harmonics : int
+        Harmonics that they have; -1 where they are not smooth.
+    reach : int
+        Highest harmonic that has a millionth of the largest amplitude of its term.
+    """
+
+    system: LinearPeriodic
+    forcing: bool
+    series: Mapping[int, Array]
+    harmonics: int
+    reach: int
+
+
+def sampled(system: LinearPeriodic, *, forcing: bool = False) -> SampledSystem:
+    """Return a system with its terms sampled.
+
+    Raises
+    ------
+    BadInput
+        If a term is not finite or has a wrong shape.
+    """
+    varying = [place for place, term in enumerate(system.terms) if _varies(term, forcing)]
+    return _sampled(system, forcing, varying)
+
+
+def _sampled(system: LinearPeriodic, forcing: bool, varying: Sequence[int]) -> SampledSystem:
+    terms = [system.terms[place] for place in varying]
+    series, harmonics, reach = fourier_series(system, terms)
+    return SampledSystem(system, forcing, dict(zip(varying, series, strict=True)), harmonics, reach)
+
+
+def _acts(term: Term, forcing: bool) -> bool:
+    return term.array in SPEED_POWER and (forcing or term.array not in "fhp")
+
+
+def _varies(term: Term, forcing: bool) -> bool:
+    return _acts(term, forcing) and not term.constant
+
+
+def equation_of(
+    system: LinearPeriodic | SampledSystem,
+    speed: ArrayLike,
+    parameters: Mapping[str, ArrayLike] | None = None,
+    *,
+    forcing: bool = False,
+) -> Equation:
+    """Return the equation of a system at speeds and parameter values that broadcast.
+
+    Parameters
+    ----------
+    system : LinearPeriodic or SampledSystem
+        The system; a sampled one is not evaluated again.
+    speed : array_like
+        Crank speeds [rad/s], positive.
+    parameters : mapping, optional
+        Parameter values that replace the system's; geometry too, one number each, where the system
+        can be made anew for it, but not of a sampled one.
+    forcing : bool
+        Whether the force is taken along, where the system has one; a sampled one knows.
+
+    Raises
+    ------
+    BadInput
+        If a speed is not positive and finite, a parameter is unknown or not finite, shapes do not
+        broadcast, a term is not finite or has a wrong shape, or a mass matrix is not symmetric and
+        positive definite.
+    """
+    if isinstance(system, SampledSystem):
+        known, changes = system, dict(parameters or {})
+    else:
+        system, changes = at_geometry(system, parameters or {})
+        known = None
+    plain = system.system if isinstance(system, SampledSystem) else system
+    speeds, values, batch = _batch(speed, changes)
+    scales = plain.scale_values(**values)
+    flat = np.broadcast_to(speeds, batch).reshape(-1)
+    factors: dict[int, Array] = {}
+    for place, term in enumerate(plain.terms):
+        if not _acts(term, known.forcing if known else forcing):
+            continue
+        scale = 1.0 if term.scale is None else scales[term.scale]
+        power = SPEED_POWER[term.array] + term.power
+        factor = np.broadcast_to(scale, batch).reshape(-1) * flat**power
+        if np.any(factor):
+            factors[place] = _FIELD[term.array][1] * factor
+    if not any(plain.terms[place].array == "M" for place in factors):
+        raise bad("LinearPeriodic.terms", "no mass term M", "a positive definite M", "add the term")
+    if known is None:
+        varying = [place for place in factors if not plain.terms[place].constant]
+        known = _sampled(plain, forcing, varying)
+    fields = _fields(known, factors)
+    ones = np.ones((len(flat), plain.size))
+    raw = Equation(
+        plain, flat, batch, fields, known.harmonics, known.reach, ones, ones, ones, damped=False
+    )
+    scaled = replace(raw, scale=_scale(raw))
+    _check_mass(scaled)
+    frequency, decay, damped = _rates(scaled)
+    return replace(scaled, frequency=frequency, decay=decay, damped=damped)
+
+
+def _batch(
+    speed: ArrayLike, parameters: Mapping[str, ArrayLike]
+) -> tuple[Array, dict[str, Array], tuple[int, ...]]:
+    """Return speeds, parameter values and the shape to which they broadcast; refuse unusable ones."""
+    speeds = numbers("speed", speed)
+    if not (np.all(np.isfinite(speeds)) and np.all(speeds > 0)):
+        raise bad("speed", speed, "positive finite speeds [rad/s]", "leave out speeds <= 0")
+    values = {name: numbers(name, value) for name, value in parameters.items()}
+    for name, value in values.items():
+        if not np.all(np.isfinite(value)):
+            raise bad(name, value, "finite numbers", "correct the parameter")
+    try:
+        batch = np.broadcast_shapes(speeds.shape, *(v.shape for v in values.values()))
+    except ValueError as mismatch:
+        shapes = {"speed": speeds.shape, **{k: v.shape for k, v in values.items()}}
+        raise bad(
+            "speed and parameters", shapes, "shapes that broadcast", "add axes of length 1"
+        ) from mismatch
+    return speeds, values, batch
+
+
+def at_geometry(
+    system: LinearPeriodic, values: Mapping[str, ArrayLike]
+) -> tuple[LinearPeriodic, dict[str, ArrayLike]]:
+    """Return the system made for the geometry among some values, and the other values.
+
+    Raises
+    ------
+    BadInput
+        If a geometry value is not one number.
+    """
+    rest = {name: value for name, value in values.items() if name not in system.geometry}
+    changes = {}
+    for name in values.keys() - rest.keys():
+        value = numbers(name, values[name])
+        if value.ndim:
+            raise bad(
+                name,
+                f"shape {value.shape}",
+                "one number: the system is made anew for each geometry",
+                "call once for each value, or take it as an axis of stability_chart",
+            )
+        changes[name] = float(value)
+    return (system.with_geometry(**changes) if changes else system), rest
+
+
+def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[Array], int, int]:
+    """Return the Fourier series of terms, and how many harmonics they have; -1 where not smooth.
+
+    The terms are sampled at even angles, doubled until every series has ended and gives the term
+    at angles between: no wave was mistaken for another.
+
+    Returns
+    -------
+    series : list of ndarray
+        Coefficients in the order of :func:`waves`, shape ``(2 H + 1, n, n)`` or ``(2 H + 1, n)``.
+    harmonics : int
+        H, the same for all.
+    reach : int
+        The highest that has a millionth of the largest amplitude of its term.
+    """
+    if not terms:
+        return [], 0, 0
+    first = next((count for size, count in _FIRST.items() if system.size <= size), _FEWEST)
+    angles = np.concatenate([_BETWEEN, np.arange(float(first)) / first])
+    values = _rows(system, terms, system.period * angles)
+    between, table = values[: len(_BETWEEN)], values[len(_BETWEEN) :]
+    shapes = [(system.size,) * (1 if term.array in "fhp" else 2) for term in terms]
+    firsts = np.concatenate([[0], np.cumsum([int(np.prod(shape)) for shape in shapes])])
+    before = np.full(len(terms), np.inf)
+    while True:
+        count = len(table)
+        spectrum = np.fft.rfft(table, axis=0) / count
+        amplitude = np.maximum.reduceat(np.abs(spectrum), firsts[:-1], axis=1)
+        tops = np.max(amplitude, axis=0)
+        tops = np.where(tops > 0.0, tops, 1.0)
+        tails = np.max(amplitude[3 * len(amplitude) // 4 :], axis=0) / tops
+        last = 2 * count > _MOST
+        ended = (tails <= _ENDED) | ((tails <= _ROUNDING) & ((tails > 0.1 * before) | last))
+        if np.all(ended):
+            noise = np.maximum(2.0 * tails, _ENDED / 8.0) * tops
+            harmonics = int(np.max(np.nonzero(amplitude > noise)[0], initial=0))
+            series = np.concatenate(
+                [
+                    spectrum[:1].real,
+                    2.0 * spectrum[1 : harmonics + 1].real,
+                    -2.0 * spectrum[1 : harmonics + 1].imag,
+                ]
+            )
+            gaps = np.abs(waves(harmonics, 2 * np.pi * _BETWEEN) @ series - between)
+            gap = np.maximum.reduceat(np.max(gaps, axis=0), firsts[:-1])
+            if np.all(gap <= 1e-10 * tops):
+                parts = np.split(series, firsts[1:-1], axis=1)
+                made = [
+                    p.reshape(len(series), *shape) for p, shape in zip(parts, shapes, strict=True)
+                ]
+                return (
+                    made,
+                    harmonics,
+                    int(np.max(np.nonzero(amplitude > _SEEN * tops)[0], initial=0)),
+                )
+        if last:
+            return [np.zeros((1, *shape)) for shape in shapes], -1, _MOST // 2
+        before = tails
+        new = _rows(system, terms, system.period * (np.arange(float(count)) + 0.5) / count)
+        table = np.stack([table, new], axis=1).reshape(2 * count, -1)
+
+
+def waves(harmonics: int, phase: Array) -> Array:
+    """Return ``1, cos k phase ..., sin k phase ...``, shape ``(nt, 2 harmonics + 1)``."""
+    order = np.arange(1.0, harmonics + 1.0)
+    turns = phase[:, None] * order
+    return np.concatenate([np.ones((len(phase), 1)), np.cos(turns), np.sin(turns)], axis=1)
+
+
+@lru_cache(maxsize=24)
+def segment_waves(harmonics: int, segments: int, nodes: tuple[float, ...]) -> Array:
+    """Return :func:`waves` at nodes in [0, 1] of each of equal segments of the period."""
+    places = (np.arange(float(segments))[:, None] + np.array(nodes)) / segments
+    table = waves(harmonics, 2 * np.pi * places.ravel())
+    table.flags.writeable = False
+    return table
+
+
+def _rows(system: LinearPeriodic, terms: Sequence[Term], angles: Array) -> Array:
+    """Return the values of all terms beside each other, one row per angle, finite."""
+    values = [np.asarray(term(angles), dtype=float) for term in terms]
+    for term, value in zip(terms, values, strict=True):
+        if value.shape != (len(angles),) + (system.size,) * (1 if term.array in "fhp" else 2):
+            _checked(system, term, angles)
+    table = np.concatenate([value.reshape(len(angles), -1) for value in values], axis=1)
+    if not np.all(np.isfinite(table)):
+        for term in terms:
+            _checked(system, term, angles)
+    return table
+
+
+def _checked(system: LinearPeriodic, term: Term, angles: Array) -> Array:
+    """Return the values of a term; refuse what is not finite, or of a wrong shape."""
+    values = np.asarray(term(angles), dtype=float)
+    expected = (len(angles),) + (system.size,) * (1 if term.array in "fhp" else 2)
+    where = f"term {term.array} ({term.scale})"
+    if values.shape != expected:
+        raise bad(
+            where,
+            f"shape {values.shape} for {len(angles)} angles",
+            f"{expected}",
+            "make the function return one array per angle",
+        )
+    if not np.all(np.isfinite(values)):
+        finite = np.all(np.isfinite(values.reshape(len(values), -1)), axis=1)
+        raise bad(
+            where,
+            f"a value that is not finite at crank angle {angles[int(np.argmin(finite))]:.6g}",
+            "finite numbers at every angle",
+            "check the function, its domain and the geometry",
+        )
+    return values
+
+
+def _fields(known: SampledSystem, factors: Mapping[int, Array]) -> dict[str, Field]:
+    """Return the fields that terms with given factors make up; what is zero is left out."""
+    system, fields = known.system, {}
+    values = {
+        place: _checked(system, system.terms[place], np.zeros(1))[0]
+        if system.terms[place].constant
+        else known.series[place]
+        for place in factors
+    }
+    acting = [place for place in factors if known.harmonics < 0 or np.any(values[place])]
+    for name in ("mass", "gyroscopic", "damping", "stiffness", "force"):
+        members = [place for place in acting if _FIELD[system.terms[place].array][0] == name]
+        if not members:
+            continue
+        constant: Array | None = None
+        for place in members:
+            if system.terms[place].constant:
+                part = np.multiply.outer(factors[place], values[place])
+                constant = part if constant is None else constant + part
+        varying = [place for place in members if not system.terms[place].constant]
+        count = len(factors[members[0]])
+        fields[name] = Field(
+            constant,
+            np.stack([factors[place] for place in varying], axis=1)
+            if varying
+            else np.zeros((count, 0)),
+            np.stack([values[place] for place in varying]) if varying else np.zeros((0, 0)),
+            tuple(system.terms[place] for place in varying),
+        )
+    return fields
+
+
+def _scale(equation: Equation) -> Array:
+    """Return the unit of each coordinate at each member."""
+    mass = np.diagonal(equation.mean("mass"), axis1=-2, axis2=-1)
+    stiffness = np.abs(np.diagonal(equation.mean("stiffness"), axis1=-2, axis2=-1))
+    if not np.all(mass > 0):
+        raise _bad_mass(f"a diagonal entry of {float(np.min(mass)):.3g} in the mean")
+    size = (mass * np.maximum(stiffness, mass)) ** -0.25
+    return np.exp2(np.round(np.log2(size)))
+
+
+def _check_mass(equation: Equation) -> None:
+    """Refuse a mass that is not positive definite at some angle, at every member that differs."""
+    field = equation.fields["mass"]
+    parts = [field.factors] + ([] if field.constant is None else [field.constant])
+    same = all(bool(np.all(part == part[:1])) for part in parts)
+    chosen = equation.take(slice(0, 1)) if same else equation
+    chosen.cholesky_of_mass(equation.even_angles() if field.terms else np.zeros(1))
+
+
+def _rates(equation: Equation) -> tuple[Array, Array, bool]:
+    """Return frequencies and decays of frozen modes, and whether the system is damped."""
+    count = len(equation.speed)
+    if count * _PLACES * equation.size**3 <= _EACH or count == 1:
+        return _frozen(equation)
+    chosen = np.unique(np.linspace(0, count - 1, 7).astype(np.intp))
+    chosen = np.argsort(equation.speed, kind="stable")[chosen]
+    frequency, decay, damped = _frozen(equation.take(chosen))
+    gaps = np.abs(np.log(equation.speed[:, None] / equation.speed[chosen]))
+    nearest = np.argmin(gaps, axis=1)
+    ratio = (equation.speed[chosen][nearest] / equation.speed)[:, None]
+    return frequency[nearest] * ratio, decay[nearest] * ratio, damped
+
+
+def _frozen(equation: Equation) -> tuple[Array, Array, bool]:
+    """Return :func:`_rates` with modes of every member."""
+    angles = equation.period * np.arange(float(_PLACES)) / _PLACES
+    inverse = np.linalg.inv(equation.cholesky_of_mass(angles))
+    damped = "damping" in equation.fields
+    shape = (len(equation.speed), equation.size)
+    if "stiffness" not in equation.fields:
+        return np.zeros(shape), np.zeros(shape), damped
+    stiffness = -equation.at("stiffness", angles)
+    turned = np.swapaxes(stiffness, -1, -2)
+    gap = np.max(np.abs(stiffness - turned), initial=0.0)
+    damped |= bool(gap > 1e-13 * np.max(np.abs(stiffness), initial=0.0))
+    back = np.swapaxes(inverse, -1, -2)
+    squares, modes = np.linalg.eigh(inverse @ (0.5 * (stiffness + turned)) @ back)
+    frequency = np.sqrt(np.max(np.abs(squares), axis=1))
+    if "damping" not in equation.fields:
+        return frequency, np.zeros(shape), damped
+    shapes = back @ modes
+    through = equation.at("damping", angles) @ shapes
+    decay = 0.5 * np.mean(np.sum(shapes * through, axis=-2), axis=1) * equation.period
+    return frequency, decay, damped
+
+
+def _bad_mass(found: str) -> BadInput:
+    return bad(
+        "mass matrix M",
+        found,
+        "a symmetric positive definite matrix at every angle and parameter value",
+        "check masses, inertias and parameter values",
+    )

@@ -1,0 +1,558 @@
+"""Motion of a linear periodic system at constant crank speed, with its error and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from math import ceil
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
+from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
+from ..core.progress import bar
+from ..core.results import Check, DeferredChecks, Result, provenance
+from .energy import energy_balance
+from .equation import Equation, equation_of
+from .periodic_motion import peaks
+from .transition import Method, method, predicted_error, product, segments_from
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+SCIPY_METHODS = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
+_EPS = float(np.finfo(float).eps)
+# Given angles in all, and of a revolution.
+_MOST_INTERVALS, _MOST_SAMPLES = 2**22, 2**20
+# Nodes of collocation between given angles, and the fineness of what an interval is divided into
+# for fast modes: each level is compared with the one before.
+_LEVELS = (
+    *((stages, 1.0) for stages in (2, 3, 4, 5, 6, 8)),
+    *((10, fineness) for fineness in (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)),
+)
+# Phase of the fastest living mode in a step of fineness 1 [rad].
+_PHASE = 16.0
+_STIFF = 7
+# Decay from which a mode is dead, and the most steps between two given angles.
+_DEAD, _MOST_DIVISIONS = 20.0, 4096
+# Error, over the peak, that a motion may have and still be told.
+_FAIR = 0.01
+# Least share of the difference between two levels that the finer one is taken to be in error by.
+_LEAST = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectory(Result):
+    """Motion of a linear periodic system.
+
+    Attributes
+    ----------
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    time : ndarray
+        Times since the start [s], shape ``(nt,)``.
+    q, qd : ndarray
+        Coordinates and their time derivatives [1/s], shape ``(nt, n)``.
+    speed : float
+        Crank speed [rad/s].
+    steps : int
+        Steps per revolution, or in all for a method of SciPy's.
+    status : int
+        0 where the end was reached, 1 where the motion passed the bound, 2 where the method gave
+        up.
+    message : str
+        What the status means.
+    error : ndarray
+        Largest error of each coordinate over its peak, shape ``(n,)``.
+    labels : tuple of str
+        Names of the coordinates.
+    """
+
+    theta: Array
+    time: Array
+    q: Array
+    qd: Array
+    speed: float
+    steps: int
+    status: int
+    message: str
+    labels: tuple[str, ...]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "theta": ("sample",),
+        "time": ("sample",),
+        "q": ("sample", "coordinate"),
+        "qd": ("sample", "coordinate"),
+        "error": ("coordinate",),
+    }
+
+    @property
+    def success(self) -> bool:
+        """True where the end was reached."""
+        return self.status == 0
+
+    @property
+    def at_end(self) -> tuple[Array, Array]:
+        """Coordinates and their time derivatives at the last angle: a start for going on."""
+        return self.q[-1], self.qd[-1]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the coordinates over the revolutions of the crank and return the axes."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for label, values in zip(self.labels, self.q.T, strict=True):
+            ax.plot(self.theta / (2 * np.pi), values, label=label, linewidth=0.9)
+        ax.set_xlabel("revolutions of the crank")
+        ax.set_ylabel("coordinate")
+        if len(self.labels) > 1:
+            ax.legend()
+        return ax
+
+
+def simulate(
+    system: LinearPeriodic,
+    speed: float,
+    revolutions: float,
+    method: str = "auto",
+    *,
+    initial: tuple[ArrayLike, ArrayLike] | None = None,
+    start: float = 0.0,
+    rtol: float = 1e-8,
+    samples: int = 360,
+    forcing: bool = True,
+    bound: float = 1e150,
+    progress: bool = False,
+    **parameters: ArrayLike,
+) -> Trajectory:
+    """Simulate a linear periodic system at constant crank speed.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    speed : float
+        Crank speed [rad/s], positive.
+    revolutions : float
+        Length of the motion in revolutions of the crank.
+    method : str
+        ``auto``: transition matrices between the given angles, by collocation with as many nodes
+        as the motion asks for; or SciPy's ``RK45``, ``DOP853``, ``Radau``, ``BDF``, ``LSODA``.
+    initial : pair of array_like, optional
+        Coordinates and their time derivatives [1/s] at the start, each broadcasting to ``(n,)``.
+        At rest in zero by default, where the system is forced.
+    start : float
+        Crank angle at the start [rad].
+    rtol : float
+        Wanted ``error``; of a method of SciPy's the tolerance of a step.
+    samples : int
+        Given angles per revolution.
+    forcing : bool
+        Whether f, h and p act.
+    bound : float
+        Size of a coordinate beyond which the motion is stopped (status 1).
+    progress : bool
+        Whether to show a progress bar.
+    **parameters : float
+        Parameter values that replace the system's, geometry too where it has any.
+
+    Returns
+    -------
+    Trajectory
+        Its ``error`` compares with fewer nodes, or longer steps.  Its checks, made when they are
+        looked at: ``accuracy``, the largest error against ``rtol`` or what round-off allows, of a
+        method of SciPy's against 0.01; ``energy balance``; ``linear range``, the largest
+        deflection over the reference length, for systems that have mode shapes.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If the deflection passes 5 % of the reference length.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or ``rtol`` is beyond what double precision reaches.
+
+    Notes
+    -----
+    With theta as variable, ``q' = M^-1 (p - A q)`` and
+    ``p' = A^T q' + B q - (K + Kg) q/w^2 - C q'/w - D q/w + f + h/w + p_ext/w^2``.
+    """
+    _check_arguments(method, revolutions, rtol, samples, bound, start)
+    equation = equation_of(system, _number("speed", speed), parameters, forcing=forcing)
+    state = _start(equation, initial, start)
+    grid = _Grid(equation.period, float(start), float(revolutions), int(samples))
+    with bar(progress, grid.intervals) as tick:
+        if method == "auto":
+            run, error, allowed = _converged(equation, grid, state, rtol, bound, tick)
+        else:
+            run = _by_scipy(equation, grid, state, method, rtol, bound, tick)
+            other, _, _ = _converged(equation, grid, state, 1e-10, bound, None)
+            error, allowed = _gap(equation, other, run, 1.0), _FAIR
+    theta = grid.theta[: len(run.states)]
+    q, slope = _unscaled(equation, theta, run.states)
+    largest = _largest(equation.system, grid, q)
+    warn_of_large_deflection(largest)
+    checks = partial(_checks, equation, (theta, q, slope), float(np.max(error)), allowed, largest)
+    value = float(equation.speed[0])
+    return Trajectory(
+        method="collocation between the given angles" if method == "auto" else method,
+        error=error,
+        error_norm="largest error of a coordinate over its peak",
+        checks=DeferredChecks(checks),
+        provenance=provenance(system.changed_provenance(**parameters)),
+        theta=theta,
+        time=(theta - grid.start) / value,
+        q=q,
+        qd=value * slope,
+        speed=value,
+        steps=run.steps,
+        status=run.status,
+        message=run.message,
+        labels=system.labels,
+    )
+
+
+class _Grid:
+    """The given angles of a motion."""
+
+    def __init__(self, period: float, start: float, revolutions: float, samples: int) -> None:
+        self.start, self.step = start, 2.0 * np.pi / samples
+        whole = revolutions * samples
+        self.intervals = ceil(whole - 1e-9)
+        self.theta = start + self.step * np.arange(self.intervals + 1.0)
+        self.theta[-1] = start + revolutions * 2.0 * np.pi
+        # Intervals after which the coefficients repeat; all of them, where that is at no given angle.
+        cycle = period / self.step
+        repeats = abs(cycle - round(cycle)) < 1e-9 * cycle
+        self.cycle = round(cycle) if repeats else self.intervals
+
+    def blocks(self) -> list[tuple[int, int]]:
+        """Return first and last interval of each period."""
+        edges = [*range(0, self.intervals, self.cycle), self.intervals]
+        return list(pairwise(edges))
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Scaled states at the given angles as far as a motion went."""
+
+    states: Array
+    steps: int
+    status: int = 0
+    message: str = "the end was reached"
+
+
+def _largest(system: LinearPeriodic, grid: _Grid, q: Array) -> float | None:
+    """Return the largest deflection over the length; the shapes are those of one period."""
+    cycle = min(grid.cycle, len(q))
+    whole = len(q) // cycle
+    parts = [q[: whole * cycle].reshape(whole, cycle, -1)]
+    if len(q) > whole * cycle:
+        parts.append(q[None, whole * cycle :])
+    sizes = [system.largest_deflection(grid.theta[: part.shape[1]], part) for part in parts]
+    return None if sizes[0] is None else max(size for size in sizes if size is not None)
+
+
+def _converged(
+    equation: Equation,
+    grid: _Grid,
+    state: Array,
+    rtol: float,
+    bound: float,
+    tick: Callable[[int], None] | None,
+) -> tuple[_Run, Array, float]:
+    """Return a motion, its error and what it may be: levels are compared until they agree."""
+    kind = "radau" if equation.damped else "gauss"
+    turned = float(np.max(equation.frequency)) * (grid.theta[-1] - grid.start)
+    rounding = _EPS * (32.0 + turned)
+    level = _first_level(equation, grid, kind, rtol)
+    coarse = _march(equation, grid, state, kind, level - 1, bound, None)
+    before = np.inf
+    while True:
+        fine = _march(equation, grid, state, kind, level, bound, tick)
+        likely = [_predicted(equation, grid, kind, at) for at in (level - 1, level)]
+        share = max(_LEAST, min(1.0, 5.0 * likely[1] / max(likely[0], 1e-300)))
+        error = _gap(equation, coarse, fine, share) + rounding
+        worst = float(np.max(error))
+        stuck = worst > 0.5 * before and worst < 1e-3 and likely[1] < worst
+        if worst <= rtol or stuck or level + 1 >= len(_LEVELS):
+            return fine, error, max(rtol, 100.0 * rounding)
+        coarse, before, level = fine, worst, level + 1
+
+
+def _predicted(equation: Equation, grid: _Grid, kind: str, level: int) -> float:
+    """Return the likely error of a motion on a level, over its first period."""
+    stages, fineness = _LEVELS[level]
+    way, h = method(kind, stages), grid.step
+    parts = np.maximum(1.0, fineness * equation.frequency[0] * h / _PHASE)
+    error = [
+        predicted_error(equation.with_slow_modes(rate), way, np.array([equation.period / h * r]))[0]
+        for rate, r in zip(equation.frequency[0], parts, strict=True)
+    ]
+    return float(np.max(error, initial=0.0))
+
+
+def _first_level(equation: Equation, grid: _Grid, kind: str, rtol: float) -> int:
+    """Return the level on which the error is likely small enough, and known to be."""
+    # Errors of an undamped mode add up from one period to the next.
+    decay = float(np.min(equation.decay, initial=np.inf))
+    periods = (grid.theta[-1] - grid.start) / equation.period
+    adding = min(max(periods, 1.0), 1.0 + 1.0 / max(decay, 1e-9))
+    if float(np.max(equation.frequency, initial=0.0)) * grid.step > 2.0:
+        # How far fast modes are excited is not known beforehand: seldom much.
+        return _STIFF
+    for level in range(1, len(_LEVELS) - 1):
+        fine, coarse = (_predicted(equation, grid, kind, at) for at in (level, level - 1))
+        if 5.0 * fine * adding <= rtol and _LEAST * coarse * adding <= rtol:
+            return level
+    return len(_LEVELS) - 2
+
+
+def _divisions(equation: Equation, grid: _Grid, count: int, fineness: float) -> NDArray[np.intp]:
+    """Return into how many steps each of the first intervals is divided, for the modes alive."""
+    passed = grid.step * np.arange(float(count)) / equation.period
+    alive = equation.decay[0] * passed[:, None] < _DEAD
+    rate = np.max(np.where(alive, equation.frequency[0], 0.0), axis=1)
+    # Powers of two times the fineness, so that few different numbers occur.
+    power = np.exp2(np.ceil(np.log2(np.maximum(1.0, rate * grid.step / _PHASE))))
+    parts = np.ceil(fineness * power)
+    if np.max(parts) > _MOST_DIVISIONS:
+        raise bad(
+            "speed",
+            f"{float(equation.speed[0]):.6g} rad/s, where the highest mode turns through "
+            f"{float(np.max(equation.frequency)) * equation.period:.3g} rad in a period",
+            f"{_MOST_DIVISIONS} steps at most between two given angles",
+            "raise the speed or samples, or leave out the highest modes",
+        )
+    return parts.astype(np.intp)
+
+
+def _march(
+    equation: Equation,
+    grid: _Grid,
+    state: Array,
+    kind: str,
+    level: int,
+    bound: float,
+    tick: Callable[[int], None] | None,
+) -> _Run:
+    """Return the motion by transition matrices between the given angles."""
+    stages, fineness = _LEVELS[level]
+    way = method(kind, stages)
+    divisions = _divisions(equation, grid, grid.intervals, fineness)
+    steps = int(round(2.0 * np.pi / grid.step) * divisions[-1])
+    pieces, done = [state[None]], 0
+    limit = bound / equation.scale[0]
+    known: dict[tuple[int, int], Array] = {}
+    for begin, end in grid.blocks():
+        key = (end - begin, int(np.max(divisions[begin:end])))
+        same = key in known and bool(np.all(divisions[begin:end] == divisions[-1]))
+        if not same:
+            known[key] = _flows(equation, grid, (begin, end), divisions[begin:end], way)
+        piece = (known[key] @ pieces[-1][-1][:, None])[:, :, 0]
+        pieces.append(piece)
+        done = end
+        if tick is not None:
+            tick(done)
+        outside = ~np.all(np.abs(piece[:, : equation.size]) <= limit, axis=1)
+        if np.any(outside):
+            last = int(np.argmax(outside))
+            kept = last if not np.all(np.isfinite(piece[last])) else last + 1
+            pieces[-1] = piece[:kept]
+            return _Run(np.concatenate(pieces), steps, 1, _passed(grid, pieces, bound))
+    return _Run(np.concatenate(pieces), steps)
+
+
+def _passed(grid: _Grid, pieces: Sequence[Array], bound: float) -> str:
+    turns = (grid.theta[sum(map(len, pieces)) - 1] - grid.start) / (2 * np.pi)
+    return f"a coordinate passed the bound {bound:.3g} after {turns:.6g} revolutions"
+
+
+def _flows(
+    equation: Equation,
+    grid: _Grid,
+    block: tuple[int, int],
+    divisions: NDArray[np.intp],
+    way: Method,
+) -> Array:
+    """Return the transition matrices from the left end of a block of intervals to their ends."""
+    begin, end = block
+    m = 2 * equation.size + equation.forced
+    single = np.empty((end - begin, m, m))
+    lengths = np.diff(grid.theta[begin : end + 1])
+    kinds = np.stack([divisions.astype(float), np.where(lengths < 0.999 * grid.step, 1.0, 0.0)])
+    for parts, short in np.unique(kinds, axis=1).T:
+        places = np.flatnonzero((kinds[0] == parts) & (kinds[1] == short))
+        count = int(parts)
+        h = float(lengths[places[0]] if short else grid.step) / count
+        left = grid.theta[begin + places][:, None] + h * np.arange(float(count))
+        maps = segments_from(equation, left.ravel(), h, way).maps[0]
+        single[places], _ = product(maps.reshape(len(places), count, m, m))
+    total = np.eye(m)
+    for k, one in enumerate(single):
+        total = one @ total
+        single[k] = total
+    return single
+
+
+def _gap(equation: Equation, coarse: _Run, fine: _Run, share: float) -> Array:
+    """Return the error of each coordinate over its peak, ``(n,)``."""
+    n, number = equation.size, min(len(coarse.states), len(fine.states))
+    first, second = coarse.states[:number, :n], fine.states[:number, :n]
+    with np.errstate(over="ignore", invalid="ignore"):
+        gap = share * np.max(np.abs(first - second), axis=0) / peaks(second[None])[0]
+    return np.where(np.isfinite(gap), gap, 1.0)
+
+
+def _unscaled(equation: Equation, theta: Array, states: Array) -> tuple[Array, Array]:
+    """Return coordinates and dq/dtheta from scaled states, ``(nt, n)`` each."""
+    n, unit = equation.size, equation.scale[0]
+    q, momentum = states[:, :n], states[:, n : 2 * n]
+    if "gyroscopic" in equation.fields:
+        momentum = momentum - (equation.at("gyroscopic", theta)[0] @ q[..., None])[..., 0]
+    mass = np.broadcast_to(equation.at("mass", theta)[0], (len(theta), n, n))
+    slope = np.linalg.solve(mass, momentum[..., None])[..., 0]
+    return q * unit, slope * unit
+
+
+def _by_scipy(
+    equation: Equation,
+    grid: _Grid,
+    state: Array,
+    name: str,
+    rtol: float,
+    bound: float,
+    tick: Callable[[int], None] | None,
+) -> _Run:
+    """Return the motion by a method of :func:`scipy.integrate.solve_ivp`."""
+    from scipy.integrate import solve_ivp
+
+    limit, reached = bound / equation.scale[0], 0
+
+    def jacobian(angle: float, y: Array) -> Array:
+        del y
+        value: Array = equation.generator(np.array([angle]))[0, 0]
+        return value
+
+    def slope(angle: float, y: Array) -> Array:
+        return np.asarray(jacobian(angle, y) @ y)
+
+    def inside(angle: float, y: Array) -> float:
+        nonlocal reached
+        if tick is not None:
+            reached = max(reached, int(np.searchsorted(grid.theta, angle, side="right")) - 1)
+            tick(reached)
+        return float(1.0 - np.max(np.abs(y[: len(limit)]) / limit))
+
+    inside.terminal = True  # type: ignore[attr-defined]
+    options: dict[str, Any] = {"method": name, "events": inside, "t_eval": grid.theta}
+    if name in ("Radau", "BDF", "LSODA"):
+        options["jac"] = jacobian
+    # A motion from rest has no size yet: that of the first quarter of a wave.
+    quarter = _Grid(
+        equation.period, grid.start, 0.25 / max(1.0, float(np.max(equation.frequency))), 16
+    )
+    beginning = _march(equation, quarter, state, "radau", 5, np.inf, None).states
+    peak = float(np.max(np.abs(beginning[:, : 2 * equation.size])))
+    atol = np.full(len(state), rtol * (peak if 0 < peak < np.inf else 1.0) * 1e-2)
+    with np.errstate(over="ignore", invalid="ignore"):
+        solution = solve_ivp(
+            slope,
+            (grid.theta[0], grid.theta[-1]),
+            state,
+            dense_output=True,
+            rtol=max(rtol, 2.5e-14),
+            atol=atol,
+            **options,
+        )
+    states = np.ascontiguousarray(solution.y.T)
+    steps = 0 if solution.sol is None else len(solution.sol.ts) - 1
+    if solution.status == 1:
+        return _Run(states, steps, 1, _passed(grid, [states], bound))
+    if solution.status == 0:
+        return _Run(states, steps)
+    return _Run(states, steps, 2, str(solution.message))
+
+
+def _checks(
+    equation: Equation,
+    motion: tuple[Array, Array, Array],
+    error: float,
+    allowed: float,
+    largest: float | None,
+) -> Mapping[str, Check]:
+    checks = {"accuracy": Check(error, allowed)}
+    balance = energy_balance(equation, *motion, error)
+    if balance is not None:
+        checks["energy balance"] = balance
+    if largest is not None:
+        checks["linear range"] = Check(largest, LINEAR_RANGE)
+    return checks
+
+
+def _start(
+    equation: Equation,
+    initial: tuple[ArrayLike, ArrayLike] | Sequence[ArrayLike] | None,
+    start: float,
+) -> Array:
+    """Return the scaled state at the start, ``(m,)``; refuse what is none, or where nothing moves."""
+    n = equation.size
+    if initial is None:
+        if not equation.forced:
+            fix = "give initial=(q, qd)"
+            raise bad("initial", "nothing, and no forcing acts", "a start away from rest", fix)
+        return np.concatenate([np.zeros(2 * n), [1.0]])
+    if not isinstance(initial, (tuple, list)) or len(initial) != 2:
+        raise bad("initial", initial, "a pair (q, qd)", "give coordinates and time derivatives")
+    parts = []
+    for name, part in zip(("q", "qd"), initial, strict=True):
+        values = numbers(f"initial {name}", part)
+        if values.shape not in ((), (1,), (n,)) or not np.all(np.isfinite(values)):
+            fix = f"one per coordinate: {', '.join(equation.system.labels)}"
+            raise bad(f"initial {name}", part, f"{n} finite numbers", fix)
+        parts.append(np.broadcast_to(values, (n,)))
+    state = equation.state(float(start), parts[0], parts[1] / float(equation.speed[0]))
+    return np.append(state, 1.0) if equation.forced else state
+
+
+def _number(name: str, value: ArrayLike) -> float:
+    array = numbers(name, value)
+    if array.ndim:
+        raise bad(name, f"shape {array.shape}", "one number", "simulate one speed at a time")
+    return float(array)
+
+
+def _check_arguments(
+    method: str, revolutions: float, rtol: float, samples: int, bound: float, start: float
+) -> None:
+    """Raise :class:`BadInput` where an argument of ``simulate`` is unusable."""
+    names = ("auto", *SCIPY_METHODS)
+    if method not in names:
+        raise bad("method", repr(method), f"one of {names}", "choose 'auto'")
+    for name, value in (("revolutions", revolutions), ("bound", bound)):
+        if not 0 < _number(name, value) < np.inf:
+            raise bad(name, value, "a positive finite number", "correct it")
+    if not np.isfinite(_number("start", start)):
+        raise bad("start", start, "a finite crank angle [rad]", "correct it")
+    given = _number("samples", samples)
+    if not 1 <= given <= _MOST_SAMPLES or given != int(given):
+        expected = f"a whole number from 1 to {_MOST_SAMPLES}"
+        raise bad("samples", samples, expected, "correct it")
+    if float(revolutions) * samples > _MOST_INTERVALS:
+        raise bad(
+            "revolutions",
+            f"{revolutions:.6g} of {samples} samples each",
+            f"at most {_MOST_INTERVALS} given angles in all",
+            "go on from at_end in parts, or lower samples",
+        )
+    if not 1e-14 <= _number("rtol", rtol) < 1:
+        raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-8")

@@ -1,0 +1,593 @@
+"""Monodromy matrices and Floquet multipliers of linear periodic systems of any size."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, DeferredChecks, Result, provenance
+from .equation import Equation, equation_of
+from .signatures import signatures_of
+from .transition import Method, choose, product, refined, segments_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_EPS = float(np.finfo(float).eps)
+# Error of a multiplier from which it says nothing about stability.
+_TELLING = 0.1
+# Powers of two from which growth hides the symplectic form in round-off.
+_GROWTH = 50
+
+
+@dataclass(frozen=True, kw_only=True)
+class Monodromy(Result):
+    """Monodromy matrices of the canonical variables (q, p = M q' + A q) over one period.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], shape ``batch``.
+    matrix : ndarray
+        Shape ``(*batch, 2n, 2n)``; the monodromy matrix is ``matrix * 2**exponent``.
+    exponent : ndarray
+        Power of two taken out where the growth would overflow, else 0; shape ``batch``.
+    scale : ndarray
+        Sizes of the state's components, shape ``(*batch, 2n)``; the error and the checks refer to
+        the scaled matrix ``matrix[i, j] * scale[j] / scale[i]``.
+    error : ndarray
+        Shape ``batch``, in the norm that ``error_norm`` names.
+    segments : ndarray
+        Number of segments of the period, shape ``batch``.
+    """
+
+    speed: Array
+    matrix: Array
+    exponent: NDArray[np.int64]
+    scale: Array
+    segments: NDArray[np.int64]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+
+    @property
+    def scaled(self) -> Array:
+        """The matrices in scaled variables, shape ``(*batch, 2n, 2n)``."""
+        value: Array = self.matrix / self.scale[..., :, None] * self.scale[..., None, :]
+        return value
+
+    @property
+    def determinant(self) -> Array:
+        """Determinant of each monodromy matrix, shape ``batch``; may underflow with damping."""
+        sign, logarithm = np.linalg.slogdet(self.matrix)
+        shift = self.matrix.shape[-1] * self.exponent * np.log(2.0)
+        value: Array = sign * np.exp(logarithm + shift)
+        return value
+
+
+def monodromy(
+    system: LinearPeriodic, speed: ArrayLike, *, rtol: float = 1e-10, **parameters: ArrayLike
+) -> Monodromy:
+    """Return the monodromy matrix of the canonical variables over one period.
+
+    The equation is ``q' = M^-1 (p - A q)``,
+    ``p' = A^T q' + B q - (K + Kg) q/w^2 - (C q' + D q)/w`` with theta as variable.  It is solved by
+    collocation over equal segments of the period (:mod:`~.transition`).
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system; forcing plays no part.
+    speed : array_like
+        Crank speeds w [rad/s], positive.
+    rtol : float
+        Wanted error, in the norm of ``error_norm``; 1e-13 to 1e-2.  Long periods with many
+        oscillations may not reach it, because of round-off: see ``error``.
+    **parameters : array_like
+        Parameter values that replace the system's; they broadcast with ``speed``.  Geometry too,
+        one number each, where the system can be made anew for it.
+
+    Returns
+    -------
+    Monodromy
+        Its checks: ``converged``, the error at the worst place against ``rtol`` or what round-off
+        allows there; ``liouville``, the determinant against ``exp(-integral trace(M^-1 C)/w)``,
+        where the matrix is well enough conditioned; and ``symplectic``, the defect of
+        ``X^T J X = J`` over ``|X|^2``, where conservative.
+
+    Raises
+    ------
+    BadInput
+        If speeds or parameters are unusable (see :func:`~.equation.equation_of`), or more than a
+        million segments would be needed.
+    """
+    equation = equation_of(system, speed, _checked(rtol, parameters))
+    way, m = choose(equation, rtol), 2 * equation.size
+    solutions, errors, segments = refined(
+        equation, way, rtol, partial(_matrices, way), _gap, least=0.3 if equation.damped else 0.01
+    )
+    scaled, exponent, rounding = _stacked(solutions, (m, m), (), ())
+    exponent, error = exponent.astype(np.int64), errors[:, 0]
+    allowed = np.minimum(np.maximum(rtol, 100.0 * rounding), 1e-2)
+    # The exponent stays only where the unscaled matrix would overflow.
+    unit = np.concatenate([equation.scale, 1.0 / equation.scale], axis=1)
+    size = np.log2(np.maximum(np.max(np.abs(scaled), axis=(-2, -1)), 1e-300)) + exponent
+    spread = 2.0 * np.max(np.abs(np.log2(unit)), axis=1)
+    kept = np.where(size + spread < 1000, 0, exponent)
+    scaled = np.ldexp(scaled, (exponent - kept)[:, None, None])
+    matrix = scaled * unit[:, :, None] / unit[:, None, :]
+    batch = equation.batch
+    return Monodromy(
+        method="collocation over segments of the period",
+        error=error.reshape(batch),
+        error_norm="largest entry of the error, relative to the largest entry of the matrix, "
+        "both in scaled variables",
+        checks=DeferredChecks(partial(_matrix_checks, equation, scaled, kept, error, allowed)),
+        provenance=provenance(system.changed_provenance(**parameters)),
+        speed=equation.speed.reshape(batch),
+        matrix=matrix.reshape(*batch, m, m),
+        exponent=kept.reshape(batch),
+        scale=unit.reshape(*batch, m),
+        segments=segments.reshape(batch),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloquetMultipliers(Result):
+    """Floquet multipliers: the eigenvalues of the monodromy matrix.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], shape ``batch``.
+    multipliers : ndarray of complex
+        Shape ``(*batch, 2n)``, by falling modulus, then by the size of the argument, upper half
+        plane first; inf where one overflows.
+    exponents : ndarray of complex
+        Their logarithms, growth and turning per period; finite where a multiplier overflows.
+    error : ndarray
+        Absolute error of each multiplier, shape ``(*batch, 2n)``.
+    signatures : ndarray of int8
+        Krein signatures, shape ``(*batch, 2n)``: +1 or -1 on the unit circle of a conservative
+        system; 0 off the circle, where multiplier are multiple and the form is indefinite, where
+        errors leave the sign open, and wherever there is damping.  See :mod:`~.signatures`.
+    period : float
+        Period of the coefficients [rad].
+    """
+
+    speed: Array
+    multipliers: ComplexArray
+    exponents: ComplexArray
+    signatures: NDArray[np.int8]
+    period: float
+
+    exported: ClassVar[tuple[str, ...]] = ("stable", "growth")
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """True where no multiplier is outside the unit circle by more than its error.
+
+        An error of 0.1 or more says nothing: the multiplier then has to be inside by its error.
+        """
+        modulus = np.abs(self.multipliers)
+        slack = np.where(self.error < _TELLING, self.error, -self.error)
+        inside = np.isfinite(modulus) & (modulus <= 1.0 + slack)
+        value: NDArray[np.bool_] = np.all(inside, axis=-1)
+        return value
+
+    @property
+    def growth(self) -> Array:
+        """Largest growth rate of the logarithm of the amplitude [1/s], shape ``batch``."""
+        value: Array = np.max(self.exponents.real, axis=-1) * self.speed / self.period
+        return value
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the multipliers and the unit circle into ``ax`` and return the axes."""
+        from ..core.plotting import multiplier_plane
+
+        ax = multiplier_plane(ax)
+        values = self.multipliers.ravel()
+        ax.plot(values.real, values.imag, "o", markersize=3)
+        return ax
+
+
+def floquet_multipliers(
+    system: LinearPeriodic, speed: ArrayLike, *, rtol: float = 1e-8, **parameters: ArrayLike
+) -> FloquetMultipliers:
+    """Return the Floquet multipliers over one period, each with its error.
+
+    Where growth hides the small multipliers in the rounding of the monodromy matrix, the product
+    of its segments is decomposed without being formed, so that all multipliers keep their digits.
+    Where damping makes multipliers small, their absolute error alone is held.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system; forcing plays no part.
+    speed : array_like
+        Crank speeds [rad/s], positive.
+    rtol : float
+        Wanted error of each multiplier, over the larger of 1 and its size; 1e-13 to 1e-2.
+    **parameters : array_like
+        Parameter values that replace the system's; they broadcast with ``speed``.  Geometry too,
+        one number each, where the system can be made anew for it.
+
+    Returns
+    -------
+    FloquetMultipliers
+        Its checks: ``converged``, the error at the worst place against ``rtol`` or what round-off
+        allows there; ``product``, the product of the multipliers against Liouville's determinant,
+        where all of them are known; ``reciprocal pairs`` where undamped.
+
+    Raises
+    ------
+    BadInput
+        As :func:`monodromy`.
+    """
+    equation = equation_of(system, speed, _checked(rtol, parameters))
+    way, m = choose(equation, rtol), 2 * equation.size
+    solutions, relative, segments = refined(equation, way, rtol, partial(_spectra, way), _shifts)
+    _, power, eigenvalues, rounding, vectors = _stacked(solutions, (m, m), (), (m,), (m,), (m, m))
+    exponent = power.astype(np.int64)
+    with np.errstate(divide="ignore"):
+        logarithm = np.log(np.abs(eigenvalues)) + exponent[:, None] * np.log(2.0)
+    angle = np.angle(eigenvalues)
+    error = np.log(relative.reshape(-1, m)) + np.maximum(logarithm, 0.0)
+    divergence = equation.divergence()
+    if m == 2:
+        _second_from_determinant(logarithm, angle, error, divergence)
+    else:
+        _grade_hidden(equation, way, rtol, segments, exponent, (logarithm, angle, error))
+    order = multiplier_order(logarithm, angle)
+    logarithm, angle, error = (
+        np.take_along_axis(value, order, axis=-1) for value in (logarithm, angle, error)
+    )
+    vectors = np.take_along_axis(vectors, order[:, None, :], axis=-1)
+    with np.errstate(over="ignore"):
+        modulus, absolute = np.exp(logarithm), np.exp(error)
+    turning = np.cos(angle) + 1j * np.where(np.abs(angle) == np.pi, 0.0, np.sin(angle))
+    finite = np.isfinite(modulus)
+    values = np.where(finite, np.where(finite, modulus, 0.0) * turning, np.inf)
+    signs = np.zeros(values.shape, dtype=np.int8)
+    if not equation.damped:
+        signs = signatures_of(vectors, values, absolute)
+        signs[exponent >= _GROWTH] = 0
+    # What round-off allows, over the larger of 1 and the multiplier.
+    with np.errstate(over="ignore", divide="ignore"):
+        size = np.maximum(
+            np.abs(eigenvalues), np.ldexp(1.0, np.clip(-exponent, -1000, 1000))[:, None]
+        )
+    least = 100.0 * np.max(rounding / size, axis=-1, initial=0.0)
+    allowed = np.minimum(np.maximum(rtol, least), 1e-2)
+    checks = partial(_multiplier_checks, equation, (logarithm, angle, error), divergence, allowed)
+    shape = (*equation.batch, m)
+    return FloquetMultipliers(
+        method="eigenvalues of the monodromy matrix, by collocation over segments of the period",
+        error=absolute.reshape(shape),
+        error_norm="absolute, of each multiplier",
+        checks=DeferredChecks(checks),
+        provenance=provenance(system.changed_provenance(**parameters)),
+        speed=equation.speed.reshape(equation.batch),
+        multipliers=values.reshape(shape),
+        exponents=(logarithm + 1j * angle).reshape(shape),
+        signatures=signs.reshape(shape),
+        period=equation.period,
+    )
+
+
+def _stacked(solutions: list[tuple[Array, ...]], *shapes: tuple[int, ...]) -> tuple[Array, ...]:
+    """Return the arrays of all members, one row each; of given shapes where there is no member."""
+    columns = zip(*solutions, strict=True) if solutions else [()] * len(shapes)
+    return tuple(
+        np.array(column).reshape(len(solutions), *shape)
+        for column, shape in zip(columns, shapes, strict=True)
+    )
+
+
+def multiplier_order(logarithm: Array, angle: Array) -> NDArray[np.intp]:
+    """Order by falling modulus, rounding aside, then by the argument's size, upper half first."""
+    modulus = np.round(np.maximum(logarithm, -1e4), 6)
+    return np.lexsort((-np.sign(angle), np.round(np.abs(angle), 9), -modulus), axis=-1)
+
+
+def rounding_error(equation: Equation, segments: int) -> Array:
+    """Return what round-off adds to a scaled matrix, over its largest entry, ``(nb,)``.
+
+    Equal segments round alike, so that their errors add up; each loses a unit in the last place
+    for every radian that its fastest living mode turns.
+    """
+    living = equation.frequency * np.exp(-equation.decay)
+    turning = np.max(living, axis=1, initial=0.0) * equation.period
+    value: Array = _EPS * (32.0 + 0.5 * segments + turning)
+    return value
+
+
+def _checked(rtol: float, parameters: Mapping[str, ArrayLike]) -> Mapping[str, ArrayLike]:
+    if not 1e-13 <= rtol <= 1e-2:
+        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-8")
+    return parameters
+
+
+def _matrices(way: Method, equation: Equation, segments: int) -> tuple[Array, ...]:
+    """Return scaled monodromy matrices, the powers of two taken out of them, and round-off."""
+    matrix, exponent = product(segments_of(equation, segments, way).maps)
+    return matrix, exponent, rounding_error(equation, segments)
+
+
+def _gap(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
+    """Return the error of the finer matrices, over their largest entries, ``(nb, 1)``."""
+    aligned = np.ldexp(coarse[0], _shift(coarse[1], fine[1])[:, None, None])
+    top = np.max(np.abs(fine[0]), axis=(-2, -1))
+    with np.errstate(over="ignore", invalid="ignore"):
+        gap = np.max(np.abs(aligned - fine[0]), axis=(-2, -1)) / top
+    error: Array = np.where(np.isfinite(gap), part * gap, 1.0) + fine[2]
+    return error[:, None]
+
+
+def _shift(coarse: Array, fine: Array) -> NDArray[np.int64]:
+    shift: NDArray[np.int64] = np.clip(coarse - fine, -1000, 1000).astype(np.int64)
+    return shift
+
+
+def _spectra(way: Method, equation: Equation, segments: int) -> tuple[Array, ...]:
+    """Return matrices, powers of two, eigenvalues of the matrices, and what round-off moves them.
+
+    The last is relative to the largest entry of the matrix, which is between 1/2 and 1.
+    """
+    matrix, exponent, rounding = _matrices(way, equation, segments)
+    _, extra = np.frexp(np.max(np.abs(matrix), axis=(-2, -1)))
+    matrix, exponent = np.ldexp(matrix, -extra[:, None, None]), exponent + extra
+    values, vectors = np.linalg.eig(matrix)
+    values = values.astype(complex)
+    norm = np.linalg.norm(matrix, axis=(-2, -1))[:, None]
+    shift = rounding[:, None]
+    # Near a double eigenvalue the condition number explodes and the square root holds; near an
+    # r-fold one the r-th root.
+    distance = np.abs(values[:, :, None] - values[:, None, :])
+    near = np.sum(distance <= 2.0 * np.sqrt(norm * shift)[..., None], axis=-1)
+    root = 2.0 * norm * (shift / norm) ** (1.0 / np.maximum(near, 2))
+    moved = np.minimum(conditions(vectors) * shift, root)
+    return matrix, exponent, values, moved, vectors.astype(complex)
+
+
+def conditions(vectors: ComplexArray) -> Array:
+    """Return the condition number of each eigenvalue; inf where eigenvectors coincide."""
+    try:
+        return np.linalg.norm(np.linalg.inv(vectors), axis=-1)
+    except np.linalg.LinAlgError:
+        if len(vectors) == 1:
+            return np.full(vectors.shape[:2], np.inf)
+        return np.concatenate([conditions(row[None]) for row in vectors])
+
+
+def _shifts(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
+    """Return the error of each finer multiplier, over the larger of 1 and its size, ``(nb, m)``.
+
+    Each multiplier is compared with the nearest of the other rung; one of the coarser rung that is
+    left over counts for the finer one that is nearest to it.
+    """
+    other = coarse[2] * np.ldexp(1.0, _shift(coarse[1], fine[1]))[:, None]
+    gaps = np.abs(fine[2][:, :, None] - other[:, None, :])
+    error = np.min(gaps, axis=2)
+    nearest, left = np.argmin(gaps, axis=1), np.min(gaps, axis=1)
+    for row, (places, distances) in enumerate(zip(nearest, left, strict=True)):
+        np.maximum.at(error[row], places, distances)
+    with np.errstate(over="ignore", divide="ignore"):
+        size = np.maximum(np.abs(fine[2]), np.ldexp(1.0, -np.clip(fine[1], -1000, 1000))[:, None])
+    relative: Array = (part[:, None] * error + fine[3]) / size
+    return np.where(np.isfinite(relative), relative, 1.0)
+
+
+def _second_from_determinant(
+    logarithm: Array, angle: Array, error: Array, divergence: Array
+) -> None:
+    """Put in place the smaller of two real multipliers from Liouville's determinant."""
+    rows = np.arange(len(divergence))
+    large = np.argmax(logarithm, axis=-1)
+    small = 1 - large
+    apart = logarithm[rows, large] - divergence / 2 > 1.0
+    known = error[rows, large] - logarithm[rows, large]
+    logarithm[rows[apart], small[apart]] = (divergence - logarithm[rows, large])[apart]
+    angle[rows[apart], small[apart]] = angle[rows, large][apart]
+    rounding = np.log(8 * _EPS * (1 + np.abs(divergence)))
+    error[rows[apart], small[apart]] = (
+        divergence - logarithm[rows, large] + np.logaddexp(known, rounding)
+    )[apart]
+
+
+def _grade_hidden(
+    equation: Equation,
+    way: Method,
+    rtol: float,
+    segments: NDArray[np.int64],
+    exponent: NDArray[np.int64],
+    spectrum: tuple[Array, Array, Array],
+) -> None:
+    """Put in place the multipliers of members whose growth hides the small ones."""
+    logarithm, angle, error = spectrum
+    uncertain = np.max(error - np.maximum(logarithm, 0.0), axis=-1) > np.log(rtol)
+    # Without growth it is a defect that makes multipliers uncertain; no route mends that.
+    hidden = uncertain & (exponent > 12)
+    for number in np.unique(segments[hidden]):
+        members = np.flatnonzero(hidden & (segments == number))
+        part = equation.take(members)
+        (coarse, turned), (fine, angles) = (
+            graded_multipliers(segments_of(part, count, way).maps)
+            for count in (int(number), 2 * int(number))
+        )
+        turn = np.abs(np.exp(1j * turned) - np.exp(1j * angles))
+        gone = np.isinf(fine)
+        relative = np.abs(np.where(gone, 0.0, fine) - np.where(gone, 0.0, coarse)) + turn
+        rounding = 4.0 * rounding_error(part, 2 * int(number))[:, None]
+        logarithm[members], angle[members] = fine, angles
+        error[members] = np.where(gone, -745.0, fine) + np.log(relative + rounding)
+
+
+# Growth, and decay, that one merged matrix may hold: what is small in it keeps its digits.
+_MERGED_NORM, _MERGED_INVERSE = 10.0, 1e3
+# Sweeps at the least, and at the most where blocks still hold moduli that are far apart.
+_SWEEPS, _MOST_SWEEPS, _FAR_APART = 8, 64, float(np.log(1e4))
+
+
+def graded_multipliers(maps: Array) -> tuple[Array, Array]:
+    """Return the multipliers of a product of matrices that is never formed.
+
+    An orthogonal basis is carried round the period (``Phi_k Q_k = Q_{k+1} R_k``) until it returns
+    to itself in blocks; each block of the triangular factors then holds multipliers of like
+    modulus, whatever the others do, and keeps its relative digits.
+
+    Parameters
+    ----------
+    maps : ndarray
+        Transition matrices of the segments, shape ``(nb, segments, m, m)``.
+
+    Returns
+    -------
+    logarithm, angle : ndarray
+        log |multiplier| and its argument in the order of :func:`multiplier_order`, shape
+        ``(nb, m)``; -inf where a multiplier is zero.
+    """
+    maps = _merged(maps)
+    count, m = len(maps), maps.shape[-1]
+    basis = np.broadcast_to(np.eye(m), (count, m, m))
+    for sweep in range(_MOST_SWEEPS):
+        end, factors = _carried(maps, basis)
+        turn = np.swapaxes(basis, -1, -2) @ end
+        basis = end
+        if sweep + 1 >= _SWEEPS and not _mixed(turn, factors):
+            break
+    logarithm, angle = np.empty((count, m)), np.empty((count, m))
+    for index, returned in enumerate(turn):
+        for begin, stop in pairwise(_cuts(returned)):
+            block = slice(begin, stop)
+            whole, power = product(factors[index : index + 1, :, block, block])
+            values = np.linalg.eigvals(returned[block, block] @ whole[0]).astype(complex)
+            with np.errstate(divide="ignore"):
+                logarithm[index, block] = np.log(np.abs(values)) + power[0] * np.log(2.0)
+            angle[index, block] = np.angle(values)
+    order = multiplier_order(logarithm, angle)
+    return np.take_along_axis(logarithm, order, -1), np.take_along_axis(angle, order, -1)
+
+
+def _merged(maps: Array) -> Array:
+    """Multiply neighbours as long as no product grows beyond ``_MERGED_NORM``."""
+    while maps.shape[1] > 1 and maps.shape[1] % 2 == 0:
+        pairs = maps[:, 1::2] @ maps[:, 0::2]
+        if not np.max(np.abs(pairs)) <= _MERGED_NORM:
+            break
+        try:
+            back = float(np.max(np.abs(np.linalg.inv(pairs))))
+        except np.linalg.LinAlgError:
+            break
+        if not back <= _MERGED_INVERSE:
+            break
+        maps = pairs
+    return maps
+
+
+def _carried(maps: Array, basis: Array) -> tuple[Array, Array]:
+    """Carry bases over all matrices; return the last bases and the triangular factors."""
+    factors = np.empty_like(maps)
+    for k in range(maps.shape[1]):
+        basis, factor = np.linalg.qr(maps[:, k] @ basis)
+        sign = np.where(np.diagonal(factor, axis1=-2, axis2=-1) < 0, -1.0, 1.0)
+        basis, factors[:, k] = basis * sign[:, None, :], sign[:, :, None] * factor
+    return basis, factors
+
+
+def _mixed(turn: Array, factors: Array) -> bool:
+    """Return True where a block that has not come apart holds moduli that are far apart."""
+    with np.errstate(divide="ignore"):
+        size = np.sum(np.log(np.abs(np.diagonal(factors, axis1=-2, axis2=-1))), axis=1)
+    return any(
+        np.ptp(levels[begin:stop]) > _FAR_APART
+        for returned, levels in zip(turn, np.maximum(size, -1e300), strict=True)
+        for begin, stop in pairwise(_cuts(returned))
+    )
+
+
+def _cuts(turn: Array) -> list[int]:
+    """Return where the basis has returned to itself in blocks."""
+    m = len(turn)
+    inner = [i for i in range(1, m) if np.max(np.abs(turn[i:, :i])) < 1e-11]
+    return [0, *inner, m]
+
+
+def _matrix_checks(
+    equation: Equation,
+    scaled: Array,
+    exponent: NDArray[np.int64],
+    error: Array,
+    allowed: Array,
+) -> Mapping[str, Check]:
+    """Convergence, Liouville's determinant and symplecticity, at the worst member."""
+    if not len(error):
+        return {}
+    n = equation.size
+    last = int(np.argmax(error / allowed))
+    checks = {"converged": Check(float(error[last]), float(allowed[last]))}
+    sign, logarithm = np.linalg.slogdet(scaled)
+    expected = equation.divergence() - 2 * n * exponent * np.log(2.0)
+    # A determinant is known to the error of the matrix times its condition.
+    with np.errstate(over="ignore"):
+        condition = np.linalg.cond(scaled)
+    known = condition * error < 0.01
+    if np.any(known):
+        gap = np.where(sign > 0, np.abs(logarithm - expected), np.inf)[known]
+        limit = 8 * n * float(np.max(error[known]))
+        checks["liouville"] = Check(float(np.max(gap / np.maximum(condition[known], 1.0))), limit)
+    if not equation.damped:
+        unit = np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
+        shrink = np.ldexp(1.0, np.clip(-2 * exponent, -1060, 1000))[:, None, None]
+        defect = np.swapaxes(scaled, -1, -2) @ unit @ scaled - unit * shrink
+        norm = np.linalg.norm(scaled, axis=(-2, -1))
+        worst = np.max(np.linalg.norm(defect, axis=(-2, -1)) / norm**2)
+        checks["symplectic"] = Check(float(worst), min(8 * n * float(np.max(error)), 1e-3))
+    return checks
+
+
+def _multiplier_checks(
+    equation: Equation, spectrum: tuple[Array, Array, Array], divergence: Array, allowed: Array
+) -> Mapping[str, Check]:
+    """Convergence, the product of the multipliers, and reciprocal pairs, at the worst member."""
+    logarithm, angle, error = spectrum
+    if not len(divergence):
+        return {}
+    relative = np.max(np.exp(error - np.maximum(logarithm, 0.0)), axis=-1)
+    last = int(np.argmax(relative / allowed))
+    checks = {"converged": Check(float(relative[last]), float(allowed[last]))}
+    # One multiplier lost in round-off, and the product says nothing.
+    known = np.exp(np.minimum(error - np.maximum(logarithm, -1e4), 0.0))
+    finite = np.all(np.isfinite(logarithm) & (known < 1.0), axis=-1)
+    if np.any(finite):
+        total = np.sum(logarithm[finite], axis=-1)
+        limit = 2 * np.sum(known[finite], axis=-1) + 64 * _EPS * (1 + np.abs(divergence[finite]))
+        gap = np.abs(total - divergence[finite])
+        worst = int(np.argmax(gap / limit))
+        checks["product"] = Check(float(gap[worst]), float(limit[worst]))
+    if not equation.damped:
+        checks["reciprocal pairs"] = _reciprocal(logarithm, angle, error)
+    return checks
+
+
+def _reciprocal(logarithm: Array, angle: Array, error: Array) -> Check:
+    """How far the multipliers are from reciprocal pairs, at the worst place against the error."""
+    pair = logarithm[:, :, None] + logarithm[:, None, :]
+    turn = angle[:, :, None] + angle[:, None, :]
+    defect = np.abs(np.expm1(np.clip(pair, -50, 50) + 1j * turn))
+    partner = np.argmin(defect, axis=-1)
+    value = np.take_along_axis(defect, partner[..., None], axis=-1)[..., 0]
+    known = np.exp(np.clip(error - logarithm, -50, 50))
+    limit = 2 * (known + np.take_along_axis(known, partner, axis=-1)) + 64 * _EPS
+    worst = np.unravel_index(np.argmax(value / limit), value.shape)
+    return Check(float(value[worst]), float(limit[worst]))

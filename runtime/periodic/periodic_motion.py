@@ -1,0 +1,492 @@
+"""Steady state: the periodic motion of a forced linear periodic system at constant crank speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
+from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
+from ..core.progress import bar
+from ..core.results import Check, DeferredChecks, Result, provenance
+from ..integrators import legendre_integrals
+from .equation import Equation, equation_of
+from .harmonic_balance import balanced_motion
+from .multipliers import floquet_multipliers
+from .ring import solve_ring
+from .transition import Method, method, refined, segments_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+METHODS = ("auto", "harmonic_balance")
+_EPS = float(np.finfo(float).eps)
+_SAMPLES, _MOST_SAMPLES = 256, 2**20
+_ENDS = np.array([0.0, 1.0])
+# Numbers in q of a batch, half a GiB.
+_MOST_FLOATS = 2**26
+# Harmonics that the motion is likely to have: where the first rung of the ladder lies.
+_LIKELY = 12.0
+# Change of a motion over that of the flow, times the unit of round-off, from which it is lost.
+_LOST = 1.0 / 16.0
+
+# Fields that are computed when they are first looked at.
+_LATER = {name: DeferredField() for name in ("multipliers", "stable", "distance")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteadyState(Result):
+    """Periodic motion of a forced linear periodic system, of the period of its coefficients.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], shape ``batch``.
+    theta : ndarray
+        Crank angles [rad] that divide the period evenly, from 0, shape ``(nt,)``.
+    q, qd : ndarray
+        Coordinates and their time derivatives [1/s], shape ``(*batch, nt, n)``; NaN where there is
+        no single periodic motion.
+    error : ndarray
+        Largest error of each coordinate over its peak, shape ``(*batch, n)``; inf where q is NaN.
+    multipliers : ndarray of complex
+        Floquet multipliers, shape ``(*batch, 2n)``, by falling modulus.
+    stable : ndarray of bool
+        Whether nearby motions stay near: no multiplier outside the unit circle by more than its
+        error; shape ``batch``.  Without it the motion exists, and no machine would show it.
+    distance : ndarray
+        Distance of the closest multiplier from 1, shape ``batch``: the response grows like its
+        inverse.
+    sensitivity : ndarray
+        Relative change of the motion over a relative change of what it is solved from, the flow
+        or the balanced equation, shape ``batch``.
+    period : float
+        Period [rad].
+    labels : tuple of str
+        Names of the coordinates.
+    reference_length : float
+        Length [m] that turns shapes times coordinates into deflections.
+    shapes : callable or None
+        From places x/length ``(nx,)`` and crank angles ``(nt,)`` to the mode shapes
+        ``(nt, nx, n)``; None where the system has none.
+
+    Notes
+    -----
+    ``multipliers``, ``stable`` and ``distance`` are computed when one of them is first looked at.
+    """
+
+    speed: Array
+    theta: Array
+    q: Array
+    qd: Array
+    multipliers: Any = _LATER["multipliers"]
+    stable: Any = _LATER["stable"]
+    distance: Any = _LATER["distance"]
+    sensitivity: Array
+    period: float
+    labels: tuple[str, ...]
+    reference_length: float
+    shapes: Callable[[Array, Array], Array | None] | None = field(default=None, repr=False)
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {"theta": ("sample",)}
+
+    @property
+    def coefficients(self) -> ComplexArray:
+        """Fourier coefficients c of q, shape ``(*batch, nt/2 + 1, n)``.
+
+        ``q(theta) = Re(c_0 + 2 sum_k c_k exp(2 pi i k theta/period))``, the last one once where nt
+        is even.
+        """
+        values: ComplexArray = np.fft.rfft(self.q, axis=-2) / len(self.theta)
+        return values
+
+    def deflection(self, x: ArrayLike = 1.0) -> Array:
+        """Return the deflection [m] at places x/length ``(nx,)``, shape ``(*batch, nt, nx)``.
+
+        The axis of places is left out where ``x`` is one number, at the end by default.
+
+        Raises
+        ------
+        BadInput
+            If the system has no mode shapes, or a place is not a number from 0 to 1.
+        """
+        places = numbers("x", x)
+        shapes = self._shapes_at(np.atleast_1d(places))
+        value: Array = self.reference_length * np.einsum("txn,...tn->...tx", shapes, self.q)
+        return value[..., 0] if places.ndim == 0 else value
+
+    def _shapes_at(self, places: Array) -> Array:
+        if places.ndim > 1 or not np.all((places >= 0) & (places <= 1)):
+            raise bad("x", str(places), "places x/length from 0 to 1", "divide by the length")
+        values = None if self.shapes is None else self.shapes(places, self.theta)
+        if values is None:
+            raise bad(
+                "deflection",
+                "a system without mode shapes",
+                "LinearPeriodic.shape or moving_shape",
+                "use q",
+            )
+        return values
+
+    def peak(self, x: ArrayLike = 1.0) -> Array:
+        """Return the largest size of the deflection [m] over the period, at places x/length.
+
+        Shape ``(*batch, nx)``, or ``batch`` where ``x`` is one number; it is taken at the given
+        angles.
+
+        Raises
+        ------
+        BadInput
+            As :meth:`deflection`.
+        """
+        places = numbers("x", x)
+        shapes = self._shapes_at(np.atleast_1d(places))
+        flat = self.q.reshape(-1, *self.q.shape[-2:])
+        # One motion at a time: all of them at all places would fill the memory.
+        peaks = [np.max(np.abs(np.einsum("txn,tn->tx", shapes, one)), axis=0) for one in flat]
+        value: Array = self.reference_length * np.reshape(peaks, (*self.q.shape[:-2], -1))
+        return value[..., 0] if places.ndim == 0 else value
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the coordinates over the crank angle and return the axes.
+
+        Of motions at several speeds of a system with mode shapes the largest deflections are drawn
+        over the speed, else the first motion.
+        """
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        if self.speed.ndim == 1 and self.speed.size > 1 and self._deflects:
+            return self._plot_peaks(ax)
+        first = self.q.reshape(-1, *self.q.shape[-2:])[0]
+        angles = np.degrees(np.append(self.theta, self.period))
+        for label, values in zip(self.labels, np.vstack([first, first[:1]]).T, strict=True):
+            ax.plot(angles, values, label=label, linewidth=0.9)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("coordinate")
+        if len(self.labels) > 1:
+            ax.legend()
+        return ax
+
+    @property
+    def _deflects(self) -> bool:
+        return self.shapes is not None and self.shapes(_ENDS, self.theta[:1]) is not None
+
+    def _plot_peaks(self, ax: Axes) -> Axes:
+        peaks = np.max(self.peak(np.linspace(0.0, 1.0, 41)), axis=1)
+        ax.semilogy(self.speed, peaks, linewidth=0.9)
+        unstable = ~self.stable
+        if np.any(unstable):
+            ax.semilogy(self.speed[unstable], peaks[unstable], "r.", markersize=3, label="unstable")
+            ax.legend()
+        ax.set_xlabel("crank speed [rad/s]")
+        ax.set_ylabel("largest deflection [m]")
+        return ax
+
+
+def steady_state(
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    *,
+    method: str = "auto",
+    rtol: float = 1e-6,
+    samples: int = _SAMPLES,
+    progress: bool = False,
+    **parameters: ArrayLike,
+) -> SteadyState:
+    """Return the periodic motion of a forced linear periodic system.
+
+    With y = (q, p = M q' + A q), a segment of the period takes y to ``X_k y + z_k``; the ring of
+    segments is closed by orthogonal elimination, so that neither growth nor strong damping spoils
+    it.  Radau's collocation lets fast modes follow their load where no segment resolves them, so
+    that there are as few segments as the motion needs, however stiff the system is.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system, with forcing f, h or p.
+    speed : array_like
+        Crank speeds w [rad/s], positive.
+    method : str
+        ``"auto"``: as above.  ``"harmonic_balance"``: the Fourier series of motion and
+        coefficients (Aannaque 6.13, 6.14), as many harmonics as the motion has.
+    rtol : float
+        Wanted error of each coordinate over its peak, 1e-12 to 1e-2.  Near a resonance round-off
+        may keep it from being reached: see ``error``.
+    samples : int
+        Number of crank angles that are given.
+    progress : bool
+        Whether to show a progress bar.
+    **parameters : array_like
+        Parameter values that replace the system's; they broadcast with ``speed``.  Geometry too,
+        one number each, where the system can be made anew for it.
+
+    Returns
+    -------
+    SteadyState
+        Its checks: ``converged``, the error at the worst place over what was asked or what
+        round-off allows there; ``single``, round-off times the sensitivity, at the worst place:
+        beyond 1 no single periodic motion is told apart there, and q is NaN; ``residual``, of the
+        equation between the angles at the place of the largest error; ``linear range``, the
+        largest deflection over the reference length.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If the deflection passes 5 % of the reference length.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, no forcing acts (none is there, or all of it is zero), or the
+        motions would fill the memory.
+
+    Notes
+    -----
+    Where a multiplier is 1 the answer is NaN even if the forcing lacks the harmonic in question,
+    as for q'' + 4 q = cos t: a periodic motion exists then, but it is not the only one, and any
+    disturbance of the forcing leads far away.
+    """
+    _check_arguments(method, rtol, samples)
+    equation = equation_of(system, speed, parameters, forcing=True)
+    _check_forcing(equation)
+    _check_memory(equation, samples)
+    count, n = len(equation.speed), equation.size
+    with bar(progress, count) as tick:
+        solve = _by_segments if method == "auto" else _by_balance
+        q, slope, error, sensitivity = solve(equation, rtol, int(samples), tick)
+    lost = ~(_EPS * sensitivity < _LOST) | ~np.all(np.isfinite(q), axis=(1, 2))
+    lost |= ~(np.max(error, axis=1, initial=0.0) < 1.0)
+    allowed = np.minimum(np.maximum(rtol, 16.0 * _EPS * sensitivity), 1e-2)
+    single = Check(16.0 * _EPS * float(np.max(np.where(lost, np.inf, sensitivity))), 1.0)
+    q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
+    theta = equation.period * np.arange(float(samples)) / samples
+    largest = equation.system.largest_deflection(theta, q)
+    warn_of_large_deflection(largest)
+    later = DeferredGroup(partial(_stability, system, speed, dict(parameters)))
+    checks = partial(_checks, equation, (theta, q, slope), error, allowed, single, largest)
+    batch = equation.batch
+    return SteadyState(
+        method="segments by collocation, closed to a ring" if method == "auto" else method,
+        error=error.reshape(*batch, n),
+        error_norm="largest error of a coordinate over its peak",
+        checks=DeferredChecks(checks),
+        provenance=provenance(system.changed_provenance(**parameters)),
+        speed=equation.speed.reshape(batch),
+        theta=theta,
+        q=q.reshape(*batch, samples, n),
+        qd=(slope * equation.speed[:, None, None]).reshape(*batch, samples, n),
+        **{name: later.later(name) for name in _LATER},
+        sensitivity=sensitivity.reshape(batch),
+        period=equation.period,
+        labels=system.labels,
+        reference_length=equation.system.reference_length,
+        shapes=equation.system.shapes,
+    )
+
+
+_Motion = tuple[Array, Array, Array, Array]
+
+
+def _by_segments(
+    equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None
+) -> _Motion:
+    """Return q and dq/dtheta ``(nb, nt, n)``, errors ``(nb, n)`` and sensitivities ``(nb,)``."""
+    way = method("radau", 5 if rtol > 1e-4 else 7 if rtol > 1e-8 else 10)
+    likely = equation.with_slow_modes(_LIKELY)
+    solve = partial(_ring_motion, way, samples)
+    solutions, error, _ = refined(likely, way, rtol, solve, _change, least=1.0, tick=tick)
+    q, slope, sensitivity = (np.array(part) for part in zip(*solutions, strict=True))
+    return q, slope, error, sensitivity
+
+
+def _ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tuple[Array, ...]:
+    """Return the periodic motion at even angles, from so many segments, and its sensitivity."""
+    n = equation.size
+    segments = segments_of(equation, count, way, slopes=True)
+    flow, load = segments.maps[..., : 2 * n, : 2 * n], segments.maps[..., : 2 * n, 2 * n]
+    nodes, sensitivity = solve_ring(flow, load)
+    whole = np.concatenate([nodes, np.ones((*nodes.shape[:2], 1))], axis=-1)
+    slopes = (segments.slopes @ whole[:, :, None, :, None])[..., 0]  # type: ignore[operator]
+    q, slope = along_segments(way, equation.period, nodes[..., :n], slopes, samples)
+    unit = equation.scale[:, None, :]
+    return q * unit, slope * unit, sensitivity
+
+
+def along_segments(
+    way: Method, period: float, starts: Array, slopes: Array, samples: int
+) -> tuple[Array, Array]:
+    """Return coordinates and slopes at even angles of the period.
+
+    Parameters
+    ----------
+    way : Method
+        The method.
+    period : float
+        Period [rad].
+    starts : ndarray
+        Coordinates at the left ends of the segments, shape ``(nb, segments, n)``.
+    slopes : ndarray
+        dq/dtheta at the nodes, shape ``(nb, segments, s, n)``.
+    samples : int
+        Number of angles, from 0.
+
+    Returns
+    -------
+    q, slope : ndarray
+        Shape ``(nb, samples, n)``.
+    """
+    count = starts.shape[1]
+    places, rise, values = _dense_output(way, count, samples)
+    chosen = slopes[:, places]
+    q = starts[:, places] + (period / count) * np.sum(rise[:, :, None] * chosen, axis=2)
+    return q, np.sum(values[:, :, None] * chosen, axis=2)
+
+
+@lru_cache(maxsize=24)
+def _dense_output(way: Method, count: int, samples: int) -> tuple[NDArray[np.intp], Array, Array]:
+    """Return the segment of each sample, and what slopes at its nodes add to q and give there."""
+    at = np.arange(float(samples)) * count / samples
+    places = np.minimum(at.astype(np.intp), count - 1)
+    inside = 2.0 * (at - places) - 1.0
+    legendre = np.polynomial.legendre.legvander(2.0 * way.c - 1.0, way.stages - 1)
+    back = np.linalg.inv(legendre)
+    rise = 0.5 * legendre_integrals(inside, way.stages) @ back
+    values = np.polynomial.legendre.legvander(inside, way.stages - 1) @ back
+    return places, rise, values
+
+
+def _change(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
+    """Return the difference of two motions over the peaks of the finer, with round-off."""
+    size = peaks(fine[0])
+    with np.errstate(invalid="ignore"):
+        gap = np.max(np.abs(coarse[0] - fine[0]), axis=1) / size
+    error = part[:, None] * gap + 16.0 * _EPS * np.minimum(fine[2], 1.0 / _EPS)[:, None]
+    return np.where(np.isfinite(error), error, 1.0)
+
+
+def peaks(q: Array) -> Array:
+    """Return the largest size of each coordinate, ``(nb, n)``; never 0.
+
+    A coordinate that hardly moves beside the others has no peak of its own.
+    """
+    size = np.max(np.abs(q), axis=1)
+    size = np.maximum(size, _EPS * np.max(size, axis=1, keepdims=True, initial=0.0))
+    value: Array = np.where(size > 0.0, size, 1.0)
+    return value
+
+
+def _by_balance(
+    equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None
+) -> _Motion:
+    rows = []
+    for member in range(len(equation.speed)):
+        part = equation.take(np.array([member]))
+        rows.append(balanced_motion(part, rtol, samples))
+        if tick is not None:
+            tick(member + 1)
+    q, slope, error, sensitivity = zip(*rows, strict=True)
+    return np.array(q), np.array(slope), np.array(error), np.array(sensitivity)
+
+
+def _stability(
+    system: LinearPeriodic, speed: ArrayLike, parameters: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return multipliers, stability and distance of a batch of motions."""
+    result = floquet_multipliers(system, speed, **parameters)
+    return {
+        "multipliers": result.multipliers,
+        "stable": np.asarray(result.stable),
+        "distance": np.min(np.abs(result.multipliers - 1.0), axis=-1),
+    }
+
+
+def _checks(
+    equation: Equation,
+    motion: tuple[Array, Array, Array],
+    error: Array,
+    allowed: Array,
+    single: Check,
+    largest: float | None,
+) -> Mapping[str, Check]:
+    theta, q, slope = motion
+    worst = np.max(error, axis=-1, initial=0.0)
+    known = np.flatnonzero(np.isfinite(worst))
+    checks = {"single": single}
+    if len(known):
+        checks["converged"] = Check(float(np.max(worst[known] / allowed[known])), 1.0)
+        place = int(known[np.argmax(worst[known])])
+        part = equation.take(np.array([place]))
+        checks["residual"] = _residual(part, theta, q[place], slope[place], float(worst[place]))
+    if largest is not None:
+        checks["linear range"] = Check(largest, LINEAR_RANGE)
+    return checks
+
+
+def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: float) -> Check:
+    """Put the motion's Fourier series into the equation half-way between the angles.
+
+    The derivative of the series has nothing to do with the method.  Limit: an error of the highest
+    harmonic kept, over the largest rate.
+    """
+    count, n = len(theta), equation.size
+    unit = equation.scale[0]
+    momentum = (equation.at("mass", theta)[0] @ (slope / unit)[..., None])[..., 0]
+    if "gyroscopic" in equation.fields:
+        momentum += (equation.at("gyroscopic", theta)[0] @ (q / unit)[..., None])[..., 0]
+    states = np.concatenate([q / unit, momentum], axis=1)
+    waves = np.arange(count // 2 + 1) * (2 * np.pi / equation.period)
+    half_step = np.exp(0.5j * waves * equation.period / count)[:, None]
+    series = np.fft.rfft(states, axis=0) * half_step
+    if count % 2 == 0:
+        series[-1] = 0.0
+    between = np.fft.irfft(series, n=count, axis=0)
+    rise = np.fft.irfft(1j * waves[:, None] * series, n=count, axis=0)
+    generator = equation.generator(theta + 0.5 * equation.period / count)[0]
+    expected = (generator[:, :-1, :-1] @ between[..., None])[..., 0] + generator[:, :-1, -1]
+    fastest = waves[-1] + float(np.max(equation.frequency))
+    value = float(np.max(np.abs(rise - expected)) / (np.max(np.abs(states)) * fastest))
+    return Check(value, 10 * error + 1e-12)
+
+
+def _check_arguments(chosen: str, rtol: float, samples: int) -> None:
+    if chosen not in METHODS:
+        raise bad("method", repr(chosen), f"one of {METHODS}", "choose 'auto'")
+    if not (isinstance(rtol, Real) and 1e-12 <= rtol <= 1e-2):
+        raise bad("rtol", repr(rtol), "a number from 1e-12 to 1e-2", "choose 1e-6")
+    whole = isinstance(samples, Real) and 4 <= samples <= _MOST_SAMPLES and samples % 1 == 0
+    if not whole:
+        fix = "choose 256"
+        raise bad("samples", repr(samples), f"a whole number from 4 to {_MOST_SAMPLES}", fix)
+
+
+def _check_forcing(equation: Equation) -> None:
+    """Refuse a system on which nothing acts, and a batch without a member."""
+    if not len(equation.speed):
+        raise bad("speed", "no speed at all", "at least one speed [rad/s]", "give some")
+    if not equation.forced or not np.any(equation.largest_force()):
+        found = "forcing that is zero" if equation.forced else "a system without forcing f, h, p"
+        raise bad("steady_state", found, "a forced system", "add the forcing")
+
+
+def _check_memory(equation: Equation, angles: int) -> None:
+    """Refuse motions that would fill the memory."""
+    each = angles * 2 * equation.size
+    if len(equation.speed) * each > _MOST_FLOATS:
+        raise bad(
+            "steady_state",
+            f"{len(equation.speed)} motions at {angles} angles",
+            f"at most {_MOST_FLOATS // each} of them at a time",
+            "take the speeds in parts, by sweep",
+        )

@@ -1,0 +1,526 @@
+"""Monodromy matrices, motions and steady states from tables made beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
+from math import ceil, log
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.deferred import DeferredGroup
+from ..core.errors import LINEAR_RANGE, bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
+from ..core.results import Check, DeferredChecks, provenance
+from .compiled import CompiledTable, require_numba
+from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
+from .motion import Trajectory
+from .multipliers import Monodromy, conditions
+from .periodic_motion import SteadyState, peaks
+from .tables import Table, next_rung, table_of
+from .transition import levels_for, method, rung
+
+Array = NDArray[np.float64]
+
+_EPS = float(np.finfo(float).eps)
+# Ratio of the speeds of one table.
+_RATIO = 1.5
+# Places of each table at which other segments tell its error, and the margin.
+_TRIED, _MARGIN = (0.0, 0.29, 0.618, 1.0), 4.0
+# Largest state for which compiled loops win over NumPy's products.
+_COMPILED = 12
+# Error of a coordinate over its peak with which an answer still passes.
+_FAIR = 1e-6
+_METHOD = "prepared: segments by collocation, polynomials of the inverse speed"
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A linear periodic system, prepared for a range of speeds; make it with :func:`prepare`.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        The system.
+    span : pair of float
+        Lowest and highest speed [rad/s].
+    theta : ndarray
+        Angles of a period at which motions are given [rad], ``(samples,)``.
+    tables : tuple of Table
+        By rising speed.
+    error : float
+        Error of a monodromy matrix over its largest entry, in scaled variables: four times the
+        difference to other segments, and round-off.
+    flow_error : ndarray
+        Error of the entries of a transition matrix that give coordinates, shape ``(n, m)``.
+    motion_error : ndarray
+        Error of each coordinate of a periodic motion, over the size of its start and over what the
+        closing of the ring magnifies, shape ``(n,)``.
+    forced : bool
+        Whether a force acts.
+    scale : ndarray
+        Units of the state, ``(m,)``.
+    readout : ndarray
+        From the scaled state to dq/dtheta at the angles, ``(samples, n, m)``.
+    provenance : mapping of str to str
+        Where the equations came from.
+    compiled : tuple of CompiledTable
+        The tables for numba, where it was asked for.
+    """
+
+    system: LinearPeriodic
+    span: tuple[float, float]
+    theta: Array
+    tables: tuple[Table, ...]
+    error: float
+    flow_error: Array
+    motion_error: Array
+    forced: bool
+    scale: Array
+    readout: Array
+    provenance: Mapping[str, str]
+    compiled: tuple[CompiledTable, ...] = ()
+
+    def monodromy(self, speed: ArrayLike) -> Monodromy:
+        """Return the monodromy matrices of the canonical variables at speeds.
+
+        Parameters
+        ----------
+        speed : array_like
+            Crank speeds [rad/s] within ``span``.
+
+        Returns
+        -------
+        Monodromy
+            As :func:`elastolink.monodromy` gives it, with the check ``converged``.
+
+        Raises
+        ------
+        BadInput
+            If a speed is outside the range.
+        """
+        speeds = self._speeds(speed)
+        m = 2 * self.system.size
+        scale = self.scale[:m]
+        matrix = self._whole(speeds.reshape(-1))[:, :m, :m] * scale[:, None] / scale
+        return Monodromy(
+            method=_METHOD,
+            error=np.full(speeds.shape, self.error),
+            error_norm="largest entry of the error, relative to the largest entry of the matrix, "
+            "both in scaled variables",
+            checks={"converged": Check(self.error, 1e-9)},
+            provenance=self.provenance,
+            speed=speeds,
+            matrix=matrix.reshape(*speeds.shape, m, m),
+            exponent=np.zeros(speeds.shape, dtype=np.int64),
+            scale=np.broadcast_to(scale, (*speeds.shape, m)),
+            segments=np.full(speeds.shape, self.tables[0].groups.shape[1], dtype=np.int64),
+        )
+
+    def simulate(
+        self, speed: float, revolutions: int, initial: tuple[ArrayLike, ArrayLike]
+    ) -> Trajectory:
+        """Return the motion from a start at angle 0 over whole periods.
+
+        Parameters
+        ----------
+        speed : float
+            Crank speed [rad/s] within ``span``.
+        revolutions : int
+            Number of periods.
+        initial : pair of array_like
+            Coordinates and their time derivatives at the start, each broadcasting to ``(n,)``.
+
+        Returns
+        -------
+        Trajectory
+            At ``theta`` of every period and at the end; its check ``accuracy`` looks at the error,
+            ``linear range`` at the deflection, when they are asked for.
+
+        Raises
+        ------
+        BadInput
+            If an argument is unusable.
+        """
+        given = float(self._speeds(speed, single=True))
+        count, n = _periods(revolutions), self.system.size
+        states, sizes = self._march(given, self._start(given, initial), count)
+        q = states[:, :n] * self.scale[:n]
+        slope = np.empty_like(q)
+        by_period = states[:-1].reshape(count, -1, states.shape[1])
+        slope[:-1] = np.einsum("tij,rtj->rti", self.readout, by_period).reshape(-1, n)
+        slope[-1] = self.readout[0] @ states[-1]
+        theta = (self.system.period * np.arange(count)[:, None] + self.theta).reshape(-1)
+        theta = np.append(theta, self.system.period * count)
+        error = (count + 2) * (self.flow_error @ sizes) * self.scale[:n] / peaks(q[None])[0]
+        return Trajectory(
+            method=_METHOD,
+            error=error,
+            error_norm="largest error of a coordinate over its peak",
+            checks=DeferredChecks(partial(_checks, self.system, theta, q[None], error, None)),
+            provenance=self.provenance,
+            theta=theta,
+            time=theta / given,
+            q=q,
+            qd=given * slope,
+            speed=given,
+            steps=int(self._table_of(given).groups.shape[1]),
+            status=0,
+            message="the end was reached",
+            labels=self.system.labels,
+        )
+
+    def steady_state(self, speed: ArrayLike) -> SteadyState:
+        """Return the periodic motion at speeds, with its multipliers.
+
+        Parameters
+        ----------
+        speed : array_like
+            Crank speeds [rad/s] within ``span``.
+
+        Returns
+        -------
+        SteadyState
+            Its checks ``converged``, ``single`` and ``linear range``, as
+            :func:`elastolink.steady_state` gives them, are made when they are asked for; nothing
+            warns.
+
+        Raises
+        ------
+        BadInput
+            If a speed is outside the range, or nothing acts on the system.
+        """
+        if not self.forced:
+            raise bad("steady_state", "a system without forcing", "f, h or p", "add a force")
+        speeds = self._speeds(speed)
+        flat, n, batch = speeds.reshape(-1), self.system.size, speeds.shape
+        states, whole, reach = self._periodic(flat)
+        q = states[..., :n] * self.scale[:n]
+        slope = np.einsum("tij,stj->sti", self.readout, states)
+        norm = np.max(np.abs(states[:, 0]), axis=1)
+        sensitivity = reach * np.max(np.abs(whole), axis=(1, 2))
+        error = ((reach + 1.0) * norm)[:, None] * self.motion_error * self.scale[:n] / peaks(q)
+        wrong = np.max(error, axis=1)
+        lost = ~(wrong < 1.0)
+        q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
+        single = Check(float(np.max(wrong)), 1.0)
+        later = DeferredGroup(partial(self._stability, whole, batch))
+        return SteadyState(
+            method=_METHOD,
+            error=error.reshape(*batch, n),
+            error_norm="largest error of a coordinate over its peak",
+            checks=DeferredChecks(partial(_checks, self.system, self.theta, q, error, single)),
+            provenance=self.provenance,
+            speed=speeds,
+            theta=self.theta,
+            q=q.reshape(*batch, -1, n),
+            qd=(flat[:, None, None] * slope).reshape(*batch, -1, n),
+            **{name: later.later(name) for name in ("multipliers", "stable", "distance")},
+            sensitivity=sensitivity.reshape(batch),
+            period=self.system.period,
+            labels=self.system.labels,
+            reference_length=self.system.reference_length,
+            shapes=self.system.shapes,
+        )
+
+    def _stability(self, whole: Array, batch: tuple[int, ...]) -> Mapping[str, NDArray[Any]]:
+        """Return multipliers, whether all are inside the unit circle, and their distance from 1."""
+        m = 2 * self.system.size
+        values, vectors = np.linalg.eig(whole[:, :m, :m])
+        values = values.astype(complex)
+        size = self.error * np.max(np.abs(whole), axis=(1, 2))
+        error = conditions(vectors) * size[:, None]
+        # An error that says nothing leaves stability unproved.
+        slack = np.where(error < 0.1, error, -error)
+        stable = np.all(np.abs(values) <= 1.0 + slack, axis=-1)
+        order = np.argsort(-np.abs(values), axis=-1, kind="stable")
+        values = np.take_along_axis(values, order, axis=-1)
+        return {
+            "multipliers": values.reshape(*batch, m),
+            "stable": stable.reshape(batch),
+            "distance": np.min(np.abs(values - 1.0), axis=-1).reshape(batch),
+        }
+
+    def _periodic(self, speeds: Array) -> tuple[Array, Array, Array]:
+        """Return periodic states, the flow over the period, and the reach of the start."""
+        if self.compiled and len(speeds) == 1:
+            speed = float(speeds[0])
+            one = self._compiled_at(speed).periodic(1.0 / speed, 1.0 / self.scale[-1])
+            return one[0][None], one[1][None], np.array(one[2:3])
+        return _closed(*self._flows(speeds), 1.0 / self.scale[-1])
+
+    def _march(self, speed: float, first: Array, periods: int) -> tuple[Array, Array]:
+        """Return the states of a motion, and the largest size of each component at the starts."""
+        if self.compiled:
+            return self._compiled_at(speed).march(1.0 / speed, first, periods)
+        flows, whole = self._flows(np.array([speed]))
+        starts = np.empty((periods + 1, len(first)))
+        starts[0] = first
+        for k in range(periods):
+            starts[k + 1] = whole[0] @ starts[k]
+        states = np.einsum("tij,rj->rti", flows[0], starts[:-1]).reshape(-1, len(first))
+        return np.concatenate([states, starts[-1:]]), np.max(np.abs(starts), axis=0)
+
+    def _start(self, speed: float, initial: tuple[ArrayLike, ArrayLike]) -> Array:
+        n = self.system.size
+        if not isinstance(initial, (tuple, list)) or len(initial) != 2:
+            raise bad("initial", initial, "a pair (q, qd)", "give coordinates and time derivatives")
+        parts = []
+        for part in initial:
+            values = numbers("initial", part)
+            if values.shape not in ((), (1,), (n,)) or not np.all(np.isfinite(values)):
+                raise bad("initial", part, f"{n} finite numbers", "one per coordinate")
+            parts.append(np.broadcast_to(values, (n,)))
+        # The scaled state is (q, p) / scale; the readout at angle 0 is linear in both.
+        state = 1.0 / self.scale
+        state[:n] = parts[0] / self.scale[:n]
+        rest = parts[1] / speed - self.readout[0, :, :n] @ state[:n]
+        state[n : 2 * n] = np.linalg.solve(self.readout[0, :, n : 2 * n], rest)
+        return state
+
+    def _speeds(self, speed: ArrayLike, *, single: bool = False) -> Array:
+        given = numbers("speed", speed)
+        low, high = self.span
+        if (single and given.ndim) or not np.all((given >= low) & (given <= high)):
+            expected = f"{'one speed' if single else 'speeds'} from {low:.6g} to {high:.6g} rad/s"
+            raise bad("speed", speed, expected, "prepare another range")
+        return given
+
+    def _place(self, speed: float) -> int:
+        """Return which of the tables holds a speed."""
+        for place, table in enumerate(self.tables[:-1]):
+            if speed <= 1.0 / table.low:
+                return place
+        return len(self.tables) - 1
+
+    def _table_of(self, speed: float) -> Table:
+        return self.tables[self._place(speed)]
+
+    def _compiled_at(self, speed: float) -> CompiledTable:
+        return self.compiled[self._place(speed)]
+
+    def _flows(self, speeds: Array) -> tuple[Array, Array]:
+        m, nt = len(self.scale), len(self.theta)
+        flows, whole = np.empty((len(speeds), nt, m, m)), np.empty((len(speeds), m, m))
+        for table, members in self._parts(speeds):
+            flows[members], whole[members] = table.flows(1.0 / speeds[members])
+        return flows, whole
+
+    def _whole(self, speeds: Array) -> Array:
+        if self.compiled and len(speeds) == 1:
+            speed = float(speeds[0])
+            return self._compiled_at(speed).whole(1.0 / speed)[None]
+        whole = np.empty((len(speeds), len(self.scale), len(self.scale)))
+        for table, members in self._parts(speeds):
+            matrices, exponent = table.products(1.0 / speeds[members])
+            whole[members] = np.ldexp(matrices, exponent[:, None, None])
+        return whole
+
+    def _parts(self, speeds: Array) -> list[tuple[Table, NDArray[np.intp]]]:
+        ends = np.array([1.0 / table.low for table in self.tables[:-1]])
+        which = np.searchsorted(ends, speeds)
+        parts = [(table, np.flatnonzero(which == k)) for k, table in enumerate(self.tables)]
+        return [(table, members) for table, members in parts if len(members)]
+
+
+def prepare(
+    system: LinearPeriodic,
+    speeds: tuple[float, float] | float,
+    *,
+    samples: int = 64,
+    forcing: bool = True,
+    rtol: float = 1e-10,
+    compiled: bool = False,
+    **parameters: float,
+) -> Prepared:
+    """Prepare a system for a range of speeds: each later answer takes micro- or milliseconds.
+
+    The transition matrices of segments of the period are polynomials in the inverse speed, computed
+    once.  What is left for one speed is to evaluate and to multiply them.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    speeds : pair of float, or float
+        Lowest and highest crank speed [rad/s]; or the only one.
+    samples : int
+        Angles of a period at which motions are given.
+    forcing : bool
+        Whether f, h and p act.
+    rtol : float
+        Wanted error of the transition matrices, over their largest entry, 1e-13 to 1e-4.
+    compiled : bool
+        Whether numba compiles what is left for one speed (extra ``fast``): the same answers to
+        round-off, several times sooner, after some seconds of compilation in a process.
+    **parameters : float
+        Parameter and geometry values that replace the system's.
+
+    Returns
+    -------
+    Prepared
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, M or A carries a power of the speed, numba is wanted and
+        missing, or the tables would take more than 320 MB for a range of 3 to 2.
+
+    Examples
+    --------
+    >>> ready = prepare(system, (40.0, 150.0))      # doctest: +SKIP
+    >>> ready.monodromy(80.0).matrix                # doctest: +SKIP
+    """
+    low, high = _ends(speeds)
+    if compiled:
+        require_numba()
+    if not (isinstance(samples, (int, np.integer)) and 1 <= samples <= 4096):
+        raise bad("samples", repr(samples), "a whole number from 1 to 4096", "take 64")
+    if not 1e-13 <= rtol <= 1e-4:
+        raise bad("rtol", rtol, "a number from 1e-13 to 1e-4", "choose 1e-10")
+    plain = {name: _one(name, value) for name, value in parameters.items()}
+    made, inside = at_geometry(system, plain)
+    _check_inertia(made)
+    maker = _Maker(sampled(made, forcing=forcing), (low * high) ** 0.5, inside)
+    middle = maker.middle
+    count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
+    edges = low * (high / low) ** (np.arange(count + 1) / count)
+    edges[[0, -1]] = low, high
+    tables = [maker.table(1.0 / b, 1.0 / a, samples, rtol) for a, b in pairwise(edges.tolist())]
+    theta, m = middle.period * np.arange(float(samples)) / samples, len(maker.scale)
+    return Prepared(
+        made.with_parameters(**{name: plain[name] for name in inside}) if inside else made,
+        (low, high),
+        theta,
+        tuple(table for table, *_ in tables),
+        max(error for _, error, *_ in tables),
+        np.max([flow for *_, flow, _ in tables], axis=0),
+        np.max([motion for *_, motion in tables], axis=0),
+        middle.forced,
+        maker.scale,
+        maker.readout(theta),
+        provenance(made.changed_provenance(**inside)),
+        tuple(CompiledTable.of(t) for t, *_ in tables) if compiled and m <= _COMPILED else (),
+    )
+
+
+class _Maker:
+    """Makes the tables of one system, all in the units of its middle speed."""
+
+    def __init__(
+        self, known: SampledSystem, speed: float, parameters: Mapping[str, ArrayLike]
+    ) -> None:
+        self.known, self.parameters = known, parameters
+        middle = self.middle = equation_of(known, speed, parameters)
+        unit = middle.scale[0]
+        self.scale = np.concatenate([unit, 1.0 / unit, np.ones(int(middle.forced))])
+        if middle.forced:
+            # A power of two makes the column of the force as large as the others.
+            largest, rate = float(middle.largest_force()[0]), float(np.max(middle.frequency)) + 1.0
+            if largest > 0.0:
+                self.scale[-1] = np.exp2(np.round(np.log2(rate / largest)))
+        self.unit = self.scale[-1] if middle.forced else 1.0
+
+    def equation(self, inverse: Array) -> Equation:
+        """Return the equation at inverse speeds."""
+        made = equation_of(self.known, 1.0 / inverse, self.parameters)
+        made = replace(made, scale=np.broadcast_to(self.middle.scale, made.scale.shape))
+        return made.with_force_unit(self.unit)
+
+    def table(
+        self, low: float, high: float, samples: int, rtol: float
+    ) -> tuple[Table, float, Array, Array]:
+        """Return the table of a range of inverse speeds, and its errors.
+
+        Those of :class:`Prepared`, by other segments at a few speeds.
+        """
+        slowest = self.equation(np.array([high]))
+        way, n = method("radau" if slowest.damped else "gauss", 10), slowest.size
+        level = int(levels_for(slowest, way, 0.1 * rtol, 1.0)[0])
+        table = table_of(self.equation, (low, high), rung(level), way, 0.1 * rtol, samples=samples)
+        whole = 16.0 * _EPS + table.tail
+        flow, motion = np.full((n, len(self.scale)), 16.0 * _EPS), np.full(n, 16.0 * _EPS)
+        places = np.array(_TRIED if high > low else _TRIED[:1])
+        for inverse in low + places * (high - low):
+            at = np.array([inverse])
+            count = next_rung(samples * -(-rung(level) // samples))
+            other = table_of(self.equation, (at[0], at[0]), count, way, rtol, samples=samples)
+            ours, theirs = table.flows(at), other.flows(at)
+            gap = np.max(np.abs(ours[1] - theirs[1])) / max(float(np.max(np.abs(theirs[1]))), 1.0)
+            whole = max(whole, _MARGIN * float(gap))
+            gaps = np.max(np.abs(ours[0] - theirs[0])[0, :, :n], axis=0)
+            flow = np.maximum(flow, _MARGIN * gaps)
+            if slowest.forced:
+                states, _, reach = _closed(*ours, 1.0 / self.scale[-1])
+                wanted, _, _ = _closed(*theirs, 1.0 / self.scale[-1])
+                size = (reach[0] + 1.0) * float(np.max(np.abs(wanted[0, 0])))
+                gaps = np.max(np.abs(states - wanted)[0, :, :n], axis=0) / size
+                motion = np.maximum(motion, _MARGIN * gaps)
+        return table, whole, flow, motion
+
+    def readout(self, theta: Array) -> Array:
+        """Return the matrices from the scaled state to dq/dtheta at angles, ``(nt, n, m)``."""
+        n, unit = self.middle.size, self.middle.scale[0]
+        rows = self.middle.generator(theta)[0, :, :n]
+        rows = np.broadcast_to(rows, (len(theta), *rows.shape[1:]))
+        return rows * unit[:, None]
+
+
+def _closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array]:
+    """Return periodic states ``(ns, nt, m)``, the flows over the period and the reach of the start.
+
+    The reach is the largest sum of a row of ``(I - X)^-1``.
+    """
+    m = whole.shape[-1] - 1
+    inverse = np.linalg.inv(np.eye(m) - whole[:, :m, :m])
+    first = np.full((len(whole), m + 1), unit)
+    first[:, :m] = (inverse @ whole[:, :m, m:])[..., 0] * unit
+    states = (flows @ first[:, None, :, None])[..., 0]
+    return states, whole, np.max(np.sum(np.abs(inverse), axis=-1), axis=-1)
+
+
+def _check_inertia(system: LinearPeriodic) -> None:
+    """Refuse inertia that depends on the speed: rates follow from momenta the same at all speeds."""
+    for term in system.terms:
+        if term.array in ("M", "A") and term.power and term.array in SPEED_POWER:
+            found, fix = f"a term {term.array} with a power of the speed", "use simulate"
+            raise bad("prepare", found, "inertia that does not depend on the speed", fix)
+
+
+def _checks(
+    system: LinearPeriodic, theta: Array, q: Array, error: Array, single: Check | None
+) -> Mapping[str, Check]:
+    """Return accuracy and linear range of motions ``(ns, nt, n)`` at angles ``(nt,)``."""
+    largest = Check(float(np.max(error)), _FAIR)
+    checks = {"accuracy": largest} if single is None else {"converged": largest, "single": single}
+    deflection = system.largest_deflection(theta, q)
+    if deflection is not None:
+        checks["linear range"] = Check(deflection, LINEAR_RANGE)
+    return checks
+
+
+def _periods(revolutions: int) -> int:
+    given = numbers("revolutions", revolutions)
+    if given.ndim or not 1 <= given <= 10**6 or given != int(given):
+        raise bad("revolutions", revolutions, "a whole number of periods", "use simulate")
+    return int(given)
+
+
+def _ends(speeds: tuple[float, float] | float) -> tuple[float, float]:
+    given = np.atleast_1d(numbers("speeds", speeds))
+    fits = given.shape in ((1,), (2,)) and np.all(np.isfinite(given)) and np.all(given > 0)
+    if not fits or given[0] > given[-1]:
+        raise bad("speeds", speeds, "a rising pair of positive speeds [rad/s]", "correct it")
+    return float(given[0]), float(given[-1])
+
+
+def _one(name: str, value: ArrayLike) -> float:
+    given = numbers(name, value)
+    if given.ndim:
+        raise bad(name, f"shape {given.shape}", "one number", "prepare once for each value")
+    return float(given)

@@ -1,0 +1,209 @@
+"""Transition matrices for all values of one variable at once: Chebyshev series of segments.
+
+The segments of the period are solved at a few Chebyshev nodes of the variable, mostly the inverse
+speed, and multiplied together as long as the products are still polynomials of that degree to
+round-off.  What is left for each value is to evaluate polynomials and to multiply.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import chebyshev
+from ..core.errors import bad
+from .equation import Equation
+from .transition import Method, product, rung, segments_from, segments_of
+
+Array = NDArray[np.float64]
+
+_EPS = float(np.finfo(float).eps)
+# Chebyshev nodes to begin with, of small states and of large ones, and at the most.
+_NODES, _SMALL, _NODES_OF_LARGE, _MOST_NODES = 32, 12, 24, 72
+# Numbers in a table: 320 MB.
+_MOST_FLOATS = 40_000_000
+# Values that are evaluated together, in numbers of their matrices.
+_BLOCK = 1_000_000
+
+
+@dataclass(frozen=True)
+class Table:
+    """Transition matrices over a range of one variable.
+
+    Attributes
+    ----------
+    low, high : float
+        Ends of the variable; ``low`` may equal ``high``.
+    groups : ndarray
+        Chebyshev coefficients of the matrices of groups of segments, ``(nodes, count, m, m)``.
+    inner : ndarray
+        Those from the left end of its group to each given angle, ``(nodes, nt, m, m)``.
+    within : ndarray of int
+        The group of each given angle, ``(nt,)``.
+    tail : float
+        What the series leave out, relative to the matrices.
+    """
+
+    low: float
+    high: float
+    groups: Array
+    inner: Array
+    within: NDArray[np.intp]
+    tail: float
+
+    def weights(self, values: Array) -> Array:
+        """Return the Chebyshev polynomials at values of the variable, ``(n, nodes)``."""
+        places = chebyshev.unit(values, self.low, self.high)
+        return np.cos(np.arccos(places)[:, None] * np.arange(len(self.groups)))
+
+    def products(self, values: Array) -> tuple[Array, NDArray[np.int64]]:
+        """Return the matrices of all groups multiplied, ``(n, m, m)``, and powers of two taken out.
+
+        Parameters
+        ----------
+        values : ndarray
+            Values of the variable, shape ``(n,)``.
+        """
+        together = max(1, _BLOCK // self.groups[0].size)
+        parts = [
+            product(_mixed(self.weights(values[begin : begin + together]), self.groups))
+            for begin in range(0, len(values), together)
+        ]
+        matrices, exponents = zip(*parts, strict=True)
+        return np.concatenate(matrices), np.concatenate(exponents)
+
+    def flows(self, values: Array) -> tuple[Array, Array]:
+        """Return the matrices from angle 0 to each given one, and over the period.
+
+        Shapes ``(n, nt, m, m)`` and ``(n, m, m)``.
+        """
+        weights = self.weights(values)
+        single = _mixed(weights, self.groups)
+        running = np.empty((len(values), single.shape[1] + 1, *single.shape[2:]))
+        running[:, 0] = np.eye(single.shape[-1])
+        for k in range(single.shape[1]):
+            running[:, k + 1] = single[:, k] @ running[:, k]
+        return _mixed(weights, self.inner) @ running[:, self.within], running[:, -1]
+
+
+def _mixed(weights: Array, table: Array) -> Array:
+    """Return weighted sums over the first axis of a table."""
+    value: Array = (weights @ table.reshape(len(table), -1)).reshape(-1, *table.shape[1:])
+    return value
+
+
+def table_of(
+    equation_at: Callable[[Array], Equation],
+    ends: tuple[float, float],
+    count: int,
+    way: Method,
+    rtol: float,
+    *,
+    samples: int = 0,
+    half: bool = False,
+) -> Table:
+    """Return the table of a range.
+
+    Parameters
+    ----------
+    equation_at : callable
+        From values of the variable to the equation there, all members in the same scale.
+    ends : pair of float
+        Lowest and highest value of the variable; equal for one value alone.
+    count : int
+        Segments of the period.
+    way : Method
+        The method.
+    rtol : float
+        What the series may leave out of a matrix, relative to it.
+    samples : int
+        Even angles of the period, from 0, at which matrices are wanted too; 0 for none.
+    half : bool
+        Whether half of the period is enough.
+
+    Raises
+    ------
+    BadInput
+        If the table would not fit.
+    """
+    low, high = ends
+    if samples:
+        count = samples * -(-count // samples)
+    size = equation_at(np.array([high])).size
+    nodes = 1 if low == high else _NODES if 2 * size < _SMALL else _NODES_OF_LARGE
+    while True:
+        middle, reach = 0.5 * (low + high), 0.5 * (high - low)
+        equation = equation_at(np.asarray(middle + reach * chebyshev.nodes(nodes)))
+        m = 2 * equation.size + equation.forced
+        if nodes * (count + samples) * m**2 > _MOST_FLOATS:
+            raise bad(
+                "prepare",
+                f"tables of {8e-6 * nodes * (count + samples) * m**2:.3g} MB",
+                f"at most {8e-6 * _MOST_FLOATS:.3g} MB",
+                "raise the lowest speed or lower samples",
+            )
+        if half:
+            h = equation.period / count
+            maps = segments_from(equation, h * np.arange(count // 2), h, way).maps
+        else:
+            maps = segments_of(equation, count, way).maps
+        tail = _tail(maps)
+        if tail <= max(rtol, 64.0 * _EPS) or nodes == 1 or 2 * nodes > _MOST_NODES:
+            break
+        nodes += nodes // 2
+    return _grouped(maps, ends, samples, max(tail, 64.0 * _EPS))
+
+
+def _tail(maps: Array) -> float:
+    """Return the last two Chebyshev coefficients over the largest entry; 0 of one node."""
+    if len(maps) == 1:
+        return 0.0
+    last = chebyshev.analysis(len(maps))[-2:] @ maps.reshape(len(maps), -1)
+    return float(np.max(np.abs(last)) / np.max(np.abs(maps)))
+
+
+def _grouped(maps: Array, ends: tuple[float, float], samples: int, tail: float) -> Table:
+    """Multiply neighbouring segments while the products remain polynomials of the same degree.
+
+    Entries may not grow too far either: what is small in a group keeps its digits.
+    """
+    count, size = maps.shape[1], 1
+    merged = maps
+    while merged.shape[1] % 2 == 0 and size < 8:
+        pairs = merged[:, 1::2] @ merged[:, 0::2]
+        if _tail(pairs) > 4.0 * tail or np.max(np.abs(pairs)) > 1e3:
+            break
+        merged, size = pairs, 2 * size
+    within = np.zeros(0, dtype=np.intp)
+    inner = maps[:, :0]
+    if samples:
+        at = np.arange(samples) * (count // samples)
+        within, rest = at // size, at % size
+        inner = np.empty((len(maps), samples, *maps.shape[2:]))
+        running = np.broadcast_to(
+            np.eye(maps.shape[-1]), (len(maps), count // size, *maps.shape[2:])
+        )
+        for place in range(size):
+            inner[:, rest == place] = running[:, within[rest == place]]
+            running = maps[:, place::size] @ running
+    series = [_series(merged), _series(inner)]
+    sizes = np.maximum(*(np.max(np.abs(part), axis=(1, 2, 3), initial=0.0) for part in series))
+    used = chebyshev.length(sizes, _EPS * float(np.max(sizes)))
+    return Table(*ends, series[0][:used], series[1][:used], within, tail * (count // size))
+
+
+def _series(values: Array) -> Array:
+    """Return Chebyshev coefficients over the first axis."""
+    flat = chebyshev.analysis(len(values)) @ values.reshape(len(values), -1)
+    return np.asarray(flat.reshape(values.shape))
+
+
+def next_rung(count: int) -> int:
+    """Return the least number of segments of the ladder that is larger."""
+    level = 0
+    while rung(level) <= count:
+        level += 1
+    return rung(level)

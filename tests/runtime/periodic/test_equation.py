@@ -1,0 +1,156 @@
+"""The sampled equation against the definition of the family, entry by entry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.periodic.equation import equation_of, fourier_series, sampled, waves
+
+SPEED = 2.3
+PARAMETERS = {"weight": 1.4, "load": 0.7}
+
+
+def _wave(matrix, harmonic, phase):
+    matrix = np.array(matrix)
+    shape = (-1,) + (1,) * matrix.ndim
+    return lambda theta: np.cos(harmonic * theta + phase).reshape(shape) * matrix
+
+
+def _system() -> LinearPeriodic:
+    terms = (
+        Term("M", "weight", np.array([[2.0, 0.3], [0.3, 1.0]])),
+        Term("M", None, _wave([[0.5, 0.1], [0.1, 0.2]], 1, 0.3)),
+        Term("A", None, _wave([[0.2, 0.5], [-0.1, 0.3]], 2, 1.0)),
+        Term("B", None, _wave([[1.0, 0.2], [0.2, -0.5]], 1, 0.0), power=1),
+        Term("S", None, _wave([[9.0, 9.0], [9.0, 9.0]], 1, 0.0)),
+        Term("C", "weight", np.array([[0.4, 0.1], [0.1, 0.3]]), power=1),
+        Term("D", None, _wave([[0.2, 0.1], [-0.3, 0.1]], 3, 0.2)),
+        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
+        Term("Kg", "load", _wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        Term("f", "load", _wave([1.0, -2.0], 1, 0.0)),
+        Term("h", None, _wave([0.3, 0.4], 2, 0.0)),
+        Term("g", None, _wave([9.0, 9.0], 1, 0.0)),
+        Term("p", None, np.array([0.5, 0.1])),
+    )
+    return LinearPeriodic(
+        2,
+        terms,
+        PARAMETERS,
+        lambda values: {name: np.asarray(values[name], dtype=float) for name in PARAMETERS},
+    )
+
+
+def _unscaled(equation, theta):
+    unit = np.concatenate([equation.scale, 1.0 / equation.scale], axis=1)
+    if equation.forced:
+        unit = np.concatenate([unit, np.ones((len(unit), 1))], axis=1)
+    return equation.generator(theta) * unit[:, None, :, None] / unit[:, None, None, :]
+
+
+@pytest.mark.smoke
+def test_generator_is_the_equation_of_the_family():
+    system = _system()
+    theta = np.array([0.0, 0.7, 2.9])
+    equation = equation_of(system, SPEED, forcing=True)
+    arrays = {name: system.array(name, theta, SPEED) for name in ("M", "A", "B", "C", "D", "K")}
+    arrays |= {name: system.array(name, theta, SPEED) for name in ("Kg", "f", "h", "p")}
+    q, p = np.random.default_rng(2).standard_normal((2, 2))
+    slopes = _unscaled(equation, theta)[0] @ np.concatenate([q, p, [1.0]])
+    for k in range(len(theta)):
+        at = {name: value[k] for name, value in arrays.items()}
+        slope = np.linalg.solve(at["M"], p - at["A"] @ q)
+        push = at["A"].T @ slope + at["B"] @ q - (at["K"] + at["Kg"]) @ q / SPEED**2
+        push += -(at["C"] @ slope + at["D"] @ q) / SPEED
+        push += at["f"] + at["h"] / SPEED + at["p"] / SPEED**2
+        np.testing.assert_allclose(slopes[k], [*slope, *push, 0.0], rtol=1e-13, atol=1e-13)
+        state = equation.state(theta[k], q, slope)
+        unit = equation.scale[0]
+        np.testing.assert_allclose(state * np.concatenate([unit, 1 / unit]), [*q, *p], rtol=1e-13)
+
+
+def test_batch_is_the_members_together():
+    theta = np.array([0.2, 1.9])
+    speed, load = np.array([[1.0], [2.0]]), np.array([0.1, 0.2, 0.3])
+    known = sampled(_system())
+    equation = equation_of(known, speed, {"load": load})
+    assert equation.batch == (2, 3)
+    together = _unscaled(equation, theta).reshape(2, 3, 2, 4, 4)
+    for i in range(2):
+        for j in range(3):
+            one = equation_of(_system(), speed[i, 0], {"load": load[j]})
+            np.testing.assert_allclose(together[i, j], _unscaled(one, theta)[0], rtol=1e-13)
+    part = equation.take(np.array([4, 1]))
+    np.testing.assert_allclose(_unscaled(part, theta)[0], together[1, 1], rtol=1e-14)
+
+
+def test_liouvilles_exponent_is_the_integral_of_the_trace():
+    equation = equation_of(_system(), np.array([SPEED, 4.0]))
+    theta = np.arange(512) * 2 * np.pi / 512
+    trace = np.trace(equation.generator(theta), axis1=-2, axis2=-1)
+    expected = 2 * np.pi * np.mean(trace, axis=1)
+    np.testing.assert_allclose(equation.divergence(), expected, rtol=1e-12)
+
+
+def test_a_sampled_system_is_not_evaluated_again():
+    calls = []
+
+    def spring(theta):
+        calls.append(len(theta))
+        return np.cos(theta)[:, None, None]
+
+    terms = (Term("M", None, np.eye(1)), Term("K", None, np.eye(1)), Term("Kg", None, spring))
+    known = sampled(LinearPeriodic(1, terms, {}, lambda values: {}))
+    calls.clear()
+    equation_of(known, np.linspace(1.0, 2.0, 50)).generator(np.linspace(0.0, 1.0, 8))
+    assert calls == []
+
+
+def test_absent_and_vanishing_terms_leave_no_field():
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", None, np.eye(1)),
+        Term("C", None, np.zeros((1, 1))),
+        Term("D", None, lambda theta: 0.0 * theta[:, None, None]),
+    )
+    equation = equation_of(LinearPeriodic(1, terms, {}, lambda values: {}), 1.0)
+    assert set(equation.fields) == {"mass", "stiffness"}
+    assert not equation.damped
+
+
+@pytest.mark.parametrize("harmonics", [1, 30, 200, 900])
+def test_series_have_the_harmonics_that_the_term_has(harmonics):
+    rng = np.random.default_rng(harmonics)
+    a, b = rng.standard_normal((2, harmonics + 1))
+    order = np.arange(harmonics + 1)
+
+    def function(theta):
+        turns = np.outer(theta, order)
+        return (np.cos(turns) @ a + np.sin(turns) @ b)[:, None, None]
+
+    system = LinearPeriodic(1, (Term("M", None, np.eye(1)),), {}, lambda values: {})
+    (series,), count, reach = fourier_series(system, [Term("Kg", None, function)])
+    assert count == reach == harmonics
+    theta = np.linspace(0.1, 9.0, 17)
+    exact = function(theta)[:, 0, 0]
+    np.testing.assert_allclose(waves(count, theta) @ series[:, 0, 0], exact, atol=2e-12 * harmonics)
+
+
+def test_a_kink_is_not_smooth_and_is_evaluated_where_it_is_wanted():
+    term = Term("Kg", None, lambda theta: np.abs(np.sin(theta))[:, None, None])
+    terms = (Term("M", None, np.eye(1)), term)
+    equation = equation_of(LinearPeriodic(1, terms, {}, lambda values: {}), 1.0)
+    assert equation.harmonics == -1
+    theta = np.array([0.3, 4.0])
+    values = -np.abs(np.sin(theta)) * equation.scale[0, 0] ** 2
+    np.testing.assert_allclose(equation.at("stiffness", theta)[0, :, 0, 0], values, rtol=1e-15)
+
+
+def test_a_mass_that_is_not_definite_is_named():
+    terms = (Term("M", None, lambda t: (0.5 + np.cos(t))[:, None, None] * np.eye(2)),)
+    with pytest.raises(BadInput, match="mass matrix M: found smallest eigenvalue"):
+        equation_of(LinearPeriodic(2, terms, {}, lambda values: {}), 1.0)
+    with pytest.raises(BadInput, match="mass matrix M: found asymmetry"):
+        terms = (Term("M", None, np.array([[1.0, 0.5], [0.0, 1.0]])),)
+        equation_of(LinearPeriodic(2, terms, {}, lambda values: {}), 1.0)

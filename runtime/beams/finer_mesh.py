@@ -155,7 +155,7 @@ def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> 
     """
     # Loaded here: the response knows frequencies, and these know beams.
     from ..floquet.first_order import canonical_form
-    from ..reduction.trigonometric import differentiated
+    from ..core.trigonometric import differentiated
     from ..response.collocation import points, ring_motion
 
     form = canonical_form(system, speed, {}, forcing=True)
@@ -180,7 +180,7 @@ def answered(system: LinearPeriodic, speed: float, q: Array) -> Array:
         Coordinates at even angles.
     """
     # Loaded here: the reduction knows beams.
-    from ..reduction.trigonometric import differentiated
+    from ..core.trigonometric import differentiated
 
     period = system.period
     theta = period * np.arange(len(q)) / len(q)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .reduced import ReducedSystem, reduced_system
 from .stress_curve import StressCurve, stress_curve
-from .subspaces import MovingBasis, moving_basis
+from ..periodic.moving_basis import MovingBasis, moving_basis
 
 __all__ = [
     "MovingBasis",

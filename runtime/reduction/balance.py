@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .condensed import Condensed
-from .trigonometric import Array
+from ..core.trigonometric import Array
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import numpy as np
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from .expressions import Arrays, Expression, constant_part, equation, plus, sampled_arrays, times
-from .subspaces import MovingBasis
-from .trigonometric import Array
+from ..periodic.moving_basis import MovingBasis
+from ..core.trigonometric import Array
 
 _FORCES = ("f", "h", "p")
 # Size of a part of the operator, over that of the largest of its order, which is round-off.

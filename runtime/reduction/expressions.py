@@ -13,7 +13,7 @@ import numpy as np
 from ..beams.recovery_forms import LinearForm
 from ..core.families import LinearPeriodic
 from ..floquet.first_order import SPEED_POWER
-from .trigonometric import Array, differentiated
+from ..core.trigonometric import Array, differentiated
 
 Key = tuple[int, int]
 Expression = dict[Key, Array]

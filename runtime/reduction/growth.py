@@ -22,7 +22,7 @@ from ..floquet.refined_products import distance
 from ..stretches import Tabulated, coefficients, nodes, running_products
 from .condensed import Condensed
 from .ranges import Grid, limits, wider
-from .trigonometric import Array
+from ..core.trigonometric import Array
 
 Run = Callable[[Callable[..., Any], Iterable[Any]], Iterable[Any]]
 

@@ -15,8 +15,8 @@ from ..core.inputs import require_whole
 from .balance import Balance, balance
 from .condensed import Condensed, condense
 from .expressions import sampled_arrays
-from .subspaces import MovingBasis, StillModes, basis_of, still_modes
-from .trigonometric import Array
+from ..periodic.moving_basis import MovingBasis, StillModes, basis_of, still_modes
+from ..core.trigonometric import Array
 
 # Angles: a power of two; and how the harmonics of a motion compare with theirs.
 _FEWEST, _MOST = 128, 1024

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..core.families import LinearPeriodic, Term
 from ..floquet.first_order import even_angles
-from .subspaces import MovingBasis, moving_basis
-from .trigonometric import Array, interpolated, tail
+from ..periodic.moving_basis import MovingBasis, moving_basis
+from ..core.trigonometric import Array, interpolated, tail
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048

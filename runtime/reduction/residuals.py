@@ -9,7 +9,7 @@ from ..beams.recovery_forms import LinearForm
 from .balance import Balance, series
 from .condensed import Condensed
 from .stress_rows import peaks
-from .trigonometric import Array, differentiated
+from ..core.trigonometric import Array, differentiated
 
 _FORCES = ("f", "h", "p")
 

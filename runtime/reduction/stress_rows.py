@@ -15,7 +15,7 @@ from ..core.families import LinearPeriodic
 from .balance import Balance, samples_table
 from .condensed import Condensed
 from .expressions import Expression, constant_part, recovered
-from .trigonometric import Array
+from ..core.trigonometric import Array
 
 # A part of the stress that is smaller than this, over the largest, is left out.
 _NOTHING = 1e-10

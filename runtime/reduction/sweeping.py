@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .balance import Balance
-from .trigonometric import Array
+from ..core.trigonometric import Array
 
 # Vectors of each node's Taylor series.
 _ORDERS = 16

@@ -55,7 +55,7 @@ def _held(form: CanonicalForm, parts: SpeedParts, count: int) -> tuple[Array, ..
     Of M and K, and of Kg where it does not depend on the speed; empty where a matrix is not
     symmetric or not positive definite.  Kept with the system.
     """
-    from ..reduction.subspaces import natural_modes
+    from ..periodic.moving_basis import natural_modes
 
     key = ("held modes", *parts.key)
     known = form.system.kept.get(key)
@@ -120,8 +120,8 @@ def slow_modes(
 
 def _basis(period: float, m: int, mass: Array, squares: Array, shapes: Array) -> tuple[Array, ...]:
     """Return Phi, its two derivatives and the flexibility of the others; empty if mirrored."""
-    from ..reduction.subspaces import StillModes, carried_basis
-    from ..reduction.trigonometric import differentiated
+    from ..periodic.moving_basis import StillModes, carried_basis
+    from ..core.trigonometric import differentiated
 
     still = StillModes(even_angles(period, len(mass)), squares, shapes, mass)
     try:

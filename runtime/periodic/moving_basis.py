@@ -13,8 +13,14 @@ import numpy as np
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import require_whole
-from ..floquet.first_order import even_angles
-from .trigonometric import Array, PeriodicArray, differentiated, interpolated, tail
+from ..core.trigonometric import (
+    Array,
+    PeriodicArray,
+    differentiated,
+    even_angles,
+    interpolated,
+    tail,
+)
 
 _FEWEST, _MOST = 64, 2048
 # Upper harmonics, over the largest, at which the samples are taken to fix the basis.

@@ -53,6 +53,11 @@ class PeriodicArray:
         return out.reshape(len(theta), *shape)
 
 
+def even_angles(period: float, count: int) -> Array:
+    """Return angles that divide a period evenly, from 0, shape ``(count,)`` [rad]."""
+    return np.asarray(period * np.arange(float(count)) / count)
+
+
 def interpolated(values: Array, period: float, noise: float = 0.0) -> PeriodicArray:
     """Return the series through even samples, less the last harmonics that are round-off.
 
@@ -92,3 +97,17 @@ def tail(values: Array) -> float:
     largest = float(np.max(amplitude, initial=0.0))
     upper = amplitude[-max(1, len(amplitude) // 4) :]
     return float(np.max(upper, initial=0.0)) / largest if largest else 0.0
+
+
+def resampled(values: Array, count: int) -> Array:
+    """Return periodic samples ``(nt, ...)`` at another number of even angles."""
+    given = len(values)
+    if given == count:
+        return values
+    spectrum = np.fft.rfft(values, axis=0)
+    if given % 2 == 0 and count > given:
+        spectrum[-1] *= 0.5
+    kept = np.zeros((count // 2 + 1, *values.shape[1:]), dtype=complex)
+    most = min(len(kept), len(spectrum))
+    kept[:most] = spectrum[:most]
+    return np.asarray(np.fft.irfft(kept, n=count, axis=0) * (count / given))

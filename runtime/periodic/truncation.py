@@ -1,0 +1,374 @@
+"""Modal truncation: a large system on its lowest modes, the others following in equilibrium.
+
+With q = Phi(theta) z + delta, Phi the lowest modes of the mechanism held still at each angle and
+delta in the space of the others, the equation of the others is in leading order
+
+    delta = F sum_k w^k (c1_k z' + c0_k z + s_k),        F = (K^-1 less what Phi has of it),
+
+without their inertia and damping.  Put back into the equation of z it adds terms of the same
+family, with powers of the speed: so few modes follow a linkage of beams to a millionth.  What is
+left is answered statically afterwards (:meth:`TruncatedSystem.lift`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.families import LinearPeriodic, Term
+from ..core.inputs import require_whole
+from ..core.trigonometric import differentiated, even_angles, interpolated, resampled
+from .equation import SPEED_POWER
+from .moving_basis import MovingBasis, StillModes, carried_basis, still_modes
+
+Array = NDArray[np.float64]
+
+# Even angles at which the modes are carried round, and the upper harmonics of the basis, over the
+# largest, that are small enough.
+_FEWEST, _MOST, _SMOOTH = 128, 1024, 1e-9
+# Least ratio of the first frequency left out to the last one kept, at every angle.
+_GAP = 1.02
+# Static corrections of a lifted motion: the first takes a hundredth, the second a hundredth of it.
+_CORRECTIONS = 2
+
+
+@dataclass(frozen=True)
+class TruncatedSystem(LinearPeriodic):
+    """A linear periodic system on its lowest modes; make it with :func:`modal_truncation`.
+
+    Attributes
+    ----------
+    full : LinearPeriodic
+        The system that was truncated, with its present parameters: they are fixed.
+    theta : ndarray
+        Even angles of a period [rad], shape ``(nt,)``.
+    modes : ndarray
+        The modes Phi there, shape ``(nt, n, m)``.
+    flexibility : ndarray
+        F there, shape ``(nt, n, n)``.
+    kept, left_out : float
+        Highest frequency that is kept and lowest that is left out, at any angle [rad/s].
+    """
+
+    full: LinearPeriodic | None = None
+    theta: Array = field(default_factory=partial(np.zeros, 0))
+    modes: Array = field(default_factory=partial(np.zeros, 0))
+    flexibility: Array = field(default_factory=partial(np.zeros, 0))
+    kept: float = np.inf
+    left_out: float = np.inf
+
+    def lift(self, z: Array, speed: ArrayLike) -> tuple[Array, Array]:
+        """Return periodic motions of the whole system.
+
+        What the modes leave of the whole equation is answered statically by the others, twice.
+
+        Parameters
+        ----------
+        z : ndarray
+            Periodic motions of the truncated system at even angles, ``(ns, any, m)``.
+        speed : array_like
+            Their crank speeds [rad/s], shape ``(ns,)``.
+
+        Returns
+        -------
+        q : ndarray
+            Coordinates of the whole system at ``theta``, shape ``(ns, nt, n)``.
+        change : ndarray
+            The last correction over the motion, by the largest of each coordinate, ``(ns,)``.
+        """
+        speeds = np.atleast_1d(np.asarray(speed, dtype=float))
+        # Arrays are applied to all motions at once: the motions are the last axis.
+        reduced = np.moveaxis(resampled(np.moveaxis(z, 1, 0), len(self.theta)), 1, -1)
+        q = self.modes @ reduced
+        change = np.zeros(q.shape[1:])
+        for _ in range(_CORRECTIONS):
+            correction = self.flexibility @ self._rest(q, speeds)
+            q = q + correction
+            change = np.max(np.abs(correction), axis=0)
+        size = np.max(np.abs(q), axis=0)
+        relative = np.max(change / np.where(size > 0.0, size, 1.0), axis=0)
+        return np.moveaxis(q, -1, 0), relative
+
+    def _rest(self, q: Array, speeds: Array) -> Array:
+        """Return forces less what motions ``(nt, n, ns)`` need, of the same shape."""
+        slope = differentiated(q, self.period)
+        momentum, total = np.zeros_like(q), np.zeros_like(q)
+        for (array, power), values in self._whole.items():
+            factor = speeds**power
+            if values.ndim == 2:
+                total += values[..., None] * factor
+            elif array == "M":
+                momentum += factor * (values @ slope)
+            elif array == "A":
+                momentum += factor * (values @ q)
+                total += factor * (np.swapaxes(values, -1, -2) @ slope)
+            elif array == "C":
+                total -= factor * (values @ slope)
+            else:
+                total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
+        return np.asarray(total - differentiated(momentum, self.period))
+
+    @property
+    def _whole(self) -> Mapping[tuple[str, int], Array]:
+        """The arrays of the whole system at the angles, by array and power of the speed."""
+        if self.full is None:
+            raise bad("TruncatedSystem.full", "none", "a system", "use modal_truncation")
+        return arrays_at(self.full, self.theta)
+
+
+def modal_truncation(system: LinearPeriodic, modes: int | None = None) -> TruncatedSystem:
+    """Return a system on its lowest modes, the others following in equilibrium.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With positive definite M and K; damping and all.
+    modes : int, optional
+        Number m of modes; by default the first, from four on, that leaves a gap to the next
+        frequency at every angle.
+
+    Returns
+    -------
+    TruncatedSystem
+        Of size m, without parameters of its own.
+
+    Raises
+    ------
+    BadInput
+        If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
+    """
+    candidates = modes_offered(system) if modes is None else [modes]
+    basis = smooth_basis(system, require_whole("modes", candidates[0], 1, system.size))
+    return truncated_on(system, basis)
+
+
+def modes_offered(system: LinearPeriodic, least: int = 4) -> list[int]:
+    """Return the numbers of modes with a gap to the next frequency at every angle, rising."""
+    squares = still_modes(system, _FEWEST // 2).squares
+    ratio = np.sqrt(np.min(squares[:, 1:] / squares[:, :-1], axis=0))
+    numbers = [m for m in range(least, system.size) if ratio[m - 1] >= _GAP]
+    return [*numbers, system.size]
+
+
+def smooth_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
+    """Return the lowest modes, carried smoothly round the period.
+
+    Raises
+    ------
+    BadInput
+        If their subspace is not smooth or not periodic.
+    """
+    count = _FEWEST
+    while True:
+        still: StillModes = still_modes(system, count)
+        basis = carried_basis(system.period, modes, still)
+        if basis.tail <= _SMOOTH or modes == system.size:
+            return basis
+        if 2 * count > _MOST:
+            ratio = float(np.min(basis.left_out / basis.kept))
+            raise bad(
+                f"modes = {modes}",
+                f"a ratio of {ratio:.6g} between the next frequency and the highest one kept",
+                "a subspace that is smooth and periodic in the crank angle",
+                "keep one mode more or less, so that the next frequency keeps its distance",
+            )
+        count *= 2
+
+
+def truncated_on(system: LinearPeriodic, basis: MovingBasis) -> TruncatedSystem:
+    """Return a system on modes that are known."""
+    period, phi, slope = system.period, basis.values, basis.slopes
+    arrays = arrays_at(system, basis.theta)
+    stiffness = sum(
+        (v for (name, power), v in arrays.items() if name in ("K", "Kg") and power == 0),
+        start=np.zeros_like(phi @ np.swapaxes(phi, -1, -2)),
+    )
+    across = np.swapaxes(phi, -1, -2)
+    held = across @ stiffness @ phi
+    flexibility = np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across)
+    sums: dict[tuple[str, int], Array] = {}
+    for (array, power), values in arrays.items():
+        for name, part in _projections(array, values, phi, slope):
+            key = (name, power - 2 - SPEED_POWER[name])
+            sums[key] = sums[key] + part if key in sums else part
+    for name, power, part in _followed(arrays, phi, slope, flexibility, period):
+        sums[name, power] = sums[name, power] + part if (name, power) in sums else part
+    size = phi.shape[-1]
+    shape: Callable[[Array, Array], Array] | None = None
+    if system.shape is not None or system.moving_shape is not None:
+        shape = partial(_shapes, system, basis)
+    deflection: Callable[[Array], Array] | None = None
+    if system.relative_deflection is not None:
+        deflection = partial(_deflections, system.relative_deflection, basis)
+    return TruncatedSystem(
+        size=size,
+        terms=tuple(
+            Term(name, None, interpolated(values, period), power)
+            for (name, power), values in sums.items()
+            if np.any(values)
+        ),
+        parameters={},
+        scales=_no_scales,
+        period=period,
+        labels=tuple(f"mode {k + 1}" for k in range(size)),
+        reference_length=system.reference_length,
+        moving_shape=shape,
+        relative_deflection=deflection,
+        provenance={**system.provenance, "modes kept": str(size)},
+        full=system,
+        theta=basis.theta,
+        modes=phi,
+        flexibility=flexibility,
+        kept=float(np.max(basis.kept)),
+        left_out=float(np.min(basis.left_out)),
+    )
+
+
+def arrays_at(system: LinearPeriodic, theta: Array) -> dict[tuple[str, int], Array]:
+    """Return the arrays of a system at angles, by array and power of the speed in its force.
+
+    The power is that with which the array stands in the equation of motion in time: 2 for M, A, B
+    and f, 1 for C, D and h, 0 for K, Kg and p, and what the term adds to it.
+    """
+    scales = system.scale_values()
+    sums: dict[tuple[str, int], Array] = {}
+    for term in system.terms:
+        if term.array not in SPEED_POWER:
+            continue
+        factor = 1.0 if term.scale is None else float(scales[term.scale])
+        key = (term.array, 2 + SPEED_POWER[term.array] + term.power)
+        part = factor * term(theta)
+        if np.any(part):
+            sums[key] = sums[key] + part if key in sums else part
+    return sums
+
+
+def _projections(
+    array: str, values: Array, phi: Array, slope: Array
+) -> Iterator[tuple[str, Array]]:
+    """Yield the arrays that one array of a system gives on a basis and its derivative."""
+    across, turning = np.swapaxes(phi, -1, -2), np.swapaxes(slope, -1, -2)
+    if values.ndim == 2:
+        yield array, (across @ values[..., None])[..., 0]
+        return
+    carried = values @ phi
+    yield array, across @ carried
+    if array == "M":
+        yield "A", across @ (values @ slope)
+        yield "B", turning @ (values @ slope)
+    elif array == "A":
+        both = turning @ carried
+        yield "B", both + np.swapaxes(both, -1, -2)
+    elif array == "C":
+        yield "D", across @ (values @ slope)
+
+
+@dataclass
+class _Coupling:
+    """What ties the modes left out to those kept at one power of the speed.
+
+    The others are pushed by ``rate z' + place z + load``, and push the kept ones back by
+    ``back delta - (forth delta)'``.
+    """
+
+    rate: Array
+    place: Array
+    load: Array
+    forth: Array
+    back: Array
+
+    @classmethod
+    def none(cls, nt: int, n: int, m: int) -> _Coupling:
+        """Return none, at nt angles."""
+        shapes = (nt, n, m), (nt, n, m), (nt, n), (nt, m, n), (nt, m, n)
+        return cls(*(np.zeros(shape) for shape in shapes))
+
+
+def _couplings(
+    arrays: Mapping[tuple[str, int], Array], phi: Array, slope: Array, period: float
+) -> dict[int, _Coupling]:
+    """Return the couplings by power of the speed."""
+    nt, n, m = phi.shape
+    found: dict[int, _Coupling] = {}
+    for (array, power), values in arrays.items():
+        if array in ("K", "Kg") and power == 0:
+            continue
+        at = found.setdefault(power, _Coupling.none(nt, n, m))
+        if values.ndim == 2:
+            at.load += values
+            continue
+        carried, moved = values @ phi, values @ slope
+        rate, place = np.zeros((nt, n, m)), np.zeros((nt, n, m))
+        if array == "M":
+            rate = -differentiated(carried, period) - moved
+            place = -differentiated(moved, period)
+        elif array == "A":
+            turned = np.swapaxes(values, -1, -2)
+            rate = turned @ phi - carried
+            place = turned @ slope - differentiated(carried, period)
+        elif array == "B":
+            place = carried
+        elif array in ("K", "Kg"):
+            place = -carried
+        if array in ("M", "A", "B", "K", "Kg"):
+            at.forth += np.swapaxes(rate, -1, -2)
+            at.back += np.swapaxes(place, -1, -2)
+        elif array == "C":
+            rate, place = -carried, -moved
+            at.forth += np.swapaxes(carried, -1, -2)
+            at.back += np.swapaxes(differentiated(carried, period), -1, -2)
+        else:
+            place = -carried
+            at.back -= np.swapaxes(np.swapaxes(values, -1, -2) @ phi, -1, -2)
+        at.rate += rate
+        at.place += place
+    return found
+
+
+def _followed(
+    arrays: Mapping[tuple[str, int], Array],
+    phi: Array,
+    slope: Array,
+    flexibility: Array,
+    period: float,
+) -> Iterator[tuple[str, int, Array]]:
+    """Yield what the modes left out add to those kept: array, extra power of the speed, values.
+
+    For powers k and l of the speed, ``back_k F (rate_l z' + place_l z + load_l)`` less the
+    derivative of ``forth_k F (...)``.  Where both are conservative the parts go to M, A and B,
+    so that the truncated system stays conservative; else to C and D.
+    """
+    couplings = _couplings(arrays, phi, slope, period)
+    for k, one in couplings.items():
+        forth, back = one.forth @ flexibility, one.back @ flexibility
+        for j, other in couplings.items():
+            power = k + j - 2
+            load = (back @ other.load[..., None])[..., 0]
+            pushed = (forth @ other.load[..., None])[..., 0]
+            yield "f", power, load - differentiated(pushed, period)
+            if k == j and k != 1:
+                yield "M", power, forth @ other.rate
+                yield "A", power, forth @ other.place
+                yield "B", power, back @ other.place
+                continue
+            mass = forth @ other.rate
+            yield "M", power, 0.5 * (mass + np.swapaxes(mass, -1, -2))
+            yield "C", power + 1, forth @ other.place - back @ other.rate
+            yield "D", power + 1, differentiated(forth @ other.place, period) - back @ other.place
+
+
+def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
+    return np.asarray(system.shapes(x, theta) @ basis(theta))
+
+
+def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:
+    return np.asarray(full(theta) @ basis(theta))
+
+
+def _no_scales(values: Mapping[str, ArrayLike]) -> Mapping[str, Array]:
+    return {}

@@ -22,8 +22,8 @@ from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equatio
 from .motion import Trajectory
 from .multipliers import Monodromy, conditions
 from .periodic_motion import SteadyState, peaks
-from .tables import Table, next_rung, table_of
-from .transition import levels_for, method, rung
+from .tables import Table, flows_at, next_rung, table_of
+from .transition import Method, levels_for, method, rung
 
 Array = NDArray[np.float64]
 
@@ -252,7 +252,7 @@ class Prepared:
             speed = float(speeds[0])
             one = self._compiled_at(speed).periodic(1.0 / speed, 1.0 / self.scale[-1])
             return one[0][None], one[1][None], np.array(one[2:3])
-        return _closed(*self._flows(speeds), 1.0 / self.scale[-1])
+        return closed(*self._flows(speeds), 1.0 / self.scale[-1])
 
     def _march(self, speed: float, first: Array, periods: int) -> tuple[Array, Array]:
         """Return the states of a motion, and the largest size of each component at the starts."""
@@ -386,7 +386,7 @@ def prepare(
     plain = {name: _one(name, value) for name, value in parameters.items()}
     made, inside = at_geometry(system, plain)
     _check_inertia(made)
-    maker = _Maker(sampled(made, forcing=forcing), (low * high) ** 0.5, inside)
+    maker = TableMaker(sampled(made, forcing=forcing), (low * high) ** 0.5, inside)
     middle = maker.middle
     count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
     edges = low * (high / low) ** (np.arange(count + 1) / count)
@@ -409,7 +409,7 @@ def prepare(
     )
 
 
-class _Maker:
+class TableMaker:
     """Makes the tables of one system, all in the units of its middle speed."""
 
     def __init__(
@@ -440,28 +440,38 @@ class _Maker:
         Those of :class:`Prepared`, by other segments at a few speeds.
         """
         slowest = self.equation(np.array([high]))
-        way, n = method("radau" if slowest.damped else "gauss", 10), slowest.size
-        level = int(levels_for(slowest, way, 0.1 * rtol, 1.0)[0])
-        table = table_of(self.equation, (low, high), rung(level), way, 0.1 * rtol, samples=samples)
+        n = slowest.size
+        way, segments = self.cheapest(slowest, samples, 0.1 * rtol)
+        table = table_of(self.equation, (low, high), segments, way, 0.1 * rtol, samples=samples)
         whole = 16.0 * _EPS + table.tail
         flow, motion = np.full((n, len(self.scale)), 16.0 * _EPS), np.full(n, 16.0 * _EPS)
-        places = np.array(_TRIED if high > low else _TRIED[:1])
-        for inverse in low + places * (high - low):
-            at = np.array([inverse])
-            count = next_rung(samples * -(-rung(level) // samples))
-            other = table_of(self.equation, (at[0], at[0]), count, way, rtol, samples=samples)
-            ours, theirs = table.flows(at), other.flows(at)
-            gap = np.max(np.abs(ours[1] - theirs[1])) / max(float(np.max(np.abs(theirs[1]))), 1.0)
-            whole = max(whole, _MARGIN * float(gap))
-            gaps = np.max(np.abs(ours[0] - theirs[0])[0, :, :n], axis=0)
-            flow = np.maximum(flow, _MARGIN * gaps)
-            if slowest.forced:
-                states, _, reach = _closed(*ours, 1.0 / self.scale[-1])
-                wanted, _, _ = _closed(*theirs, 1.0 / self.scale[-1])
-                size = (reach[0] + 1.0) * float(np.max(np.abs(wanted[0, 0])))
-                gaps = np.max(np.abs(states - wanted)[0, :, :n], axis=0) / size
-                motion = np.maximum(motion, _MARGIN * gaps)
+        tried = low + np.array(_TRIED if high > low else _TRIED[:1]) * (high - low)
+        count = next_rung(segments)
+        ours = table.flows(tried)
+        theirs = flows_at(self.equation(tried), count, way, samples)
+        gap = np.max(np.abs(ours[1] - theirs[1]), axis=(1, 2))
+        size = np.maximum(np.max(np.abs(theirs[1]), axis=(1, 2)), 1.0)
+        whole = max(whole, _MARGIN * float(np.max(gap / size)))
+        gaps = np.max(np.abs(ours[0] - theirs[0])[:, :, :n], axis=(0, 1))
+        flow = np.maximum(flow, _MARGIN * gaps)
+        if slowest.forced:
+            states, _, reach = closed(*ours, 1.0 / self.scale[-1])
+            wanted, _, _ = closed(*theirs, 1.0 / self.scale[-1])
+            size = (reach + 1.0) * np.max(np.abs(wanted[:, 0]), axis=1)
+            gaps = np.max(np.abs(states - wanted)[:, :, :n], axis=1) / size[:, None]
+            motion = np.maximum(motion, _MARGIN * np.max(gaps, axis=0))
         return table, whole, flow, motion
+
+    def cheapest(self, slowest: Equation, samples: int, rtol: float) -> tuple[Method, int]:
+        """Return method and number of segments, a multiple of the angles, with the least work."""
+        kind, stages = ("radau" if slowest.damped else "gauss"), (4, 5, 6, 8, 10)
+        ways = [method(kind, count) for count in stages]
+        counts = [rung(int(levels_for(slowest, way, rtol, 1.0)[0])) for way in ways]
+        counts = [samples * -(-count // samples) for count in counts]
+        # Solving the stages of a segment: between the square and the cube of their number.
+        work = [count * way.stages**2.5 for count, way in zip(counts, ways, strict=True)]
+        best = int(np.argmin(work))
+        return ways[best], counts[best]
 
     def readout(self, theta: Array) -> Array:
         """Return the matrices from the scaled state to dq/dtheta at angles, ``(nt, n, m)``."""
@@ -471,7 +481,7 @@ class _Maker:
         return rows * unit[:, None]
 
 
-def _closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array]:
+def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array]:
     """Return periodic states ``(ns, nt, m)``, the flows over the period and the reach of the start.
 
     The reach is the largest sum of a row of ``(I - X)^-1``.

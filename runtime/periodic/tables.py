@@ -157,6 +157,23 @@ def table_of(
     return _grouped(maps, ends, samples, max(tail, 64.0 * _EPS))
 
 
+def flows_at(equation: Equation, count: int, way: Method, samples: int) -> tuple[Array, Array]:
+    """Return the matrices from angle 0 to even angles, and over the period, of every member.
+
+    Shapes ``(n, samples, m, m)`` and ``(n, m, m)``; ``count`` segments, or the next multiple of
+    the number of angles.
+    """
+    every = -(-count // samples)
+    maps = segments_of(equation, samples * every, way).maps
+    running = np.broadcast_to(np.eye(maps.shape[-1]), maps[:, 0].shape)
+    flows = np.empty((len(maps), samples, *maps.shape[2:]))
+    for k in range(samples * every):
+        if k % every == 0:
+            flows[:, k // every] = running
+        running = maps[:, k] @ running
+    return flows, running
+
+
 def _tail(maps: Array) -> float:
     """Return the last two Chebyshev coefficients over the largest entry; 0 of one node."""
     if len(maps) == 1:

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
 from ..core.inputs import require_whole
-from ..core.trigonometric import differentiated, even_angles, interpolated, resampled
+from ..core.trigonometric import differentiated, interpolated, resampled
 from .equation import SPEED_POWER
 from .moving_basis import MovingBasis, StillModes, carried_basis, still_modes
 
@@ -51,6 +51,8 @@ class TruncatedSystem(LinearPeriodic):
         The modes Phi there, shape ``(nt, n, m)``.
     flexibility : ndarray
         F there, shape ``(nt, n, n)``.
+    arrays : mapping of (str, int) to ndarray
+        The arrays of the full system there, by name and power of the speed in its force.
     kept, left_out : float
         Highest frequency that is kept and lowest that is left out, at any angle [rad/s].
     """
@@ -59,6 +61,7 @@ class TruncatedSystem(LinearPeriodic):
     theta: Array = field(default_factory=partial(np.zeros, 0))
     modes: Array = field(default_factory=partial(np.zeros, 0))
     flexibility: Array = field(default_factory=partial(np.zeros, 0))
+    arrays: Mapping[tuple[str, int], Array] = field(default_factory=dict)
     kept: float = np.inf
     left_out: float = np.inf
 
@@ -98,7 +101,7 @@ class TruncatedSystem(LinearPeriodic):
         """Return forces less what motions ``(nt, n, ns)`` need, of the same shape."""
         slope = differentiated(q, self.period)
         momentum, total = np.zeros_like(q), np.zeros_like(q)
-        for (array, power), values in self._whole.items():
+        for (array, power), values in self.arrays.items():
             factor = speeds**power
             if values.ndim == 2:
                 total += values[..., None] * factor
@@ -113,15 +116,10 @@ class TruncatedSystem(LinearPeriodic):
                 total += (1.0 if array == "B" else -1.0) * factor * (values @ q)
         return np.asarray(total - differentiated(momentum, self.period))
 
-    @property
-    def _whole(self) -> Mapping[tuple[str, int], Array]:
-        """The arrays of the whole system at the angles, by array and power of the speed."""
-        if self.full is None:
-            raise bad("TruncatedSystem.full", "none", "a system", "use modal_truncation")
-        return arrays_at(self.full, self.theta)
 
-
-def modal_truncation(system: LinearPeriodic, modes: int | None = None) -> TruncatedSystem:
+def modal_truncation(
+    system: LinearPeriodic, modes: int | None = None, *, angles: int = _FEWEST
+) -> TruncatedSystem:
     """Return a system on its lowest modes, the others following in equilibrium.
 
     Parameters
@@ -131,6 +129,9 @@ def modal_truncation(system: LinearPeriodic, modes: int | None = None) -> Trunca
     modes : int, optional
         Number m of modes; by default the first, from four on, that leaves a gap to the next
         frequency at every angle.
+    angles : int
+        Even angles of the period at which the modes are carried, a power of two, or more where
+        the modes need them.
 
     Returns
     -------
@@ -143,8 +144,9 @@ def modal_truncation(system: LinearPeriodic, modes: int | None = None) -> Trunca
         If ``modes`` is no number from 1 to n, or the modes span no smooth periodic subspace.
     """
     candidates = modes_offered(system) if modes is None else [modes]
-    basis = smooth_basis(system, require_whole("modes", candidates[0], 1, system.size))
-    return truncated_on(system, basis)
+    number = require_whole("modes", candidates[0], 1, system.size)
+    basis = smooth_basis(system, number, angles)
+    return truncated_on(system, basis, arrays_at(system, basis.theta))
 
 
 def modes_offered(system: LinearPeriodic, least: int = 4) -> list[int]:
@@ -155,17 +157,24 @@ def modes_offered(system: LinearPeriodic, least: int = 4) -> list[int]:
     return [*numbers, system.size]
 
 
-def smooth_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
-    """Return the lowest modes, carried smoothly round the period.
+def smooth_basis(
+    system: LinearPeriodic,
+    modes: int,
+    angles: int = _FEWEST,
+    held: Callable[[int], StillModes] | None = None,
+) -> MovingBasis:
+    """Return the lowest modes, carried smoothly round the period, at that many angles or more.
+
+    ``held`` gives the modes of the mechanism held still at a number of even angles.
 
     Raises
     ------
     BadInput
         If their subspace is not smooth or not periodic.
     """
-    count = _FEWEST
+    count = angles
     while True:
-        still: StillModes = still_modes(system, count)
+        still = still_modes(system, count) if held is None else held(count)
         basis = carried_basis(system.period, modes, still)
         if basis.tail <= _SMOOTH or modes == system.size:
             return basis
@@ -180,10 +189,11 @@ def smooth_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
         count *= 2
 
 
-def truncated_on(system: LinearPeriodic, basis: MovingBasis) -> TruncatedSystem:
-    """Return a system on modes that are known."""
+def truncated_on(
+    system: LinearPeriodic, basis: MovingBasis, arrays: Mapping[tuple[str, int], Array]
+) -> TruncatedSystem:
+    """Return a system on modes that are known, with its arrays at their angles."""
     period, phi, slope = system.period, basis.values, basis.slopes
-    arrays = arrays_at(system, basis.theta)
     stiffness = sum(
         (v for (name, power), v in arrays.items() if name in ("K", "Kg") and power == 0),
         start=np.zeros_like(phi @ np.swapaxes(phi, -1, -2)),
@@ -224,6 +234,7 @@ def truncated_on(system: LinearPeriodic, basis: MovingBasis) -> TruncatedSystem:
         theta=basis.theta,
         modes=phi,
         flexibility=flexibility,
+        arrays=arrays,
         kept=float(np.max(basis.kept)),
         left_out=float(np.min(basis.left_out)),
     )

@@ -1,0 +1,200 @@
+"""Periodic motions and multipliers of a large damped system at very many speeds.
+
+The system is truncated to its lowest modes (:mod:`~.truncation`); in ranges of the speed the
+transition matrices of what is left are tables in the inverse speed (:mod:`~.tables`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from itertools import pairwise
+from math import ceil, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import BadInput, bad
+from ..core.families import LinearPeriodic
+from ..core.trigonometric import even_angles
+from .equation import SampledSystem, sampled
+from .moving_basis import still_modes
+from .multipliers import conditions
+from .prepared import TableMaker, closed
+from .tables import Table, flows_at
+from .truncation import TruncatedSystem, arrays_at, modes_offered, smooth_basis, truncated_on
+
+Array = NDArray[np.float64]
+
+# Ratio of the ends of a range of speeds: tables of 24 to 36 nodes follow it to ten digits.
+_RATIO = 1.4
+# Speeds whose motions are lifted together.
+_TOGETHER = 64
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Largest multipliers at speeds: modulus, its condition and its error, each ``(ns,)``."""
+
+    modulus: Array
+    condition: Array
+    error: Array
+
+
+@dataclass(frozen=True)
+class SweptMotions:
+    """The forced periodic motions of a truncated system over a range of speeds.
+
+    Attributes
+    ----------
+    truncated : TruncatedSystem
+        The system on its lowest modes.
+    table : Table
+        Its transition matrices over the inverse speed, the force as last column.
+    scale : ndarray
+        Units of the state.
+    matrix_error : float
+        Error of a monodromy matrix over its largest entry.
+    motion_error : float
+        Error of a motion over the size of its start and over what the closing of the ring
+        magnifies.
+    """
+
+    truncated: TruncatedSystem
+    table: Table
+    scale: Array
+    matrix_error: float
+    motion_error: float
+
+    def blocks(self, speeds: Array) -> Iterator[tuple[slice, Array, Array]]:
+        """Yield parts of the speeds, motions ``(ns, nt, n)`` of all coordinates, their errors.
+
+        The errors ``(ns,)`` are those of the truncated system's motion over its largest size.
+        """
+        for begin in range(0, len(speeds), _TOGETHER):
+            part = slice(begin, begin + _TOGETHER)
+            flows = self.table.flows(1.0 / speeds[part])
+            q, reach = lifted(self.truncated, flows, speeds[part], self.scale)
+            yield part, q, reach * self.motion_error
+
+    def growth(self, speeds: Array) -> Growth:
+        """Return the largest multiplier of the truncated system at speeds."""
+        products, exponent = self.table.products(1.0 / speeds)
+        return growth_of(
+            np.ldexp(products, exponent[:, None, None])[:, :-1, :-1], self.matrix_error
+        )
+
+
+def lifted(
+    truncated: TruncatedSystem, flows: tuple[Array, Array], speeds: Array, scale: Array
+) -> tuple[Array, Array]:
+    """Return forced periodic motions ``(ns, nt, n)``, and how errors of flows enter them.
+
+    Over the largest size of the truncated motion: that of its start times the reach of the ring.
+    """
+    m = truncated.size
+    states, _, reach = closed(*flows, 1.0 / scale[-1])
+    size = np.max(np.abs(states[:, :, :m]), axis=(1, 2))
+    start = np.max(np.abs(states[:, 0]), axis=1)
+    q, _ = truncated.lift(states[:, :, :m] * scale[:m], speeds)
+    return q, (reach + 1.0) * start / size
+
+
+def growth_of(matrices: Array, relative: float) -> Growth:
+    """Return the largest multiplier of matrices ``(ns, m, m)`` with that relative error."""
+    values, vectors = np.linalg.eig(matrices)
+    modulus = np.abs(values)
+    which = np.argmax(modulus, axis=1)[:, None]
+    condition = np.take_along_axis(conditions(vectors), which, axis=1)[:, 0]
+    size = relative * np.max(np.abs(matrices), axis=(1, 2))
+    return Growth(np.take_along_axis(modulus, which, axis=1)[:, 0], condition, condition * size)
+
+
+class Truncations:
+    """Modal truncations of one system by number of modes and of angles, each made once.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    modes : int, optional
+        The least number of modes that is kept; by default any with a gap to the next.
+    """
+
+    def __init__(self, system: LinearPeriodic, modes: int | None = None) -> None:
+        self.system = system
+        self.numbers = modes_offered(system)
+        if modes is not None:
+            self.numbers = [modes, *(m for m in self.numbers if m > modes)]
+        self._made: dict[tuple[int, int], tuple[TruncatedSystem, SampledSystem] | None] = {}
+        self._held = lru_cache(maxsize=None)(partial(still_modes, system))
+        self._arrays = lru_cache(maxsize=None)(self._arrays_at)
+
+    def _arrays_at(self, angles: int) -> dict[tuple[str, int], Array]:
+        return arrays_at(self.system, even_angles(self.system.period, angles))
+
+    def at(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem] | None:
+        """Return the truncation to a number of modes; None where these do not stay smooth."""
+        key = modes, angles
+        if key not in self._made:
+            try:
+                basis = smooth_basis(self.system, modes, angles, self._held)
+            except BadInput:
+                self._made[key] = None
+            else:
+                made = truncated_on(self.system, basis, self._arrays(len(basis.theta)))
+                self._made[key] = made, sampled(made, forcing=True)
+        return self._made[key]
+
+    def usable(self, least: int, angles: int) -> list[int]:
+        """Return the next two numbers of modes from one on (one at the end) that are smooth."""
+        chosen: list[int] = []
+        for number in self.numbers:
+            if number >= least and len(chosen) < 2 and self.at(number, angles) is not None:
+                chosen.append(number)
+        return chosen
+
+    def motions(
+        self, modes: int, angles: int, span: tuple[float, float], rtol: float
+    ) -> SweptMotions:
+        """Return the motions over a range of speeds [rad/s]; its ends may be equal.
+
+        Raises
+        ------
+        BadInput
+            If the modes do not stay smooth.
+        """
+        truncated, known = self._required(modes, angles)
+        low, high = span
+        maker = TableMaker(known, (low * high) ** 0.5, {})
+        table, whole, _, motion = maker.table(1.0 / high, 1.0 / low, len(truncated.theta), rtol)
+        return SweptMotions(truncated, table, maker.scale, whole, float(np.max(motion)))
+
+    def trial(
+        self, modes: int, angles: int, speeds: Array, rtol: float
+    ) -> tuple[TruncatedSystem, Array, Growth]:
+        """Return the truncation, motions ``(ns, nt, n)`` and growth at a few speeds, rising."""
+        truncated, known = self._required(modes, angles)
+        maker = TableMaker(known, float(speeds[-1]), {})
+        samples = len(truncated.theta)
+        way, count = maker.cheapest(maker.equation(1.0 / speeds[:1]), samples, rtol)
+        flows = flows_at(maker.equation(1.0 / speeds), count, way, samples)
+        q, _ = lifted(truncated, flows, speeds, maker.scale)
+        return truncated, q, growth_of(flows[1][:, :-1, :-1], rtol)
+
+    def _required(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem]:
+        made = self.at(modes, angles)
+        if made is None:
+            expected = "a number of modes that stay smooth over the revolution"
+            raise bad("modes", modes, expected, "choose one mode more or less")
+        return made
+
+
+def speed_ranges(speeds: Array) -> list[slice]:
+    """Return parts of rising speeds, the ends of each within a fixed ratio."""
+    low, high = float(speeds[0]), float(speeds[-1])
+    count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
+    edges = low * (high / low) ** (np.arange(1, count) / count)
+    places = [0, *np.searchsorted(speeds, edges).tolist(), len(speeds)]
+    return [slice(a, b) for a, b in pairwise(places) if b > a]

@@ -15,7 +15,7 @@ from .linkages import refuse_frame, speed_of
 if TYPE_CHECKING:
     from ..beams.stress import StressResult
     from ..core.families import LinearPeriodic
-    from ..reduction.stress_curve import StressCurve
+    from ..periodic.stresses import StressCurve
     from ..scenes import Scene
 
 _EXAMPLE = "aannaque_1996_table_4_1"
@@ -233,7 +233,7 @@ def _stress(options: argparse.Namespace) -> int:
         return opt.finish(options, result, _peaks(result, limit))
     speeds = np.array(opt.values(options.speed, "frequency", "--speed"))
     if limit is None:
-        from ..reduction.stress_curve import stress_curve
+        from ..periodic.stresses import stress_curve
 
         curve = stress_curve(system, speeds)
         return opt.finish(

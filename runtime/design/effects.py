@@ -15,12 +15,11 @@ from ..core.families import LinearPeriodic
 from ..core.results import Check, Result, provenance
 from ..floquet.first_order import numbers
 from ..linkages import FourBar, transmission_angle
-from ..reduction.stress_curve import stress_curve
+from ..periodic.stresses import stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
+    
     from matplotlib.axes import Axes
 
 
@@ -112,7 +111,6 @@ def damping_effect(
     ratios: Sequence[float],
     *,
     rtol: float = 1e-3,
-    executor: Executor | None = None,
 ) -> StressEffect:
     """Return the largest stresses for several ratios of modal damping (Aannaque 7.4.2).
 
@@ -126,8 +124,6 @@ def damping_effect(
         Damping ratios, positive.
     rtol : float
         Wanted error of the stresses, relative.
-    executor : concurrent.futures.Executor, optional
-        As :func:`stress_curve` takes it.
 
     Raises
     ------
@@ -140,7 +136,7 @@ def damping_effect(
         raise bad("damping_effect", "a system without modal damping", "damping_ratio", fix)
     values = _values("ratios", ratios)
     systems = [system.with_parameters(damping_ratio=float(ratio)) for ratio in values]
-    return _curves("damping_ratio", values, systems, speeds, rtol, executor, None)
+    return _curves("damping_ratio", values, systems, speeds, rtol, None)
 
 
 def length_effect(
@@ -150,7 +146,6 @@ def length_effect(
     speeds: ArrayLike,
     *,
     rtol: float = 1e-3,
-    executor: Executor | None = None,
 ) -> StressEffect:
     """Return the largest stresses for several values of a length (Aannaque 7.3, 7.5, 8.5).
 
@@ -166,8 +161,6 @@ def length_effect(
         Crank speeds [rad/s].
     rtol : float
         Wanted error of the stresses, relative.
-    executor : concurrent.futures.Executor, optional
-        As :func:`stress_curve` takes it.
 
     Raises
     ------
@@ -181,7 +174,7 @@ def length_effect(
     if {"frame", "crank", "coupler", "follower"} <= set(system.geometry):
         found = [transmission_angle(_four_bar(one)) for one in systems]
         angles = np.array([[angle.least, angle.greatest] for angle in found])
-    return _curves(name, lengths, systems, speeds, rtol, executor, angles)
+    return _curves(name, lengths, systems, speeds, rtol, angles)
 
 
 def _four_bar(system: LinearPeriodic) -> FourBar:
@@ -208,11 +201,10 @@ def _curves(
     systems: Sequence[LinearPeriodic],
     speeds: ArrayLike,
     rtol: float,
-    executor: Executor | None,
     angles: Array | None,
 ) -> StressEffect:
     curves = [
-        stress_curve(one, speeds, rtol=rtol, stability=False, executor=executor) for one in systems
+        stress_curve(one, speeds, rtol=rtol, stability=False) for one in systems
     ]
     errors = np.array([curve.error for curve in curves])
     return StressEffect(

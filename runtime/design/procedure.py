@@ -13,14 +13,13 @@ from ..core.errors import BadInput, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result
 from ..floquet.first_order import numbers
-from ..reduction import stress_curve
+from ..periodic.stresses import stress_curve
 from .effects import StressEffect, damping_effect, length_effect
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
+    
     from matplotlib.axes import Axes
 
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
@@ -83,7 +82,6 @@ def running_speed(
     values: Sequence[float] | None = None,
     highest: bool = True,
     rtol: float = 1e-3,
-    executor: Executor | None = None,
 ) -> RunningSpeed:
     """Return a running speed above a limiting critical speed, and how to get there.
 
@@ -108,8 +106,6 @@ def running_speed(
         Whether the highest quiet band is chosen, or the one with the least stress.
     rtol : float
         Wanted error of the stresses, relative.
-    executor : Executor, optional
-        As :func:`quiet_speeds` takes it.
 
     Returns
     -------
@@ -126,7 +122,7 @@ def running_speed(
     """
     required_structure(system)
     tried = _tried(system, length, values)
-    quiet = quiet_speeds(system, speeds, limits, rtol=rtol, executor=executor)
+    quiet = quiet_speeds(system, speeds, limits, rtol=rtol)
     if not quiet.bands:
         least = int(np.argmin(quiet.worst))
         raise bad(
@@ -143,11 +139,11 @@ def running_speed(
     if "damping_ratio" in system.parameters:
         own = system.parameters["damping_ratio"]
         ratios = [own * factor for factor in _DAMPING]
-        damping = damping_effect(system, [band.best], ratios, rtol=rtol, executor=executor)
+        damping = damping_effect(system, [band.best], ratios, rtol=rtol)
         best = float(ratios[int(np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2))))])
     way, chosen = None, None
     if band.above is not None:
-        way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, executor)
+        way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol)
     return RunningSpeed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),
@@ -205,7 +201,6 @@ def _way_up(
     length: str,
     tried: Sequence[float],
     rtol: float,
-    executor: Executor | None,
 ) -> tuple[StressEffect, float | None]:
     """Return stresses on the way to the band for several lengths, and the least change that does.
 
@@ -213,7 +208,7 @@ def _way_up(
     """
     own = system.geometry.get(length, np.nan)
     way = np.linspace(quiet.speed[0], band.best, _RUN_UP_SPEEDS)
-    effect = length_effect(system, length, tried, way, rtol=rtol, executor=executor)
+    effect = length_effect(system, length, tried, way, rtol=rtol)
     worst = np.max(_ratios(effect, quiet, allowed), axis=(1, 2))
     passing = np.flatnonzero(worst < 1.0)
     if not passing.size:

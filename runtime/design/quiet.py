@@ -15,12 +15,11 @@ from ..core.errors import BadInput, Problem
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result
 from ..floquet.first_order import numbers
-from ..reduction.stress_curve import StressCurve, shade_unstable, stress_curve
+from ..periodic.stresses import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
+    
     from matplotlib.axes import Axes
 
 # Speeds at which the stresses are found, unless the caller gives them.
@@ -130,7 +129,6 @@ def quiet_speeds(
     limits: float | Mapping[str, float],
     *,
     rtol: float = 1e-3,
-    executor: Executor | None = None,
 ) -> QuietSpeeds:
     """Return the speeds at which a linkage may run, and those that it must pass quickly.
 
@@ -144,8 +142,6 @@ def quiet_speeds(
         Allowed stress [Pa], of all links or by link; links that are not named are not watched.
     rtol : float
         Wanted error of the stresses, relative.
-    executor : concurrent.futures.Executor, optional
-        As :func:`stress_curve` takes it.
 
     Returns
     -------
@@ -166,7 +162,7 @@ def quiet_speeds(
     if given.ndim != 1 or len(given) < 3 or not _rising(given):
         fix = "give the lowest and the highest, or increasing ones"
         raise BadInput(Problem("speeds", str(speeds), "increasing crank speeds above 0", fix))
-    curve = stress_curve(system, given, rtol=rtol, executor=executor)
+    curve = stress_curve(system, given, rtol=rtol)
     chosen = [curve.links.index(link) for link in named]
     ratio = curve.maximum[:, chosen] / np.array(list(named.values()))
     worst = np.max(ratio, axis=1)

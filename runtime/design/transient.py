@@ -17,7 +17,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
 from ..core.results import Check, Result, provenance
 from ..periodic import steady_state
-from ..reduction import ReducedSystem, reduced_system
+from ..periodic.reduced import ReducedSystem, reduced_system
 from .changing_length import ChangingLength
 from .shape_stress import largest_by_shape
 from .speed_profile import Array, SpeedProfile

@@ -122,7 +122,7 @@ def swept_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -
     count : int
         Number of modes wanted.
     """
-    from ..reduction import reduced_system
+    from ..periodic.reduced import reduced_system
 
     form = canonical_form(system, np.array([span[1]]), {})
     frequency = held_modes(form, even_angles(system.period, 128))[0]

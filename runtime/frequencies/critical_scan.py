@@ -1,4 +1,4 @@
-"""A quick look at how far a structure of beams bends over many speeds, on its slow modes."""
+"""How far a structure of beams bends over many speeds, on its lowest modes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,14 @@ from ..core.families import LinearPeriodic
 
 Array = NDArray[np.float64]
 
-# Error up to which the motions are sought: maxima are looked for, not told.
-_RTOL = 1e-4
-_SHARE = 0.1
+# Error of the transition matrices: maxima are looked for, not reported.
+_RTOL = 1e-6
+# Angles of a revolution.
+_ANGLES = 128
 
 
 def scanned_deflections(system: LinearPeriodic, speeds: Array) -> Array | None:
     """Return the largest r.m.s. deflection over the length at rising speeds, ``(ns,)``.
-
-    By the motions of :func:`elastolink.stress_curve`: on moving modes, all others answering
-    quasi-statically, rational in the speed between some tens of speeds.
 
     Parameters
     ----------
@@ -33,32 +31,22 @@ def scanned_deflections(system: LinearPeriodic, speeds: Array) -> Array | None:
     ndarray or None
         None where the system has no slow modes apart from fast ones.
     """
-    from ..reduction.balance import samples_table
-    from ..reduction.ranges import grid_of, ranges_of
-    from ..reduction.residuals import motion_of
-    from ..reduction.sweeping import motions
+    from ..periodic.swept_motions import Truncations, speed_ranges
 
     if system.structure is None or system.relative_deflection is None:
         return None
     try:
-        grid = grid_of(system, None)
-        pieces = ranges_of(system, grid, speeds, _RTOL)
-    except BadInput:
+        truncations = Truncations(system)
+        modes = truncations.usable(0, _ANGLES)[-1]
+    except (BadInput, IndexError):
         # No subspace is smooth: the slow way finds what there is.
         return None
-    rows = system.relative_deflection(grid.still.theta)
     out = np.empty(len(speeds))
-    for piece in pieces:
-        balance = piece.whole.truncated(piece.harmonics)
-        own = speeds[piece.part]
-        series = motions(balance, own, _SHARE * _RTOL).series
-        table = samples_table(grid.still.theta, balance.harmonics, balance.wave)
-        forced = piece.condensed.forced
-        values = np.empty(len(own))
-        for k, speed in enumerate(own.tolist()):
-            q = motion_of(piece.condensed, balance, series[:, k], speed, table)
-            q = q + sum(speed**e * v[..., 0] for (e, _), v in forced.items())
-            bent = (rows @ q[..., None])[..., 0]
-            values[k] = np.sqrt(np.max(np.mean(bent**2, axis=0)))
-        out[piece.part] = values
+    for piece in speed_ranges(speeds):
+        span = float(speeds[piece][0]), float(speeds[piece][-1])
+        moving = truncations.motions(modes, _ANGLES, span, _RTOL)
+        rows = system.relative_deflection(moving.truncated.theta)
+        for part, q, _ in moving.blocks(speeds[piece]):
+            bent = rows @ np.moveaxis(q, 0, -1)
+            out[piece][part] = np.sqrt(np.max(np.mean(bent**2, axis=0), axis=0))
     return out

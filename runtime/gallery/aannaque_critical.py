@@ -49,7 +49,7 @@ def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
     With one damping ratio they follow one another as the modes do, but where two pairs meet.
     """
     from ..floquet import floquet_multipliers
-    from ..reduction import reduced_system
+    from ..periodic.reduced import reduced_system
 
     system = reduced_system(beams(1, drop), _MODES)
     found = floquet_multipliers(system, _SPEEDS, rtol=1e-6).multipliers.real

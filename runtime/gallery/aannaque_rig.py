@@ -17,7 +17,7 @@ from ..scenes import load_scene
 
 if TYPE_CHECKING:
     from ..periodic import SteadyState
-    from ..reduction import StressCurve
+    from ..periodic.stresses import StressCurve
 
 Array = NDArray[np.float64]
 
@@ -119,7 +119,7 @@ def curve(scene: str, frame: float, low: float, high: float, count: int) -> Stre
     count : int
         Their number.
     """
-    from ..reduction import stress_curve
+    from ..periodic.stresses import stress_curve
 
     return stress_curve(
         rig(scene, frame), np.linspace(low, high, count), stations=STATIONS, rtol=_CURVE

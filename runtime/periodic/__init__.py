@@ -8,6 +8,8 @@
     The motion from a start, over any number of revolutions.
 ``prepare``
     Tables for a range of speeds: later answers take micro- or milliseconds.
+``stress_curve``
+    The largest stress of each link of a structure of beams at a thousand speeds.
 
 All of them rest on :mod:`~.transition`: collocation over segments of the period, in steps that suit
 the modes that are still alive after it.  The names load on first use.
@@ -24,31 +26,41 @@ if TYPE_CHECKING:
     from .multipliers import FloquetMultipliers, Monodromy, floquet_multipliers, monodromy
     from .periodic_motion import SteadyState, steady_state
     from .prepared import Prepared, prepare
+    from .reduced import ReducedSystem, reduced_system
+    from .stresses import StressCurve, stress_curve
 
 _PUBLIC = {
     "FloquetMultipliers": "multipliers",
     "Monodromy": "multipliers",
     "Prepared": "prepared",
+    "ReducedSystem": "reduced",
     "SteadyState": "periodic_motion",
+    "StressCurve": "stresses",
     "Trajectory": "motion",
     "floquet_multipliers": "multipliers",
     "monodromy": "multipliers",
     "prepare": "prepared",
+    "reduced_system": "reduced",
     "simulate": "motion",
     "steady_state": "periodic_motion",
+    "stress_curve": "stresses",
 }
 
 __all__ = [
     "FloquetMultipliers",
     "Monodromy",
     "Prepared",
+    "ReducedSystem",
     "SteadyState",
+    "StressCurve",
     "Trajectory",
     "floquet_multipliers",
     "monodromy",
     "prepare",
+    "reduced_system",
     "simulate",
     "steady_state",
+    "stress_curve",
 ]
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -9,8 +9,8 @@ from functools import cached_property, partial
 import numpy as np
 
 from ..core.families import LinearPeriodic, Term
-from ..floquet.first_order import even_angles
-from ..periodic.moving_basis import MovingBasis, moving_basis
+from ..core.trigonometric import even_angles
+from .moving_basis import MovingBasis, moving_basis
 from ..core.trigonometric import Array, interpolated, tail
 
 # Even angles from which the reduced arrays are interpolated.

@@ -264,7 +264,7 @@ def steady_state(
     _check_memory(equation, samples)
     count, n = len(equation.speed), equation.size
     with bar(progress, count) as tick:
-        solve = _by_segments if method == "auto" else _by_balance
+        solve = by_segments if method == "auto" else _by_balance
         q, slope, error, sensitivity = solve(equation, rtol, int(samples), tick)
     lost = ~(_EPS * sensitivity < _LOST) | ~np.all(np.isfinite(q), axis=(1, 2))
     lost |= ~(np.max(error, axis=1, initial=0.0) < 1.0)
@@ -299,8 +299,8 @@ def steady_state(
 _Motion = tuple[Array, Array, Array, Array]
 
 
-def _by_segments(
-    equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None
+def by_segments(
+    equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None = None
 ) -> _Motion:
     """Return q and dq/dtheta ``(nb, nt, n)``, errors ``(nb, n)`` and sensitivities ``(nb,)``."""
     way = method("radau", 5 if rtol > 1e-4 else 7 if rtol > 1e-8 else 10)
@@ -388,7 +388,7 @@ def peaks(q: Array) -> Array:
 
 
 def _by_balance(
-    equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None
+    equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None = None
 ) -> _Motion:
     rows = []
     for member in range(len(equation.speed)):

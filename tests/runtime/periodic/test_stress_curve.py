@@ -1,13 +1,11 @@
-"""The stress curve: the same answer by any workers and orders, against stress(), refusals."""
-
-from concurrent.futures import ThreadPoolExecutor
+"""The stress curve: the same answer in any order, against stress(), refusals."""
 
 import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.beams.stress import stress
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.reduction import stress_curve
+from elastolink.runtime.periodic import stress_curve
 
 SPEEDS = np.linspace(18.0, 60.0, 90)
 
@@ -30,22 +28,17 @@ def test_it_passes_its_own_checks(curve):
     assert curve.links == ("crank", "coupler", "follower")
 
 
-def test_the_answer_does_not_depend_on_workers_or_order(system, curve):
-    with ThreadPoolExecutor(3) as pool:
-        threads = stress_curve(system, SPEEDS, stations=5, executor=pool)
-    assert np.array_equal(threads.maximum, curve.maximum)
-    assert np.array_equal(threads.error, curve.error)
+def test_the_answer_does_not_depend_on_the_order(system, curve):
     turned = stress_curve(system, SPEEDS[::-1], stations=5)
     assert np.array_equal(turned.maximum, curve.maximum[::-1])
+    assert np.array_equal(turned.error, curve.error[::-1])
 
 
 @pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 def test_it_agrees_with_stress_of_a_steady_state(system, curve):
     """Another solver of the motion, and the recovery itself: maxima, places and angles."""
     for k in (3, 77):
-        steady = el.steady_state(
-            system, float(SPEEDS[k]), method="harmonic_balance", stability=False
-        )
+        steady = el.steady_state(system, float(SPEEDS[k]), method="harmonic_balance")
         found = stress(system, steady, stations=5)
         for n, link in enumerate(curve.links):
             peak = found.maxima[link]
@@ -111,6 +104,21 @@ def test_no_damping_and_no_beams_are_refused(system):
         stress_curve(system.with_parameters(damping_ratio=0.0), [20.0])
     with pytest.raises(BadInput):
         stress_curve(el.load_scene("smith_1972_5152_sixteenth_inch").system(), [20.0])
+
+
+@pytest.mark.slow
+def test_three_elements_and_usual_damping_have_an_unstable_range():
+    """27 freedoms at 2 %: unstable from 66.3 to 67.3 rad/s, by the whole system too."""
+    whole = el.load_scene("aannaque_1996_table_4_1").system()
+    speeds = np.linspace(60.0, 70.0, 101)
+    curve = stress_curve(whole, speeds, stations=3, rtol=1e-3)
+    ((low, high),) = curve.unstable_ranges
+    assert 66.1 < low < 66.35 and 67.25 < high < 67.45
+    picked = [0, 61, 68, 74, 100]
+    truth = el.floquet_multipliers(whole, speeds[picked], rtol=1e-8)
+    largest = np.max(np.abs(truth.multipliers), axis=1)
+    assert np.all(np.abs(curve.multiplier[picked] - largest) <= curve.multiplier_error[picked])
+    assert np.any(largest > 1.0) and np.any(largest < 1.0)
 
 
 def test_it_draws_itself_and_leaves_as_csv(curve, tmp_path):

@@ -57,17 +57,15 @@ def _outcomes(seed):
     for _ in range(2):
         states += list(flows[1:] @ states[-1])
     exact = truth.coordinates(np.array(states))
-    for rtol in (1e-11, 1e-8, 1e-4):
+    for rtol in (1e-11, 1e-6):
         run = simulate(system, speed, 2.0, initial=start, samples=SAMPLES, rtol=rtol)
         assert run.passed, run.checks
         out[f"simulate {rtol:g}"] = _of_motion(run, exact)
 
     for method, rtol in (
         ("auto", 1e-10),
-        ("auto", 1e-6),
-        ("auto", 1e-3),
+        ("auto", 1e-4),
         ("harmonic_balance", 1e-9),
-        ("harmonic_balance", 1e-3),
     ):
         steady = steady_state(system, speed, method=method, rtol=rtol)
         exact_steady = motion(steady.theta)
@@ -78,6 +76,8 @@ def _outcomes(seed):
         rates = np.max(np.abs(steady.qd - rate), axis=0) / np.max(np.abs(rate), axis=0)
         assert np.all(rates <= 100 * np.max(steady.error) + 1e-12)
 
+    if seed % 2:
+        return out
     ready = prepare(system, (0.8 * speed, 1.3 * speed), samples=SAMPLES)
     out["prepared monodromy"] = _of_matrix(ready.monodromy(speed), whole)
     out["prepared simulate"] = _of_motion(ready.simulate(speed, 2, start), exact)

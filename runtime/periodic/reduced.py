@@ -9,9 +9,8 @@ from functools import cached_property, partial
 import numpy as np
 
 from ..core.families import LinearPeriodic, Term
-from ..core.trigonometric import even_angles
+from ..core.trigonometric import Array, even_angles, interpolated, tail
 from .moving_basis import MovingBasis, moving_basis
-from ..core.trigonometric import Array, interpolated, tail
 
 # Even angles from which the reduced arrays are interpolated.
 _FEWEST, _MOST = 128, 2048

@@ -10,6 +10,7 @@ import numpy as np
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from wavy_springs import Wavy, tame, verdict
 
+
 def test_boundary_figure():
     actual, figure = [], []
     rng = np.random.default_rng(3)

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 from boundary_cases import rough
-from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
@@ -14,6 +13,7 @@ COSINE = PeriodicFunction([0.0, 1.0])
 extended = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
+from half_trace_truth import half_traces
 
 
 def general(harmonics, fall, seed=0):

@@ -160,9 +160,7 @@ def _taylor_monodromy(mp, lam2, mu, damping):
         return np.array([[float(column[i]) for column in columns] for i in range(2)])
 
 
-@pytest.mark.parametrize(
-    "case", [(0.25, 2.0, 0.1), (30.0, 2.0, 0.0), (-0.5, 1.0, 0.0)]
-)
+@pytest.mark.parametrize("case", [(0.25, 2.0, 0.1), (30.0, 2.0, 0.0), (-0.5, 1.0, 0.0)])
 def test_mathieu_against_forty_digits(case):
     mp = pytest.importorskip("mpmath")
     lam2, mu, damping = case

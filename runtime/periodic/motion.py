@@ -231,7 +231,7 @@ class _Grid:
         self.intervals = ceil(whole - 1e-9)
         self.theta = start + self.step * np.arange(self.intervals + 1.0)
         self.theta[-1] = start + revolutions * 2.0 * np.pi
-        # Intervals after which the coefficients repeat; all of them, where that is at no given angle.
+        # Intervals after which the coefficients repeat; all of them, where at no given angle.
         cycle = period / self.step
         repeats = abs(cycle - round(cycle)) < 1e-9 * cycle
         self.cycle = round(cycle) if repeats else self.intervals
@@ -505,7 +505,7 @@ def _start(
     initial: tuple[ArrayLike, ArrayLike] | Sequence[ArrayLike] | None,
     start: float,
 ) -> Array:
-    """Return the scaled state at the start, ``(m,)``; refuse what is none, or where nothing moves."""
+    """Return the scaled state at the start, ``(m,)``; refuse a rest that nothing moves."""
     n = equation.size
     if initial is None:
         if not equation.forced:

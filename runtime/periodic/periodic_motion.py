@@ -442,7 +442,7 @@ def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: f
     The derivative of the series has nothing to do with the method.  Limit: an error of the highest
     harmonic kept, over the largest rate.
     """
-    count, n = len(theta), equation.size
+    count = len(theta)
     unit = equation.scale[0]
     momentum = (equation.at("mass", theta)[0] @ (slope / unit)[..., None])[..., 0]
     if "gyroscopic" in equation.fields:

@@ -6,6 +6,7 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from half_trace_truth import half_traces
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,7 +14,6 @@ COSINE = PeriodicFunction([0.0, 1.0])
 extended = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
-from half_trace_truth import half_traces
 
 
 def general(harmonics, fall, seed=0):

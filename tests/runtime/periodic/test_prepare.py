@@ -68,7 +68,7 @@ def test_steady_states_are_within_their_error(pair) -> None:
     speeds = _speeds(ready, 12)
     found = ready.steady_state(speeds)
     for k, speed in enumerate(speeds):
-        other = el.steady_state(system, speed, samples=16)
+        other = el.steady_state(system, speed, samples=16, rtol=1e-10)
         step = len(other.theta) // 16
         peak = np.max(np.abs(other.q), axis=0)
         gap = np.max(np.abs(found.q[k] - other.q[::step]), axis=0) / peak
@@ -203,11 +203,3 @@ def test_inertia_that_depends_on_the_speed_is_refused() -> None:
     terms = (el.Term("M", None, np.eye(1), power=1), el.Term("K", None, np.eye(1)))
     with pytest.raises(BadInput, match="power of the speed"):
         el.prepare(el.LinearPeriodic(1, terms, {}, lambda values: {}), (1.0, 2.0))
-
-
-def test_a_stiff_system_is_told_to_be_reduced_first() -> None:
-    """Nine freedoms, very slow: tables of gigabytes are refused before they are made."""
-    overrides = {f"{link}.elements": 1 for link in ("crank", "coupler", "follower")}
-    system = el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
-    with pytest.raises(BadInput, match="MB"):
-        el.prepare(system, (0.5, 1.0))

@@ -54,7 +54,7 @@ class CompiledTable:
         return found
 
     def march(self, inverse: float, start: Array, periods: int) -> tuple[Array, Array]:
-        """Return states ``(periods nt + 1, m)``, and the largest size of each component at starts."""
+        """Return states ``(periods nt + 1, m)``, and the largest of each component at starts."""
         states: tuple[Array, Array] = kernels()[1](
             self.groups, self.inner, self.within, self._at(inverse), start, periods
         )

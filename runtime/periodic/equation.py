@@ -466,7 +466,7 @@ def equation_of(
 def _batch(
     speed: ArrayLike, parameters: Mapping[str, ArrayLike]
 ) -> tuple[Array, dict[str, Array], tuple[int, ...]]:
-    """Return speeds, parameter values and the shape to which they broadcast; refuse unusable ones."""
+    """Return speeds, parameter values and the shape to which they broadcast."""
     speeds = numbers("speed", speed)
     if not (np.all(np.isfinite(speeds)) and np.all(speeds > 0)):
         raise bad("speed", speed, "positive finite speeds [rad/s]", "leave out speeds <= 0")

@@ -87,7 +87,10 @@ def _series(equation: Equation, harmonics: int) -> tuple[ComplexArray, float]:
     force = np.fft.fft(np.broadcast_to(equation.at("force", angles)[0], (count, n)), axis=0) / count
     load = np.where((2 * np.abs(order) < count)[:, None], force[order % count], 0.0)
     # Rows are weighed by their largest entry: inertia grows with the square of the harmonic.
-    weights = 1.0 / np.max(np.abs(matrix), axis=1)
+    largest = np.max(np.abs(matrix), axis=1)
+    if not np.all(largest > 0.0):
+        return np.full((harmonics + 1, n), np.nan + 0j), float("inf")
+    weights = 1.0 / largest
     weighed = weights[:, None] * matrix
     condition = float(np.linalg.cond(weighed)) if size * n <= 600 else _estimate(weighed)
     if not condition < 1.0 / _EPS:

@@ -35,7 +35,8 @@ _MOST_INTERVALS, _MOST_SAMPLES = 2**22, 2**20
 # for fast modes: each level is compared with the one before.
 _LEVELS = (
     *((stages, 1.0) for stages in (2, 3, 4, 5, 6, 8)),
-    *((10, fineness) for fineness in (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)),
+    # Whole numbers: two levels that round up to the same steps would agree however wrong they are.
+    *((10, fineness) for fineness in (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)),
 )
 # Phase of the fastest living mode in a step of fineness 1 [rad].
 _PHASE = 16.0
@@ -230,7 +231,7 @@ class _Grid:
         self.intervals = ceil(whole - 1e-9)
         self.theta = start + self.step * np.arange(self.intervals + 1.0)
         self.theta[-1] = start + revolutions * 2.0 * np.pi
-        # Intervals after which the coefficients repeat; all of them, where that is at no given angle.
+        # Intervals after which the coefficients repeat; all of them, where at no given angle.
         cycle = period / self.step
         repeats = abs(cycle - round(cycle)) < 1e-9 * cycle
         self.cycle = round(cycle) if repeats else self.intervals
@@ -504,7 +505,7 @@ def _start(
     initial: tuple[ArrayLike, ArrayLike] | Sequence[ArrayLike] | None,
     start: float,
 ) -> Array:
-    """Return the scaled state at the start, ``(m,)``; refuse what is none, or where nothing moves."""
+    """Return the scaled state at the start, ``(m,)``; refuse a rest that nothing moves."""
     n = equation.size
     if initial is None:
         if not equation.forced:

@@ -114,7 +114,7 @@ def monodromy(
     equation = equation_of(system, speed, _checked(rtol, parameters))
     way, m = choose(equation, rtol), 2 * equation.size
     solutions, errors, segments = refined(
-        equation, way, rtol, partial(_matrices, way), _gap, least=0.3 if equation.damped else 0.01
+        equation, way, rtol, partial(_matrices, way), _gap, least=0.3 if equation.damped else 0.025
     )
     scaled, exponent, rounding = _stacked(solutions, (m, m), (), ())
     exponent, error = exponent.astype(np.int64), errors[:, 0]
@@ -308,7 +308,7 @@ def rounding_error(equation: Equation, segments: int) -> Array:
     """
     living = equation.frequency * np.exp(-equation.decay)
     turning = np.max(living, axis=1, initial=0.0) * equation.period
-    value: Array = _EPS * (32.0 + 0.5 * segments + turning)
+    value: Array = _EPS * (96.0 + 2.0 * segments + 2.0 * turning)
     return value
 
 

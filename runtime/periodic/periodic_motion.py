@@ -259,6 +259,8 @@ def steady_state(
     disturbance of the forcing leads far away.
     """
     _check_arguments(method, rtol, samples)
+    if not numbers("speed", speed).size:
+        raise bad("speed", "no speed at all", "at least one speed [rad/s]", "give some")
     equation = equation_of(system, speed, parameters, forcing=True)
     _check_forcing(equation)
     _check_memory(equation, samples)
@@ -440,7 +442,7 @@ def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: f
     The derivative of the series has nothing to do with the method.  Limit: an error of the highest
     harmonic kept, over the largest rate.
     """
-    count, n = len(theta), equation.size
+    count = len(theta)
     unit = equation.scale[0]
     momentum = (equation.at("mass", theta)[0] @ (slope / unit)[..., None])[..., 0]
     if "gyroscopic" in equation.fields:
@@ -455,7 +457,8 @@ def _residual(equation: Equation, theta: Array, q: Array, slope: Array, error: f
     rise = np.fft.irfft(1j * waves[:, None] * series, n=count, axis=0)
     generator = equation.generator(theta + 0.5 * equation.period / count)[0]
     expected = (generator[:, :-1, :-1] @ between[..., None])[..., 0] + generator[:, :-1, -1]
-    fastest = waves[-1] + float(np.max(equation.frequency))
+    # Drag counts as well as springs: a rate is in error by as much times what multiplies it.
+    fastest = waves[-1] + float(np.max(np.abs(generator[:, :-1, :-1])))
     value = float(np.max(np.abs(rise - expected)) / (np.max(np.abs(states)) * fastest))
     return Check(value, 10 * error + 1e-12)
 
@@ -472,11 +475,10 @@ def _check_arguments(chosen: str, rtol: float, samples: int) -> None:
 
 
 def _check_forcing(equation: Equation) -> None:
-    """Refuse a system on which nothing acts, and a batch without a member."""
-    if not len(equation.speed):
-        raise bad("speed", "no speed at all", "at least one speed [rad/s]", "give some")
+    """Refuse a system on which nothing acts."""
     if not equation.forced or not np.any(equation.largest_force()):
-        found = "forcing that is zero" if equation.forced else "a system without forcing f, h, p"
+        there = any(term.array in "fhp" for term in equation.system.terms)
+        found = "forcing that is zero" if there else "a system without forcing f, h, p"
         raise bad("steady_state", found, "a forced system", "add the forcing")
 
 

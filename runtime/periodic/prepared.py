@@ -495,7 +495,7 @@ def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array
 
 
 def _check_inertia(system: LinearPeriodic) -> None:
-    """Refuse inertia that depends on the speed: rates follow from momenta the same at all speeds."""
+    """Refuse inertia that depends on the speed: rates follow from momenta alike at all."""
     for term in system.terms:
         if term.array in ("M", "A") and term.power and term.array in SPEED_POWER:
             found, fix = f"a term {term.array} with a power of the speed", "use simulate"

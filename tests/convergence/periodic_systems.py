@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.floquet.first_order import canonical_form
-from elastolink.runtime.response.request import resampled
+from elastolink.runtime.core.trigonometric import resampled
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic.equation import equation_of
 
 
 def named(names):
@@ -46,12 +46,9 @@ def peak_gap(found, other):
 
 def hamiltonian_gap(system, speed, angles):
     """Return how far J L is from symmetric, entries over their natural sizes."""
-    flow = canonical_form(system, speed).plain_generator(angles)
+    flow = equation_of(system, speed).generator(angles)[0]
     n = system.size
     unit = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
-    mass = np.sqrt(np.diag(system.array("M", angles[:1])[0]))
-    # y = (q, p): masses make displacements and momenta alike.
-    scale = np.concatenate([1.0 / mass, mass])
-    hamiltonian = unit @ flow * scale * scale[:, None]
+    hamiltonian = unit @ flow
     odd = np.abs(hamiltonian - np.swapaxes(hamiltonian, -1, -2))
     return float(np.max(odd) / np.max(np.abs(hamiltonian)))

@@ -19,7 +19,11 @@ Reals = NDArray[np.longdouble]
 
 @dataclass(frozen=True)
 class Equation:
-    """A system at one speed in canonical variables: ``L = sum_k a_k cos k nu t + b_k sin k nu t``."""
+    """A system at one speed in canonical variables: ``L = sum_k a_k cos k nu t + b_k sin k nu t``.
+
+    The state is (q, p), and 1 where forced, over ``scale``: powers of two that make the entries of
+    L alike.
+    """
 
     a: Array
     b: Array
@@ -27,10 +31,11 @@ class Equation:
     size: int
     mass: Array
     gyro: Array
+    scale: Array
 
     @classmethod
-    def of(cls, system, speed, *, forced, samples=1024, cut=1e-17):
-        """Return the equation of a system; the state is (q, p), and 1 where forced."""
+    def of(cls, system, speed, *, forced, samples=256, cut=1e-15):
+        """Return the equation of a system, harmonics below a share of their entry left out."""
         n, w = system.size, speed
         theta = system.period * np.arange(samples) / samples
         at = {name: system.array(name, theta, w) for name in ("M", "A", "B", "C", "D", "K", "Kg")}
@@ -45,16 +50,23 @@ class Equation:
         if forced:
             force = [system.array(name, theta, w) / w**k for k, name in enumerate(("f", "h", "p"))]
             values[:, n : 2 * n, -1] = sum(force)
-        table = np.fft.rfft(values, axis=0) / samples
+        pull = np.max(np.abs(values[:, n : 2 * n, :n])) / np.max(np.abs(flexibility))
+        unit = np.exp2(np.round(np.log2(pull) / 4.0))
+        scale = np.concatenate([np.full(n, 1.0 / unit), np.full(n, unit), np.ones(int(forced))])
+        table = np.fft.rfft(values * (scale / scale[:, None]), axis=0) / samples
         table[1:] *= 2.0
-        least = max(cut, 1e-16) * np.max(np.abs(table))
+        least = cut * np.max(np.abs(table), axis=0)
         a, b = (np.where(np.abs(v) > least, v, 0.0) for v in (table.real, -table.imag))
         count = int(np.flatnonzero(np.any((a != 0.0) | (b != 0.0), axis=(1, 2)))[-1]) + 1
-        return cls(a[:count], b[:count], system.period, n, at["M"][0], at["A"][0])
+        return cls(a[:count], b[:count], system.period, n, at["M"][0], at["A"][0], scale)
 
     @property
     def states(self):
         return self.a.shape[-1]
+
+    def unscaled(self, flows):
+        """Return transition matrices of (q, p), and 1 where forced."""
+        return flows * (self.scale[:, None] / self.scale)
 
     @property
     def harmonics(self):
@@ -74,10 +86,11 @@ class Equation:
         momentum = self.mass @ slope + self.gyro @ q
         state = np.ones(self.states)
         state[: 2 * self.size] = np.concatenate([q, momentum])
-        return state
+        return state / self.scale
 
     def coordinates(self, states):
-        return states[:, : self.size]
+        """Return q of states ``(nt, m)``."""
+        return states[:, : self.size] * self.scale[: self.size]
 
 
 _PI = np.longdouble("3.141592653589793238462643383279502884197")

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 from boundary_cases import rough
-from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.half_trace import discriminant, discriminant_grid
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from half_trace_truth import half_traces
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

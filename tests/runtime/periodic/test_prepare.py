@@ -8,7 +8,6 @@ import pickle
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.rod import rod_of
 from elastolink.runtime.core.errors import BadInput
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
@@ -16,11 +15,17 @@ pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 SCENE = "smith_1972_5152_sixteenth_inch"
 
 
+def _rod():
+    """Beale & Scott's very flexible rod, of three polynomial modes."""
+    overrides = {"model.formulation": "polynomial", "model.modes": 3}
+    return el.load_scene("beale_1992_flexible_rod", overrides=overrides).linear_system()
+
+
 @pytest.fixture(scope="module", params=[1, 2, 3, "rod"])
 def pair(request):
     """A system and its prepared form, 50 to 200 rad/s (the rod 500 to 2000)."""
     if request.param == "rod":
-        system, span = rod_of("3 polynomial modes"), (500.0, 2000.0)
+        system, span = _rod(), (500.0, 2000.0)
     else:
         system = el.load_scene(SCENE, overrides={"model.modes": request.param}).system()
         span = (50.0, 200.0)
@@ -63,7 +68,7 @@ def test_steady_states_are_within_their_error(pair) -> None:
     speeds = _speeds(ready, 12)
     found = ready.steady_state(speeds)
     for k, speed in enumerate(speeds):
-        other = el.steady_state(system, speed, samples=16)
+        other = el.steady_state(system, speed, samples=16, rtol=1e-10)
         step = len(other.theta) // 16
         peak = np.max(np.abs(other.q), axis=0)
         gap = np.max(np.abs(found.q[k] - other.q[::step]), axis=0) / peak
@@ -91,24 +96,6 @@ def test_motions_are_within_their_error(pair) -> None:
         np.testing.assert_allclose(found.theta, other.theta[::step], atol=1e-12)
         scale = np.max(np.abs(other.qd))
         np.testing.assert_allclose(found.qd, other.qd[::step], atol=1e-8 * scale)
-
-
-def test_transitions_are_found_in_another_array_namespace() -> None:
-    """By array-api-strict: the same matrices to round-off, and arrays of that namespace."""
-    xp = pytest.importorskip("array_api_strict")
-    system = el.load_scene(SCENE, overrides={"model.modes": 2}).system()
-    ready = el.prepare(system, (60.0, 100.0), samples=4)
-    speeds = np.array([60.0, 71.3, 100.0])
-    plain, whole = ready.transitions(speeds)
-    other, end = ready.transitions(xp.asarray(speeds))
-    assert other.__array_namespace__() is xp
-    assert plain.shape == (3, 4, 5, 5)
-    np.testing.assert_allclose(np.from_dlpack(other), plain, rtol=0, atol=1e-14 * np.max(plain))
-    np.testing.assert_allclose(np.from_dlpack(end), whole, rtol=0, atol=1e-14 * np.max(whole))
-    scaled = ready.monodromy(speeds).scaled
-    np.testing.assert_allclose(whole[:, :4, :4], scaled, rtol=1e-12, atol=1e-13)
-    with pytest.raises(BadInput, match="speed"):
-        ready.transitions(xp.asarray([50.0]))
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e9])
@@ -168,7 +155,7 @@ def test_one_speed_alone_needs_no_polynomials() -> None:
     exact = el.monodromy(system, 80.0, follower_inertia=1e-3).matrix
     np.testing.assert_allclose(ready.monodromy(80.0).matrix, exact, rtol=1e-11, atol=1e-12)
     assert len(ready.tables) == 1
-    assert len(ready.tables[0].stretches) == 1
+    assert len(ready.tables[0].groups) == 1
 
 
 def test_results_bear_pickling_and_know_their_origin() -> None:
@@ -216,11 +203,3 @@ def test_inertia_that_depends_on_the_speed_is_refused() -> None:
     terms = (el.Term("M", None, np.eye(1), power=1), el.Term("K", None, np.eye(1)))
     with pytest.raises(BadInput, match="power of the speed"):
         el.prepare(el.LinearPeriodic(1, terms, {}, lambda values: {}), (1.0, 2.0))
-
-
-def test_a_stiff_system_is_told_to_be_reduced_first() -> None:
-    """Nine freedoms, very slow: tables of gigabytes are refused before they are made."""
-    overrides = {f"{link}.elements": 1 for link in ("crank", "coupler", "follower")}
-    system = el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
-    with pytest.raises(BadInput, match="reduced_system"):
-        el.prepare(system, (0.5, 1.0))

@@ -1,0 +1,127 @@
+"""Error estimates of linear periodic systems, over random systems that other routes solve.
+
+Two routes: Taylor series in extended precision (``taylor_truth``: every kind of term, one to three
+coordinates, known to about 1e-15 of the flow, which the Fourier series of the terms lose), and
+springs seen in wavy coordinates, whose multipliers are known in closed form.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import taylor_truth
+from elastolink.runtime.periodic import (
+    floquet_multipliers,
+    monodromy,
+    prepare,
+    simulate,
+    steady_state,
+)
+from manufactured import manufactured
+from wavy_springs import Wavy, tame, verdict
+
+pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
+COUNTS = [20, pytest.param(200, marks=pytest.mark.slow)]
+EPS = float(np.finfo(float).eps)
+SAMPLES = 8
+
+
+def _of_motion(result, truth):
+    """Return the actual errors of a motion over the peaks, and its error estimates."""
+    gap = np.max(np.abs(result.q - truth), axis=0) / np.max(np.abs(truth), axis=0)
+    return [(float(a), float(e)) for a, e in zip(gap, result.error, strict=True)]
+
+
+def _of_matrix(result, exact):
+    """Return the actual error of a monodromy matrix in scaled variables, and its estimate."""
+    exact = exact / result.scale[:, None] * result.scale
+    top = np.max(np.abs(exact))
+    return [(float(np.max(np.abs(result.scaled - exact)) / top), float(result.error))]
+
+
+def _outcomes(seed):
+    """Return by answer the actual errors and the estimates, of one random system."""
+    system, speed, motion = manufactured(seed)
+    rng, n = np.random.default_rng(seed), system.size
+    truth = taylor_truth.Equation.of(system, speed, forced=True)
+    flows = taylor_truth.flows(truth, 1.0, SAMPLES)
+    whole = truth.unscaled(flows[-1])[: 2 * n, : 2 * n]
+    out = {}
+    for rtol in (1e-13, 1e-10, 1e-5):
+        matrix = monodromy(system, speed, rtol=rtol)
+        assert matrix.passed, matrix.checks
+        out[f"monodromy {rtol:g}"] = _of_matrix(matrix, whole)
+
+    start = rng.standard_normal(n), speed * rng.standard_normal(n)
+    states = [truth.start(start[0], start[1] / speed).astype(np.longdouble)]
+    for _ in range(2):
+        states += list(flows[1:] @ states[-1])
+    exact = truth.coordinates(np.array(states))
+    for rtol in (1e-11, 1e-6):
+        run = simulate(system, speed, 2.0, initial=start, samples=SAMPLES, rtol=rtol)
+        assert run.passed, run.checks
+        out[f"simulate {rtol:g}"] = _of_motion(run, exact)
+
+    for method, rtol in (
+        ("auto", 1e-10),
+        ("auto", 1e-4),
+        ("harmonic_balance", 1e-9),
+    ):
+        steady = steady_state(system, speed, method=method, rtol=rtol)
+        exact_steady = motion(steady.theta)
+        out[f"{method} {rtol:g}"] = _of_motion(steady, exact_steady)
+        assert steady.passed, steady.checks
+        # A rate is less accurate by the harmonics that it weighs up.
+        rate = speed * motion.derivative(steady.theta)
+        rates = np.max(np.abs(steady.qd - rate), axis=0) / np.max(np.abs(rate), axis=0)
+        assert np.all(rates <= 100 * np.max(steady.error) + 1e-12)
+
+    if seed % 2:
+        return out
+    ready = prepare(system, (0.8 * speed, 1.3 * speed), samples=SAMPLES)
+    out["prepared monodromy"] = _of_matrix(ready.monodromy(speed), whole)
+    out["prepared simulate"] = _of_motion(ready.simulate(speed, 2, start), exact)
+    angles = ready.theta
+    out["prepared steady"] = _of_motion(ready.steady_state(speed), motion(angles))
+    return out
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_the_estimates_cover_the_errors_and_are_not_idle(count):
+    """In 99 of 100 cases, and not by more than a thousand times in the middle."""
+    total: dict[str, list[tuple[float, float]]] = {}
+    for seed in range(count):
+        for name, pairs in _outcomes(seed).items():
+            total.setdefault(name, []).extend(pairs)
+    for name, pairs in total.items():
+        actual, estimate = np.array(pairs).T
+        # Of few systems one may be missed.
+        assert np.sum(actual > estimate) <= max(1, 0.01 * len(actual)), name
+        # Below a few units in the last place the reference's own rounding shows.
+        ratio = estimate / np.maximum(actual, 4 * EPS)
+        assert np.median(ratio) <= 1e3, f"{name}: {np.median(ratio):.3g}"
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("repelling", [False, True])
+def test_estimates_of_multipliers(repelling, count):
+    rng = np.random.default_rng(2)
+    actual, estimate, scenes = [], [], 0
+    while scenes < count:
+        squares = rng.uniform(1.0, 60.0, 2)
+        if repelling:
+            squares[0] *= -0.2
+        scene = Wavy(rng, squares)
+        if not tame(scene):
+            continue
+        scenes += 1
+        speed = float(rng.uniform(0.3, 4.0))
+        result = floquet_multipliers(scene.system, speed)
+        exact = scene.multipliers(speed)
+        assert result.passed, (result.checks, squares, speed)
+        for value, error in zip(result.multipliers, result.error, strict=True):
+            actual.append(np.min(np.abs(exact - value)))
+            estimate.append(error)
+    covered, idle = verdict(actual, estimate)
+    assert covered >= 0.99
+    assert idle <= 1e3

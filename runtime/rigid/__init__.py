@@ -10,33 +10,22 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .bounds import Bounds
-    from .cases import balance_case, case_counterweights, fully_balanced
-    from .compromise import TradeOff, trade_off
-    from .counterweights import Counterweight, with_counterweights
+    from .balancing import Balancing, TradeOff, balance, trade_off
+    from .cases import case_counterweights
+    from .counterweights import Bounds, Counterweight, with_counterweights
     from .flywheel import Flywheel, TorqueFluctuation, flywheel_inertia, torque_fluctuation
     from .force_result import RigidForces
     from .forces import driving_torque, pin_forces, rigid_forces, shaking_force, shaking_moment
-    from .link_inertia import (
-        BalancedLink,
-        balanced_link_inertia,
-        density_number,
-        offset_function,
-        optimal_offset,
-    )
     from .loads import Load, LoadState, Spring, TorsionSpring
     from .machine import Machine
     from .masses import MassDistribution
     from .motor_run import RunUp, run_up
     from .motors import TorqueLine
-    from .optimum import Balancing, balance, compare_case, peaks_of
     from .peaks import ForcePeak, force_peaks
-    from .reciprocating import ReciprocatingBalance, reciprocating_balance
 
 _PUBLIC = {
-    "BalancedLink": "link_inertia",
-    "Balancing": "optimum",
-    "Bounds": "bounds",
+    "Balancing": "balancing",
+    "Bounds": "counterweights",
     "Counterweight": "counterweights",
     "Flywheel": "flywheel",
     "ForcePeak": "peaks",
@@ -44,40 +33,29 @@ _PUBLIC = {
     "LoadState": "loads",
     "Machine": "machine",
     "MassDistribution": "masses",
-    "ReciprocatingBalance": "reciprocating",
     "RigidForces": "force_result",
     "RunUp": "motor_run",
     "Spring": "loads",
     "TorqueFluctuation": "flywheel",
     "TorqueLine": "motors",
     "TorsionSpring": "loads",
-    "TradeOff": "compromise",
-    "balance": "optimum",
-    "balance_case": "cases",
-    "balanced_link_inertia": "link_inertia",
+    "TradeOff": "balancing",
+    "balance": "balancing",
     "case_counterweights": "cases",
-    "compare_case": "optimum",
-    "density_number": "link_inertia",
     "driving_torque": "forces",
     "flywheel_inertia": "flywheel",
     "force_peaks": "peaks",
-    "fully_balanced": "cases",
-    "offset_function": "link_inertia",
-    "optimal_offset": "link_inertia",
-    "peaks_of": "optimum",
     "pin_forces": "forces",
-    "reciprocating_balance": "reciprocating",
     "rigid_forces": "forces",
     "run_up": "motor_run",
     "shaking_force": "forces",
     "shaking_moment": "forces",
     "torque_fluctuation": "flywheel",
-    "trade_off": "compromise",
+    "trade_off": "balancing",
     "with_counterweights": "counterweights",
 }
 
 __all__ = [
-    "BalancedLink",
     "Balancing",
     "Bounds",
     "Counterweight",
@@ -87,7 +65,6 @@ __all__ = [
     "LoadState",
     "Machine",
     "MassDistribution",
-    "ReciprocatingBalance",
     "RigidForces",
     "RunUp",
     "Spring",
@@ -96,20 +73,11 @@ __all__ = [
     "TorsionSpring",
     "TradeOff",
     "balance",
-    "balance_case",
-    "balanced_link_inertia",
     "case_counterweights",
-    "compare_case",
-    "density_number",
     "driving_torque",
     "flywheel_inertia",
     "force_peaks",
-    "fully_balanced",
-    "offset_function",
-    "optimal_offset",
-    "peaks_of",
     "pin_forces",
-    "reciprocating_balance",
     "rigid_forces",
     "run_up",
     "shaking_force",

@@ -13,7 +13,7 @@ from ..core.errors import bad
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .blocks import Array
 from .forces import described, driving_torque
-from .loads import not_finite
+from .inputs import not_finite
 from .machine import Machine
 from .one_freedom import OneFreedom
 

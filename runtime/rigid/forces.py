@@ -16,7 +16,7 @@ from ..core.results import DeferredChecks, provenance
 from .blocks import Array, evaluate
 from .force_modules import force_module
 from .force_result import FRAME_FORCE, RigidForces
-from .machine import Machine
+from .machine import Machine, require_machine
 
 Output: TypeAlias = Literal["pins", "torque", "shaking_force", "shaking_moment"]
 OUTPUTS: tuple[Output, ...] = ("pins", "torque", "shaking_force", "shaking_moment")
@@ -82,7 +82,7 @@ def rigid_forces(
     (2, 2)
     """
     wanted = _wanted(outputs)
-    _require_machine(machine)
+    require_machine(machine)
     angles, speeds, accelerations = (
         _numbers(name, value)
         for name, value in (("theta", theta), ("speed", speed), ("acceleration", acceleration))
@@ -263,11 +263,6 @@ def _wanted(outputs: Sequence[Output]) -> tuple[Output, ...]:
     if unknown or not given:
         raise bad("outputs", f"{unknown or 'nothing'}", f"some of {OUTPUTS}", "correct the names")
     return tuple(output for output in OUTPUTS if output in given)
-
-
-def _require_machine(machine: object) -> None:
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one")
 
 
 def _numbers(name: str, value: ArrayLike) -> Array:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from numbers import Real
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
+from .inputs import not_finite
 
 Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = tuple[str, float, float]
@@ -440,19 +439,6 @@ def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
 def _with_first(values: Array, shape: tuple[int, ...], inner: tuple[int, ...]) -> Array:
     flat = np.broadcast_to(values, (*shape, *inner)).reshape(-1, *inner)
     return np.concatenate([flat, flat[:1]])
-
-
-def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
-    """Return a problem for each value that is no finite number, or below the least."""
-    wanted = "a finite number" + ("" if least == -math.inf else f", at least {least:g}")
-    return [
-        Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
-        for name, value in values.items()
-        if isinstance(value, bool)
-        or not isinstance(value, Real)
-        or not math.isfinite(value)
-        or value < least
-    ]
 
 
 def _end_problems(where: str, end: object) -> list[Problem]:

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..linkages import Linkage
-from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench, not_finite
+from .inputs import not_finite
+from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
 
 AnySpring: TypeAlias = Spring | TorsionSpring
@@ -217,6 +218,12 @@ class Machine:
             vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
             parts.append(fx * vx + fy * vy + couple * moving.speed)
         return _sum(parts, motion)
+
+
+def require_machine(machine: object) -> None:
+    """Raise BadInput for what is no Machine."""
+    if not isinstance(machine, Machine):
+        raise bad("machine", type(machine).__name__, "a Machine", "build one of a linkage")
 
 
 def _turned(angle: Array, mass: MassDistribution) -> tuple[Array, Array]:

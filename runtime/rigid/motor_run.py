@@ -16,7 +16,7 @@ from ..core.results import Check, DeferredChecks, Result, provenance
 from .blocks import Array
 from .force_result import RigidForces
 from .forces import described, rigid_forces
-from .loads import not_finite
+from .inputs import not_finite
 from .machine import Machine
 from .motors import TorqueLaw, TorqueLine, torque_law
 from .one_freedom import OneFreedom

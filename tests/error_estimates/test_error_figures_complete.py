@@ -58,7 +58,6 @@ COVERED = {
     "pin_reactions": "test_beam_stress_errors.py",
     "prepare": "test_prepared_errors.py",
     "quiet_speeds": "test_design_errors.py",
-    "reciprocating_balance": "test_machine_errors.py",
     "recover": "test_beam_recovery_errors.py",
     "reduced_system": "test_reduction_errors.py",
     "resonance_curve": "test_speed_errors.py",

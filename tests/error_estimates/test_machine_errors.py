@@ -1,4 +1,4 @@
-"""Figures of flywheels, run-ups, balances and transmission against closed forms of more digits.
+"""Figures of flywheels, run-ups and transmission against closed forms of more digits.
 
 A slider-crank whose crank is a bar and whose slider has a mass, the coupler none: its inertia is
 ``J = I + m (dx/dtheta)^2``, and constant energy or constant torque gives the rest.
@@ -20,12 +20,9 @@ from elastolink.runtime.rigid import (
     Machine,
     MassDistribution,
     flywheel_inertia,
-    optimal_offset,
-    reciprocating_balance,
     run_up,
     torque_fluctuation,
 )
-from elastolink.runtime.rigid.link_inertia import balanced_link_inertia
 from honesty import verdict
 
 SCENES = 200
@@ -148,53 +145,6 @@ def test_run_ups():
         actual = _angle_error(scene, run, torque, wheel, start)
         ratios.append(np.array([run.error / max(actual, 1e-18)]))
     verdict(ratios, SCENES)
-
-
-def test_harmonics_of_a_reciprocating_balance():
-    rng = np.random.default_rng(54)
-    ratios = []
-    turn = 8 * np.arctan(np.longdouble(1))
-    theta = np.arange(64) * (turn / 64)
-    cosines = np.cos(np.outer(np.arange(4), theta))
-    sines = np.sin(np.outer(np.arange(4), theta))
-    for _ in range(SCENES):
-        scene, speed = Slider(rng), float(rng.uniform(1.0, 50.0))
-        fraction = float(rng.uniform(0.0, 1.0))
-        found = reciprocating_balance(scene.machine, speed, fraction)
-        r, w = np.longdouble(scene.radius), np.longdouble(speed)
-        rod, e = np.longdouble(scene.rod), np.longdouble(scene.offset)
-        height = e - r * np.sin(theta)
-        root = np.sqrt(rod * rod - height * height)
-        dh, ddh = -r * np.cos(theta), r * np.sin(theta)
-        second = -((dh * dh + height * ddh) / root + (height * dh) ** 2 / root**3)
-        slider = -np.longdouble(scene.mass) * w * w * (-r * np.cos(theta) + second)
-        rest = np.longdouble(scene.mass) * np.longdouble(fraction) * r * w * w
-        along, across = slider - rest * np.cos(theta), -rest * np.sin(theta)
-        for ours, force in ((found.along, along), (found.across, across)):
-            size = np.hypot(cosines @ force, sines @ force) / 32
-            size[0] /= 2
-            gaps = np.abs(ours[:4] - size).astype(float)
-            ratios.append(found.error / np.maximum(gaps, 1e-300))
-    verdict(ratios, SCENES)
-
-
-def test_inertias_of_balanced_links():
-    """Bars from -delta to 1 in units of the length, and a disc that balances them."""
-    rng = np.random.default_rng(55)
-    delta, number = rng.uniform(0.05, 1.0, SCENES), 10.0 ** rng.uniform(-3, 1, SCENES)
-    found = balanced_link_inertia(delta, number)
-    gaps = []
-    for d, k, ours in zip(delta, number, found.inertia, strict=True):
-        d, k = MP.mpf(float(d)), MP.mpf(float(k))
-        disc = (1 - d * d) / (2 * d)
-        # Disc of radius^2 = 2 K disc (in L^2) at delta: about its own centre half of that.
-        truth = (1 + d**3) / 3 + disc * d * d + disc * (2 * k * disc) / 2
-        gaps.append(float(abs(MP.mpf(float(ours)) - truth)))
-    ratio = found.error / np.maximum(gaps, 1e-300)
-    assert np.all(ratio >= 1.0)
-    verdict([ratio], SCENES)
-    best = np.asarray(optimal_offset(number))
-    assert np.all(balanced_link_inertia(best, number).inertia <= found.inertia + found.error)
 
 
 def test_extreme_transmission_angles():

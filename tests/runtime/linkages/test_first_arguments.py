@@ -3,15 +3,7 @@
 import elastolink as el
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.rigid import (
-    case_counterweights,
-    compare_case,
-    fully_balanced,
-    peaks_of,
-    reciprocating_balance,
-    trade_off,
-    with_counterweights,
-)
+from elastolink.runtime.rigid import case_counterweights, force_peaks, with_counterweights
 
 
 @pytest.mark.parametrize("wrong", [None, (1, 2, 3, 4), "crank"])
@@ -19,13 +11,10 @@ from elastolink.runtime.rigid import (
     "call",
     [
         lambda it: el.balance(it, 10.0),
-        lambda it: el.balance_case(it, "b"),
-        lambda it: trade_off(it, 1.0),
-        lambda it: compare_case(it, "b", 1.0),
+        lambda it: el.balance(it, 10.0, case="b"),
+        lambda it: el.trade_off(it, 1.0),
         lambda it: case_counterweights(it, "a"),
-        lambda it: fully_balanced(it),
-        lambda it: peaks_of(it, 1.0),
-        lambda it: reciprocating_balance(it, 1.0),
+        lambda it: force_peaks(it, 1.0),
         lambda it: with_counterweights(it, ()),
         lambda it: el.coupler_curve(it, 1.0),
         lambda it: el.mechanical_advantage(it, [0.0]),

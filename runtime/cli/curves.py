@@ -103,7 +103,7 @@ def _add_harmonics(commands: Any) -> None:
 def _curve(options: argparse.Namespace) -> int:
     opt.picture(options)
     if options.animate is not None:
-        from ..linkages.animation import check_animation_path
+        from ..linkages.pictures import check_animation_path
 
         check_animation_path(options.animate)
     linkage = opt.load(options).mechanism()
@@ -115,7 +115,7 @@ def _curve(options: argparse.Namespace) -> int:
         linkage, along, across, link=link, points=options.points, circuit=options.circuit
     )
     if options.animate is not None:
-        from ..linkages.animation import animate
+        from ..linkages.pictures import animate
 
         animate(linkage, options.animate, curves=(curve,), circuit=options.circuit)
     return opt.finish(options, curve, _described(curve))

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .animation import animate
     from .base_planes import BasePlane, base_plane
     from .classification import Classification, SlidingClassification, classify, classify_many
     from .clearance import ClearanceRange, WidthExtreme, clearance_range
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from .harmonic_analysis import Harmonics, harmonics
     from .length_tolerances import tolerances
     from .linkage import Linkage, LinkMotion, Motion, PointMotion
+    from .pictures import animate
     from .quick_return import QuickReturn, QuickReturnMotion
     from .simpson import simpson_harmonics
     from .slider_crank import SliderCrank, SliderCrankMotion
@@ -57,7 +57,7 @@ _PUBLIC = {
     "Tolerances": "tolerance_result",
     "TransmissionAngle": "transmission",
     "WidthExtreme": "clearance",
-    "animate": "animation",
+    "animate": "pictures",
     "base_plane": "base_planes",
     "classify": "classification",
     "classify_many": "classification",

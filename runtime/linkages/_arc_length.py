@@ -8,7 +8,7 @@ from math import pi
 
 import numpy as np
 
-from ._taylor import Array
+from .inputs import Array
 
 _EPS = float(np.finfo(float).eps)
 _FEW, _MANY = 10, 16

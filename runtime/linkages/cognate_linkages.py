@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import bad
-from ._circuits import Circuit
-from ._taylor import Array
+from .circuits import Circuit
 from .curves import CouplerCurve, coupler_curve
 from .four_bar import FourBar
+from .inputs import Array
 from .linkage import planar
 
 

@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import bad
-from ._taylor import Array, Complex
+from .circuits import Complex
 from .four_bar import FourBar
+from .inputs import Array
 
 
 def sextic_residual(lengths: Mapping[str, float], place: complex, points: Complex) -> Array:

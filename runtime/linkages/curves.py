@@ -14,11 +14,11 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ._arc_length import integrate_turn
-from ._circuits import Circuit
 from ._singular_points import Doubles, Slow, double_points, slowest
-from ._taylor import Array, Taylor
+from .circuits import Circuit, Taylor
 from .coupler_sextic import sextic_residual
-from .linkage import Linkage, planar
+from .inputs import Array
+from .linkage import Linkage, planar, require_linkage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -136,7 +136,7 @@ class CouplerCurve(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw path and linkage at some positions, cusps and double points marked."""
         from ..core.plotting import axes_or_new
-        from ._drawing import draw_curve
+        from .pictures import draw_curve
 
         ax = axes_or_new(ax)
         draw_curve(ax, self)
@@ -220,13 +220,6 @@ def coupler_curve(
         checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
         provenance=provenance(linkage._told()),
     )
-
-
-def require_linkage(linkage: object) -> None:
-    """Raise BadInput for what is no linkage."""
-    if not isinstance(linkage, Linkage):
-        found = type(linkage).__name__
-        raise bad("linkage", found, "FourBar, SliderCrank or QuickReturn", "give one")
 
 
 def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:

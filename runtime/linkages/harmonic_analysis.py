@@ -15,7 +15,7 @@ from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import values_at
-from ._taylor import Array
+from .inputs import Array
 from .linkage import Linkage, Motion
 
 if TYPE_CHECKING:

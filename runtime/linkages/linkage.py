@@ -407,6 +407,13 @@ def _checks(linkage: Linkage, m: Mapping[str, Array], figure: Array) -> dict[str
     return checks
 
 
+def require_linkage(linkage: object) -> None:
+    """Raise BadInput for what is no linkage."""
+    if not isinstance(linkage, Linkage):
+        wrong = type(linkage).__name__
+        raise bad("linkage", wrong, "FourBar, SliderCrank or QuickReturn", "give one")
+
+
 def turning(size: ArrayLike, angle: Array, speed: ArrayLike, change: ArrayLike) -> list[Any]:
     """Return a vector ``size e^(i angle)`` and its first two derivatives, as complex numbers."""
     arm = size * np.exp(1j * angle)

@@ -12,7 +12,6 @@ import numpy as np
 from ..core.errors import bad
 from ..core.results import Check, provenance
 from ..core.sampling import values_at
-from ._taylor import Array
 from .harmonic_analysis import (
     Harmonics,
     Source,
@@ -22,6 +21,7 @@ from .harmonic_analysis import (
     source_told,
     without_growth,
 )
+from .inputs import Array
 
 StoppingRule = Literal["printed", "every"]
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank, _drawing
-from elastolink.runtime.linkages._circuits import Circuit
-from elastolink.runtime.linkages.animation import animate
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank, pictures
+from elastolink.runtime.linkages.circuits import Circuit
 from elastolink.runtime.linkages.curves import coupler_curve
+from elastolink.runtime.linkages.pictures import animate
 from PIL import Image
 
 FOUR_BAR = FourBar(2.0, 1.0, 2.0, 2.0)
@@ -38,7 +38,7 @@ def test_frames_and_bytes(tmp_path, linkage, link):
 def test_the_bars_are_those_of_the_motion():
     for s in np.linspace(0.1, 6.0, 7):
         motion = FOUR_BAR.motion(s)
-        drawn = _drawing.bars(Circuit(FOUR_BAR), s)
+        drawn = pictures._bars(Circuit(FOUR_BAR), s)
         joints = {name: complex(*np.asarray(place)) for name, place in motion.joints.items()}
         assert drawn["crank"] == pytest.approx([joints["A"], joints["B"]], abs=1e-14)
         assert drawn["coupler"] == pytest.approx([joints["B"], joints["C"]], abs=1e-14)
@@ -46,11 +46,11 @@ def test_the_bars_are_those_of_the_motion():
 
 
 def test_slider_and_block_keep_their_place():
-    drawn = _drawing.bars(Circuit(SLIDER), 0.7)
+    drawn = pictures._bars(Circuit(SLIDER), 0.7)
     corners = drawn["slider"][:-1]
     assert np.mean(corners) == pytest.approx(drawn["coupler"][1], abs=1e-14)
     assert np.mean(corners).imag == pytest.approx(0.3, abs=1e-15)
-    drawn = _drawing.bars(Circuit(ROD), 0.7)
+    drawn = pictures._bars(Circuit(ROD), 0.7)
     corners = drawn["block"][:-1]
     assert np.mean(corners) == pytest.approx(drawn["crank"][1], abs=1e-14)
     # Two sides of the block run along the rod.
@@ -90,7 +90,7 @@ def test_an_interrupted_picture_leaves_the_old_one(tmp_path, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("matplotlib.animation.PillowWriter.grab_frame", stop)
+    monkeypatch.setattr(pictures._Film, "picture", stop)
     with pytest.raises(KeyboardInterrupt):
         animate(FOUR_BAR, path, frames=3)
     assert path.read_bytes() == b"old"

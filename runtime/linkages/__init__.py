@@ -19,19 +19,12 @@ if TYPE_CHECKING:
     from .degrees_of_freedom import Mobility, kutzbach, mobility
     from .four_bar import FourBar, FourBarMotion
     from .harmonic_analysis import Harmonics, harmonics
-    from .length_tolerances import tolerances
+    from .length_tolerances import Tolerances, tolerances
     from .linkage import Linkage, LinkMotion, Motion, PointMotion
     from .pictures import animate
     from .quick_return import QuickReturn, QuickReturnMotion
-    from .simpson import simpson_harmonics
     from .slider_crank import SliderCrank, SliderCrankMotion
-    from .tolerance_result import Tolerances
-    from .transmission import (
-        MechanicalAdvantage,
-        TransmissionAngle,
-        mechanical_advantage,
-        transmission_angle,
-    )
+    from .transmission import MechanicalAdvantage, TransmissionAngle, transmission_angle
 
 _PUBLIC = {
     "BasePlane": "base_planes",
@@ -54,7 +47,7 @@ _PUBLIC = {
     "SliderCrank": "slider_crank",
     "SliderCrankMotion": "slider_crank",
     "SlidingClassification": "classification",
-    "Tolerances": "tolerance_result",
+    "Tolerances": "length_tolerances",
     "TransmissionAngle": "transmission",
     "WidthExtreme": "clearance",
     "animate": "pictures",
@@ -66,10 +59,8 @@ _PUBLIC = {
     "coupler_curve": "curves",
     "harmonics": "harmonic_analysis",
     "kutzbach": "degrees_of_freedom",
-    "mechanical_advantage": "transmission",
     "mobility": "degrees_of_freedom",
     "sextic_nodes": "coupler_sextic",
-    "simpson_harmonics": "simpson",
     "tolerances": "length_tolerances",
     "transmission_angle": "transmission",
 }
@@ -107,10 +98,8 @@ __all__ = [
     "coupler_curve",
     "harmonics",
     "kutzbach",
-    "mechanical_advantage",
     "mobility",
     "sextic_nodes",
-    "simpson_harmonics",
     "tolerances",
     "transmission_angle",
 ]

@@ -8,7 +8,7 @@ from math import pi
 
 import numpy as np
 
-from .inputs import Array
+from .linkage import Array
 
 _EPS = float(np.finfo(float).eps)
 _FEW, _MANY = 10, 16

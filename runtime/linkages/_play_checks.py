@@ -29,7 +29,7 @@ def checks(task: Task, play: Play) -> dict[str, Check]:
 
 def _gap(task: Task, play: Play) -> float:
     """Return how far the loop with all clearance taken up stays open, over its round-off."""
-    sizes = task.linkage._unit_lengths
+    sizes = task.linkage.unit_lengths
     longest = max(abs(size) for size in sizes.values())
     limit = 64.0 * _EPS * longest * np.maximum(np.abs(task.theta), 1.0)
     blur = limit + longest * (play.error + play.nominal_error)
@@ -86,7 +86,7 @@ def _first_order(task: Task) -> float:
     allowed = 8.0 * _SMALL_PLAY**2 * small.small + 4.0 * small.error
     if task.link == "slider":
         # Across the guide the first order vanishes where the coupler lies along it.
-        leg = np.sqrt(task.linkage._unit_lengths["coupler"] * np.maximum(margin, _EPS))
+        leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, _EPS))
         allowed = allowed + 2.0 * (task.guide * part) ** 2 / leg
     clear = full.margin > 1e6 * full.blur
     return float(np.max(apart[clear] / allowed[clear], initial=0.0))

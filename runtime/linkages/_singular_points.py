@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from .circuits import Complex, Taylor
-from .inputs import Array
+from .linkage import Array
 
 # A path: parameters, shape (n,), and order, to the series of the place (x + i y) there.
 Path = Callable[[Array, int], Taylor]

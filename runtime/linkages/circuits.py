@@ -16,12 +16,18 @@ from math import factorial, pi, sqrt
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from .inputs import Array
+from .linkage import Array
 
 Complex = NDArray[np.complex128]
+
+
+def planar(value: ArrayLike) -> Array:
+    """Return complex numbers as components, shape (..., 2)."""
+    number = np.asarray(value, dtype=complex)
+    return np.stack([number.real, number.imag], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)

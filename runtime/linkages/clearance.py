@@ -259,7 +259,7 @@ def clearance_range(
         error=place(2.0 * play.error),
         error_norm=f"below, above and width [{unit}], absolute, entrywise",
         checks=DeferredChecks(partial(_checks, task, play)),
-        provenance=provenance({**linkage._told(), **told}),
+        provenance=provenance({**linkage.provenance, **told}),
     )
 
 
@@ -294,7 +294,7 @@ class Task:
         if link not in outputs:
             raise bad("link", repr(link)[:60], f"one of {', '.join(outputs)}", "choose one")
         plays = _checked(linkage, clearances, joint)
-        exponent = -linkage._scale
+        exponent = -linkage.scale
         halves = {name: math.ldexp(c / 2.0, -exponent) for name, c in plays.items()}
         guide = halves.pop(_SLIDING.get(kind, ""), 0.0)
         angles = _angles(linkage, theta)
@@ -303,7 +303,7 @@ class Task:
     @property
     def route(self) -> Route:
         """The way to the play of this output."""
-        linkage, sizes = self.linkage, self.linkage._unit_lengths
+        linkage, sizes = self.linkage, self.linkage.unit_lengths
         if isinstance(linkage, FourBar):
             return _joint_play.four_bar(sizes, linkage.branch, self.link)
         if isinstance(linkage, SliderCrank):
@@ -322,7 +322,7 @@ class Task:
         if isinstance(self.linkage, FourBar):
             # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
             reached &= found.place > found.blur
-        self.linkage._require(reached, self.theta, self.linkage._reachable())
+        self.linkage.require(reached, self.theta)
         return found
 
 

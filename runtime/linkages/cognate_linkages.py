@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.errors import bad
-from .circuits import Circuit
+from .circuits import Circuit, planar
 from .curves import CouplerCurve, coupler_curve
 from .four_bar import FourBar
-from .inputs import Array
-from .linkage import planar
+from .linkage import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ import numpy as np
 from ..core.errors import bad
 from .circuits import Complex
 from .four_bar import FourBar
-from .inputs import Array
+from .linkage import Array
 
 
 def sextic_residual(lengths: Mapping[str, float], place: complex, points: Complex) -> Array:

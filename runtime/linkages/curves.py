@@ -15,10 +15,9 @@ from ..core.inputs import require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ._arc_length import integrate_turn
 from ._singular_points import Doubles, Slow, double_points, slowest
-from .circuits import Circuit, Taylor
+from .circuits import Circuit, Taylor, planar
 from .coupler_sextic import sextic_residual
-from .inputs import Array
-from .linkage import Linkage, planar, require_linkage
+from .linkage import Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -218,7 +217,7 @@ def coupler_curve(
         error=figure,
         error_norm="distance of each position [m] from that at the same parameter",
         checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
-        provenance=provenance(linkage._told()),
+        provenance=provenance(linkage.provenance),
     )
 
 

@@ -15,8 +15,7 @@ from ..core.inputs import require_whole
 from ..core.plotting import new_figure, require_writable
 from ..core.results import write_whole
 from .circuits import Circuit, Complex
-from .inputs import Array
-from .linkage import Linkage, require_linkage
+from .linkage import Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

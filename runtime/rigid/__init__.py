@@ -14,8 +14,14 @@ if TYPE_CHECKING:
     from .cases import case_counterweights
     from .counterweights import Bounds, Counterweight, with_counterweights
     from .flywheel import Flywheel, TorqueFluctuation, flywheel_inertia, torque_fluctuation
-    from .force_result import RigidForces
-    from .forces import driving_torque, pin_forces, rigid_forces, shaking_force, shaking_moment
+    from .forces import (
+        RigidForces,
+        driving_torque,
+        pin_forces,
+        rigid_forces,
+        shaking_force,
+        shaking_moment,
+    )
     from .loads import Load, LoadState, Spring, TorsionSpring
     from .machine import Machine
     from .masses import MassDistribution
@@ -33,7 +39,7 @@ _PUBLIC = {
     "LoadState": "loads",
     "Machine": "machine",
     "MassDistribution": "masses",
-    "RigidForces": "force_result",
+    "RigidForces": "forces",
     "RunUp": "motor_run",
     "Spring": "loads",
     "TorqueFluctuation": "flywheel",

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, Result, provenance
-from .blocks import Array
+from ..linkages.linkage import Array
 from .cases import CASES, Case, Offsets, case_counterweights
 from .counterweights import Bounds, Counterweight, bounds_by_link, with_counterweights
 from .inputs import finite_number, require_link

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .blocks import Array
-from .forces import described, driving_torque
+from ..linkages.linkage import Array
+from .forces import driving_torque
 from .inputs import not_finite
 from .machine import Machine
 from .one_freedom import OneFreedom
@@ -132,7 +132,7 @@ def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
         error=tail + 32.0 * _EPS * size + _polish_error(energy),
         error_norm="energy fluctuation [J]",
         checks=DeferredChecks(partial(_mean_check, machine, speed, mean, size)),
-        provenance=provenance(described(machine)),
+        provenance=provenance(machine.provenance),
     )
 
 
@@ -247,7 +247,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
         checks=DeferredChecks(
             partial(_confirmed, machine, inertia, motor, float(speeds[0]), reached, share, moved)
         ),
-        provenance=provenance(described(machine)),
+        provenance=provenance(machine.provenance),
     )
 
 

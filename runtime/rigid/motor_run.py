@@ -12,9 +12,8 @@ import numpy as np
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .blocks import Array
-from .force_result import RigidForces
-from .forces import described, rigid_forces
+from ..linkages.linkage import Array
+from .forces import RigidForces, rigid_forces
 from .inputs import not_finite
 from .machine import Machine
 from .motors import TorqueLaw, TorqueLine, torque_law
@@ -243,7 +242,7 @@ def run_up(
         + 16.0 * np.finfo(float).eps * (1.0 + float(np.max(np.abs(angle)))),
         error_norm="crank angle [rad], largest over the run",
         checks=DeferredChecks(partial(_checks, defect, fine.status, coarse.status)),
-        provenance=provenance({**described(machine), "torque": _name(torque)}),
+        provenance=provenance({**machine.provenance, "torque": _name(torque)}),
     )
 
 

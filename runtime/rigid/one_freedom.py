@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import bad
-from .blocks import Array
-from .forces import Evaluation
-from .machine import Machine
+from ..linkages.linkage import Array
+from .evaluation import Evaluation
+from .machine import Machine, wrenches
 from .tables import ReducedTable, reduced_table
 
 _FIRST = np.array([0.0, 1.0])
@@ -81,7 +81,7 @@ class OneFreedom:
         unit = self.machine.linkage.motion(angles)
         motion = self.machine.linkage.motion(angles, speeds) if self.hasty else unit
         total: Array = np.zeros(batch)
-        for link, (fx, fy, couple) in self.machine.wrenches(motion, speeds).items():
+        for link, (fx, fy, couple) in wrenches(self.machine, motion, speeds).items():
             moving = unit.link(link)
             vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
             total = total - (fx * vx + fy * vy + couple * moving.speed)

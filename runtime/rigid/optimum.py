@@ -23,7 +23,7 @@ import numpy as np
 from scipy import linalg, optimize, sparse
 
 from ..core.errors import BadInput, bad
-from .blocks import Array
+from ..linkages.linkage import Array
 from .machine import Machine
 from .masses import MassDistribution
 from .peaks import forces_of, highest

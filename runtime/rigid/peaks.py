@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .blocks import Array
+from ..linkages.linkage import Array
 from .forces import OUTPUTS, rigid_forces
 from .machine import Machine
 

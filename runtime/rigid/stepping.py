@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..core.errors import BadInput, bad
-from .blocks import Array
+from ..linkages.linkage import Array
 from .motors import TorqueLaw
 from .one_freedom import OneFreedom
 

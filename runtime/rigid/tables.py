@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import Array
+from ..linkages.linkage import Array
 
 _TURN = 2.0 * np.pi
 _FEWEST, _MOST = 64, 1024

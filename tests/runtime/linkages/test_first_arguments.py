@@ -17,7 +17,6 @@ from elastolink.runtime.rigid import case_counterweights, force_peaks, with_coun
         lambda it: force_peaks(it, 1.0),
         lambda it: with_counterweights(it, ()),
         lambda it: el.coupler_curve(it, 1.0),
-        lambda it: el.mechanical_advantage(it, [0.0]),
         lambda it: el.transmission_angle(it),
         lambda it: el.cognates(it, 1.0),
         lambda it: el.harmonics(it),

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
-from elastolink.runtime.linkages._box import box_of, margin
-from elastolink.runtime.linkages.length_tolerances import tolerances
+from elastolink.runtime.linkages.length_tolerances import box_of, margin, tolerances
 from elastolink.runtime.rigid import (
     Load,
     Machine,

@@ -10,42 +10,45 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .balancing import Balancing, TradeOff, balance, trade_off
-    from .cases import case_counterweights
-    from .counterweights import Bounds, Counterweight, with_counterweights
-    from .flywheel import Flywheel, TorqueFluctuation, flywheel_inertia, torque_fluctuation
-    from .forces import (
-        RigidForces,
-        driving_torque,
-        pin_forces,
-        rigid_forces,
-        shaking_force,
-        shaking_moment,
-    )
-    from .loads import Load, LoadState, Spring, TorsionSpring
-    from .machine import Machine
-    from .masses import MassDistribution
-    from .motor_run import RunUp, run_up
-    from .motors import TorqueLine
-    from .peaks import ForcePeak, force_peaks
+    from .balancing import Balancing as Balancing
+    from .balancing import balance as balance
+    from .balancing import trade_off as trade_off
+    from .cases import case_counterweights as case_counterweights
+    from .counterweights import Bounds as Bounds
+    from .counterweights import Counterweight as Counterweight
+    from .counterweights import with_counterweights as with_counterweights
+    from .flywheel import flywheel_inertia as flywheel_inertia
+    from .flywheel import torque_fluctuation as torque_fluctuation
+    from .forces import RigidForces as RigidForces
+    from .forces import driving_torque as driving_torque
+    from .forces import pin_forces as pin_forces
+    from .forces import rigid_forces as rigid_forces
+    from .forces import shaking_force as shaking_force
+    from .forces import shaking_moment as shaking_moment
+    from .loads import Load as Load
+    from .loads import Spring as Spring
+    from .loads import TorsionSpring as TorsionSpring
+    from .machine import Machine as Machine
+    from .masses import MassDistribution as MassDistribution
+    from .motor_run import RunUp as RunUp
+    from .motor_run import run_up as run_up
+    from .motors import TorqueLine as TorqueLine
+    from .peaks import ForcePeak as ForcePeak
+    from .peaks import force_peaks as force_peaks
 
 _PUBLIC = {
     "Balancing": "balancing",
     "Bounds": "counterweights",
     "Counterweight": "counterweights",
-    "Flywheel": "flywheel",
     "ForcePeak": "peaks",
     "Load": "loads",
-    "LoadState": "loads",
     "Machine": "machine",
     "MassDistribution": "masses",
     "RigidForces": "forces",
     "RunUp": "motor_run",
     "Spring": "loads",
-    "TorqueFluctuation": "flywheel",
     "TorqueLine": "motors",
     "TorsionSpring": "loads",
-    "TradeOff": "balancing",
     "balance": "balancing",
     "case_counterweights": "cases",
     "driving_torque": "forces",
@@ -61,36 +64,6 @@ _PUBLIC = {
     "with_counterweights": "counterweights",
 }
 
-__all__ = [
-    "Balancing",
-    "Bounds",
-    "Counterweight",
-    "Flywheel",
-    "ForcePeak",
-    "Load",
-    "LoadState",
-    "Machine",
-    "MassDistribution",
-    "RigidForces",
-    "RunUp",
-    "Spring",
-    "TorqueFluctuation",
-    "TorqueLine",
-    "TorsionSpring",
-    "TradeOff",
-    "balance",
-    "case_counterweights",
-    "driving_torque",
-    "flywheel_inertia",
-    "force_peaks",
-    "pin_forces",
-    "rigid_forces",
-    "run_up",
-    "shaking_force",
-    "shaking_moment",
-    "torque_fluctuation",
-    "trade_off",
-    "with_counterweights",
-]
+__all__ = [*_PUBLIC]
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -18,7 +18,6 @@ from elastolink.runtime.rigid import case_counterweights, force_peaks, with_coun
         lambda it: with_counterweights(it, ()),
         lambda it: el.coupler_curve(it, 1.0),
         lambda it: el.transmission_angle(it),
-        lambda it: el.cognates(it, 1.0),
         lambda it: el.harmonics(it),
         lambda it: el.harmonics((it, "theta4")),
         lambda it: el.harmonics((it, "torque", 1.0)),
@@ -28,8 +27,3 @@ def test_refused_in_one_line(call, wrong):
     with pytest.raises(BadInput) as refusal:
         call(wrong)
     assert "\n" not in str(refusal.value)
-
-
-def test_animation_of_nothing(tmp_path):
-    with pytest.raises(BadInput, match="linkage"):
-        el.animate(None, tmp_path / "q.gif")

@@ -14,7 +14,6 @@ HERE = Path(__file__).parent
 # Two hundred random scenes and more against references of more digits, in this folder.
 COVERED = {
     "balance": "test_balancing_errors.py",
-    "base_plane": "test_base_plane_errors.py",
     "beam_energies": "test_beam_recovery_errors.py",
     "bloch_bands": "test_hill_exact_errors.py",
     "boundary_derivatives": "test_hill_exact_errors.py",
@@ -77,7 +76,6 @@ COVERED = {
     "tolerances": "test_tolerance_errors.py",
     "tongue": "test_band_errors.py",
     "tongue_curves": "test_band_errors.py",
-    "torque_fluctuation": "test_machine_errors.py",
     "trade_off": "test_trade_off_errors.py",
     "transmission_angle": "test_machine_errors.py",
     "unstable_bands": "test_band_errors.py",

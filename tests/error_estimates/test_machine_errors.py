@@ -1,4 +1,4 @@
-"""Figures of flywheels, run-ups and transmission against closed forms of more digits.
+"""Error estimates of flywheels, run-ups and transmission against closed forms of more digits.
 
 A slider-crank whose crank is a bar and whose slider has a mass, the coupler none: its inertia is
 ``J = I + m (dx/dtheta)^2``, and constant energy or constant torque gives the rest.
@@ -19,7 +19,7 @@ from elastolink.runtime.rigid import (
 )
 from honesty import verdict
 
-SCENES = 200
+SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 MP = mpmath.MPContext()
 MP.dps = 40
 
@@ -48,8 +48,8 @@ class Slider:
         )
 
     def inertia(self, theta, lib=np, number=np.longdouble):
-        own = number(self.bar) * number(self.radius) ** 2 / 3
-        return own + number(self.mass) * self.slope(theta, lib, number) ** 2
+        crank = number(self.bar) * number(self.radius) ** 2 / 3
+        return crank + number(self.mass) * self.slope(theta, lib, number) ** 2
 
 
 def extremes(scene):
@@ -68,24 +68,25 @@ def extremes(scene):
     return found
 
 
-def test_energy_fluctuations():
+@SCENES
+def test_energy_fluctuations(scenes):
     rng = np.random.default_rng(51)
     ratios = []
-    for _ in range(SCENES):
+    for _ in range(scenes):
         scene, speed = Slider(rng), float(rng.uniform(1.0, 50.0))
         low, high = extremes(scene)
         found = torque_fluctuation(scene.machine, speed)
         truth = (high - low) * np.longdouble(speed) ** 2 / 2
         ratios.append(np.array([found.error / max(abs(found.energy_fluctuation - truth), 1e-300)]))
-    verdict([one.astype(float) for one in ratios], SCENES)
+    verdict([one.astype(float) for one in ratios], scenes)
 
 
-@pytest.mark.slow
-def test_flywheels():
+@SCENES
+def test_flywheels(scenes):
     """Without motor and load the energy stays: the inertias' ratio is that of squared speeds."""
     rng = np.random.default_rng(52)
     ratios = []
-    for _ in range(SCENES):
+    for _ in range(scenes):
         scene, speed = Slider(rng), float(rng.uniform(1.0, 50.0))
         wanted = float(rng.uniform(0.005, 0.2))
         low, high = extremes(scene)
@@ -94,7 +95,7 @@ def test_flywheels():
         truth = max((high - square * low) / (square - 1), np.longdouble(0))
         found = flywheel_inertia(scene.machine, speed, wanted)
         ratios.append(np.array([found.error / max(abs(found.inertia - truth), 1e-300)]))
-    verdict([one.astype(float) for one in ratios], SCENES)
+    verdict([one.astype(float) for one in ratios], scenes)
 
 
 def _angle_error(scene, run, torque, wheel, start):
@@ -117,12 +118,12 @@ def _angle_error(scene, run, torque, wheel, start):
     return worst
 
 
-@pytest.mark.slow
-def test_run_ups():
+@SCENES
+def test_run_ups(scenes):
     """Constant torque from a start with speed: the energy is known at every angle."""
     rng = np.random.default_rng(53)
     ratios = []
-    for _ in range(SCENES):
+    for _ in range(scenes):
         scene, start = Slider(rng), float(rng.uniform(1.0, 10.0))
         own = float(scene.inertia(np.longdouble(0)))
         torque, wheel = own * float(rng.uniform(0.1, 10.0)), own * float(rng.choice([0.0, 1.0]))
@@ -138,14 +139,15 @@ def test_run_ups():
         )
         actual = _angle_error(scene, run, torque, wheel, start)
         ratios.append(np.array([run.error / max(actual, 1e-18)]))
-    verdict(ratios, SCENES)
+    verdict(ratios, scenes)
 
 
-def test_extreme_transmission_angles():
+@SCENES
+def test_extreme_transmission_angles(scenes):
     """By the law of cosines at the two collinear positions of crank and frame, 40 digits."""
     rng = np.random.default_rng(56)
     ratios = []
-    while len(ratios) < SCENES:
+    while len(ratios) < scenes:
         crank, coupler, follower = rng.uniform(0.1, 2.0, 3)
         frame = float(rng.uniform(0.1, 2.0))
         sides = sorted([frame, crank, coupler, follower])
@@ -163,17 +165,18 @@ def test_extreme_transmission_angles():
         gap = max(abs(MP.mpf(found.least) - min(truth)), abs(MP.mpf(found.greatest) - max(truth)))
         assert gap <= found.error
         ratios.append(np.array([found.error / max(float(gap), 1e-300)]))
-    verdict(ratios, SCENES)
+    verdict(ratios, scenes)
 
 
-def test_mechanical_advantages():
+@SCENES
+def test_mechanical_advantages(scenes):
     """Output speed of slider-cranks by the closed form above, in extended precision."""
     rng = np.random.default_rng(57)
     ratios = []
-    for _ in range(SCENES):
+    for _ in range(scenes):
         scene, theta = Slider(rng), rng.uniform(-3.0, 3.0, 3)
         found = transmission_angle(scene.linkage).mechanical_advantage(theta)
         truth = scene.slope(theta.astype(np.longdouble))
         gaps = np.abs(np.abs(found.speed_ratio) - np.abs(truth)).astype(float)
         ratios.append(found.error / np.maximum(gaps, 1e-300))
-    verdict(ratios, SCENES)
+    verdict(ratios, scenes)

@@ -93,7 +93,10 @@ class LinkMotion:
 
 def pair(x: ArrayLike, y: ArrayLike) -> Array:
     """Return two components as one array, shape (..., 2)."""
-    return np.stack(np.broadcast_arrays(x, y), axis=-1)
+    x, y = np.asarray(x), np.asarray(y)
+    both: Array = np.empty((*np.broadcast(x, y).shape, 2), np.result_type(x, y))
+    both[..., 0], both[..., 1] = x, y
+    return both
 
 
 @dataclass(frozen=True, kw_only=True)

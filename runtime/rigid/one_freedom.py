@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..linkages.linkage import Array
 from .evaluation import Evaluation
-from .machine import Machine, wrenches
+from .machine import Machine, Part, wrenches
 
 _FIRST = np.array([0.0, 1.0])
 _SECOND = np.array([1.0, 0.0])
@@ -82,43 +82,62 @@ class OneFreedom:
         BadInput
             As :meth:`Machine.wrenches`.
         """
+        return self._required(theta, speed, "all")[0]
+
+    def _required(self, theta: Any, speed: Any, *parts: Part) -> list[Array]:
+        """Return the torques [N m] that parts of the wrenches require."""
         angles, speeds = np.asarray(theta, dtype=float), np.asarray(speed, dtype=float)
-        batch = np.broadcast_shapes(angles.shape, speeds.shape)
+        none = np.zeros(np.broadcast_shapes(angles.shape, speeds.shape))
         if not self.machine.loaded:
-            return np.zeros(batch)
+            return [none] * len(parts)
         unit = self.machine.linkage.motion(angles)
         motion = self.machine.linkage.motion(angles, speeds) if self.hasty else unit
-        total: Array = np.zeros(batch)
-        for link, (fx, fy, couple) in wrenches(self.machine, motion, speeds).items():
-            moving = unit.link(link)
-            vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
-            total = total - (fx * vx + fy * vy + couple * moving.speed)
-        return total
+        required = []
+        for part in parts:
+            total: Array = none
+            for link, (fx, fy, couple) in wrenches(self.machine, motion, speeds, part).items():
+                moving = unit.link(link)
+                vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
+                total = total - (fx * vx + fy * vy + couple * moving.speed)
+            required.append(total)
+        return required
 
-    def tables(self) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
-        """Return the inertia with the flywheel by the angle, and the load by angle and speed.
+    def tables(
+        self,
+    ) -> tuple[Callable[[float], float], Callable[[float, float], tuple[float, float]]]:
+        """Return what an integrator evaluates often.
 
-        As Fourier series where the crank turns fully and these are short, the inertia nearly
-        vanishes nowhere, and the load depends on the angle alone.
+        The inertia [kg m^2] with the flywheel by the angle; and, by angle and speed, the torques
+        [N m] that everything requires, and that loads and dampers require, which no potential
+        energy accounts for.  They are Fourier series where the crank turns fully and these are
+        short, the inertia nearly vanishes nowhere, and the torque depends on the angle alone.
         """
         inertia: Callable[[float], float] | None = None
-        load: Callable[[float], float] | None = None
         if self.machine.linkage.crank_turns:
             scanned = self.coefficients(self._scan())[0]
             if np.min(scanned) + self.flywheel >= _TABLE_SHARE * np.max(scanned):
                 inertia = _series(lambda theta: self.coefficients(theta)[0])
+        exact = inertia or (lambda theta: float(self.coefficients(theta)[0]))
+        return (lambda theta: exact(theta) + self.flywheel), self._torques(inertia is not None)
+
+    def _torques(self, series: bool) -> Callable[[float, float], tuple[float, float]]:
         loads = self.machine.loads
         # A callable may do something new in a later turn.
         lawful = not any(callable(item.force) or callable(item.couple) for item in loads)
-        if inertia is not None and lawful and not self.hasty:
-            load = _series(lambda theta: self.load(theta, 0.0))
-        exact = inertia or (lambda theta: float(self.coefficients(theta)[0]))
-        return (
-            lambda theta: exact(theta) + self.flywheel,
-            (lambda theta, speed: load(theta))
-            if load
-            else (lambda theta, speed: float(self.load(theta, speed))),
-        )
+        if series and lawful and not self.hasty:
+            every = _series(lambda theta: self.load(theta, 0.0))
+            given = _series(lambda theta: self._required(theta, 0.0, "nonconservative")[0])
+            if every and given:
+                return lambda theta, speed: (every(theta), given(theta) if loads else 0.0)
+        parts: tuple[Part, ...] = ("all", "nonconservative")
+        if not (loads or self.hasty):
+            parts = ("all",)
+
+        def torques(theta: float, speed: float) -> tuple[float, float]:
+            required = [float(value) for value in self._required(theta, speed, *parts)]
+            return required[0], required[1] if len(required) > 1 else 0.0
+
+        return torques
 
     def acceleration(self, theta: Any, speed: Any, torque: Any) -> Array:
         """Return the crank acceleration [rad/s^2] under a motor torque [N m]."""

@@ -211,8 +211,7 @@ class _Motion:
 
     def __init__(self, system: OneFreedom, law: TorqueLaw) -> None:
         self.system, self.law = system, law
-        self.inertia, self.load = system.tables()
-        self.powered = bool(system.machine.loads) or system.hasty
+        self.inertia, self.loads = system.tables()
 
     def __call__(self, time: float, state: Array) -> Array:
         theta, momentum = float(state[0]), float(state[1])
@@ -227,15 +226,14 @@ class _Motion:
         if not abs(speed) < _FASTEST:
             raise _too_fast(speed, time)
         torque = float(self.law(speed, theta, time))
-        power = float(self.system.machine.power(theta, speed)) if self.powered else 0.0
-        rate = (torque - self.load(theta, speed)) / root
-        return np.array([speed, rate, torque * speed + power])
+        required, lost = self.loads(theta, speed)
+        return np.array([speed, (torque - required) / root, (torque - lost) * speed])
 
     def scale(self, time: float, state: Array) -> Array:
         """Return what angle, ``u`` and work are small against."""
         theta, momentum = float(state[0]), float(state[1])
         speed = momentum / math.sqrt(self.inertia(theta))
-        torque = abs(float(self.law(speed, theta, time))) + abs(self.load(theta, speed))
+        torque = abs(float(self.law(speed, theta, time))) + abs(self.loads(theta, speed)[0])
         size = max(abs(momentum), math.sqrt(torque)) or 1.0
         return np.array([1.0, size, size**2])
 

@@ -132,16 +132,22 @@ def test_a_torque_must_repeat_turn_by_turn(law) -> None:
         torque_fluctuation(bars(ROCKER, loads=(Load("crank", couple=law),)), 8.0)
 
 
-@pytest.mark.parametrize("speed", [8.0, -8.0])
+DRAG = {"loads": (Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)}
+DAMPED = {"springs": (Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)}
+
+
 @pytest.mark.parametrize(
-    "more",
+    ("more", "speed"),
     [
-        {},
-        {"gravity": (0.0, -9.81)},
-        {"loads": (Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)},
-        {"springs": (Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)},
+        ({}, 8.0),
+        ({}, -8.0),
+        ({"gravity": (0.0, -9.81)}, 8.0),
+        ({"gravity": (0.0, -9.81)}, -8.0),
+        (DAMPED, -8.0),
+        pytest.param(DAMPED, 8.0, marks=pytest.mark.slow),
+        pytest.param(DRAG, 8.0, marks=pytest.mark.slow),
+        pytest.param(DRAG, -8.0, marks=pytest.mark.slow),
     ],
-    ids=["bare", "weights", "drag", "spring"],
 )
 def test_forward_dynamics_confirm_the_flywheel(speed, more) -> None:
     machine = bars(ROCKER, **more)

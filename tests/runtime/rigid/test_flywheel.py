@@ -85,6 +85,7 @@ def test_a_flywheel_for_a_sine() -> None:
     assert found.passed
 
 
+@pytest.mark.slow
 def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
     """(I + J) omega^2 delta = 5 (1 - 1/(2 pi)): 5 N m over one radian of each turn."""
     load = Load("crank", couple=lambda t: -5.0 * (np.mod(t, TURN) < 1.0))
@@ -98,6 +99,7 @@ def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
     assert limit == pytest.approx(1e-5 + found.error / (found.inertia + 0.001), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_speeds_that_have_not_settled_fail_the_check(monkeypatch) -> None:
     drag = Load("follower", couple=lambda at: -2.0 * at.speed, given="motion")
     machine = bars(ROCKER, loads=(drag,))

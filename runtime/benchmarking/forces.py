@@ -11,7 +11,7 @@ from ..core.errors import bad
 from ..core.results import Check
 from ..linkages import FourBar
 from ..rigid import Machine, MassDistribution, RigidForces, rigid_forces
-from ..rigid.forces import Output
+from ..rigid.evaluation import Output
 from .records import Benchmark, Contender, Row, compare, missing, one_thread
 from .rigid_by_hand import (
     Data,

@@ -45,7 +45,6 @@ def refused(capsys, *arguments):
         ("curve", SHAPER, "--point", "1,0", "--link", "rod"),
         ("harmonics", SMITH, "--of", "theta4"),
         ("harmonics", ENGINE, "--of", "torque"),
-        ("harmonics", SMITH, "--of", "omega4", "--method", "simpson"),
         ("balance", SMITH, "--case", "b", "--offset", "6 in"),
     ],
 )

@@ -99,7 +99,17 @@ def test_versions_agree():
 def test_what_is_required_and_declared():
     project = PROJECT["project"]
     names = {re.match(r"[\w-]+", text)[0] for text in project["dependencies"]}
-    assert names == {"numpy", "scipy", "sympy", "jinja2", "matplotlib", "pint", "tqdm"}
+    assert names == {
+        "numpy",
+        "scipy",
+        "clarabel",
+        "sympy",
+        "jinja2",
+        "matplotlib",
+        "pillow",
+        "pint",
+        "tqdm",
+    }
     assert set(project["optional-dependencies"]) == {
         "test",
         "fast",

@@ -17,6 +17,8 @@ STANDARD = frozenset(sys.stdlib_module_names)
 NUMERIC = {"numpy", "scipy"}
 # What the run-time side may load inside a function, when it is asked for.
 LAZY = {
+    "PIL",
+    "clarabel",
     "matplotlib",
     "mpl_toolkits",
     "pint",

@@ -108,7 +108,7 @@ def beam_linkage(
         beams=beams,
         nodes=made,
         configuration=partial(_configuration, linkage, tuple(bars)),
-        provenance={**(provenance or {}), **linkage._told()},
+        provenance={**(provenance or {}), **linkage.provenance},
     )
 
 

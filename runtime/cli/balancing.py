@@ -134,9 +134,9 @@ def _case(
     drive: tuple[float, float],
     offset: float | None,
 ) -> int:
-    from ..rigid import compare_case
+    from ..rigid import balance
 
-    found = compare_case(machine, options.case, drive[0], offset, acceleration=drive[1])
+    found = balance(machine, drive[0], acceleration=drive[1], case=options.case, offsets=offset)
     return opt.finish(options, found, _lines(found))
 
 

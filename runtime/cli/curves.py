@@ -11,7 +11,7 @@ from .linkages import speed_of
 
 if TYPE_CHECKING:
     from ..linkages.curves import CouplerCurve
-    from ..linkages.harmonic_analysis import Harmonics, Source
+    from ..linkages.harmonic_analysis import Source
     from ..linkages.linkage import Linkage
     from ..scenes import Scene
 
@@ -77,21 +77,10 @@ def _add_harmonics(commands: Any) -> None:
         "--order", type=int, default=8, metavar="N", help="highest harmonic; default %(default)s"
     )
     harmonics.add_argument(
-        "--method",
-        choices=("fft", "simpson"),
-        default="fft",
-        help="fft, or Smith's procedure of appendix 3; default %(default)s",
-    )
-    harmonics.add_argument(
-        "--stop",
-        choices=("printed", "every"),
-        help="simpson: stop as printed (default), or when every harmonic has converged",
-    )
-    harmonics.add_argument(
         "--accuracy",
         type=float,
         metavar="EPS",
-        help="fft: relative, default 1e-12; simpson: of an integral, default 1e-6",
+        help="of each coefficient, over the largest value; default 1e-12",
     )
     harmonics.add_argument(
         "--speed",
@@ -103,7 +92,7 @@ def _add_harmonics(commands: Any) -> None:
 def _curve(options: argparse.Namespace) -> int:
     opt.picture(options)
     if options.animate is not None:
-        from ..linkages.animation import check_animation_path
+        from ..linkages.pictures import check_animation_path
 
         check_animation_path(options.animate)
     linkage = opt.load(options).mechanism()
@@ -115,7 +104,7 @@ def _curve(options: argparse.Namespace) -> int:
         linkage, along, across, link=link, points=options.points, circuit=options.circuit
     )
     if options.animate is not None:
-        from ..linkages.animation import animate
+        from ..linkages.pictures import animate
 
         animate(linkage, options.animate, curves=(curve,), circuit=options.circuit)
     return opt.finish(options, curve, _described(curve))
@@ -178,19 +167,9 @@ def _harmonics(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     source = _source(options, scene)
     given = {} if options.accuracy is None else {"accuracy": options.accuracy}
-    found: Harmonics
-    if options.method != "simpson":
-        opt.refuse_unused(options, ("stop",), "--method simpson beside it")
-    if options.method == "simpson":
-        from ..linkages.simpson import simpson_harmonics
+    from ..linkages import harmonics
 
-        found = simpson_harmonics(
-            source, order=options.order, stop=options.stop or "printed", **given
-        )
-    else:
-        from ..linkages.harmonic_analysis import harmonics
-
-        found = harmonics(source, order=options.order, **given)
+    found = harmonics(source, order=options.order, **given)
     rows = [
         (str(m), f"{a:.12g}", f"{b:.12g}", f"{size:.6g}", f"{phase:.4f}")
         for m, (a, b, size, phase) in enumerate(

@@ -70,7 +70,7 @@ def _forces(options: argparse.Namespace) -> int:
     even = _evenness(machine, speed, options.fluctuation)
     from ..rigid import force_peaks
 
-    peaks = force_peaks(machine, (float(theta[0]), float(theta[-1])), speed, acceleration)
+    peaks = force_peaks(machine, speed, acceleration, span=(float(theta[0]), float(theta[-1])))
     lines = [*_table(peaks), "", *even.lines]
     more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **even.numbers}
 

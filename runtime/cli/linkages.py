@@ -91,7 +91,7 @@ def _kinematics(options: argparse.Namespace) -> int:
 
     opt.picture(options)
     if options.animate is not None:
-        from ..linkages.animation import animate, check_animation_path
+        from ..linkages.pictures import animate, check_animation_path
 
         check_animation_path(options.animate)
     theta = np.array(opt.values(options.angles, "angle", "--angles"))

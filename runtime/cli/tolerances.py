@@ -10,8 +10,8 @@ from . import options as opt
 from .linkages import speed_of
 
 if TYPE_CHECKING:
+    from ..linkages.length_tolerances import Tolerances
     from ..linkages.linkage import Linkage
-    from ..linkages.tolerance_result import Tolerances
     from ..linkages.tolerance_trial import ToleranceTrial
     from ..scenes import Scene
 

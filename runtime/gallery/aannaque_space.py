@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..linkages.base_planes import BasePlane, base_plane
-from ..linkages.classification import SYMBOLS, classify_many
+from ..linkages.classification import SYMBOLS, classify
 from .records import Drawn, Quoted, Table
 from .sketches import Array, write
 from .style import COLOURS, panel_title
@@ -123,9 +123,7 @@ def _linkages(ratios: Array) -> Array:
 
 
 def _space_rows(plane: BasePlane) -> list[Quoted]:
-    inside, outside = (
-        np.mean(classify_many(_linkages(_beside(step))) > 0) for step in (1e-6, -1e-6)
-    )
+    inside, outside = (np.mean(classify(_linkages(_beside(step))) > 0) for step in (1e-6, -1e-6))
     ratios = plane.outline
     gaps = np.abs(ratios @ _DIRECTIONS.T - _OFFSETS)
     distance = np.abs(ratios @ np.full(3, 1.0 / sqrt(3.0)) - plane.lam)
@@ -191,7 +189,7 @@ def figure_3_5(axes: Sequence[Axes]) -> Drawn:
 def _plane_rows(planes: Sequence[BasePlane]) -> list[Quoted]:
     sums = [sum(plane.shares.values()) for plane in planes]
     seen = {symbol for plane in planes for symbol in plane.regions}
-    four_equal = int(classify_many(np.ones(4)))
+    four_equal = int(classify(np.ones((1, 4)))[0])
     counted = [
         abs(np.mean(plane.numbers[plane.numbers > 0] == SYMBOLS.index(symbol)) - share)
         for plane in planes

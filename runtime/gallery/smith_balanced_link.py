@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..rigid import balanced_link_inertia, density_number, offset_function, optimal_offset
+from .balanced_link import BalancedLink, density_number, offset_function, optimal_offset
 from .records import Drawn, Quoted, Table
 from .sketches import Array, write
 from .style import COLOURS, legend_below
@@ -86,7 +86,7 @@ _DATA_NOTE = (
 def _equation_rows(delta: Array) -> list[Quoted]:
     """Return the printed inertia, its derivative and the quintic beside what holds."""
     number = _number(_DENSITIES[2])
-    link = balanced_link_inertia(delta, number)
+    link = BalancedLink(delta, number)
     bars = 0.5 * (1.0 + delta**2)
     rest = 0.25 * number * (1.0 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
     slope = 0.5 * (1.0 - delta**2) + 0.5 * number * (delta - delta**-3.0)
@@ -133,9 +133,9 @@ def _equation_rows(delta: Array) -> list[Quoted]:
 def _densities(ax: Axes, delta: Array, beside: float) -> None:
     """Draw the inertia over the offset for the densities, and its minima with their letters."""
     for (letter, density, number, best), colour in zip(_best(), COLOURS, strict=False):
-        link = balanced_link_inertia(delta, number)
+        link = BalancedLink(delta, number)
         ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
-        least = float(balanced_link_inertia(best, number).inertia)
+        least = float(BalancedLink(best, number).inertia)
         ax.plot(best, least, "o", color=colour, ms=4.5)
         write(ax, (best, least), letter, (beside, -10.0), color=colour)
     ax.set_xlabel(r"offset $\delta=\ell/L$")
@@ -147,7 +147,7 @@ def figure_23b(axes: Sequence[Axes]) -> Drawn:
     """Draw the inertia over the offset for a range of densities."""
     ax = axes[0]
     delta = np.linspace(0.06, 1.0, 471)
-    light = balanced_link_inertia(delta, _number(_LIGHT))
+    light = BalancedLink(delta, _number(_LIGHT))
     ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
     _densities(ax, delta, 0.0)
     ax.set_xlim(0.0, 1.0)
@@ -162,7 +162,7 @@ _LIGHT_NOTE = (
 
 
 def _density_rows() -> list[Quoted]:
-    end = balanced_link_inertia(1.0, _number(_LIGHT))
+    end = BalancedLink(1.0, _number(_LIGHT))
     offsets = [best for *_, best in _best()]
     pivoted = 2.0 * _MASS * (2.0 * _LENGTH) ** 2 / 12.0
     return [
@@ -209,7 +209,7 @@ def _density_rows() -> list[Quoted]:
 def _best_table() -> Table:
     rows = []
     for letter, density, number, best in _best():
-        link = balanced_link_inertia(best, number)
+        link = BalancedLink(best, number)
         values = (number, best, link.inertia, link.counterweight, link.radius)
         rows.append((letter, f"{density:g}", *(f"{float(value):.5f}" for value in values)))
     header = ("point", "density", "K", "delta", "I/(M L^2)", "m_c/M", "r_c/L")
@@ -221,7 +221,7 @@ def figure_23c(axes: Sequence[Axes]) -> Drawn:
     ax = axes[0]
     delta = np.linspace(0.1, 1.0, 451)
     numbers = offset_function(delta)
-    line = balanced_link_inertia(delta, numbers)
+    line = BalancedLink(delta, numbers)
     ax.plot(delta, line.inertia, "--", color="0.3", lw=1.3, label="minima of all densities")
     _densities(ax, delta, 6.0)
     ax.set_xlim(0.1, 1.0)
@@ -234,7 +234,7 @@ def _minimum_rows() -> list[Quoted]:
     delta = np.linspace(0.05, 1.0, 9501)
     rows = []
     for letter, density, number, best in _best():
-        sampled = balanced_link_inertia(delta, number).inertia
+        sampled = BalancedLink(delta, number).inertia
         rows.append(
             Quoted(
                 f"offset {letter}, density {density:g}: root of (1 + delta^2) K = delta^3",
@@ -246,7 +246,7 @@ def _minimum_rows() -> list[Quoted]:
             )
         )
     offsets, least = zip(
-        *((best, float(balanced_link_inertia(best, k).inertia)) for *_, k, best in _best()),
+        *((best, float(BalancedLink(best, k).inertia)) for *_, k, best in _best()),
         strict=True,
     )
     falls = max(np.max(np.diff(offsets)), np.max(np.diff(least)))

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..linkages import Motion
-from ..rigid import Counterweight, RigidForces, balance_case, case_counterweights, rigid_forces
+from ..rigid import (
+    Counterweight,
+    RigidForces,
+    case_counterweights,
+    rigid_forces,
+    with_counterweights,
+)
 from ..rigid.cases import CASES, Case
 from .records import Drawn, Quoted, Table
 from .sketches import INK, LINK_COLOURS, Array, bar, canvas, four_bar, write
@@ -37,15 +43,17 @@ _DISCS = (
 )
 
 
-def _weights(case: Case, offset: float = _OFFSET) -> dict[str, Counterweight]:
-    return case_counterweights(example()[0], case, offset, density=_STEEL, thickness=_THICKNESS)
+def _weights(
+    case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS
+) -> dict[str, Counterweight]:
+    return case_counterweights(example()[0], case, offset, density=_STEEL, thickness=thickness)
 
 
 def _forces(case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS) -> RigidForces:
     machine, speed = example()
     if case == "a":
         return example_forces()
-    changed = balance_case(machine, case, offset, density=_STEEL, thickness=thickness)
+    changed = with_counterweights(machine, _weights(case, offset, thickness).values())
     return rigid_forces(changed, TURN, speed)
 
 

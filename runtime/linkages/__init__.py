@@ -10,109 +10,46 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .animation import animate
-    from .base_planes import BasePlane, base_plane
-    from .classification import Classification, SlidingClassification, classify, classify_many
-    from .clearance import ClearanceRange, WidthExtreme, clearance_range
-    from .cognate_linkages import Cognate, cognates
-    from .coupler_sextic import SexticNodes, sextic_nodes
-    from .curves import CouplerCurve, coupler_curve
-    from .degrees_of_freedom import Mobility, kutzbach, mobility
-    from .four_bar import FourBar, FourBarMotion
-    from .harmonic_analysis import Harmonics, harmonics
-    from .length_tolerances import tolerances
-    from .linkage import Linkage, LinkMotion, Motion, PointMotion
-    from .quick_return import QuickReturn, QuickReturnMotion
-    from .simpson import simpson_harmonics
-    from .slider_crank import SliderCrank, SliderCrankMotion
-    from .tolerance_result import Tolerances
-    from .transmission import (
-        MechanicalAdvantage,
-        TransmissionAngle,
-        mechanical_advantage,
-        transmission_angle,
-    )
+    from .base_planes import base_plane as base_plane
+    from .classification import SYMBOLS as SYMBOLS
+    from .classification import classify as classify
+    from .clearance import clearance_range as clearance_range
+    from .curves import CouplerCurve as CouplerCurve
+    from .curves import coupler_curve as coupler_curve
+    from .degrees_of_freedom import mobility as mobility
+    from .four_bar import FourBar as FourBar
+    from .four_bar import FourBarMotion as FourBarMotion
+    from .harmonic_analysis import harmonics as harmonics
+    from .length_tolerances import tolerances as tolerances
+    from .linkage import Linkage as Linkage
+    from .linkage import LinkMotion as LinkMotion
+    from .linkage import Motion as Motion
+    from .pictures import animate as animate
+    from .quick_return import QuickReturn as QuickReturn
+    from .slider_crank import SliderCrank as SliderCrank
+    from .transmission import transmission_angle as transmission_angle
 
 _PUBLIC = {
-    "BasePlane": "base_planes",
-    "Classification": "classification",
-    "ClearanceRange": "clearance",
-    "Cognate": "cognate_linkages",
     "CouplerCurve": "curves",
     "FourBar": "four_bar",
     "FourBarMotion": "four_bar",
-    "Harmonics": "harmonic_analysis",
     "LinkMotion": "linkage",
     "Linkage": "linkage",
-    "MechanicalAdvantage": "transmission",
-    "Mobility": "degrees_of_freedom",
     "Motion": "linkage",
-    "PointMotion": "linkage",
     "QuickReturn": "quick_return",
-    "QuickReturnMotion": "quick_return",
-    "SexticNodes": "coupler_sextic",
+    "SYMBOLS": "classification",
     "SliderCrank": "slider_crank",
-    "SliderCrankMotion": "slider_crank",
-    "SlidingClassification": "classification",
-    "Tolerances": "tolerance_result",
-    "TransmissionAngle": "transmission",
-    "WidthExtreme": "clearance",
-    "animate": "animation",
+    "animate": "pictures",
     "base_plane": "base_planes",
     "classify": "classification",
-    "classify_many": "classification",
     "clearance_range": "clearance",
-    "cognates": "cognate_linkages",
     "coupler_curve": "curves",
     "harmonics": "harmonic_analysis",
-    "kutzbach": "degrees_of_freedom",
-    "mechanical_advantage": "transmission",
     "mobility": "degrees_of_freedom",
-    "sextic_nodes": "coupler_sextic",
-    "simpson_harmonics": "simpson",
     "tolerances": "length_tolerances",
     "transmission_angle": "transmission",
 }
 
-__all__ = [
-    "BasePlane",
-    "Classification",
-    "ClearanceRange",
-    "Cognate",
-    "CouplerCurve",
-    "FourBar",
-    "FourBarMotion",
-    "Harmonics",
-    "LinkMotion",
-    "Linkage",
-    "MechanicalAdvantage",
-    "Mobility",
-    "Motion",
-    "PointMotion",
-    "QuickReturn",
-    "QuickReturnMotion",
-    "SexticNodes",
-    "SliderCrank",
-    "SliderCrankMotion",
-    "SlidingClassification",
-    "Tolerances",
-    "TransmissionAngle",
-    "WidthExtreme",
-    "animate",
-    "base_plane",
-    "classify",
-    "classify_many",
-    "clearance_range",
-    "cognates",
-    "coupler_curve",
-    "harmonics",
-    "kutzbach",
-    "mechanical_advantage",
-    "mobility",
-    "sextic_nodes",
-    "simpson_harmonics",
-    "tolerances",
-    "transmission_angle",
-]
+__all__ = [*_PUBLIC]
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

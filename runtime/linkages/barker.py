@@ -22,7 +22,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .linkage import Array
+
 Category = Literal["Grashof", "non-Grashof", "change point"]
 
 LINKS = ("frame", "crank", "coupler", "follower")
@@ -127,14 +128,14 @@ def turning(signs: Sequence[int]) -> dict[tuple[str, str], bool]:
     link i that is ``S_i <= 0`` and ``S_j S_k >= 0``; with the other two of the links the signs of
     S_i and of the product are reversed.  Equality: the links turn through a change point.
     """
-    found = {}
+    pairs = {}
     for i in range(3):
         beside = LINKS[i + 1]
         others = tuple(link for link in LINKS[1:] if link != beside)
         product = int(np.prod([sign for j, sign in enumerate(signs) if j != i]))
-        found["frame", beside] = signs[i] <= 0 <= product
-        found[others[0], others[1]] = signs[i] >= 0 >= product
-    return found
+        pairs["frame", beside] = signs[i] <= 0 <= product
+        pairs[others[0], others[1]] = signs[i] >= 0 >= product
+    return pairs
 
 
 def exact_sums(lengths: Sequence[Fraction]) -> tuple[Fraction, Fraction, Fraction]:

@@ -14,12 +14,11 @@ from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.results import Result, provenance
 from .barker import number_of_signs
-from .classification import SYMBOLS, classify_many
+from .classification import SYMBOLS, classify
+from .linkage import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 _NAMES = ("coupler/input", "output/input", "frame/input")
 # Of the plane: to the right more output, upwards more frame.
@@ -134,7 +133,7 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
     inside = np.all(ratios > 0, axis=-1)
     numbers = np.zeros(inside.shape, dtype=np.int64)
     coupler, output, frame = ratios[inside].T
-    numbers[inside] = classify_many(np.stack([frame, np.ones_like(frame), coupler, output], -1))
+    numbers[inside] = classify(np.stack([frame, np.ones_like(frame), coupler, output], -1))
     error = 32.0 * np.finfo(float).eps * max(total, 1.0)
     regions, borders = _regions(outline, total, error), _borders(outline, total)
     return BasePlane(
@@ -167,7 +166,7 @@ def _regions(outline: Array, total: float, error: float) -> dict[str, Array]:
     One whose middle is no farther from its borders than rounding moves them is left out.
     """
     half = (total - 1.0) / 2.0
-    found = {}
+    regions = {}
     for code in range(8):
         sides = [1.0 if code >> i & 1 else -1.0 for i in range(3)]
         corners = outline
@@ -181,22 +180,22 @@ def _regions(outline: Array, total: float, error: float) -> dict[str, Array]:
         middle = corners.mean(axis=0)
         room = min(np.abs(middle - half).min(), middle.min(), ((1.0 + total) / 2.0 - middle).min())
         if room > error:
-            found[SYMBOLS[number_of_signs(signs)]] = corners
-    return dict(sorted(found.items()))
+            regions[SYMBOLS[number_of_signs(signs)]] = corners
+    return dict(sorted(regions.items()))
 
 
 def _borders(outline: Array, total: float) -> dict[str, Array]:
     """Return the ends of the change lines lambda_i = (total - 1)/2 within the outline."""
     half = (total - 1.0) / 2.0
-    found = {}
+    borders = {}
     for i, name in enumerate(_NAMES):
         part = _clipped(outline, i, half, 1.0)
         # Clipping puts its own points exactly on the line.
         ends = part[part[:, i] == half]
         if len(ends) >= 2:
             last = ends[np.argmax(np.abs(ends - ends[0]).max(axis=1))]
-            found[f"{name} = (sum - 1)/2"] = np.stack([ends[0], last])
-    return found
+            borders[f"{name} = (sum - 1)/2"] = np.stack([ends[0], last])
+    return borders
 
 
 def _clipped(corners: Array, axis: int, at: float, side: float) -> Array:

@@ -9,12 +9,14 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.results import Result, provenance
-from . import FourBar, QuickReturn, SliderCrank
 from .barker import CLASSES, LINKS, Category, class_numbers, exact_sums, number_of_signs, turning
+from .four_bar import FourBar
+from .quick_return import QuickReturn
+from .slider_crank import SliderCrank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +38,7 @@ class Classification(Result):
 
     A distance is divided by the sum of the four lengths.  Its magnitude is then the least relative
     tolerance which, given to every length at once, reaches the surface; its sign says on which
-    side the linkage lies.  ``error`` is the figure of the distances.
+    side the linkage lies.  ``error`` is that of the distances.
 
     Attributes
     ----------
@@ -166,12 +168,18 @@ def classify(
 ) -> SlidingClassification: ...
 
 
+@overload
 def classify(
-    linkage: FourBar | SliderCrank | QuickReturn | Sequence[float],
+    linkage: NDArray[Any], *, input: Input = "crank", tolerance: float = 0.0
+) -> NDArray[np.int64]: ...
+
+
+def classify(
+    linkage: FourBar | SliderCrank | QuickReturn | Sequence[float] | NDArray[Any],
     *,
     input: Input = "crank",
     tolerance: float = 0.0,
-) -> Classification | SlidingClassification:
+) -> Classification | SlidingClassification | NDArray[np.int64]:
     """Return the class of a linkage by Grashof's theorem (Aannaque 3.4, Barker 1985).
 
     Lengths are taken as doubles, and the class is exact for them: no round-off can change it.
@@ -183,8 +191,9 @@ def classify(
 
     Parameters
     ----------
-    linkage : FourBar, SliderCrank, QuickReturn or sequence of 4 floats
-        The linkage, or lengths of frame, crank, coupler and follower in one unit.
+    linkage : FourBar, SliderCrank, QuickReturn, sequence of 4 floats or ndarray (..., 4)
+        The linkage, or lengths of frame, crank, coupler and follower in one unit; of many at once
+        in an array of two axes or more.
     input : {"crank", "follower"}
         The driven link; of a four-bar linkage it decides between crank rocker and rocker crank.
     tolerance : float
@@ -192,12 +201,22 @@ def classify(
         point where some lengths within the tolerance make it one; of several such classes the
         most degenerate counts: CP3X, then CP2X.
 
+    Returns
+    -------
+    Classification, SlidingClassification or ndarray of int, shape (...)
+        For many four-bar linkages the rows of Barker's table, 1 to 14, and 0 where the four cannot
+        close or cannot move; ``SYMBOLS[...]`` names them.
+
     Raises
     ------
     BadInput
         If a length is not a positive number, the links cannot close or cannot move, or the
         tolerance or the input has no meaning.
     """
+    if isinstance(linkage, np.ndarray) and linkage.ndim > 1:
+        if input != "crank" or tolerance != 0.0:
+            raise bad("classify", "an array of lengths with an option", "none", "leave it out")
+        return _many(linkage)
     if not (isinstance(tolerance, Real) and 0 <= tolerance < 1):
         expected = "a relative tolerance of at least 0 and below 1"
         raise bad("tolerance", repr(tolerance), expected, "0 asks for exact change points")
@@ -205,37 +224,21 @@ def classify(
         raise bad("input", repr(input), "'crank' or 'follower'", "choose one")
     if isinstance(linkage, (SliderCrank, QuickReturn)):
         if input != "crank":
-            found, expected = f"the follower of a {type(linkage).__name__}", "'crank'"
-            raise bad("input", found, expected, "leave it out")
+            driven = f"the follower of a {type(linkage).__name__}"
+            raise bad("input", driven, "'crank'", "leave it out")
         kind = _slider_crank if isinstance(linkage, SliderCrank) else _quick_return
         return kind(linkage.lengths, Fraction(tolerance))
     lengths = linkage.lengths.values() if isinstance(linkage, FourBar) else linkage
     return _four_bar(_checked(lengths), input, Fraction(tolerance))
 
 
-def classify_many(lengths: ArrayLike) -> NDArray[np.int64]:
-    """Return the rows of Barker's table for many four-bar linkages at once, exactly.
-
-    Parameters
-    ----------
-    lengths : array_like, shape (..., 4)
-        Lengths of frame, crank (the input), coupler and follower.
-
-    Returns
-    -------
-    ndarray of int, shape (...)
-        1 to 14, and 0 where the four cannot close or cannot move; ``SYMBOLS[...]`` names them.
-
-    Raises
-    ------
-    BadInput
-        If a length is not a positive finite number, or the last axis does not hold four.
-    """
+def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
+    """Return the rows of Barker's table for many four-bar linkages at once, exactly."""
     try:
         array = np.asarray(lengths, dtype=float)
     except (TypeError, ValueError) as refusal:
         raise bad("lengths", repr(lengths)[:60], "an array of lengths", "correct it") from refusal
-    if array.ndim == 0 or array.shape[-1] != 4:
+    if array.shape[-1] != 4:
         raise bad("lengths", f"shape {array.shape}", "shape (..., 4)", "put the four links last")
     if not np.all((array > 0) & (array < np.inf)):
         raise bad("lengths", "a value that is none", "positive finite lengths", "correct it")
@@ -245,17 +248,17 @@ def classify_many(lengths: ArrayLike) -> NDArray[np.int64]:
 def _checked(lengths: Iterable[float]) -> tuple[float, float, float, float]:
     """Return four positive doubles that close, or raise BadInput."""
     try:
-        found = [*lengths]
+        four = [*lengths]
     except TypeError as refusal:
         wanted = "a linkage, or lengths of frame, crank, coupler, follower"
         raise bad("lengths", repr(lengths)[:60], wanted, "give four lengths") from refusal
-    if len(found) != 4:
+    if len(four) != 4:
         wanted = "4 lengths: frame, crank, coupler, follower"
-        raise bad("lengths", f"{len(found)} of them", wanted, "give four lengths")
-    values = [_double(value) for value in found]
+        raise bad("lengths", f"{len(four)} of them", wanted, "give four lengths")
+    values = [_double(value) for value in four]
     problems = [
         Problem(name, repr(was)[:60], "a positive finite length", "correct it")
-        for name, was, value in zip(LINKS, found, values, strict=True)
+        for name, was, value in zip(LINKS, four, values, strict=True)
         if not 0 < value < np.inf
     ]
     if problems:

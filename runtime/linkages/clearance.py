@@ -13,14 +13,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.results import BROADCAST, DeferredChecks, Result, provenance
-from . import FourBar, QuickReturn, SliderCrank, _joint_play
-from ._joint_play import Play, Route
+from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from . import joint_play
+from .four_bar import FourBar
+from .joint_play import Play, Route
+from .linkage import Array, finite_array
+from .quick_return import QuickReturn
+from .slider_crank import SliderCrank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 _EPS = float(np.finfo(float).eps)
 _JOINTS = ("12", "23", "34", "41")
 _OUTPUTS: Mapping[type, tuple[str, ...]] = {
@@ -30,6 +33,8 @@ _OUTPUTS: Mapping[type, tuple[str, ...]] = {
 }
 # The joint that slides, and does not turn: its clearance is across its guide.
 _SLIDING: Mapping[type, str] = {SliderCrank: "41", QuickReturn: "34"}
+# Of the play at which the linkage folds: the terms beyond the first order are of its square.
+_SMALL_PLAY = 1e-4
 
 
 @dataclass(frozen=True)
@@ -54,7 +59,7 @@ class ClearanceRange(Result):
     """Range of the output that clearances leave at given crank angles.
 
     Arrays have the shape of the crank angles; places are angles [rad], or for a slider lengths in
-    the unit of the linkage's.  ``error`` is the figure of ``below``, ``above`` and ``width``, which
+    the unit of the linkage's.  ``error`` is that of ``below``, ``above`` and ``width``, which
     stay accurate to their own size however small the clearance; ``nominal``, and with it ``lower``
     and ``upper``, carry ``nominal_error`` as well.
 
@@ -84,7 +89,7 @@ class ClearanceRange(Result):
     free : ndarray of bool
         True where it passes both ways: an angle is not limited at all, and its width 2 pi.
     nominal_error : ndarray
-        Figure of ``nominal``.
+        Error of ``nominal``.
     greatest, least : WidthExtreme
         Extremes of the width over the crank's whole range, its ends included.
     """
@@ -113,11 +118,6 @@ class ClearanceRange(Result):
         ),
         BROADCAST,
     )
-
-    @property
-    def worst(self) -> WidthExtreme:
-        """The greatest movement over the crank's range."""
-        return self.greatest
 
     @property
     def unit(self) -> str:
@@ -227,8 +227,8 @@ def clearance_range(
     Examples
     --------
     >>> from elastolink import FourBar
-    >>> found = clearance_range(FourBar(10, 8, 10, 10), 0.1, 0.0)
-    >>> round(float(found.width), 4), round(float(found.small), 4)
+    >>> play = clearance_range(FourBar(10, 8, 10, 10), 0.1, 0.0)
+    >>> round(float(play.width), 4), round(float(play.small), 4)
     (0.0503, 0.0503)
     """
     task = Task.of(linkage, clearances, theta, joint, link)
@@ -236,7 +236,7 @@ def clearance_range(
     place = partial(_lengthened, exponent=task.exponent if task.link == "slider" else 0)
     nominal, below, above = (place(part) for part in (play.nominal, play.below, play.above))
     least, greatest = _extremes(task)
-    told = {f"clearances.{name}": repr(c) for name, c in task.clearances.items()}
+    given = {f"clearances.{name}": repr(c) for name, c in task.clearances.items()}
     unit = "m" if task.link == "slider" else "rad"
     return ClearanceRange(
         linkage=linkage,
@@ -259,13 +259,13 @@ def clearance_range(
         error=place(2.0 * play.error),
         error_norm=f"below, above and width [{unit}], absolute, entrywise",
         checks=DeferredChecks(partial(_checks, task, play)),
-        provenance=provenance({**linkage._told(), **told}),
+        provenance=provenance({**linkage.provenance, **given}),
     )
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is asked for, checked; radius, guide and sizes below 1 by a power of two."""
+    """A request, checked; radius, guide and sizes below 1 by a power of two."""
 
     linkage: FourBar | SliderCrank | QuickReturn
     link: str
@@ -284,7 +284,7 @@ class Task:
         joint: str | None,
         link: str | None,
     ) -> Task:
-        """Return it, or raise BadInput."""
+        """Return the request, or raise BadInput."""
         kind = next((kind for kind in _OUTPUTS if isinstance(linkage, kind)), None)
         if kind is None:
             expected = "FourBar, SliderCrank or QuickReturn"
@@ -294,7 +294,7 @@ class Task:
         if link not in outputs:
             raise bad("link", repr(link)[:60], f"one of {', '.join(outputs)}", "choose one")
         plays = _checked(linkage, clearances, joint)
-        exponent = -linkage._scale
+        exponent = -linkage.scale
         halves = {name: math.ldexp(c / 2.0, -exponent) for name, c in plays.items()}
         guide = halves.pop(_SLIDING.get(kind, ""), 0.0)
         angles = _angles(linkage, theta)
@@ -303,27 +303,27 @@ class Task:
     @property
     def route(self) -> Route:
         """The way to the play of this output."""
-        linkage, sizes = self.linkage, self.linkage._unit_lengths
+        linkage, sizes = self.linkage, self.linkage.unit_lengths
         if isinstance(linkage, FourBar):
-            return _joint_play.four_bar(sizes, linkage.branch, self.link)
+            return joint_play.four_bar(sizes, linkage.branch, self.link)
         if isinstance(linkage, SliderCrank):
-            return _joint_play.slider_crank(sizes, linkage.branch, self.link)
+            return joint_play.slider_crank(sizes, linkage.branch, self.link)
 
         def nominal(theta: ArrayLike) -> tuple[Array, Array]:
             motion = linkage.motion(theta)
             return motion.theta4, motion.error
 
-        return _joint_play.quick_return(sizes, nominal)
+        return joint_play.quick_return(sizes, nominal)
 
     def play(self) -> Play:
         """Return the play at the crank angles, or raise BadInput where the linkage cannot be."""
-        found = self.route.at(self.theta, self.radius, self.guide)
-        reached = found.margin >= -found.blur
+        play = self.route.at(self.theta, self.radius, self.guide)
+        reached = play.margin >= -play.blur
         if isinstance(self.linkage, FourBar):
             # With the crank's pin on the follower's pivot, every follower angle is the nominal one.
-            reached &= found.place > found.blur
-        self.linkage._require(reached, self.theta, self.linkage._reachable())
-        return found
+            reached &= play.place > play.blur
+        self.linkage.require(reached, self.theta)
+        return play
 
 
 def _lengthened(value: Array, exponent: int) -> Array:
@@ -335,14 +335,7 @@ def _angles(linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike | Non
         if linkage.crank_turns:
             return np.linspace(0.0, math.tau, 361)
         return np.concatenate([np.linspace(*ends, 181) for ends in linkage.crank_ranges()])
-    try:
-        angles = np.array(theta, dtype=float)
-    except (TypeError, ValueError) as refusal:
-        found = repr(theta)[:60]
-        raise bad("theta", found, "an array of angles [rad]", "correct it") from refusal
-    if not np.all(np.isfinite(angles)):
-        raise bad("theta", "a value that is not finite", "finite angles [rad]", "remove it")
-    return angles
+    return finite_array("theta", theta, "angles [rad]")
 
 
 def _checked(
@@ -392,19 +385,83 @@ def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
     inside = np.unique([place for place in places if low <= place <= high])
     play = route.measure(inside, task.radius, task.guide)
     width = play.below + play.above
-    found = []
+    ends = []
     for i in (int(np.argmin(width)), int(np.argmax(width))):
         size = float(width[i])
         if task.link == "slider":
             size = math.ldexp(size, task.exponent)
-        found.append(WidthExtreme(route.crank(float(inside[i])), size))
-    return found[0], found[1]
+        ends.append(WidthExtreme(route.crank(float(inside[i])), size))
+    return ends[0], ends[1]
 
 
-def _checks(task: Task, play: Play) -> Mapping[str, Any]:
-    from ._play_checks import checks
+def _checks(task: Task, play: Play) -> dict[str, Check]:
+    """Close the loop at both ends, and take a small part of the clearances."""
+    return {
+        "loop closure at both ends over its round-off": Check(_gap(task, play), 1.0),
+        "small clearances against the first order": Check(_first_order(task), 1.0),
+    }
 
-    return checks(task, play)
+
+def _gap(task: Task, play: Play) -> float:
+    """Return how far the loop with all clearance taken up stays open, over its round-off."""
+    sizes = task.linkage.unit_lengths
+    longest = max(abs(size) for size in sizes.values())
+    limit = 64.0 * _EPS * longest * np.maximum(np.abs(task.theta), 1.0)
+    blur = limit + longest * (play.error + play.nominal_error)
+    pin = sizes["crank"] * np.exp(1j * task.theta)
+    worst = 0.0
+    for end in (play.nominal - play.below, play.nominal + play.above):
+        missing = np.where(play.free, 0.0, _missing(task, sizes, pin, end))
+        worst = max(worst, float(np.max(np.abs(missing) / blur, initial=0.0)))
+    return worst
 
 
-__all__ = ["ClearanceRange", "WidthExtreme", "clearance_range"]
+def _missing(task: Task, sizes: Mapping[str, float], pin: Any, end: Array) -> Array:
+    """Return by how much the loop at an end of the range leaves or exceeds the play."""
+    play, guide = task.radius, task.guide
+    if isinstance(task.linkage, QuickReturn):
+        away = np.abs(((pin + sizes["frame"]) * np.exp(-1j * end)).imag)
+        return np.asarray(away - (play + guide))
+    if isinstance(task.linkage, FourBar):
+        own, other, span = sizes["follower"], sizes["coupler"], pin - sizes["frame"]
+        if task.link == "coupler":
+            own, other, span = other, own, -span
+        bridged = np.abs(own * np.exp(1j * end) - span)
+        return _nearest(bridged - (other + play), bridged - (other - play))
+    gap = sizes["offset"] - pin.imag
+    if task.link == "coupler":
+        height = sizes["coupler"] * np.sin(end) - gap
+        return _nearest(height - (play + guide), height + (play + guide))
+    along, coupler = end - pin.real, sizes["coupler"]
+    near, far = np.maximum(np.abs(gap) - guide, 0.0), np.abs(gap) + guide
+    return _nearest(
+        np.hypot(along, near) - (coupler + play), np.hypot(along, far) - (coupler - play)
+    )
+
+
+def _nearest(one: Any, other: Any) -> Array:
+    return np.asarray(np.minimum(np.abs(one), np.abs(other)))
+
+
+def _first_order(task: Task) -> float:
+    """Return how far small clearances leave the first order, over what the next order may do.
+
+    The series in the radius of play converges up to the first fold; its next term but one is of
+    the second power of that ratio.
+    """
+    whole = task.radius + task.guide
+    if whole == 0.0 or task.theta.size == 0:
+        return 0.0
+    route = task.route
+    full = route.at(task.theta, task.radius, task.guide)
+    margin = np.maximum(full.margin, 0.0)
+    part = _SMALL_PLAY * margin / whole
+    small = route.at(task.theta, task.radius * part, task.guide * part)
+    apart = np.abs(small.below + small.above - small.small)
+    allowed = 8.0 * _SMALL_PLAY**2 * small.small + 4.0 * small.error
+    if task.link == "slider":
+        # Across the guide the first order vanishes where the coupler lies along it.
+        leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, _EPS))
+        allowed = allowed + 2.0 * (task.guide * part) ** 2 / leg
+    clear = full.margin > 1e6 * full.blur
+    return float(np.max(apart[clear] / allowed[clear], initial=0.0))

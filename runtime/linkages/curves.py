@@ -1,10 +1,10 @@
-"""Coupler curves: the path of a point of a moving link, with cusps, double points and length."""
+"""Coupler curves: path of a point of a moving link, cusps, double points, length, cognates."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -13,18 +13,21 @@ import numpy as np
 from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ._arc_length import integrate_turn
-from ._circuits import Circuit
-from ._singular_points import Doubles, Slow, double_points, slowest
-from ._taylor import Array, Taylor
-from .coupler_sextic import sextic_residual
-from .linkage import Linkage, planar
+from .circuits import Circuit, Complex, Taylor, planar
+from .curve_points import Doubles, Slow, double_points, slowest
+from .four_bar import FourBar
+from .linkage import Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _EPS = float(np.finfo(float).eps)
 _MOST_POINTS = 10**6
+# Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are halved.
+_FEW, _MANY = 10, 16
+_PANELS, _HALVINGS = 24, 60
+# More panels than this at once: what is left is the round-off of the integrands.
+_MOST_PANELS = 2000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +46,7 @@ class CouplerCurve(Result):
     link : str
         The moving link.
     along, across : float
-        Place of the point in the link's own axes [m].
+        Place of the point in the link's axes [m].
     parameter : ndarray, shape (n,)
         Regular parameter of the circuit, period 2 pi: the crank angle itself where the crank turns
         (for a slider-crank from the downward normal of the guide), else an angle in which the
@@ -62,7 +65,7 @@ class CouplerCurve(Result):
     length, area : float
         Length run in one circuit [m], and area enclosed [m^2], positive when run anticlockwise.
     length_error, area_error : float
-        Their error figures.
+        Their errors.
     slowest : float
         Least speed over the largest, both by the parameter: how near the path is to a cusp.
     cusp_parameter, cusp_theta2, cusp_branch : ndarray, shape (k,)
@@ -133,10 +136,35 @@ class CouplerCurve(Result):
             if np.linalg.norm(self.double_position[i] - self.double_position[j]) < 0.01 * extent
         )
 
+    def cognates(self) -> tuple[Cognate, Cognate]:
+        """Return the two other four-bars that trace the path (Roberts and Chebyshev).
+
+        Returns
+        -------
+        tuple of Cognate
+            The first has its frame between A and the third focus, its crank parallel to the line
+            from B to the tracing point; the second between D and the third focus.
+
+        Raises
+        ------
+        BadInput
+            If this is no path of a four-bar's coupler, or the point is a joint of it.
+
+        Notes
+        -----
+        With u the direction of the coupler, g the point in it, k = g/l3: A + g u is one corner of a
+        parallelogram A-B-P, and A + g u + k l2 exp(i theta2) keeps the distance |k| l4 from the
+        third focus k l1.
+        """
+        if not isinstance(self.linkage, FourBar) or self.link != "coupler":
+            kind = f"the {self.link} of a {type(self.linkage).__name__}"
+            raise bad("cognates", kind, "the coupler of a FourBar", "others have no cognates")
+        return _cognates(Circuit(self.linkage, self.circuit), complex(self.along, self.across))
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw path and linkage at some positions, cusps and double points marked."""
         from ..core.plotting import axes_or_new
-        from ._drawing import draw_curve
+        from .pictures import draw_curve
 
         ax = axes_or_new(ax)
         draw_curve(ax, self)
@@ -218,15 +246,8 @@ def coupler_curve(
         error=figure,
         error_norm="distance of each position [m] from that at the same parameter",
         checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
-        provenance=provenance(linkage._told()),
+        provenance=provenance(linkage.provenance),
     )
-
-
-def require_linkage(linkage: object) -> None:
-    """Raise BadInput for what is no linkage."""
-    if not isinstance(linkage, Linkage):
-        found = type(linkage).__name__
-        raise bad("linkage", found, "FourBar, SliderCrank or QuickReturn", "give one")
 
 
 def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:
@@ -350,7 +371,7 @@ class _Trace:
             return np.stack([np.abs(first), 0.5 * (z.conj() * first).imag])
 
         middle = complex(np.mean(self.series(np.linspace(0, 2 * pi, 64), 0).c[0]))
-        total, error = integrate_turn(integrands, np.concatenate([breaks, self.sharp]))
+        total, error = _integrate_turn(integrands, np.concatenate([breaks, self.sharp]))
         scale = self.motion.scale
         return {
             "length": float(total[0]) * scale,
@@ -456,4 +477,167 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
     return found
 
 
-__all__ = ["CouplerCurve", "coupler_curve"]
+@cache
+def _rule(nodes: int) -> tuple[Array, Array]:
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    return places, weights
+
+
+def _integrate_turn(
+    f: Callable[[Array], Array], breaks: Array, relative: float = 4.0 * _EPS
+) -> tuple[Array, Array]:
+    """Integrate over 0 to 2 pi, halving the panels on which two Gauss rules differ.
+
+    Parameters
+    ----------
+    f : callable
+        Parameter, shape (n,), to integrands, shape (k, n).
+    breaks : ndarray, shape (b,)
+        Parameters at which an integrand has a kink: panels end there.
+    relative : float
+        A panel is good where the rules differ by no more than this part of the integral of the
+        size of the integrand.
+
+    Returns
+    -------
+    integral, error : ndarray, shape (k,)
+        The error is the sum of the differences of the panels, a generous figure, and round-off.
+    """
+    ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
+    low, high = ends[:-1], ends[1:]
+    for level in range(_HALVINGS):
+        few, _ = _panels(f, low, high, _FEW)
+        many, size = _panels(f, low, high, _MANY)
+        difference = np.abs(many - few)
+        if level == 0:
+            scale = np.sum(size, axis=1)
+            total, error, whole = (np.zeros(len(many)) for _ in range(3))
+        good = np.all(difference <= relative * scale[:, None] / 8, axis=0)
+        if level == _HALVINGS - 1 or np.count_nonzero(~good) > _MOST_PANELS:
+            good[:] = True
+        total = total + np.sum(many[:, good], axis=1)
+        error = error + np.sum(difference[:, good], axis=1)
+        whole = whole + np.sum(size[:, good], axis=1)
+        if np.all(good):
+            break
+        low, high = low[~good], high[~good]
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return total, error + 8.0 * _EPS * whole
+
+
+def _panels(
+    f: Callable[[Array], Array], low: Array, high: Array, nodes: int
+) -> tuple[Array, Array]:
+    """Return the integrals of f and of its size over each panel, shape (k, panels)."""
+    places, weights = _rule(nodes)
+    half = 0.5 * (high - low)
+    s = 0.5 * (high + low)[:, None] + half[:, None] * places
+    values = f(s.ravel())
+    values = values.reshape(len(values), *s.shape)
+    return np.sum(values * weights, axis=2) * half, np.sum(np.abs(values) * weights, axis=2) * half
+
+
+def sextic_residual(lengths: Mapping[str, float], place: complex, points: Complex) -> Array:
+    """Return how far points miss the implicit equation of a coupler curve, over its terms.
+
+    With p the tracing point as a complex number, p = B + g u, and w = p - f seen from D, where u is
+    the direction of the coupler, g the place of the point in it and d = l3 - g, the two bars demand
+
+        conj(p) g u + p conj(g) conj(u) = M,     M = |p|^2 + |g|^2 - l2^2
+        conj(w) d u + w conj(d) conj(u) = -N,    N = |w|^2 + |d|^2 - l4^2
+
+    Eliminating u by |u| = 1 leaves |M w conj(d) + N p conj(g)|^2 = 4 Im(conj(p) g w conj(d))^2, of
+    degree six in the coordinates of p.
+    """
+    f, crank, coupler, follower = (
+        lengths[name] for name in ("frame", "crank", "coupler", "follower")
+    )
+    rest = coupler - place
+    w = points - f
+    m = np.abs(points) ** 2 + abs(place) ** 2 - crank**2
+    n = np.abs(w) ** 2 + abs(rest) ** 2 - follower**2
+    left = m * w * np.conj(rest) + n * points * np.conj(place)
+    right = 2.0 * (np.conj(points) * place * w * np.conj(rest)).imag
+    size_m = np.abs(points) ** 2 + abs(place) ** 2 + crank**2
+    size_n = np.abs(w) ** 2 + abs(rest) ** 2 + follower**2
+    size = size_m * np.abs(w * rest) + size_n * np.abs(points * place)
+    size = size + 2.0 * np.abs(points * place * w * rest)
+    # Both sides are squares; their difference in the linear measure of a distance.
+    return np.asarray(np.abs(np.abs(left) - np.abs(right)) / np.maximum(size, 1e-300))
+
+
+@dataclass(frozen=True, eq=False)
+class Cognate:
+    """A four-bar that traces the coupler curve of another one.
+
+    Attributes
+    ----------
+    linkage : FourBar
+        In axes of its own.
+    along, across : float
+        The tracing point in its coupler's axes [m].
+    pivot : ndarray, shape (2,)
+        Where its crank's pivot lies in the axes of the first linkage [m].
+    turn : float
+        Angle of its frame there [rad].
+    circuit : int
+        On which of its circuits it traces the circuit of the first linkage.
+    """
+
+    linkage: FourBar
+    along: float
+    across: float
+    pivot: Array
+    turn: float
+    circuit: int
+
+    def curve(self, points: int = 720) -> CouplerCurve:
+        """Return its coupler curve, in its own axes."""
+        return coupler_curve(
+            self.linkage, self.along, self.across, points=points, circuit=self.circuit
+        )
+
+    def placed(self, position: Array) -> Array:
+        """Return places in the axes of the first linkage, shape (..., 2)."""
+        own = np.asarray(position)[..., 0] + 1j * np.asarray(position)[..., 1]
+        return np.asarray(self.pivot + planar(own * np.exp(1j * self.turn)))
+
+
+def _cognates(motion: Circuit, place: complex) -> tuple[Cognate, Cognate]:
+    f, c, m, n = (float(size) for size in motion.linkage.lengths.values())
+    if min(abs(place), abs(m - place)) <= 1e-12 * m:
+        joint = f"{place.real:g}, {place.imag:g}"
+        raise bad("along, across", joint, "no joint of the coupler", "choose another")
+    s = np.array([0.3])
+    at = motion.links(s, 0)
+    e2, u, e4 = (complex(at[link].direction.c[0, 0]) for link in ("crank", "coupler", "follower"))
+    k, rest = place / m, m - place
+    j = rest / m
+    first = _cognate(0j, k * f, place * u, k * c * e2, c * e2)
+    second = _cognate(complex(f), k * f, -rest * u, j * n * e4, n * e4)
+    return first, second
+
+
+def _cognate(
+    pivot: complex, focus: complex, crank: complex, coupler: complex, point: complex
+) -> Cognate:
+    """Build a four-bar from its vectors at one position; ``point`` from the crank's pin."""
+    frame = focus - pivot
+    to_pivot = frame - crank
+    side = (to_pivot.conjugate() * coupler).imag
+    lengths = (abs(frame), abs(crank), abs(coupler), abs(frame - crank - coupler))
+    linkage = FourBar(*lengths, assembly="open" if side > 0 else "crossed")
+    own = Circuit(linkage)
+    upper = (crank / frame).imag > 0
+    # Of two ranges of the crank the upper one comes first; a crank that turns has its assembly.
+    circuit = int(not upper) if all(own.swings) else 0
+    place = point * abs(coupler) / coupler
+    return Cognate(
+        linkage,
+        place.real,
+        place.imag,
+        np.array([pivot.real, pivot.imag]),
+        float(np.angle(frame)),
+        circuit,
+    )

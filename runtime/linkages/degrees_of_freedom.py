@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from numbers import Integral
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
-
-Array = NDArray[np.float64]
+from .linkage import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +22,7 @@ class Mobility(Result):
     links, lower_pairs : int
         Links with the frame; simple pins: one that joins three links counts two.
     kutzbach : int
-        3(k - 1) - 2 j_1.
+        3(k - 1) - 2 j_1 - j_2.
     gruebler : bool
         True where 3k - 2 j_1 - 4 = 0, Gruebler's condition for one degree of freedom.
     instantaneous : int or None
@@ -45,32 +43,10 @@ class Mobility(Result):
     singular_values: Array
 
 
-def kutzbach(links: int, lower_pairs: int, higher_pairs: int = 0) -> int:
-    """Return Kutzbach's mobility 3(k - 1) - 2 j_1 - j_2 (Aannaque 3.2).
-
-    Parameters
-    ----------
-    links : int
-        Number of links k, the frame among them.
-    lower_pairs, higher_pairs : int
-        Pairs with one degree of freedom (pins, sliders) and with two.
-
-    Raises
-    ------
-    BadInput
-        If a count is not a whole number, or there is no link.
-    """
-    counts = {"links": links, "lower_pairs": lower_pairs, "higher_pairs": higher_pairs}
-    for name, count in counts.items():
-        least = 1 if name == "links" else 0
-        if not isinstance(count, Integral) or count < least:
-            raise bad(name, repr(count), f"a whole number, at least {least}", "count again")
-    return 3 * (int(links) - 1) - 2 * int(lower_pairs) - int(higher_pairs)
-
-
 def mobility(
     pins: Sequence[Sequence[str]],
     *,
+    higher_pairs: int = 0,
     coordinates: Sequence[Sequence[float]] | None = None,
     frame: str | None = None,
 ) -> Mobility:
@@ -79,7 +55,9 @@ def mobility(
     Parameters
     ----------
     pins : sequence of sequences of str
-        For each pin the names of the links that it joins, two or more.
+        For each pin the names of the links that it joins, two or more; sliders count alike.
+    higher_pairs : int
+        Pairs with two degrees of freedom, counted by Kutzbach alone.
     coordinates : sequence of pairs of float, optional
         Where each pin is [any one unit]; gives the true mobility of the velocities there.
     frame : str, optional
@@ -101,8 +79,12 @@ def mobility(
     fixed = names[0] if frame is None else frame
     if fixed not in names:
         raise bad("frame", repr(frame), f"one of {', '.join(names)}", "name a link of the chain")
+    if not isinstance(higher_pairs, Integral) or higher_pairs < 0:
+        raise bad("higher_pairs", repr(higher_pairs), "a whole number, at least 0", "count again")
+    if higher_pairs and coordinates is not None:
+        raise bad("higher_pairs", "with coordinates", "pins alone", "leave one out")
     pairs = sum(len(pin) - 1 for pin in joined)
-    count = kutzbach(len(names), pairs)
+    count = 3 * (len(names) - 1) - 2 * pairs - int(higher_pairs)
     values = np.zeros(0)
     free: int | None = None
     gap = Check(0.0, 0.1)
@@ -130,8 +112,8 @@ def _points(coordinates: Sequence[Sequence[float]], count: int) -> Array:
     try:
         points = np.array(coordinates, dtype=float)
     except (TypeError, ValueError) as refusal:
-        found = repr(coordinates)[:60]
-        raise bad("coordinates", found, "a pair for each pin", "correct it") from refusal
+        given = repr(coordinates)[:60]
+        raise bad("coordinates", given, "a pair for each pin", "correct it") from refusal
     if points.shape != (count, 2) or not np.all(np.isfinite(points)):
         raise bad(
             "coordinates", f"shape {points.shape}", f"{count} finite pairs", "give one per pin"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -12,17 +13,19 @@ from numpy.typing import ArrayLike
 
 from ...generated import four_bar_kinematics
 from ..core.errors import BadInput, Problem, bad
-from .inputs import (
+from .linkage import (
+    ROUND_OFFS,
     Array,
     Assembly,
+    Linkage,
+    LinkMotion,
+    Motion,
+    Terms,
     assembly_problems,
-    by_name,
-    drive_of,
     length_problems,
-    rates_of,
-    spread,
+    plot_against_crank,
+    turning,
 )
-from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,8 +38,8 @@ _SQUARE = 2.0
 class FourBarMotion(Motion):
     """Motion of a four-bar linkage at given crank angles; every array has their shape.
 
-    ``error`` has it too: the figure for the worse of theta3 and theta4 [rad], from the round-off of
-    crank angle and lengths that the position passes on; it grows near a dead centre.
+    ``error`` has it too: that of the worse of theta3 and theta4 [rad], from the round-off of crank
+    angle and lengths that the position passes on; it grows near a dead centre.
 
     Attributes
     ----------
@@ -70,17 +73,16 @@ class FourBarMotion(Motion):
         "alpha3": "rad/s^2",
         "alpha4": "rad/s^2",
     }
+    norm: ClassVar[str] = "worse of theta3 and theta4 [rad]"
 
     @property
     def joints(self) -> Mapping[str, Array]:
         """Places of the joints A, B, C, D, each of shape (..., 2)."""
-        start = planar(np.zeros(self.theta2.shape))
-        frame = self.linkage.lengths["frame"]
         return {
-            "A": start,
+            "A": self.link("crank").origin,
             "B": self.link("coupler").origin,
             "C": self.point("follower", self.linkage.lengths["follower"]).position,
-            "D": start + np.array([frame, 0.0]),
+            "D": self.link("follower").origin,
         }
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -98,9 +100,7 @@ class FourBarMotion(Motion):
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
             return self._at_crank_pin(self.theta3, self.omega3, self.alpha3)
-        still = np.zeros(self.theta2.shape)
-        pivot = still + self.linkage.lengths["frame"]
-        return self._link(pivot, still, still, self.theta4, self.omega4, self.alpha4)
+        return self._about(self.linkage.lengths["frame"], self.theta4, self.omega4, self.alpha4)
 
     def _at_far_joint(self, name: str) -> LinkMotion | None:
         if name != "coupler":
@@ -134,6 +134,9 @@ class FourBar(Linkage):
     follower: float
     assembly: Assembly = "open"
 
+    mechanism: ClassVar[str] = "four_bar"
+    kinematics: ClassVar[ModuleType] = four_bar_kinematics
+    moves: ClassVar[type[Motion]] = FourBarMotion
     names: ClassVar[tuple[str, ...]] = ("frame", "crank", "coupler", "follower")
     links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "follower")
     bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -149,9 +152,9 @@ class FourBar(Linkage):
         if not problems:
             longest = max(self.lengths, key=lambda name: self.lengths[name])
             rest = sum(self.lengths.values()) - self.lengths[longest]
-            others = [-size for name, size in self._unit_lengths.items() if name != longest]
+            others = [-size for name, size in self.unit_lengths.items() if name != longest]
             # Correctly rounded, as the class is: a sum in floats may close what cannot close.
-            if math.fsum([self._unit_lengths[longest], *others]) >= 0.0:
+            if math.fsum([self.unit_lengths[longest], *others]) >= 0.0:
                 problems.append(
                     Problem(
                         f"FourBar.{longest}",
@@ -210,7 +213,7 @@ class FourBar(Linkage):
         Those of coupler and follower, those of frame and crank; each sum is correctly rounded, so
         that no round-off can change its sign.
         """
-        frame, crank, coupler, follower = self._unit_lengths.values()
+        frame, crank, coupler, follower = self.unit_lengths.values()
         thick, thin = max(coupler, follower), min(coupler, follower)
         far, near = max(frame, crank), min(frame, crank)
         return (
@@ -222,7 +225,7 @@ class FourBar(Linkage):
         """Return the crank angle between 0 and pi at which BD is so far within its limits."""
         if above < 0.0 or below < 0.0:
             return None
-        frame, crank, *_ = self._unit_lengths.values()
+        frame, crank, *_ = self.unit_lengths.values()
         near, far = abs(frame - crank), frame + crank
         sine2, cosine2 = above * (above + 2.0 * near), below * (2.0 * far - below)
         return float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
@@ -255,60 +258,42 @@ class FourBar(Linkage):
             If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
             together, or the linkage cannot reach an angle or folds there.
         """
-        angles, drive = drive_of(theta, speed, acceleration)
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            values = _MOTION(
-                angles,
-                **self._unit_lengths,
-                assembly=self.branch,
-                winding=float(self.crank > self.frame),
-            )
-        m = by_name(angles, _OUTPUTS, values)
-        shortest, longest = self.reach
-        self._require_reached(
-            m, f"a diagonal BD between {shortest:g} and {longest:g}, {self._reachable()}"
-        )
-        omega3, alpha3 = rates_of(drive, m["omega3"], m["alpha3"])
-        omega4, alpha4 = rates_of(drive, m["omega4"], m["alpha4"])
-        return FourBarMotion(
-            theta3=spread(m["theta3"], drive),
-            theta4=spread(m["theta4"], drive),
-            omega3=omega3,
-            omega4=omega4,
-            alpha3=alpha3,
-            alpha4=alpha4,
-            transmission_angle=spread(m["transmission_angle"], drive),
-            **self._common(m, drive, "worse of theta3 and theta4 [rad], absolute, entrywise"),
-        )
+        moved: FourBarMotion = self._moved(theta, speed, acceleration)
+        return moved
 
-    def _figure(self, m: Mapping[str, Array]) -> Array:
+    @property
+    def _expected(self) -> str:
+        shortest, longest = self.reach
+        return f"a diagonal BD between {shortest:g} and {longest:g}, {self.reachable}"
+
+    def _error(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of the angle and of each length does, three times.
 
         A change of a length moves the closure along that link; seen along coupler or follower it
         turns the other one, the more the closer the two are to one line.  The triangle BCD comes
         from the square of BD: its round-off moves C, seen from a short link most.
         """
-        frame, crank, coupler, follower = self._unit_lengths.values()
+        frame, crank, coupler, follower = self.unit_lengths.values()
         theta2 = m["theta2"]
         aligned = np.abs(np.cos(m["theta4"] - m["theta3"]))
         sine = np.abs(np.sin(m["transmission_angle"]))
         square = (frame - crank) ** 2 + 4.0 * frame * crank * np.sin(theta2 / 2.0) ** 2
         leaning = np.sqrt(square) * aligned
         lying = (1.0 + abs(coupler - follower) * (coupler + follower) / square) * sine**2 / 2.0
-        figures = []
-        for link, other, own, opposite in (
+        errors = []
+        for link, other, length, opposite in (
             ("3", "4", coupler, follower),
             ("4", "3", follower, coupler),
         ):
             beside = m["theta" + other]
             moved = crank * np.abs(np.cos(theta2 - beside)) + frame * np.abs(np.cos(beside))
-            moved += own * aligned + opposite + _SQUARE * (leaning + opposite * lying)
+            moved += length * aligned + opposite + _SQUARE * (leaning + opposite * lying)
             turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
-            figures.append(turned + moved / (own * sine))
-        return np.asarray(1.5 * np.finfo(float).eps * np.maximum(*figures))
+            errors.append(turned + moved / (length * sine))
+        return np.asarray(ROUND_OFFS * np.maximum(*errors))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
-        frame, crank, coupler, follower = self._unit_lengths.values()
+        frame, crank, coupler, follower = self.unit_lengths.values()
         terms = zip(
             turning(crank, m["theta2"], 1.0, 0.0),
             turning(coupler, m["theta3"], m["omega3"], m["alpha3"]),
@@ -317,7 +302,3 @@ class FourBar(Linkage):
         )
         places, speeds, changes = (list(item) for item in terms)
         return [*places, -frame], speeds, changes
-
-
-_MOTION: Callable[..., tuple[Array, ...]] = four_bar_kinematics.motion
-_OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")

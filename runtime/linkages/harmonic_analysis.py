@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,16 +15,13 @@ from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import values_at
-from ._taylor import Array
-from .linkage import Linkage, Motion
+from .linkage import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..rigid import Machine
-
 Function = Callable[[Array], ArrayLike]
-Source: TypeAlias = "Function | tuple[Linkage, str] | tuple[Machine, str, float]"
+Source: TypeAlias = Function | tuple[Any, ...]
 
 _EPS = float(np.finfo(float).eps)
 _TURN = 2.0 * pi
@@ -156,26 +153,28 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     which regular sets of 64, 128, 256 angles all take for a mean, then shows at once.  Before it
     ends, the whole series is compared with the function at irregular angles.
     """
-    name, f = function_of(source)
-    check_order(order, accuracy)
-    periodic, secular, gap = without_growth(f, name)
-    a, b, found = _doubled(periodic, name, int(order), accuracy)
-    scale = max(found.largest, 5e-324)
+    name, f, known = _function(source)
+    require_whole("order", order, 1, _HIGHEST)
+    if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
+        raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
+    periodic, secular, gap = _without_growth(f, name)
+    a, b, sums = _doubled(periodic, name, int(order), accuracy)
+    scale = max(sums.largest, 5e-324)
     return Harmonics(
         name=name,
         a=a,
         b=b,
         secular=secular,
-        largest=found.largest,
-        remainder=found.remainder,
-        evaluations=found.evaluations + 2,
+        largest=sums.largest,
+        remainder=sums.remainder,
+        evaluations=sums.evaluations + 2,
         method="FFT",
-        error=found.error + gap,
+        error=sums.error + gap,
         error_norm="largest error of a coefficient, absolute",
         checks={
-            "change on doubling over the largest value": Check(found.change / scale, accuracy),
+            "change on doubling over the largest value": Check(sums.change / scale, accuracy),
         },
-        provenance=provenance(source_told(source)),
+        provenance=provenance(known),
     )
 
 
@@ -277,86 +276,26 @@ def _evaluate(coefficients: np.ndarray[Any, Any], theta: Array) -> Array:
     return np.asarray((total + coefficients[0]).real)
 
 
-def function_of(source: Source) -> tuple[str, Function]:
-    """Return name and function of a source.
-
-    Raises
-    ------
-    BadInput
-        If it is none of the three forms, or the field or force is unknown.
-    """
-    if isinstance(source, tuple):
-        return _field(*source) if len(source) == 2 else _force(*source)
-    if not callable(source):
-        found = type(source).__name__
-        raise bad("source", found, "a callable, (linkage, name) or (machine, name, speed)", _FORMS)
-    return str(getattr(source, "__name__", type(source).__name__)), source
-
-
-_FORMS = "write f, (linkage, 'theta4') or (machine, 'torque', 10.0)"
-
-
-def _field(linkage: Linkage, name: str) -> tuple[str, Function]:
-    if not isinstance(linkage, Linkage):
-        raise bad("source", type(linkage).__name__, "a linkage and a name", _FORMS)
-    linkage.require_full_turn()
-    motion = linkage.motion(np.zeros(1))
-    known = {**motion.places, **motion.rates}
-    if name not in known:
-        known_names = ", ".join(known)
-        raise bad("source", repr(name), f"one of {known_names}", "choose a field of the motion")
-
-    def field(theta: Array) -> Array:
-        moved: Motion = linkage.motion(theta)
-        return np.asarray(getattr(moved, name))
-
-    return name, field
+def _function(source: Source) -> tuple[str, Function, dict[str, str]]:
+    """Return name, function and provenance of a source, or raise BadInput."""
+    if callable(source):
+        return str(getattr(source, "__name__", type(source).__name__)), source, {}
+    forms = "write f, (linkage, 'theta4') or (machine, 'torque', 10.0)"
+    if not (isinstance(source, tuple) and len(source) > 1):
+        expected = "a callable, (linkage, name) or (machine, name, speed)"
+        raise bad("source", type(source).__name__, expected, forms)
+    what, name, *drive = source
+    try:
+        function = what.course(name, *drive)
+    except (AttributeError, TypeError) as refusal:
+        expected = "a linkage and a name, or a machine, a name and a speed"
+        given = ", ".join(type(item).__name__ for item in source)
+        raise bad("source", f"({given})", expected, forms) from refusal
+    speed = {"speed": repr(float(drive[0]))} if drive else {}
+    return name, function, {**what.provenance, **speed}
 
 
-def _force(machine: Machine, name: str, speed: float, *more: object) -> tuple[str, Function]:
-    from ..rigid import Machine as MachineClass
-    from ..rigid import rigid_forces
-
-    if more or not isinstance(machine, MachineClass):
-        raise bad("source", type(machine).__name__, "a machine, a name and a speed", _FORMS)
-    machine.linkage.require_full_turn()
-    known = rigid_forces(machine, np.zeros(1), speed).values
-    if name not in known:
-        raise bad("source", repr(name), f"one of {', '.join(known)}", "choose a force")
-    outputs: _Output = next((group for group, own in _OUTPUTS.items() if name in own), "pins")
-
-    def force(theta: Array) -> Array:
-        return rigid_forces(machine, theta, speed, outputs=(outputs,))[name]
-
-    return name, force
-
-
-_Output = Literal["pins", "torque", "shaking_force", "shaking_moment"]
-# What is asked for alone takes a shorter way than all pin forces.
-_OUTPUTS: Mapping[_Output, tuple[str, ...]] = {
-    "torque": ("torque",),
-    "shaking_force": ("shaking_x", "shaking_y"),
-    "shaking_moment": ("shaking_moment",),
-}
-
-
-def source_told(source: Source) -> dict[str, str]:
-    """Return what the provenance says of a source."""
-    if not isinstance(source, tuple):
-        return {}
-    if len(source) == 2:
-        return source[0]._told()
-    return {**source[0].linkage._told(), "speed": repr(float(source[2]))}
-
-
-def check_order(order: int, accuracy: float) -> None:
-    """Raise BadInput for an impossible order or accuracy."""
-    require_whole("order", order, 1, _HIGHEST)
-    if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
-        raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
-
-
-def without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], float, float]:
+def _without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], float, float]:
     """Return the function less its whole turns in a turn, how many these are, and what is left.
 
     Raises

@@ -5,35 +5,254 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.results import Check, DeferredChecks, provenance
-from . import FourBar, Linkage
-from ._box import box_of, margin, turns
-from .inputs import drive_of
-from .subject import ANGLE, Subject
-from .tolerance_result import Tolerances
+from ..core.results import Check, DeferredChecks, Result, provenance
+from .linkage import Array, Linkage, drive_of
+from .parametric import ANGLE, Parametric
 
 if TYPE_CHECKING:
-    from ..rigid import Machine
+    from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
+    from .tolerance_trial import Distribution, ToleranceTrial
+
 Masses = Literal["fixed", "bars"]
+Limits: TypeAlias = tuple[float, float]
+Box: TypeAlias = Mapping[str, Limits]
+
 _EPS = float(np.finfo(float).eps)
-# The two routes to the sensitivities may differ by so much of their largest value.
-_ROUTES = 1e-9
+# A common factor of all lengths may turn the links by so much of what each length alone does.
+_SCALED = 1e-9
 # What round-off does to a worst case, in units of the last place, away from the folds.
 _ROUNDING = 64.0
 _SCALE_FREE = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
+_PREFERRED = ("theta4", "position", "theta3")
+_NAMES = {"theta2": "crank angle"}
+_SYMBOLS = {"theta3": r"$\theta_3$", "theta4": r"$\theta_4$"}
+
+
+class Varied(Protocol):
+    """What may have tolerances: a linkage, or a machine."""
+
+    def parametric(
+        self, theta: Array, speed: Array, acceleration: Array, masses: Masses = "fixed"
+    ) -> Parametric:
+        """Return its outputs as a function of its numbers."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerances(Result):
+    """What tolerances do to the motion, and for a machine to the forces, to first order.
+
+    ``error``, shape (outputs, ...), is that of ``worst_case``: a bound of what the first
+    order leaves out anywhere within the tolerances, from the exact sensitivities at the corners of
+    the box that they span; it rests on the sensitivities being extreme at a corner.  The same
+    holds for the deviation of any single linkage within the tolerances from its prediction.
+
+    Attributes
+    ----------
+    theta2, omega2, alpha2 : ndarray, shape (...)
+        Crank angle [rad], speed [rad/s] and acceleration [rad/s^2].
+    outputs, parameters : tuple of str
+        Names: ``theta3``, ``omega4``, ``x34``, ``torque`` ...; ``frame``, ``crank`` ..., the crank
+        angle ``theta2``, and of a machine ``coupler.mass``, ``coupler.along`` ...
+    nominal : ndarray, shape (outputs, ...)
+        The values without deviations, in the units of :meth:`unit`.
+    sensitivity : ndarray, shape (outputs, parameters, ...)
+        Derivatives of every output by every parameter, the other parameters being fixed.
+    tolerance : ndarray, shape (parameters,)
+        Greatest deviation of each parameter from its nominal value, to either side.
+    keeps_turning : bool
+        True where the crank of every linkage within the tolerances turns fully.
+    """
+
+    theta2: Array
+    omega2: Array
+    alpha2: Array
+    outputs: tuple[str, ...]
+    parameters: tuple[str, ...]
+    nominal: Array
+    sensitivity: Array
+    tolerance: Array
+    keeps_turning: bool
+    model: Parametric = field(repr=False)
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "theta2": ("angle",),
+        "omega2": ("angle",),
+        "alpha2": ("angle",),
+        "tolerance": ("parameter",),
+        "nominal": ("output", "angle"),
+        "error": ("output", "angle"),
+        "worst_case": ("output", "angle"),
+        "root_sum_square": ("output", "angle"),
+        "sensitivity": ("output", "parameter", "angle"),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("worst_case", "root_sum_square")
+
+    @property
+    def deviations(self) -> Array:
+        """What each tolerance alone does, with its sign, shape (outputs, parameters, ...)."""
+        return self.sensitivity * np.reshape(self.tolerance, (1, -1) + (1,) * self.theta2.ndim)
+
+    @property
+    def worst_case(self) -> Array:
+        """Greatest deviation of each output, all tolerances at their worst, (outputs, ...)."""
+        return np.asarray(np.sum(np.abs(self.deviations), axis=1))
+
+    @property
+    def root_sum_square(self) -> Array:
+        """Root of the sum of the squared deviations, shape (outputs, ...).
+
+        With tolerances that are standard deviations of independent parameters, or a fixed multiple
+        of them, the standard deviation of the output, or the same multiple of it.
+        """
+        shares, largest = self._relative
+        return np.asarray(largest[:, 0] * np.sqrt(np.sum(np.square(shares), axis=1)))
+
+    @property
+    def contribution(self) -> Array:
+        """Share of each parameter in the squared root-sum-square, (outputs, parameters, ...)."""
+        squares = np.square(self._relative[0])
+        total = np.sum(squares, axis=1, keepdims=True)
+        return np.asarray(squares / np.where(total > 0.0, total, 1.0))
+
+    @property
+    def _relative(self) -> tuple[Array, Array]:
+        """Deviations over the largest of each output, and that: squares of any size are safe."""
+        size = np.abs(self.deviations)
+        largest = np.max(size, axis=1, keepdims=True)
+        return size / np.where(largest > 0.0, largest, 1.0), largest
+
+    def place(self, output: str) -> int:
+        """Return the place of an output on the first axis.
+
+        Raises
+        ------
+        BadInput
+            If there is no such output.
+        """
+        if output not in self.outputs:
+            known = f"one of {', '.join(self.outputs)}"
+            raise bad("output", repr(output), known, "choose one; forces need a machine")
+        return self.outputs.index(output)
+
+    def by(self, output: str, parameter: str) -> Array:
+        """Return the derivative of an output by a parameter, shape (...).
+
+        Raises
+        ------
+        BadInput
+            If there is no such output or parameter.
+        """
+        if parameter not in self.parameters:
+            known = f"one of {', '.join(self.parameters)}"
+            raise bad("parameter", repr(parameter), known, "choose one; masses need a machine")
+        return np.asarray(self.sensitivity[self.place(output), self.parameters.index(parameter)])
+
+    def unit(self, output: str) -> str:
+        """Return the unit of an output; rates without a crank speed are over the crank's.
+
+        Raises
+        ------
+        BadInput
+            If there is no such output.
+        """
+        return self.model.unit(self.outputs[self.place(output)])
+
+    def monte_carlo(
+        self, samples: int = 2000, seed: int = 0, distribution: Distribution = "normal"
+    ) -> ToleranceTrial:
+        """Return mean, standard deviation and extremes of every output over random parameters.
+
+        Parameters
+        ----------
+        samples : int
+            How many linkages are drawn.
+        seed : int
+            Of the generator; the same seed gives the same numbers.
+        distribution : {"normal", "uniform"}
+            Normal, the tolerance being three standard deviations, or uniform within the tolerance.
+
+        Returns
+        -------
+        ToleranceTrial
+            Its checks compare it with the first order, within the statistical error and
+            the error.
+
+        Raises
+        ------
+        BadInput
+            If a number is out of range or the distribution is unknown.
+        """
+        from .tolerance_trial import trial
+
+        return trial(self, samples, seed, distribution)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain lists, numbers and strings, ready for JSON."""
+        plain = super().to_dict()
+        del plain["model"]
+        return {**plain, "units": {name: self.unit(name) for name in self.outputs}}
+
+    def plot(self, ax: Axes | None = None, output: str | None = None) -> Axes:
+        """Draw the error band of an output against the crank angle.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw.
+        output : str, optional
+            By default the angle of the follower or the rod, or the slider's place.
+
+        Raises
+        ------
+        BadInput
+            If there is no such output, or the crank angles are not a one-dimensional array.
+        """
+        from ..core.plotting import axes_or_new
+
+        if self.theta2.ndim != 1:
+            shape = f"crank angles of shape {self.theta2.shape}"
+            raise bad("plot", shape, "a one-dimensional array", "choose one speed, a row of angles")
+        name = output or next(name for name in _PREFERRED if name in self.outputs)
+        row, unit = self.place(name), self.unit(name)
+        factor = 1.0
+        if unit == "rad":
+            factor, unit = 1e3, "mrad"
+        elif unit == "m":
+            factor, unit = 1e3, "mm"
+        ax = axes_or_new(ax)
+        order = np.argsort(self.theta2)
+        degrees = np.degrees(self.theta2[order])
+        for values, words, shade in (
+            (self.worst_case, "worst case", "0.88"),
+            (self.root_sum_square, "root of the sum of squares", "0.72"),
+        ):
+            band = factor * values[row][order]
+            ax.fill_between(degrees, -band, band, color=shade, lw=0, label=words)
+        for place, parameter in enumerate(self.parameters):
+            if self.tolerance[place] > 0.0:
+                line = factor * self.deviations[row, place][order]
+                ax.plot(degrees, line, lw=1.2, label=f"{_NAMES.get(parameter, parameter)} alone")
+        ax.axhline(0.0, color="0.4", lw=0.8)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel(f"deviation of {_SYMBOLS.get(name, name)} [{unit}]")
+        ax.margins(x=0.0)
+        # Beside the band, which fills the axes.
+        ax.legend(fontsize="small", ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))
+        return ax
 
 
 def tolerances(
-    linkage_or_machine: Linkage | Machine,
+    linkage_or_machine: Varied,
     tolerance: Mapping[str, float],
     theta: ArrayLike | None = None,
     speed: ArrayLike = 1.0,
@@ -43,9 +262,7 @@ def tolerances(
 ) -> Tolerances:
     """Return what tolerances of lengths and masses do to motion and forces.
 
-    The sensitivities are derivatives, not differences: of a four-bar's angles, speeds and
-    accelerations in closed form, from the loop closure (Smith 2.1) differentiated by each length;
-    of everything else by the rules of differentiation applied to the emitted functions (of forces,
+    The sensitivities are derivatives, not differences, of the emitted closed forms (of forces,
     Smith 4.7-4.13).
 
     Parameters
@@ -70,7 +287,7 @@ def tolerances(
     Returns
     -------
     Tolerances
-        Check "both routes": for a four-bar, the closed form against the rules of differentiation.
+        Its check says that a common factor of all lengths leaves the angles (Euler's theorem).
 
     Raises
     ------
@@ -82,74 +299,52 @@ def tolerances(
     Examples
     --------
     >>> from elastolink import FourBar
-    >>> found = tolerances(FourBar(0.5, 0.1, 0.5, 0.2), {"crank": 1e-4}, theta=[0.0, 1.0])
-    >>> found.worst_case.shape
+    >>> band = tolerances(FourBar(0.5, 0.1, 0.5, 0.2), {"crank": 1e-4}, theta=[0.0, 1.0])
+    >>> band.worst_case.shape
     (7, 2)
     """
-    linkage, machine = _parts(linkage_or_machine)
+    if not hasattr(linkage_or_machine, "parametric"):
+        given = repr(linkage_or_machine)[:60]
+        raise bad("tolerances", given, "a linkage or a Machine", "give a FourBar, say")
     if masses not in ("fixed", "bars"):
         raise bad("masses", repr(masses)[:60], "'fixed' or 'bars'", "choose one")
     if theta is None:
         theta = np.linspace(0.0, 2.0 * np.pi, 361)
     angles, drive = drive_of(theta, speed, acceleration)
     angles = np.array(np.broadcast_to(angles, drive[0].shape))
-    subject = Subject(linkage, machine, angles, *drive, masses == "bars")
-    subject.require_loads()
-    sizes = _checked(subject, tolerance)
+    model = linkage_or_machine.parametric(angles, *drive, masses)
+    linkage, sizes = model.linkage, _checked(model, tolerance)
     linkage.motion(angles)  # refuses what it does not reach
     _require_reach(linkage, sizes, angles)
-    return _found(subject, sizes)
-
-
-def _found(subject: Subject, sizes: Mapping[str, float]) -> Tolerances:
-    """Return the result for tolerances within which every linkage moves.
-
-    Raises
-    ------
-    BadInput
-        If a number is not finite.
-    """
-    parameters, names = tuple(subject.values), subject.outputs
-    nominal, slopes = subject.derivatives(subject.values, parameters)
-    by_rules = np.stack([slopes[name] for name in names])
-    if isinstance(subject.linkage, FourBar):
-        _in_closed_form(subject, slopes)
+    parameters, names = tuple(model.values), model.outputs
+    nominal, slopes = model.derivatives(model.values, parameters)
     values = np.stack([nominal[name] for name in names])
     sensitivity = np.stack([slopes[name] for name in names])
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(sensitivity))):
         fix = "use other units, or keep the angles off the folds"
         raise bad("tolerances", "numbers beyond the largest float", "finite ones", fix)
+    widths = {f"tolerance.{name}": repr(width) for name, width in sizes.items()}
     return Tolerances(
-        theta2=subject.theta,
-        omega2=subject.speed,
-        alpha2=subject.acceleration,
+        theta2=model.theta,
+        omega2=model.speed,
+        alpha2=model.acceleration,
         outputs=names,
         parameters=parameters,
         nominal=values,
         sensitivity=sensitivity,
         tolerance=np.array([sizes.get(name, 0.0) for name in parameters]),
-        keeps_turning=turns(box_of(subject.linkage.lengths, sizes)),
-        subject=subject,
+        keeps_turning=turns(box_of(linkage.lengths, sizes)),
+        model=model,
         method="derivatives of the closed form",
-        error=_remainder(subject, sizes, slopes),
+        error=_remainder(model, sizes, slopes),
         error_norm="worst case of each output, absolute, entrywise",
         error_kind="estimate",
-        checks=DeferredChecks(partial(_checks, subject, sensitivity, by_rules)),
-        provenance=provenance(_told(subject, sizes)),
+        checks=DeferredChecks(partial(_checks, model, sensitivity)),
+        provenance=provenance({**linkage.provenance, **widths}),
     )
 
 
-def _parts(given: Any) -> tuple[Linkage, Machine | None]:
-    if isinstance(given, Linkage):
-        return given, None
-    from ..rigid import Machine
-
-    if isinstance(given, Machine):
-        return given.linkage, given
-    raise bad("tolerances", repr(given)[:60], "a linkage or a Machine", "give a FourBar, say")
-
-
-def _checked(subject: Subject, tolerance: object) -> dict[str, float]:
+def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
     """Return the tolerances as floats.
 
     Raises
@@ -158,10 +353,10 @@ def _checked(subject: Subject, tolerance: object) -> dict[str, float]:
         If a name is unknown, or a number is not finite, negative, or as large as its length.
     """
     if not isinstance(tolerance, Mapping):
-        found = type(tolerance).__name__
-        raise bad("tolerance", found, "a mapping from name to number", "write {'crank': 1e-4}")
-    known, problems = subject.values, []
-    limits = {name: size for name, size in subject.linkage.lengths.items() if name != "offset"}
+        given = type(tolerance).__name__
+        raise bad("tolerance", given, "a mapping from name to number", "write {'crank': 1e-4}")
+    known, problems = model.values, []
+    limits = {name: size for name, size in model.linkage.lengths.items() if name != "offset"}
     limits[ANGLE] = math.pi / 2.0
     for name, width in tolerance.items():
         where = f"tolerance[{name!r}]"
@@ -191,41 +386,22 @@ def _require_reach(linkage: Linkage, sizes: Mapping[str, float], theta: Array) -
         return margin(box_of(linkage.lengths, widths), angles, widths.get(ANGLE, 0.0))
 
     named = [name for name, width in sizes.items() if width > 0.0]
-    found = np.ravel(left(sizes, theta))
+    margins = np.ravel(left(sizes, theta))
     # Without a tolerance the linkage reaches its angles, whatever round-off says here.
-    if not named or found.size == 0 or np.all(found > 0.0):
+    if not named or margins.size == 0 or np.all(margins > 0.0):
         return
-    worst = int(np.argmin(found))
+    worst = int(np.argmin(margins))
     angle = np.ravel(theta)[worst : worst + 1]
     blamed = max(named, key=lambda name: float(left({**sizes, name: 0.0}, angle)[0]))
     raise bad(
         f"tolerance[{blamed!r}]",
         f"a linkage within the tolerances that cannot reach {angle[0]:.6g} rad, or folds",
-        f"tolerances that leave {-found[worst]:.3g} m more to the fold",
+        f"tolerances that leave {-margins[worst]:.3g} m more to the fold",
         f"narrow them, that of the {blamed} first, or keep theta farther from the fold",
     )
 
 
-def _in_closed_form(subject: Subject, slopes: dict[str, Array]) -> None:
-    """Put the emitted derivatives in the place of those by the rules."""
-    from ...derive.spec import ModelSpec
-    from ..systems.modules import find_module
-
-    module = find_module(ModelSpec(subject.mechanism, "sensitivities")).module
-    linkage = subject.linkage
-    given = {name: size * subject.scale for name, size in linkage.lengths.items()}
-    with np.errstate(all="ignore"):
-        values = module.sensitivities(subject.theta, **given, assembly=linkage.branch)
-    found = dict(zip(module.RETURNS["sensitivities"], values, strict=True))
-    for link, (place, name) in itertools.product("34", enumerate((*subject.lengths, ANGLE))):
-        scale = 1.0 if name == ANGLE else subject.scale
-        turn, w, a = (found[f"{q}{link}_by_{name}"] * scale for q in ("theta", "omega", "alpha"))
-        slopes["theta" + link][place] = turn
-        slopes["omega" + link][place] = w * subject.speed
-        slopes["alpha" + link][place] = a * subject.speed**2 + w * subject.acceleration
-
-
-def _remainder(subject: Subject, sizes: Mapping[str, float], slopes: dict[str, Array]) -> Array:
+def _remainder(model: Parametric, sizes: Mapping[str, float], slopes: dict[str, Array]) -> Array:
     """Return what the first order may leave out within the tolerances, shape (outputs, ...).
 
     With f the output, s its gradient and d a deviation, f(d) - f(0) - s(0) d is the mean of
@@ -233,49 +409,97 @@ def _remainder(subject: Subject, sizes: Mapping[str, float], slopes: dict[str, A
     and the crank angle suffice for their sensitivities too.
     """
     names = tuple(name for name, width in sizes.items() if width > 0.0)
-    moved = [name for name in names if name in (*subject.lengths, ANGLE)]
-    parameters = list(subject.values)
+    moved = [name for name in names if name in (*model.linkage.names, ANGLE)]
+    parameters = list(model.values)
     rows = [parameters.index(name) for name in names]
-    here = {output: slopes[output][rows] for output in subject.outputs}
-    widths = np.reshape([sizes[name] for name in names], (-1,) + (1,) * subject.theta.ndim)
-    worst = np.zeros((len(subject.outputs), *subject.theta.shape))
+    here = {output: slopes[output][rows] for output in model.outputs}
+    widths = np.reshape([sizes[name] for name in names], (-1,) + (1,) * model.theta.ndim)
+    worst = np.zeros((len(model.outputs), *model.theta.shape))
     for signs in itertools.product((-1.0, 1.0), repeat=len(moved)) if moved else ():
-        there = dict(subject.values)
+        there = dict(model.values)
         for name, sign in zip(moved, signs, strict=True):
             there[name] += sign * sizes[name]
-        _, other = subject.derivatives(there, names)
-        changes = [np.sum(widths * np.abs(other[o] - here[o]), axis=0) for o in subject.outputs]
+        _, other = model.derivatives(there, names)
+        changes = [np.sum(widths * np.abs(other[o] - here[o]), axis=0) for o in model.outputs]
         worst = np.maximum(worst, np.stack(changes))
-    first = np.stack([np.sum(widths * np.abs(here[o]), axis=0) for o in subject.outputs])
+    first = np.stack([np.sum(widths * np.abs(here[o]), axis=0) for o in model.outputs])
     return np.asarray(worst + _ROUNDING * _EPS * first)
 
 
-def _checks(subject: Subject, chosen: Array, other: Array) -> dict[str, Check]:
-    """Compare the two routes; and the sensitivities to a common scale of all lengths (Euler)."""
-    count = len(subject.lengths)
-    sizes = np.reshape(list(subject.linkage.lengths.values()), (-1,) + (1,) * subject.theta.ndim)
-    terms = chosen[:, :count] * sizes
-    size = np.sum(np.abs(terms), axis=1)
-    angles = [row for row, name in enumerate(subject.outputs) if name in _SCALE_FREE]
-    gap = np.abs(np.sum(terms, axis=1))[angles]
-    found = _largest_ratio(gap, size[angles])
-    checks = {"a common factor of all lengths leaves the angles": Check(found, _ROUTES)}
-    if isinstance(subject.linkage, FourBar):
-        gap = np.sum(np.abs((chosen - other)[:, :count] * sizes), axis=1)
-        checks["both routes to the sensitivities"] = Check(_largest_ratio(gap, size), _ROUTES)
-    return checks
+def _checks(model: Parametric, sensitivity: Array) -> dict[str, Check]:
+    """Compare the sensitivities of the angles to a common factor of all lengths with zero."""
+    lengths = model.linkage.lengths
+    sizes = np.reshape(list(lengths.values()), (-1,) + (1,) * model.theta.ndim)
+    angles = [row for row, name in enumerate(model.outputs) if name in _SCALE_FREE]
+    terms = sensitivity[angles, : len(lengths)] * sizes
+    rows = tuple(range(1, terms.ndim - 1))
+    most = np.max(np.abs(np.sum(terms, axis=1)), axis=rows, initial=0.0)
+    size = np.max(np.sum(np.abs(terms), axis=1), axis=rows, initial=0.0)
+    worst = float(np.max(most / np.maximum(size, np.finfo(float).tiny), initial=0.0))
+    return {"a common factor of all lengths leaves the angles": Check(worst, _SCALED)}
 
 
-def _largest_ratio(gap: Array, scale: Array) -> float:
-    """Return the largest quotient along the crank angles, each output over its own largest size."""
-    rows = tuple(range(1, gap.ndim))
-    most = np.max(gap, axis=rows, initial=0.0)
-    size = np.maximum(np.max(scale, axis=rows, initial=0.0), np.finfo(float).tiny)
-    return float(np.max(most / size, initial=0.0))
+def box_of(lengths: Mapping[str, float], tolerances: Mapping[str, float]) -> dict[str, Limits]:
+    """Return the limits of each length."""
+    return {
+        name: (size - tolerances.get(name, 0.0), size + tolerances.get(name, 0.0))
+        for name, size in lengths.items()
+    }
 
 
-def _told(subject: Subject, sizes: Mapping[str, float]) -> dict[str, str]:
-    lengths = subject.linkage.lengths.items()
-    told = {f"links.{name}": repr(float(size)) for name, size in lengths}
-    told["links.assembly"] = str(getattr(subject.linkage, "assembly", ""))
-    return told | {f"tolerance.{name}": repr(width) for name, width in sizes.items()}
+def margin(box: Box, theta: Array, width: float = 0.0) -> Array:
+    """Return how far the worst linkage of a box is from folding, in lengths.
+
+    Parameters
+    ----------
+    box : mapping of str to (float, float)
+        Limits of each length; their names tell the mechanism.
+    theta : ndarray
+        Crank angles [rad].
+    width : float
+        Tolerance of the crank angles [rad], less than a quarter turn.
+
+    Returns
+    -------
+    ndarray
+        Positive where every linkage of the box reaches the angle; exact, for the distances are
+        convex functions of the lengths, and extreme in the angle at dead centres alone.
+    """
+    if width > 0.0:
+        start = np.pi / 2 if "offset" in box else 0.0
+        extreme = start + np.pi * np.round((theta - start) / np.pi)
+        low, high = theta - width, theta + width
+        angles = low, high, np.clip(extreme, low, high)
+        return np.asarray(np.min([margin(box, angle) for angle in angles], axis=0))
+    if "offset" in box:
+        heights = [
+            np.abs(offset - crank * np.sin(theta))
+            for crank, offset in itertools.product(box["crank"], box["offset"])
+        ]
+        return np.asarray(box["coupler"][0] - np.max(heights, axis=0))
+    if "rod" in box:
+        near, far = _distances(box["frame"], box["crank"], theta + np.pi)
+        return np.minimum(near, box["rod"][0] - far)
+    near, far = _distances(box["frame"], box["crank"], theta)
+    coupler, follower = box["coupler"], box["follower"]
+    folded = max(coupler[1] - follower[0], follower[1] - coupler[0])
+    return np.minimum(near - folded, coupler[0] + follower[0] - far)
+
+
+def turns(box: Box) -> bool:
+    """Return True where the crank of every linkage of the box turns fully."""
+    extremes = np.array([np.pi / 2, -np.pi / 2] if "offset" in box else [0.0, np.pi])
+    return bool(np.all(margin(box, extremes) > 0.0))
+
+
+def _distances(first: Limits, second: Limits, angle: Array) -> tuple[Array, Array]:
+    """Return least and greatest distance of the ends of two arms that enclose an angle."""
+
+    def distance(a: Array | float, b: Array | float) -> Array:
+        return np.asarray(np.hypot(a - b * np.cos(angle), b * np.sin(angle)))
+
+    far = np.max([distance(a, b) for a, b in itertools.product(first, second)], axis=0)
+    # For one arm given, the distance is least at the foot of the perpendicular.
+    near = [distance(np.clip(b * np.cos(angle), *first), b) for b in second]
+    near += [distance(a, np.clip(a * np.cos(angle), *second)) for a in first]
+    return np.min(near, axis=0), far

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, ClassVar
+from functools import cache, partial
+from inspect import signature
+from numbers import Real
+from types import ModuleType
+from typing import Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
+from ..core.errors import Problem, bad
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .inputs import Array, spread
 
-Terms = tuple[list[Any], list[Any], list[Any]]
+Array: TypeAlias = NDArray[np.float64]
+Assembly: TypeAlias = Literal["open", "crossed"]
+Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
+# A round-off of each of the numbers that an expression comes from, three times.
+ROUND_OFFS = 1.5 * float(np.finfo(float).eps)
+# A position that a round-off of the lengths moves so far [rad] is a change point.
+UNDECIDED = 0.5
 # However large the angles, a loop that gapes wider than this is no motion.
 _WIDEST_GAP = 1e-8
-# Rates may leave their closure by so many times what the error figure of the angles would do.
+# Rates may leave their closure by so many times what the error of the angles would do.
 _RATES_LIMIT = 4.0
 
 
@@ -32,42 +40,17 @@ class PointMotion:
     ----------
     position, velocity, acceleration : ndarray, shape (..., 2)
         Components along and across the frame [m, m/s, m/s^2]; rates are over the crank's speed and
-        its square where the motion was asked for without a speed.
+        its square where the motion was computed without a speed.
     """
 
     position: Array
     velocity: Array
     acceleration: Array
 
-    def nearer(
-        self, other_end: LinkMotion, along: Array, across: ArrayLike, length: float
-    ) -> PointMotion:
-        """Return the same, reached from the link's other end where that is nearer.
-
-        Parameters
-        ----------
-        other_end : LinkMotion
-            Motion of the link with its origin at its second joint.
-        along, across : array_like
-            Place of the point, seen from the first joint [m].
-        length : float
-            Distance of the two joints [m].
-        """
-        chosen = 2.0 * along > length
-        if not np.any(chosen):
-            return self
-        there = other_end.point(along - length, across)
-        parts = (
-            (there.position, self.position),
-            (there.velocity, self.velocity),
-            (there.acceleration, self.acceleration),
-        )
-        return PointMotion(*(np.where(chosen[..., np.newaxis], *pair) for pair in parts))
-
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Motion of a moving link: that of the origin of its own axes, and its turning.
+    """Motion of a moving link: that of the origin of its axes, and its turning.
 
     Attributes
     ----------
@@ -90,25 +73,30 @@ class LinkMotion:
         Parameters
         ----------
         along, across : array_like
-            Its place in the link's own axes [m]; broadcast with the angles.
+            Its place in the link's axes [m]; broadcast with the angles.
 
         Returns
         -------
         PointMotion
         """
-        arm = (np.asarray(along) + 1j * np.asarray(across)) * np.exp(1j * self.angle)
-        turned, hurried = 1j * self.speed, 1j * self.angular_acceleration - self.speed**2
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        x = cos * along - sin * np.asarray(across)
+        y = sin * along + cos * np.asarray(across)
+        speed, change = self.speed, self.angular_acceleration
+        square = speed * speed
         return PointMotion(
-            self.origin + planar(arm),
-            self.velocity + planar(turned * arm),
-            self.acceleration + planar(hurried * arm),
+            self.origin + pair(x, y),
+            self.velocity + pair(-speed * y, speed * x),
+            self.acceleration + pair(-square * x - change * y, change * x - square * y),
         )
 
 
-def planar(value: ArrayLike) -> Array:
-    """Return complex numbers as components, shape (..., 2)."""
-    number = np.asarray(value, dtype=complex)
-    return np.stack([number.real, number.imag], axis=-1)
+def pair(x: ArrayLike, y: ArrayLike) -> Array:
+    """Return two components as one array, shape (..., 2)."""
+    x, y = np.asarray(x), np.asarray(y)
+    both: Array = np.empty((*np.broadcast(x, y).shape, 2), np.result_type(x, y))
+    both[..., 0], both[..., 1] = x, y
+    return both
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +124,7 @@ class Motion(Result, ABC):
     # What moves, by name, with its unit: angles and places, then rates.
     places: ClassVar[Mapping[str, str]] = {}
     rates: ClassVar[Mapping[str, str]] = {}
+    norm: ClassVar[str] = ""
 
     def link(self, name: str) -> LinkMotion:
         """Return the motion of a moving link, its origin at the link's first joint.
@@ -154,8 +143,7 @@ class Motion(Result, ABC):
             known = ", ".join(self.linkage.links)
             raise bad("link", repr(name), f"one of {known}", "choose a moving link")
         if name == "crank":
-            still = np.zeros(np.shape(self.theta2), dtype=complex)
-            return self._link(still, still, still, self.theta2, self.omega2, self.alpha2)
+            return self._about(0.0, self.theta2, self.omega2, self.alpha2)
         return self._other_link(name)
 
     def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
@@ -169,8 +157,8 @@ class Motion(Result, ABC):
         link : str
             One of ``linkage.links``.
         along, across : array_like
-            Place of the point in the link's own axes [m]: origin at the link's first joint, x
-            along the link; broadcast with the angles.
+            Place of the point in the link's axes [m]: origin at the link's first joint, x along
+            the link; broadcast with the angles.
 
         Returns
         -------
@@ -188,7 +176,17 @@ class Motion(Result, ABC):
         near, far = self.link(link).point(*place), self._at_far_joint(link)
         if far is None:
             return near
-        return near.nearer(far, *place, self.linkage.lengths[link])
+        length: Any = self.linkage.lengths[link]
+        nearer = 2.0 * place[0] > np.real(length)
+        if not np.any(nearer):
+            return near
+        there = far.point(place[0] - length, place[1])
+        chosen = nearer[..., np.newaxis]
+        return PointMotion(
+            np.where(chosen, there.position, near.position),
+            np.where(chosen, there.velocity, near.velocity),
+            np.where(chosen, there.acceleration, near.acceleration),
+        )
 
     @property
     @abstractmethod
@@ -205,8 +203,13 @@ class Motion(Result, ABC):
 
         Of an angle it is 1 then.
         """
-        unit = {**self.places, **self.rates}[name]
-        if name in self.places or not self.relative:
+        return self.unit_of(name, self.relative)
+
+    @classmethod
+    def unit_of(cls, name: str, relative: bool = False) -> str:
+        """Return the unit of a place or rate, in time or per radian of the crank."""
+        unit = {**cls.places, **cls.rates}[name]
+        if name in cls.places or not relative:
             return unit
         return "1" if unit.startswith("rad") else unit.replace("/s", "/rad")
 
@@ -218,24 +221,16 @@ class Motion(Result, ABC):
         """Return the motion of a link with its origin at its second joint, where that moves too."""
         return None
 
-    def _at_crank_pin(self, angle: Array, speed: Array, acceleration: Array) -> LinkMotion:
-        """Return the motion of a link that begins at B."""
-        crank = self.linkage.lengths["crank"]
-        arm = crank * np.exp(1j * self.theta2)
-        hurried = (1j * self.alpha2 - self.omega2**2) * arm
-        return self._link(arm, 1j * self.omega2 * arm, hurried, angle, speed, acceleration)
+    def _about(self, pivot: Any, angle: Array, speed: Array, change: Array) -> LinkMotion:
+        """Return the motion of a link that turns about a fixed point of the frame line."""
+        still = np.zeros((*np.shape(self.theta2), 2))
+        start = still + pair(pivot, 0.0)
+        return LinkMotion(start, still, still, angle, speed, change)
 
-    @staticmethod
-    def _link(
-        origin: ArrayLike,
-        velocity: ArrayLike,
-        acceleration: ArrayLike,
-        angle: Array,
-        speed: Array,
-        angular: Array,
-    ) -> LinkMotion:
-        start = planar(origin), planar(velocity), planar(acceleration)
-        return LinkMotion(*start, angle, speed, angular)
+    def _at_crank_pin(self, angle: Array, speed: Array, change: Array) -> LinkMotion:
+        """Return the motion of a link that begins at B."""
+        pin = self.link("crank").point(self.linkage.lengths["crank"])
+        return LinkMotion(pin.position, pin.velocity, pin.acceleration, angle, speed, change)
 
 
 class Linkage(ABC):
@@ -243,6 +238,8 @@ class Linkage(ABC):
 
     Attributes
     ----------
+    mechanism : str
+        Name of its emitted modules.
     names : tuple of str
         Names of the lengths.
     links : tuple of str
@@ -251,6 +248,9 @@ class Linkage(ABC):
         The joints between which each moving link is drawn.
     """
 
+    mechanism: ClassVar[str]
+    kinematics: ClassVar[ModuleType]
+    moves: ClassVar[type[Motion]]
     names: ClassVar[tuple[str, ...]]
     links: ClassVar[tuple[str, str, str]]
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
@@ -268,10 +268,10 @@ class Linkage(ABC):
     @property
     def geometry(self) -> Mapping[str, float]:
         """Geometry as the emitted modules take it: lengths, and the sign of the assembly."""
-        found = dict(self.lengths)
+        geometry = dict(self.lengths)
         if hasattr(self, "assembly"):
-            found["assembly"] = self.branch
-        return found
+            geometry["assembly"] = self.branch
+        return geometry
 
     @property
     @abstractmethod
@@ -299,100 +299,170 @@ class Linkage(ABC):
     ) -> Motion:
         """Return the motion of all links at given crank angles, speeds and accelerations."""
 
-    @abstractmethod
-    def _loop(self, m: Mapping[str, Array]) -> Terms:
-        """Return the complex terms whose sums vanish: places, first and second derivatives.
+    def parametric(
+        self, theta: Array, speed: Array, acceleration: Array, masses: str = "fixed"
+    ) -> Any:
+        """Return the motion as a function of the lengths, for tolerances; there are no masses."""
+        from .parametric import Parametric
 
-        Lengths in the units of ``_unit_lengths``; the derivatives are by the crank angle.
+        return Parametric(self, theta, speed, acceleration)
+
+    def course(self, name: str) -> Callable[[Array], Array]:
+        """Return a place or rate of the motion as a function of the crank angle.
+
+        Raises
+        ------
+        BadInput
+            If the crank cannot turn fully, or the motion has no such field.
         """
-
-    @abstractmethod
-    def _figure(self, m: Mapping[str, Array]) -> Array:
-        """Return what a unit round-off of the angle and of each length does, three times."""
+        self.require_full_turn()
+        known = {**self.moves.places, **self.moves.rates}
+        if name not in known:
+            fields = f"one of {', '.join(known)}"
+            raise bad("source", repr(name), fields, "choose a field of the motion")
+        return lambda theta: np.asarray(getattr(self.motion(theta), name))
 
     @property
-    def _scale(self) -> int:
+    def provenance(self) -> dict[str, str]:
+        """Lengths and assembly, for results."""
+        names = {f"links.{name}": repr(float(size)) for name, size in self.lengths.items()}
+        if hasattr(self, "assembly"):
+            names["links.assembly"] = str(self.assembly)
+        return names
+
+    @property
+    def scale(self) -> int:
         """Binary exponent by which the lengths come below 1: their squares are safe then."""
         return -int(np.frexp(max(abs(value) for value in self.lengths.values()))[1])
 
     @property
-    def _unit_lengths(self) -> dict[str, float]:
+    def unit_lengths(self) -> dict[str, float]:
         """Lengths scaled by a power of two: their digits stay."""
-        scale = self._scale
+        scale = self.scale
         return {name: float(np.ldexp(value, scale)) for name, value in self.lengths.items()}
 
-    def _reachable(self) -> str:
-        """Say which crank angles there are."""
+    @property
+    def reachable(self) -> str:
+        """Which crank angles there are, in words."""
         spans = " or ".join(f"({low:.6g}, {high:.6g})" for low, high in self.crank_ranges())
         return f"a crank angle in {spans} rad, give or take whole turns"
 
-    def _common(self, m: Mapping[str, Array], drive: tuple[Array, Array], norm: str) -> Any:
-        """Return the fields that every motion has, by name.
+    def require(self, reached: NDArray[np.bool_], theta: Array, expected: str = "") -> None:
+        """Raise BadInput, with the first crank angle that is not reached."""
+        if not np.all(reached):
+            first = float(np.ravel(theta)[np.argmin(np.ravel(reached))])
+            fix = "this linkage cannot reach the angle, or folds there; keep theta inside its range"
+            raise bad("theta", f"{first:.6g} rad", expected or self.reachable, fix)
 
-        Parameters
-        ----------
-        m : mapping
-            ``theta2`` and what the emitted function gave, in the units of ``_unit_lengths``.
-        drive : tuple of ndarray
-            Speed and acceleration of the crank, in the shape of the result.
-        norm : str
-            What the error figure is of.
+    def _moved(self, theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike) -> Any:
+        """Return the motion, with its error and checks.
+
+        Raises
+        ------
+        BadInput
+            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
+            together, or the linkage cannot reach an angle or folds there.
         """
-        figure = self._figure(m)
-        return {
-            "linkage": self,
-            "theta2": spread(m["theta2"], drive),
-            "omega2": drive[0],
-            "alpha2": drive[1],
-            "method": "closed form",
-            "error": spread(figure, drive),
-            "error_norm": norm,
-            "checks": DeferredChecks(partial(_checks, self, dict(m), figure)),
-            "provenance": provenance(self._told()),
-        }
+        angles, drive = drive_of(theta, speed, acceleration)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            m = {
+                "theta2": angles,
+                **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
+            }
+        reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
+        self.require(reached, angles, self._expected)
+        self.require(self._decided(m), angles)
+        error = self._error(m)
+        shape = drive[0].shape
+        fields: dict[str, Any] = {}
+        for name, value in driven(m, *drive).items():
+            spread = value if value.shape == shape else np.array(np.broadcast_to(value, shape))
+            scaled = name != "theta2" and self.moves.unit_of(name).startswith("m")
+            fields[name] = np.ldexp(spread, -self.scale) if scaled else spread
+        return self.moves(
+            linkage=self,
+            omega2=drive[0],
+            alpha2=drive[1],
+            **fields,
+            method="closed form",
+            error=np.array(np.broadcast_to(error, shape)),
+            error_norm=f"{self.moves.norm}, absolute, entrywise",
+            checks=DeferredChecks(partial(_checks, self, m, error)),
+            provenance=provenance(self.provenance),
+        )
 
-    def _told(self) -> dict[str, str]:
-        """Return lengths and assembly for the provenance."""
-        told = {f"links.{name}": repr(float(size)) for name, size in self.lengths.items()}
-        if hasattr(self, "assembly"):
-            told["links.assembly"] = str(self.assembly)
-        return told
+    @property
+    def _expected(self) -> str:
+        return self.reachable
+
+    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
+        """Return where the position is one that the lengths decide, and within the links' ends."""
+        return np.ones(np.shape(m["theta2"]), dtype=bool)
+
+    @abstractmethod
+    def _error(self, m: Mapping[str, Array]) -> Array:
+        """Return what a unit round-off of the angle and of each length does, three times."""
+
+    @abstractmethod
+    def _loop(self, m: Mapping[str, Array]) -> Terms:
+        """Return the complex terms whose sums vanish: places, first and second derivatives.
+
+        Lengths in the units of ``unit_lengths``; the derivatives are by the crank angle.
+        """
 
     def _folds(self, theta: Array) -> int:
         """Count the folds strictly between the least and the greatest angle, each end once."""
         if self.crank_turns or theta.size == 0:
             return 0
         low, high = float(theta.min()), float(theta.max())
-        found: list[float] = []
+        folds: list[float] = []
         for end in (end for span in self.crank_ranges() for end in span):
             # The first one beyond the least angle is enough to know.
             first = end + TURN * (np.floor((low - end) / TURN) + 1.0)
-            new = all(abs(first - other) > 1e-9 for other in found)
+            new = all(abs(first - other) > 1e-9 for other in folds)
             if low < first < high and new:
-                found.append(float(first))
-        return len(found)
-
-    def _require_reached(self, m: Mapping[str, Array], expected: str) -> None:
-        """Raise BadInput where the loop did not close, or the linkage folds."""
-        reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self._require(reached, m["theta2"], expected)
-
-    @staticmethod
-    def _require(reached: NDArray[np.bool_], theta: Array, expected: str) -> None:
-        if not np.all(reached):
-            first = float(np.ravel(theta)[np.argmin(np.ravel(reached))])
-            raise bad(
-                "theta",
-                f"{first:.6g} rad",
-                expected,
-                "this linkage cannot reach the angle, or folds there; keep theta inside its range",
-            )
+                folds.append(float(first))
+        return len(folds)
 
 
-def _checks(linkage: Linkage, m: Mapping[str, Array], figure: Array) -> dict[str, Check]:
-    """Close the loop, and its first and second derivative, with the numbers that were found."""
+def emitted(
+    linkage: Linkage, module: Any, function: str, theta: Any, values: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return what an emitted function returns, by name, given the values that it takes.
+
+    Assembly and winding are the linkage's.
+    """
+    call: Callable[..., Any] = getattr(module, function)
+    given = {**values, "assembly": linkage.branch}
+    names = arguments(call)[1:]
+    if "winding" in names:
+        longer = np.greater(np.real(values["crank"]), np.real(values["frame"]))
+        given["winding"] = longer.astype(float)
+    returned = call(theta, **{name: given[name] for name in names})
+    return dict(zip(module.RETURNS[function], map(np.asarray, returned), strict=True))
+
+
+@cache
+def arguments(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Return the names of the arguments of an emitted function."""
+    return tuple(signature(function).parameters)
+
+
+def driven(m: Mapping[str, Any], speed: Any, acceleration: Any) -> dict[str, Any]:
+    """Return speeds and accelerations in time from derivatives by the crank angle (Smith 2.10)."""
+    moved = dict(m)
+    for name, first in m.items():
+        other = name.replace("omega", "alpha").replace("velocity", "acceleration")
+        if other != name:
+            moved[name] = speed * first
+            moved[other] = speed**2 * m[other] + acceleration * first
+    return moved
+
+
+def _checks(linkage: Linkage, m: Mapping[str, Array], error: Array) -> dict[str, Check]:
+    """Close the loop, and its first and second derivative."""
     places, *rates = linkage._loop(m)
-    longest = max(abs(value) for value in linkage._unit_lengths.values())
+    longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)
     limit = 64 * np.finfo(float).eps * np.max(np.abs(m["theta2"]), initial=1.0)
     checks = {
@@ -401,10 +471,69 @@ def _checks(linkage: Linkage, m: Mapping[str, Array], figure: Array) -> dict[str
     }
     for name, terms in zip(("speeds", "accelerations"), rates, strict=True):
         size = np.maximum(sum(np.abs(term) for term in terms), np.finfo(float).tiny)
-        ratio = np.abs(sum(terms)) / (size * figure)
-        worst = float(np.max(ratio, initial=0.0))
+        worst = float(np.max(np.abs(sum(terms)) / (size * error), initial=0.0))
         checks[f"closure of {name} over the figure"] = Check(worst, _RATES_LIMIT)
     return checks
+
+
+def require_linkage(linkage: object) -> None:
+    """Raise BadInput for what is no linkage."""
+    if not isinstance(linkage, Linkage):
+        wrong = type(linkage).__name__
+        raise bad("linkage", wrong, "FourBar, SliderCrank or QuickReturn", "give one")
+
+
+def drive_of(
+    theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
+) -> tuple[Array, tuple[Array, Array]]:
+    """Return the angles, and speed and acceleration in the shape of all three.
+
+    Raises
+    ------
+    BadInput
+        If one of them is no array of finite numbers, or their shapes do not fit together.
+    """
+    angles = finite_array("theta", theta, "angles [rad]")
+    given = (
+        finite_array("speed", speed, "crank speeds [rad/s]"),
+        finite_array("acceleration", acceleration, "crank accelerations [rad/s^2]"),
+    )
+    try:
+        shape = np.broadcast_shapes(angles.shape, *(item.shape for item in given))
+    except ValueError as refusal:
+        shapes = ", ".join(str(item.shape) for item in (angles, *given))
+        raise bad(
+            "theta, speed, acceleration", f"shapes {shapes}", "shapes that broadcast", "correct one"
+        ) from refusal
+    first, second = (np.array(np.broadcast_to(item, shape)) for item in given)
+    return angles, (first, second)
+
+
+def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
+    """Return an array of finite numbers, or raise BadInput."""
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError) as refusal:
+        raise bad(name, repr(value)[:60], f"an array of {meaning}", "correct it") from refusal
+    if not np.all(np.isfinite(array)):
+        raise bad(name, "a value that is not finite", f"finite {meaning}", "remove it")
+    return array
+
+
+def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
+    """Return what is wrong with lengths that must be positive."""
+    return [
+        Problem(f"{owner}.{name}", repr(value), "a positive finite length", "correct it")
+        for name, value in lengths.items()
+        if not (isinstance(value, Real) and 0.0 < float(value) < np.inf)
+    ]
+
+
+def assembly_problems(owner: str, assembly: object) -> list[Problem]:
+    """Return what is wrong with the name of an assembly."""
+    if assembly in ("open", "crossed"):
+        return []
+    return [Problem(f"{owner}.assembly", repr(assembly), "'open' or 'crossed'", "choose one")]
 
 
 def turning(size: ArrayLike, angle: Array, speed: ArrayLike, change: ArrayLike) -> list[Any]:
@@ -418,15 +547,6 @@ def plot_against_crank(motion: Motion, curves: Sequence[tuple[str, str]], ax: An
 
     With a crank speed, each curve is scaled by a power of ten, named in the legend, so that all of
     them can be seen.
-
-    Parameters
-    ----------
-    motion : Motion
-        What moves.
-    curves : sequence of (str, str)
-        Names of fields and their words.
-    ax : Axes or None
-        Where; new ones by default.
     """
     from ..core.plotting import axes_or_new
 

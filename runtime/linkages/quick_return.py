@@ -3,31 +3,40 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...generated import quick_return_kinematics
 from ..core.errors import BadInput, Problem, bad
-from .inputs import Array, by_name, drive_of, length_problems, rates_of, spread
-from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
+from .linkage import (
+    ROUND_OFFS,
+    UNDECIDED,
+    Array,
+    Linkage,
+    LinkMotion,
+    Motion,
+    Terms,
+    length_problems,
+    plot_against_crank,
+    turning,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ROUND = 4.0 * float(np.finfo(float).eps)
-# A position that a round-off of the lengths moves so far [rad] is a change point.
-_UNDECIDED = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
 class QuickReturnMotion(Motion):
     """Motion of a quick-return at given crank angles; every array has their shape.
 
-    ``error`` has it too: the figure for the worse of theta4 [rad] and of the slide over its
+    ``error`` has it too: that of the worse of theta4 [rad] and of the slide over its
     greatest value, from the round-off of crank angle and lengths that the place passes on; it grows
     where the block comes near the rod's pivot.
 
@@ -59,13 +68,13 @@ class QuickReturnMotion(Motion):
         "slide_velocity": "m/s",
         "slide_acceleration": "m/s^2",
     }
+    norm: ClassVar[str] = "worse of theta4 [rad] and slide over its greatest value"
 
     @property
     def joints(self) -> Mapping[str, Array]:
         """Places of A, B, D and of the rod's tip C, each of shape (..., 2)."""
-        start = planar(np.zeros(self.theta2.shape))
         return {
-            "A": start,
+            "A": self.link("crank").origin,
             "B": self.link("block").origin,
             "C": self.point("rod", self.linkage.lengths["rod"]).position,
             "D": self.link("rod").origin,
@@ -84,9 +93,7 @@ class QuickReturnMotion(Motion):
     def _other_link(self, name: str) -> LinkMotion:
         if name == "block":
             return self._at_crank_pin(self.theta4, self.omega4, self.alpha4)
-        still = np.zeros(self.theta2.shape)
-        pivot = still - self.linkage.lengths["frame"]
-        return self._link(pivot, still, still, self.theta4, self.omega4, self.alpha4)
+        return self._about(-self.linkage.lengths["frame"], self.theta4, self.omega4, self.alpha4)
 
 
 @dataclass(frozen=True)
@@ -114,6 +121,9 @@ class QuickReturn(Linkage):
     crank: float
     rod: float
 
+    mechanism: ClassVar[str] = "quick_return"
+    kinematics: ClassVar[ModuleType] = quick_return_kinematics
+    moves: ClassVar[type[Motion]] = QuickReturnMotion
     names: ClassVar[tuple[str, ...]] = ("frame", "crank", "rod")
     links: ClassVar[tuple[str, str, str]] = ("crank", "block", "rod")
     bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -154,7 +164,7 @@ class QuickReturn(Linkage):
 
     @property
     def _long_enough(self) -> bool:
-        frame, crank, _ = self._unit_lengths.values()
+        frame, crank, _ = self.unit_lengths.values()
         # A rod given as the sum of the two, rounded, is long enough.
         return self._ends[1] <= _ROUND * (frame + crank)
 
@@ -164,7 +174,7 @@ class QuickReturn(Linkage):
 
         Correctly rounded, so that no round-off can change their signs.
         """
-        frame, crank, rod = self._unit_lengths.values()
+        frame, crank, rod = self.unit_lengths.values()
         far, near = max(frame, crank), min(frame, crank)
         return math.fsum((rod, near, -far)), math.fsum((far, near, -rod))
 
@@ -195,7 +205,7 @@ class QuickReturn(Linkage):
             whole turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
             ends.
         """
-        frame, crank, rod = self._unit_lengths.values()
+        frame, crank, rod = self.unit_lengths.values()
         if self._long_enough:
             return ((-np.pi, np.pi),)
         longer, shorter = self._ends
@@ -205,55 +215,6 @@ class QuickReturn(Linkage):
         if frame == crank:
             return ((least, np.pi), (np.pi, 2.0 * np.pi - least))
         return ((least, 2.0 * np.pi - least),)
-
-    @property
-    def dead_centres(self) -> tuple[float, float]:
-        """Crank angles [rad] at which the rod is farthest to the left and to the right.
-
-        There the crank stands at right angles to the rod, ``cos(theta2) = -eps``.
-
-        Raises
-        ------
-        BadInput
-            If eps is 1 or more: the rod turns, and never stops.
-        """
-        half = self._return_half("dead_centres")
-        return np.pi - half, half - np.pi
-
-    @property
-    def stroke(self) -> float:
-        """Angle through which the rod swings, 2 asin(eps) [rad].
-
-        Raises
-        ------
-        BadInput
-            If eps is 1 or more: the rod turns.
-        """
-        return np.pi - 2.0 * self._return_half("stroke")
-
-    @property
-    def time_ratio(self) -> float:
-        """Time of the forward stroke of the rod over that of its return, at steady speed.
-
-        Raises
-        ------
-        BadInput
-            If eps is 1 or more: the rod turns.
-        """
-        half = self._return_half("time_ratio")
-        return (np.pi - half) / half
-
-    def _return_half(self, asked: str) -> float:
-        """Return half of the crank's angle during the quick return, acos(eps)."""
-        if self.crank >= self.frame:
-            raise bad(
-                f"QuickReturn.{asked}",
-                f"eps {self.eps:.6g}",
-                "eps = crank/frame below 1",
-                "the rod does not swing to and fro; shorten the crank",
-            )
-        frame, crank, _ = self._unit_lengths.values()
-        return float(2.0 * np.arctan2(np.sqrt(frame - crank), np.sqrt(frame + crank)))
 
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
@@ -282,46 +243,31 @@ class QuickReturn(Linkage):
             If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
             together, the block is beyond the tip of the rod or, with eps = 1, on its pivot.
         """
-        angles, drive = drive_of(theta, speed, acceleration)
-        frame, crank, rod = self._unit_lengths.values()
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            values = _MOTION(angles, frame, crank, winding=float(crank > frame))
-        m = by_name(angles, _OUTPUTS, values)
-        self._require_reached(m, self._reachable())
-        decided = (m["slide"] <= rod * (1.0 + _ROUND)) & (self._blur(m) < _UNDECIDED)
-        self._require(decided, angles, self._reachable())
-        omega4, alpha4 = rates_of(drive, m["omega4"], m["alpha4"])
-        velocity, change = rates_of(drive, m["slide_velocity"], m["slide_acceleration"])
-        norm = "worse of theta4 [rad] and slide over its greatest value, absolute, entrywise"
-        return QuickReturnMotion(
-            theta4=spread(m["theta4"], drive),
-            slide=np.ldexp(spread(m["slide"], drive), -self._scale),
-            omega4=omega4,
-            alpha4=alpha4,
-            slide_velocity=np.ldexp(velocity, -self._scale),
-            slide_acceleration=np.ldexp(change, -self._scale),
-            **self._common(m, drive, norm),
-        )
+        moved: QuickReturnMotion = self._moved(theta, speed, acceleration)
+        return moved
+
+    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
+        rod = self.unit_lengths["rod"]
+        return np.asarray((m["slide"] <= rod * (1.0 + _ROUND)) & (self._blur(m) < UNDECIDED))
 
     def _blur(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of each length does to theta4 [rad], three times."""
-        frame, crank, _ = self._unit_lengths.values()
+        frame, crank, _ = self.unit_lengths.values()
         moved = frame * np.abs(np.sin(m["theta4"]))
         moved = moved + crank * np.abs(np.sin(m["theta2"] - m["theta4"]))
-        return np.asarray(1.5 * np.finfo(float).eps * moved / m["slide"])
+        return np.asarray(ROUND_OFFS * moved / m["slide"])
 
-    def _figure(self, m: Mapping[str, Array]) -> Array:
+    def _error(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of the angle and of each length does, three times."""
-        frame, crank, _ = self._unit_lengths.values()
+        frame, crank, _ = self.unit_lengths.values()
         theta2, theta4 = m["theta2"], m["theta4"]
-        unit = 1.5 * np.finfo(float).eps
-        turned = unit * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)
+        turned = ROUND_OFFS * (np.abs(theta2 * m["omega4"]) + np.abs(theta4)) + self._blur(m)
         moved = np.abs(theta2 * m["slide_velocity"]) + m["slide"] + frame * np.abs(np.cos(theta4))
         moved = moved + crank * np.abs(np.cos(theta2 - theta4))
-        return np.asarray(np.maximum(turned, unit * moved / (frame + crank)))
+        return np.asarray(np.maximum(turned, ROUND_OFFS * moved / (frame + crank)))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
-        frame, crank, _ = self._unit_lengths.values()
+        frame, crank, _ = self.unit_lengths.values()
         ahead, w, a = np.exp(1j * m["theta4"]), m["omega4"], m["alpha4"]
         pin = turning(-crank, m["theta2"], 1.0, 0.0)
         x, v = m["slide"] * ahead, m["slide_velocity"] * ahead
@@ -329,7 +275,3 @@ class QuickReturn(Linkage):
         # Sliding, Coriolis, tangential and centripetal parts.
         changes = [m["slide_acceleration"] * ahead, 2j * w * v, 1j * a * x, -(w**2) * x, pin[2]]
         return [x, pin[0], -frame], speeds, changes
-
-
-_MOTION: Callable[..., tuple[Array, ...]] = quick_return_kinematics.motion
-_OUTPUTS = quick_return_kinematics.RETURNS["motion"]

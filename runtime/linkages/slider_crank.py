@@ -3,40 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
+from types import ModuleType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...generated import slider_crank_kinematics
 from ..core.errors import BadInput, Problem, bad
-from .inputs import (
+from .linkage import (
+    ROUND_OFFS,
+    UNDECIDED,
     Array,
     Assembly,
+    Linkage,
+    LinkMotion,
+    Motion,
+    Terms,
     assembly_problems,
-    by_name,
-    drive_of,
     length_problems,
-    rates_of,
-    spread,
+    pair,
+    plot_against_crank,
+    turning,
 )
-from .linkage import Linkage, LinkMotion, Motion, Terms, planar, plot_against_crank, turning
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-# A position that a round-off of the lengths moves so far [rad] is a change point.
-_UNDECIDED = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
 class SliderCrankMotion(Motion):
     """Motion of a slider-crank at given crank angles; every array has their shape.
 
-    ``error`` has it too: the figure for the worse of theta3 [rad] and of the position over the
+    ``error`` has it too: that of the worse of theta3 [rad] and of the position over the
     longest length, from the round-off of crank angle and lengths that the place passes on; it grows
     where the coupler nearly stands across the guide.
 
@@ -77,13 +79,13 @@ class SliderCrankMotion(Motion):
         "slider_velocity": "m/s",
         "slider_acceleration": "m/s^2",
     }
+    norm: ClassVar[str] = "worse of theta3 [rad] and position over the longest length"
 
     @property
     def joints(self) -> Mapping[str, Array]:
         """Places of the joints A, B, C, each of shape (..., 2)."""
-        start = planar(np.zeros(self.theta2.shape))
-        pins = {"B": self.link("coupler").origin, "C": self.link("slider").origin}
-        return {"A": start, **pins}
+        firsts = {"A": "crank", "B": "coupler", "C": "slider"}
+        return {joint: self.link(link).origin for joint, link in firsts.items()}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the slider's place, velocity and acceleration against the crank angle."""
@@ -98,10 +100,10 @@ class SliderCrankMotion(Motion):
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
             return self._at_crank_pin(self.theta3, self.omega3, self.alpha3)
-        still = np.zeros(self.theta2.shape)
-        pin = self.position + 1j * self.linkage.lengths["offset"]
-        moving = self.slider_velocity, self.slider_acceleration
-        return self._link(pin, *moving, still, still, still)
+        still = np.zeros(np.shape(self.theta2))
+        pin = pair(self.position, self.linkage.lengths["offset"])
+        velocity, change = pair(self.slider_velocity, 0.0), pair(self.slider_acceleration, 0.0)
+        return LinkMotion(pin, velocity, change, still, still, still)
 
     def _at_far_joint(self, name: str) -> LinkMotion | None:
         if name != "coupler":
@@ -136,6 +138,9 @@ class SliderCrank(Linkage):
     offset: float = 0.0
     assembly: Assembly = "open"
 
+    mechanism: ClassVar[str] = "slider_crank"
+    kinematics: ClassVar[ModuleType] = slider_crank_kinematics
+    moves: ClassVar[type[Motion]] = SliderCrankMotion
     names: ClassVar[tuple[str, ...]] = ("crank", "coupler", "offset")
     links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "slider")
     bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -175,7 +180,7 @@ class SliderCrank(Linkage):
 
         Correctly rounded, so that no round-off can change its sign.
         """
-        crank, coupler, offset = self._unit_lengths.values()
+        crank, coupler, offset = self.unit_lengths.values()
         return math.fsum((coupler, side * crank, -abs(offset)))
 
     def require_full_turn(self) -> None:
@@ -198,7 +203,7 @@ class SliderCrank(Linkage):
             turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
             folds.
         """
-        offset = self._unit_lengths["offset"]
+        offset = self.unit_lengths["offset"]
         upper, lower = self._beyond(offset), self._beyond(-offset)
         quarter = np.pi / 2.0
         if upper is None:
@@ -217,67 +222,11 @@ class SliderCrank(Linkage):
 
         There ``crank cos(beyond) = coupler + offset``.
         """
-        crank, coupler, _ = self._unit_lengths.values()
+        crank, coupler, _ = self.unit_lengths.values()
         least, most = math.fsum((crank, -coupler, -offset)), math.fsum((crank, coupler, offset))
         if least < 0.0 or most < 0.0:
             return None
         return float(2.0 * np.arctan2(np.sqrt(least), np.sqrt(most)))
-
-    @property
-    def _ways(self) -> tuple[float, float]:
-        """Distances of the slider from A along the guide, at the outer and the inner dead centre.
-
-        For a crank that turns fully.
-        """
-        crank, coupler, offset = self._unit_lengths.values()
-        outer = math.sqrt(self._spare(1.0) * (coupler + crank + abs(offset)))
-        return outer, math.sqrt(self._spare(-1.0) * (coupler - crank + abs(offset)))
-
-    @property
-    def dead_centres(self) -> tuple[float, float]:
-        """Crank angles [rad] of the outer and the inner dead centre, where the slider reverses.
-
-        Crank and coupler lie in one line: one after the other, and one over the other.
-
-        Raises
-        ------
-        BadInput
-            If the crank cannot turn fully.
-        """
-        self.require_full_turn()
-        offset = self._unit_lengths["offset"]
-        stretched, folded = (float(np.arctan2(offset, way)) for way in self._ways)
-        if self.assembly == "open":
-            return stretched, np.pi + folded
-        return np.pi - stretched, 2.0 * np.pi - folded
-
-    @property
-    def stroke(self) -> float:
-        """Way of the slider between its dead centres [m].
-
-        Raises
-        ------
-        BadInput
-            If the crank cannot turn fully.
-        """
-        self.require_full_turn()
-        crank, coupler, _ = self._unit_lengths.values()
-        outer, inner = self._ways
-        return float(np.ldexp(4.0 * crank * coupler / (outer + inner), -self._scale))
-
-    @property
-    def time_ratio(self) -> float:
-        """Time of the stroke from the outer to the inner dead centre over that of the way back.
-
-        At steady speed, the crank turning anticlockwise; with the guide through A it is 1.
-
-        Raises
-        ------
-        BadInput
-            If the crank cannot turn fully.
-        """
-        outer, inner = self.dead_centres
-        return (inner - outer) / (2.0 * np.pi - (inner - outer))
 
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
@@ -305,51 +254,36 @@ class SliderCrank(Linkage):
             If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
             together, or the linkage cannot reach an angle or folds there.
         """
-        angles, drive = drive_of(theta, speed, acceleration)
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            values = _MOTION(angles, **self._unit_lengths, assembly=self.branch)
-        m = by_name(angles, _OUTPUTS, values)
-        self._require_reached(m, self._reachable())
-        self._require(self._blur(m) < _UNDECIDED, angles, self._reachable())
-        omega3, alpha3 = rates_of(drive, m["omega3"], m["alpha3"])
-        velocity, change = rates_of(drive, m["slider_velocity"], m["slider_acceleration"])
-        norm = "worse of theta3 [rad] and position over the longest length, absolute, entrywise"
-        return SliderCrankMotion(
-            theta3=spread(m["theta3"], drive),
-            position=np.ldexp(spread(m["position"], drive), -self._scale),
-            omega3=omega3,
-            alpha3=alpha3,
-            slider_velocity=np.ldexp(velocity, -self._scale),
-            slider_acceleration=np.ldexp(change, -self._scale),
-            transmission_angle=spread(m["transmission_angle"], drive),
-            **self._common(m, drive, norm),
-        )
+        moved: SliderCrankMotion = self._moved(theta, speed, acceleration)
+        return moved
+
+    def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
+        return np.asarray(self._blur(m) < UNDECIDED)
 
     def _blur(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of each length does to theta3 [rad], three times."""
-        crank, coupler, offset = self._unit_lengths.values()
+        crank, coupler, offset = self.unit_lengths.values()
         sine = np.abs(np.cos(m["transmission_angle"]))
         moved = abs(offset) + crank * np.abs(np.sin(m["theta2"])) + coupler * sine
         across = np.abs(np.sin(m["transmission_angle"]))
-        return np.asarray(1.5 * np.finfo(float).eps * moved / (coupler * across))
+        return np.asarray(ROUND_OFFS * moved / (coupler * across))
 
-    def _figure(self, m: Mapping[str, Array]) -> Array:
+    def _error(self, m: Mapping[str, Array]) -> Array:
         """Return what a unit round-off of the angle and of each length does, three times.
 
         A change of a length across the guide moves the slider by its product with the tangent.
         """
-        crank, coupler, offset = self._unit_lengths.values()
+        crank, coupler, offset = self.unit_lengths.values()
         theta2, blur = m["theta2"], self._blur(m)
-        unit = 1.5 * np.finfo(float).eps
-        turned = unit * (np.abs(theta2 * m["omega3"]) + np.abs(m["theta3"])) + blur
+        turned = ROUND_OFFS * (np.abs(theta2 * m["omega3"]) + np.abs(m["theta3"])) + blur
         along = crank * np.abs(np.cos(theta2)) + coupler * np.abs(np.cos(m["theta3"]))
         moved = np.abs(theta2 * m["slider_velocity"]) + np.abs(m["position"]) + along
-        moved = unit * moved + blur * coupler * np.abs(np.cos(m["transmission_angle"]))
+        moved = ROUND_OFFS * moved + blur * coupler * np.abs(np.cos(m["transmission_angle"]))
         longest = max(crank, coupler, abs(offset))
         return np.asarray(np.maximum(turned, moved / longest))
 
     def _loop(self, m: Mapping[str, Array]) -> Terms:
-        crank, coupler, offset = self._unit_lengths.values()
+        crank, coupler, offset = self.unit_lengths.values()
         terms = zip(
             turning(crank, m["theta2"], 1.0, 0.0),
             turning(coupler, m["theta3"], m["omega3"], m["alpha3"]),
@@ -358,7 +292,3 @@ class SliderCrank(Linkage):
         )
         places, speeds, changes = (list(item) for item in terms)
         return [*places, -1j * offset], speeds, changes
-
-
-_MOTION: Callable[..., tuple[Array, ...]] = slider_crank_kinematics.motion
-_OUTPUTS = slider_crank_kinematics.RETURNS["motion"]

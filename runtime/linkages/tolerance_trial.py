@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.results import Check, Result
+from .linkage import Array
 
 if TYPE_CHECKING:
-    from .tolerance_result import Tolerances
+    from .length_tolerances import Tolerances
 
-Array = NDArray[np.float64]
 Distribution = Literal["normal", "uniform"]
 # Standard deviations over the tolerance.
 _SPREADS = {"normal": 1.0 / 3.0, "uniform": 1.0 / math.sqrt(3.0)}
@@ -137,7 +136,7 @@ def _deviations(
     nominal: Tolerances, random: np.random.Generator, count: int, distribution: Distribution
 ) -> Array:
     """Return deviations of the outputs of random linkages, shape (count, outputs, ...)."""
-    subject = nominal.subject
+    model = nominal.model
     shape = (count, len(nominal.parameters))
     drawn = (
         random.normal(0.0, _SPREADS["normal"], shape)
@@ -146,11 +145,11 @@ def _deviations(
     )
     numbers = {}
     for place, name in enumerate(nominal.parameters):
-        column = subject.values[name] + nominal.tolerance[place] * drawn[:, place]
-        numbers[name] = np.reshape(column, (count,) + (1,) * subject.theta.ndim)
-    found = subject.evaluate(numbers)
-    full = (count, *subject.theta.shape)
-    deviation = np.stack([np.broadcast_to(found[name], full) for name in nominal.outputs], axis=1)
+        column = model.values[name] + nominal.tolerance[place] * drawn[:, place]
+        numbers[name] = np.reshape(column, (count,) + (1,) * model.theta.ndim)
+    values = model.evaluate(numbers)
+    full = (count, *model.theta.shape)
+    deviation = np.stack([np.broadcast_to(values[name], full) for name in nominal.outputs], axis=1)
     deviation = deviation - nominal.nominal
     for row, name in enumerate(nominal.outputs):
         if name in ("theta3", "theta4"):
@@ -162,22 +161,22 @@ def _deviations(
 def _checks(
     nominal: Tolerances, shift: Array, spread: Array, expected: Array, kept: int
 ) -> dict[str, Check]:
-    """Compare with the first order: within the statistical error and the error figure."""
+    """Compare with the first order: within the statistical error and the error."""
     # |Z| exceeds z with a chance below exp(-z^2/2); every output and angle is one comparison.
     quantile = math.sqrt(2.0 * math.log(max(spread.size, 1) / _CHANCE))
     axes = tuple(range(1, nominal.nominal.ndim))
     size = np.max(np.abs(nominal.nominal), axis=axes, initial=0.0, keepdims=True)
-    figure = np.asarray(nominal.error) + 64.0 * np.finfo(float).eps * size
-    figure = np.maximum(figure, np.finfo(float).tiny)
+    allowed = np.asarray(nominal.error) + 64.0 * np.finfo(float).eps * size
+    allowed = np.maximum(allowed, np.finfo(float).tiny)
     off_spread = np.abs(spread - expected) / (
-        quantile * np.maximum(spread, expected) / math.sqrt(2.0 * (kept - 1)) + figure
+        quantile * np.maximum(spread, expected) / math.sqrt(2.0 * (kept - 1)) + allowed
     )
-    off_mean = np.abs(shift) / (quantile * spread / math.sqrt(kept) + figure)
+    off_mean = np.abs(shift) / (quantile * spread / math.sqrt(kept) + allowed)
     return {
-        "spread within its statistical error and the figure": Check(
+        "spread within its statistical error and the bound": Check(
             float(np.max(off_spread, initial=0.0)), 1.0
         ),
-        "mean within its statistical error and the figure": Check(
+        "mean within its statistical error and the bound": Check(
             float(np.max(off_mean, initial=0.0)), 1.0
         ),
     }

@@ -1,24 +1,30 @@
-"""Transmission angle and its extremes, dead centres, toggles, swing and mechanical advantage."""
+"""Transmission angle and its extremes, dead centres, toggles, swing and mechanical advantage.
+
+Each special angle x comes as ``2 atan(sqrt(n/d))`` where ``1 - cos x`` and ``1 + cos x`` are to
+each other as n to d, and both factor into correctly rounded sums of lengths: nothing cancels.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from math import fsum, pi, tau
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
-from . import FourBar, QuickReturn, SliderCrank, dead_centres
-from .dead_centres import Positions
+from .four_bar import FourBar
+from .linkage import Array, require_linkage
+from .quick_return import QuickReturn
+from .slider_crank import SliderCrank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 _EPS = float(np.finfo(float).eps)
 _RECOMMENDED = (math.radians(40.0), math.radians(140.0))
 # The half-angle formulas: every sum is rounded once, and so are two roots, their products, a
@@ -31,8 +37,8 @@ class TransmissionAngle(Result):
     """Extremes of the transmission angle, and the positions that a designer asks for with them.
 
     Crank angles lie from -pi (exclusive) to pi.  The output is the follower (its angle theta4), the
-    slider (its position) or the rod (its angle).  ``error`` is the figure of the extremes, given
-    the lengths as they are.
+    slider (its position) or the rod (its angle).  ``error`` is that of the extremes, given the
+    lengths as they are.
 
     Attributes
     ----------
@@ -85,6 +91,7 @@ class TransmissionAngle(Result):
     swing: float | None
     time_ratio: float | None
     lengths: Mapping[str, float]
+    linkage: FourBar | SliderCrank | QuickReturn = field(repr=False)
 
     @property
     def worst(self) -> float:
@@ -114,18 +121,43 @@ class TransmissionAngle(Result):
 
     def angle(self, theta: ArrayLike) -> Array:
         """Return the transmission angle [rad] at crank angles within the ranges (Aannaque 3.9)."""
-        theta = np.asarray(theta, dtype=float)
-        sizes = self.lengths
-        if self.mechanism == "quick-return":
-            return np.full(theta.shape, math.pi / 2)
-        crank, coupler = sizes["crank"], sizes["coupler"]
-        if self.mechanism == "slider-crank":
-            cosine = (sizes["offset"] - crank * np.sin(theta)) / coupler
-        else:
-            frame, follower = sizes["frame"], sizes["follower"]
-            diagonal = frame**2 + crank**2 - 2.0 * frame * crank * np.cos(theta)
-            cosine = (coupler**2 + follower**2 - diagonal) / (2.0 * coupler * follower)
-        return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
+        return np.asarray(np.arccos(_cosine(self.linkage, np.asarray(theta, dtype=float))))
+
+    def mechanical_advantage(self, theta: ArrayLike) -> MechanicalAdvantage:
+        """Return the mechanical advantage at crank angles (Aannaque 3.1, corrected).
+
+        T4/T2 = omega2/omega4 = follower sin(transmission angle)/(crank sin(beta)), beta between
+        crank and coupler; printed (3.1) has the frame in the place of the crank.
+
+        Parameters
+        ----------
+        theta : array_like
+            Crank angles [rad], any shape.
+
+        Raises
+        ------
+        BadInput
+            If an angle is not a finite number, or the linkage cannot reach it or folds there.
+        """
+        motion = self.linkage.motion(theta)
+        ratio, error = _speed_ratio(self.linkage, motion)
+        with np.errstate(divide="ignore"):
+            advantage = 1.0 / ratio
+        return MechanicalAdvantage(
+            theta2=motion.theta2,
+            advantage=advantage,
+            speed_ratio=ratio,
+            poles=np.array([*self.dead_centres.values()]),
+            method=motion.method,
+            error=error,
+            error_norm="speed ratio, absolute, entrywise",
+            checks=motion.checks,
+            provenance=motion.provenance,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain lists, numbers and strings, ready for JSON."""
+        return {name: value for name, value in super().to_dict().items() if name != "linkage"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,8 +170,8 @@ class MechanicalAdvantage(Result):
         Crank angles [rad].
     advantage : ndarray
         Torque (for a slider: force) that the output gives, over the torque on the crank: crank
-        speed over speed of the output.  Infinite exactly at a dead centre.  ``error`` is the figure
-        of its reciprocal, which is bounded there.
+        speed over speed of the output.  Infinite exactly at a dead centre.  ``error`` is that of
+        its reciprocal, which is bounded there.
     speed_ratio : ndarray
         Its reciprocal: speed of the output over that of the crank.
     poles : ndarray
@@ -190,129 +222,289 @@ def transmission_angle(
         If the band is not two rising angles between 0 and pi, or this is no linkage.
     """
     low, high = _checked_band(band)
-    found = positions(linkage)
-    deviation, limit = found.cosine_check
+    require_linkage(linkage)
+    if isinstance(linkage, SliderCrank):
+        special = _slider_crank(linkage)
+    elif isinstance(linkage, QuickReturn):
+        special = _quick_return(linkage)
+    else:
+        special = _four_bar(linkage)
+    least, greatest = special.least, special.greatest
+    ends = ((special.at_least, least), (special.at_greatest, greatest))
+    gaps = [abs(_cosine(linkage, angle) - math.cos(x)) for angles, x in ends for angle in angles]
+    lengths = {name: float(size) for name, size in linkage.lengths.items()}
     return TransmissionAngle(
-        mechanism=found.mechanism,
-        least=found.least,
-        greatest=found.greatest,
-        at_least=np.array(found.at_least),
-        at_greatest=np.array(found.at_greatest),
+        mechanism=linkage.mechanism.replace("_", "-"),
+        least=least,
+        greatest=greatest,
+        at_least=np.array(special.at_least),
+        at_greatest=np.array(special.at_greatest),
         band=(low, high),
-        within_band=low <= found.least and found.greatest <= high,
-        crank_ranges=np.array(found.crank_ranges),
-        dead_centres=found.dead_centres,
-        output_at_dead_centres=found.outputs,
-        toggles={name: np.array(angles) for name, angles in found.toggles.items()},
-        output_range=found.output_range,
-        swing=found.swing,
-        time_ratio=found.time_ratio,
-        lengths={name: float(size) for name, size in linkage.lengths.items()},
+        within_band=low <= least and greatest <= high,
+        crank_ranges=np.array(linkage.crank_ranges()),
+        dead_centres=special.dead_centres,
+        output_at_dead_centres=special.outputs,
+        toggles={
+            "folded": np.array(special.at_least if least == 0.0 else ()),
+            "extended": np.array(special.at_greatest if greatest == pi else ()),
+        },
+        output_range=special.output_range,
+        swing=special.swing,
+        time_ratio=special.time_ratio,
+        lengths=lengths,
+        linkage=linkage,
         method="half-angle formulas of correctly rounded sums",
-        error=_ROUND_OFF * found.greatest,
+        error=_ROUND_OFF * greatest,
         error_norm="least and greatest transmission angle [rad], absolute, worst",
         error_kind="bound",
-        checks={"cosines of the extremes by the law of cosines": Check(deviation, limit)},
-        provenance=provenance({f"links.{k}": repr(v) for k, v in linkage.lengths.items()}),
+        checks={
+            "cosines of the extremes by the law of cosines": Check(
+                float(max(gaps, default=0.0)), special.round_off
+            )
+        },
+        provenance=provenance({f"links.{name}": repr(size) for name, size in lengths.items()}),
     )
 
 
-def positions(linkage: FourBar | SliderCrank | QuickReturn) -> Positions:
-    """Return the extremes and special positions of a linkage.
+@dataclass(frozen=True)
+class _Special:
+    """Special positions; the words of :class:`TransmissionAngle` apply.
 
-    Raises
-    ------
-    BadInput
-        If this is no linkage.
-    """
-    if not isinstance(linkage, (FourBar, SliderCrank, QuickReturn)):
-        found_text = repr(linkage)[:60]
-        raise bad("linkage", found_text, "FourBar, SliderCrank or QuickReturn", "give one")
-    sizes = linkage.lengths
-    exponent = -math.frexp(max(map(abs, sizes.values())))[1]
-    # Lengths below 1 by a power of two: their digits stay, their products are safe.
-    unit = {name: math.ldexp(float(size), exponent) for name, size in sizes.items()}
-    if isinstance(linkage, SliderCrank):
-        found = dead_centres.slider_crank(**unit, branch=linkage.branch)
-        return _lengthened(found, -exponent)
-    if isinstance(linkage, QuickReturn):
-        return dead_centres.quick_return(unit["frame"], unit["crank"])
-    return dead_centres.four_bar(**unit, branch=linkage.branch)
-
-
-def mechanical_advantage(
-    linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike
-) -> MechanicalAdvantage:
-    """Return the mechanical advantage at crank angles (Aannaque 3.1, corrected).
-
-    T4/T2 = omega2/omega4 = follower sin(transmission angle)/(crank sin(beta)), beta between crank
-    and coupler; printed (3.1) has the frame in the place of the crank.
-
-    Parameters
+    Attributes
     ----------
-    linkage : FourBar, SliderCrank or QuickReturn
-        The linkage.
-    theta : array_like
-        Crank angles [rad], any shape.
-
-    Raises
-    ------
-    BadInput
-        If this is no linkage, an angle is not a finite number, or the linkage cannot reach it or
-        folds there.
+    round_off : float
+        Of a cosine by the plain law of cosines.
     """
-    found = positions(linkage)
-    motion: Any = linkage.motion(theta)
-    ratio, error = _SPEEDS[found.mechanism](linkage, motion)
-    with np.errstate(divide="ignore"):
-        advantage = 1.0 / ratio
-    return MechanicalAdvantage(
-        theta2=motion.theta2,
-        advantage=advantage,
-        speed_ratio=ratio,
-        poles=np.array([*found.dead_centres.values()]),
-        method=motion.method,
-        error=error,
-        error_norm="speed ratio, absolute, entrywise",
-        checks=motion.checks,
-        provenance=motion.provenance,
+
+    least: float
+    greatest: float
+    at_least: tuple[float, ...]
+    at_greatest: tuple[float, ...]
+    dead_centres: Mapping[str, float]
+    outputs: Mapping[str, float]
+    output_range: tuple[float, float] | None
+    swing: float | None
+    time_ratio: float | None
+    round_off: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """Sums of the four lengths of a loop ABCD, each correctly rounded.
+
+    ``less_x`` is the sum of the other three less x, ``two``, ``three`` and ``four`` are frame +
+    crank, frame + coupler and frame + follower less the other two.
+    """
+
+    total: float
+    less_frame: float
+    less_crank: float
+    less_coupler: float
+    less_follower: float
+    two: float
+    three: float
+    four: float
+
+    @classmethod
+    def of(cls, a: float, b: float, c: float, d: float) -> _Sums:
+        return cls(
+            fsum((a, b, c, d)),
+            fsum((-a, b, c, d)),
+            fsum((a, -b, c, d)),
+            fsum((a, b, -c, d)),
+            fsum((a, b, c, -d)),
+            fsum((a, b, -c, -d)),
+            fsum((a, -b, c, -d)),
+            fsum((a, -b, -c, d)),
+        )
+
+
+def _four_bar(linkage: FourBar) -> _Special:
+    """Return the positions of a four-bar linkage (Aannaque 3.9, 3.10, and the triangles ACD)."""
+    frame, crank, coupler, follower = linkage.unit_lengths.values()
+    s = _Sums.of(frame, crank, coupler, follower)
+    inner, outer = s.three * s.four < 0, s.two > 0
+    # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
+    fold_0 = _angle((s.three, s.four), (s.less_coupler, s.less_follower)) if inner else 0.0
+    fold_pi = _angle((s.less_frame, s.less_crank), (s.two, s.total)) if outer else pi
+    centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
+    output_range = _follower_range(s, linkage.branch)
+    return _Special(
+        least=0.0 if inner else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
+        greatest=pi if outer else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
+        at_least=_mirrored(fold_0),
+        at_greatest=_mirrored(fold_pi),
+        dead_centres=centres,
+        outputs=outputs,
+        output_range=output_range,
+        swing=None if output_range is None else output_range[1] - output_range[0],
+        time_ratio=None if inner or outer else _time_ratio(centres),
+        round_off=8.0 * _EPS * s.total**2 / (coupler * follower),
     )
 
 
-def _four_bar_speed(linkage: FourBar, motion: Any) -> tuple[Array, Array]:
-    """Return omega4 over omega2, and what the error of the angles does to it."""
-    ratio = np.asarray(motion.omega4)
-    sine = np.abs(np.sin(motion.transmission_angle))
-    aligned = np.abs(np.cos(motion.theta4 - motion.theta3))
-    passed_on = linkage.crank / linkage.follower + np.abs(ratio) * aligned
-    return ratio, np.asarray(2.0 * motion.error * passed_on / sine + 4.0 * _EPS * np.abs(ratio))
+def _four_bar_centres(
+    s: _Sums, crank: float, coupler: float, branch: float
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Return crank and follower angles where crank and coupler lie in one line.
+
+    Open, C lies to the left of the line from B to D: above the frame when extended, and when folded
+    above it if the coupler is the longer one.
+    """
+    centres, outputs = {}, {}
+    if s.four >= 0:
+        centres["extended"] = branch * _angle((s.less_frame, s.four), (s.less_follower, s.total))
+        outputs["extended"] = branch * _angle((s.four, s.total), (s.less_frame, s.less_follower))
+    if s.two * s.three <= 0 and not s.two == s.three == 0:
+        centres["folded"] = -branch * _angle((s.three, s.less_crank), (s.two, s.less_coupler))
+        side = branch if coupler > crank else -branch
+        outputs["folded"] = side * _angle((s.less_coupler, s.less_crank), (s.two, s.three))
+    return {name: _turned(angle) for name, angle in centres.items()}, outputs
 
 
-def _slider_speed(linkage: SliderCrank, motion: Any) -> tuple[Array, Array]:
-    """Return the slider's speed over the crank's, and what the error of theta3 does to it."""
-    ratio = np.asarray(motion.link("slider").velocity[..., 0])
-    cosine = np.abs(np.cos(motion.theta3))
-    turned = _EPS * (np.abs(motion.theta2) + 8.0 / cosine)
-    return ratio, np.asarray(linkage.crank * 2.0 * turned / cosine**2 + 4.0 * _EPS * np.abs(ratio))
+def _follower_range(s: _Sums, branch: float) -> tuple[float, float] | None:
+    """Return the follower's range: an outer limit, an inner one, both or none."""
+    outer = _angle((s.four, s.total), (s.less_frame, s.less_follower)) if s.four > 0 else None
+    folded = s.two * s.three < 0
+    inner = _angle((s.less_coupler, s.less_crank), (s.two, s.three)) if folded else None
+    if outer is not None and inner is not None:
+        return (outer, inner) if branch > 0 else (-inner, -outer)
+    if outer is not None:
+        return outer, tau - outer
+    return None if inner is None else (-inner, inner)
 
 
-def _rod_speed(linkage: QuickReturn, motion: Any) -> tuple[Array, Array]:
-    """Return the rod's speed over the crank's; the distance of block and pivot passes errors on."""
-    ratio = np.asarray(motion.link("rod").speed)
-    distance = np.hypot(
-        linkage.frame + linkage.crank * np.cos(motion.theta2),
-        linkage.crank * np.sin(motion.theta2),
+def _slider_crank(linkage: SliderCrank) -> _Special:
+    """Return the positions of a slider-crank linkage.
+
+    The cosine of the transmission angle is (offset - crank sin(theta2))/coupler.
+    """
+    crank, coupler, offset = linkage.unit_lengths.values()
+    over, under = fsum((coupler, offset, -crank)), fsum((coupler, -offset, -crank))
+    reach = fsum((coupler, crank, -offset)), fsum((coupler, crank, offset))
+    upper, lower = over < 0, under < 0
+    high = _arcsine(offset + coupler, over, reach[1]) if upper else pi / 2
+    low = _arcsine(offset - coupler, under, reach[0]) if lower else -pi / 2
+    far = math.sqrt(reach[0]) * math.sqrt(reach[1])
+    branch, round_off = linkage.branch, 8.0 * _EPS * reach[1 if offset >= 0 else 0] / coupler
+    centres, outputs = {"extended": math.atan2(offset, branch * far)}, {"extended": branch * far}
+    if over * under >= 0 and crank != coupler:
+        folded = _root(over, under)
+        ahead = 1.0 if coupler > crank else -1.0
+        centres["folded"] = _turned(math.atan2(-ahead * offset, -branch * folded))
+        outputs["folded"] = branch * ahead * folded
+    # The circuit ends at the folded position, or goes on to the other side of the crank pivot.
+    near = _root(over, under) if over * under > 0 else -far
+    special = _Special(
+        least=0.0 if lower else _angle((under,), (reach[1],)),
+        greatest=pi if upper else _angle((reach[0],), (over,)),
+        at_least=(low, _turned(pi - low)) if lower else (low,),
+        at_greatest=(high, _turned(pi - high)) if upper else (high,),
+        dead_centres=centres,
+        outputs=outputs,
+        output_range=(near, far) if branch > 0 else (-far, -near),
+        swing=_stroke(crank, coupler, over, under, far, near),
+        time_ratio=None if upper or lower else _time_ratio(centres),
+        round_off=round_off,
     )
+    return _lengthened(special, -linkage.scale)
+
+
+def _stroke(
+    crank: float, coupler: float, over: float, under: float, far: float, near: float
+) -> float:
+    """Return far less near; without cancellation where the crank turns."""
+    return 4.0 * crank * coupler / (far + near) if over > 0 and under > 0 else far - near
+
+
+def _quick_return(linkage: QuickReturn) -> _Special:
+    """Return the positions of a quick-return linkage: the block presses at right angles."""
+    frame, crank, _ = linkage.unit_lengths.values()
+    shorter, longer = min(frame, crank), max(frame, crank)
+    root = _root(fsum((longer, -shorter)), fsum((longer, shorter)))
+    lean = math.atan2(shorter, root)
+    swings = crank < frame
+    at = pi / 2 + lean
+    return _Special(
+        least=pi / 2,
+        greatest=pi / 2,
+        at_least=(),
+        at_greatest=(),
+        dead_centres={"upper": at, "lower": -at} if swings else {},
+        outputs={"upper": lean, "lower": -lean} if swings else {},
+        output_range=(-lean, lean) if swings else None,
+        swing=2.0 * lean if swings else None,
+        time_ratio=at / math.atan2(root, shorter) if root else None,
+    )
+
+
+def _angle(numerator: tuple[float, ...], denominator: tuple[float, ...]) -> float:
+    """Return twice the arctangent of the root of the ratio of two products, from 0 to pi."""
+    return 2.0 * math.atan2(_root(*numerator), _root(*denominator))
+
+
+def _root(*factors: float) -> float:
+    """Return the root of a product; each factor's sign is known to cancel."""
+    return math.prod(math.sqrt(abs(factor)) for factor in factors)
+
+
+def _arcsine(height: float, less: float, plus: float) -> float:
+    """Return the angle of a link that reaches ``height``; link -+ height are given apart."""
+    return math.atan2(height, _root(less, plus))
+
+
+def _turned(angle: float) -> float:
+    """Return the angle within (-pi, pi]."""
+    if -pi < angle <= pi:
+        return angle
+    return angle - tau if angle > pi else angle + tau
+
+
+def _mirrored(angle: float) -> tuple[float, ...]:
+    """Return the crank angles that are mirror images in the frame; 0 and pi are their own."""
+    return (angle,) if angle in (0.0, pi) else (-angle, angle)
+
+
+def _time_ratio(centres: Mapping[str, float]) -> float | None:
+    """Return the quick-return ratio, at least 1, of a fully turning crank."""
+    if set(centres) != {"extended", "folded"}:
+        return None
+    stroke = (centres["folded"] - centres["extended"]) % tau
+    quicker = min(stroke, tau - stroke)
+    return (tau - quicker) / quicker if quicker else None
+
+
+def _cosine(linkage: FourBar | SliderCrank | QuickReturn, theta: Any) -> Any:
+    """Return the cosine of the transmission angle by the plain law of cosines."""
+    if isinstance(linkage, QuickReturn):
+        return np.zeros(np.shape(theta))
+    size = linkage.unit_lengths
+    crank, coupler = size["crank"], size["coupler"]
+    if isinstance(linkage, SliderCrank):
+        return np.clip((size["offset"] - crank * np.sin(theta)) / coupler, -1.0, 1.0)
+    frame, follower = size["frame"], size["follower"]
+    diagonal = frame**2 + crank**2 - 2.0 * frame * crank * np.cos(theta)
+    cosine = (coupler**2 + follower**2 - diagonal) / (2.0 * coupler * follower)
+    return np.clip(cosine, -1.0, 1.0)
+
+
+def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> tuple[Array, Array]:
+    """Return output speed over crank speed, and what the error of the angles does to it."""
+    if isinstance(linkage, FourBar):
+        ratio = motion.omega4
+        sine = np.abs(np.sin(motion.transmission_angle))
+        aligned = np.abs(np.cos(motion.theta4 - motion.theta3))
+        passed_on = linkage.crank / linkage.follower + np.abs(ratio) * aligned
+        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * _EPS * np.abs(ratio)
+    if isinstance(linkage, SliderCrank):
+        ratio = motion.slider_velocity
+        cosine = np.abs(np.cos(motion.theta3))
+        turned = 2.0 * _EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
+        return ratio, linkage.crank * turned + 4.0 * _EPS * np.abs(ratio)
+    ratio = motion.omega4
     turned = _EPS * (np.abs(motion.theta2) + 4.0)
-    lever = (linkage.frame + linkage.crank) / distance
-    return ratio, np.asarray(turned * lever**2 * (1.0 + np.abs(ratio)))
-
-
-_SPEEDS: dict[str, Any] = {
-    "four-bar": _four_bar_speed,
-    "slider-crank": _slider_speed,
-    "quick-return": _rod_speed,
-}
+    lever = (linkage.frame + linkage.crank) / motion.slide
+    return ratio, turned * lever**2 * (1.0 + np.abs(ratio))
 
 
 def _checked_band(band: tuple[float, float]) -> tuple[float, float]:
@@ -326,12 +518,12 @@ def _checked_band(band: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
-def _lengthened(found: Positions, exponent: int) -> Positions:
+def _lengthened(special: _Special, exponent: int) -> _Special:
     """Return the positions of a slider in the unit of the lengths."""
-    low, high = found.output_range or (0.0, 0.0)
+    low, high = special.output_range or (0.0, 0.0)
     return replace(
-        found,
-        outputs={name: math.ldexp(value, exponent) for name, value in found.outputs.items()},
+        special,
+        outputs={name: math.ldexp(value, exponent) for name, value in special.outputs.items()},
         output_range=(math.ldexp(low, exponent), math.ldexp(high, exponent)),
-        swing=math.ldexp(found.swing or 0.0, exponent),
+        swing=math.ldexp(special.swing or 0.0, exponent),
     )

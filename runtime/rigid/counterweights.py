@@ -1,18 +1,15 @@
-"""Counterweights: bodies added to a link of a machine, and the machine with them."""
+"""Counterweights: bodies added to the links of a machine, and where an optimiser may put them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from numbers import Real
-from typing import TYPE_CHECKING
 
 from ..core.errors import BadInput, Problem, bad
+from .inputs import not_finite, require_link
+from .machine import Machine, require_machine
 from .masses import MassDistribution
-
-if TYPE_CHECKING:
-    from . import Machine
 
 
 @dataclass(frozen=True)
@@ -53,43 +50,19 @@ class Counterweight:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        cylinder = {"density": self.density, "thickness": self.thickness}
-        given = {name: value for name, value in cylinder.items() if value is not None}
-        numbers = {name: getattr(self, name) for name in ("mass", "along", "across", "radius")}
-        problems = [
-            Problem(f"Counterweight.{name}", repr(value)[:60], "a finite number", "correct it")
-            for name, value in {**numbers, **given}.items()
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value)
-        ]
-        if not problems:
-            problems = [
-                Problem(f"Counterweight.{name}", f"{numbers[name]:g}", "zero or more", "correct it")
-                for name in ("mass", "radius")
-                if numbers[name] < 0
-            ]
-            problems += [
-                Problem(f"Counterweight.{name}", f"{value:g}", "above zero", "correct it")
-                for name, value in given.items()
-                if value <= 0
-            ]
-            if len(given) == 1 or (given and self.radius):
-                problems.append(
-                    Problem(
-                        "Counterweight",
-                        " and ".join([*given, *(["radius"] if self.radius else [])]),
-                        "a radius, or density and thickness",
-                        "give one or the other",
-                    )
-                )
+        where = "Counterweight"
+        problems = not_finite(where, {"along": self.along, "across": self.across})
+        problems += not_finite(where, {"mass": self.mass, "radius": self.radius}, least=0.0)
+        problems += _cylinder_problems(where, self.density, self.thickness)
+        if not problems and self.radius and self.density is not None:
+            problems.append(_radius_twice(where))
         if problems:
             raise BadInput(*problems)
 
     @property
     def own_inertia(self) -> float:
         """Moment of inertia [kg m^2] about its own centre."""
-        if self.density is None or self.thickness is None:
-            return 0.5 * self.mass * self.radius * self.radius
-        return self.mass * self.mass / (2.0 * math.pi * self.thickness * self.density)
+        return 0.5 * self.mass * self.disc_radius**2
 
     @property
     def disc_radius(self) -> float:
@@ -109,6 +82,92 @@ class Counterweight:
         return MassDistribution.about_centre(self.mass, self.along, self.across, self.own_inertia)
 
 
+@dataclass(frozen=True)
+class Bounds:
+    """Where a counterweight may be, and what it may weigh.
+
+    Parameters
+    ----------
+    mass : float, optional
+        Greatest mass [kg]; by default that of all links of the machine together.
+    offset : float, optional
+        Greatest distance [m] of its centre from the link's first joint; by default the length of
+        the link.
+    least_offset : float
+        Least distance [m]; equal to ``offset`` for a counterweight at a given distance.
+    radius : float
+        Greatest radius [m] of a disc whose radius is free; 0 for a point mass.
+    density, thickness : float, optional
+        In place of the radius: a cylinder [kg/m^3, m], its radius given by its mass.
+
+    Raises
+    ------
+    BadInput
+        If a number is impossible.
+    """
+
+    mass: float | None = None
+    offset: float | None = None
+    least_offset: float = 0.0
+    radius: float = 0.0
+    density: float | None = None
+    thickness: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        where = "Bounds"
+        problems = not_finite(
+            where, {"least_offset": self.least_offset, "radius": self.radius}, least=0.0
+        )
+        problems += _not_positive(where, {"mass": self.mass, "offset": self.offset})
+        problems += _cylinder_problems(where, self.density, self.thickness)
+        if not problems and self.offset is not None and self.least_offset > self.offset:
+            expected = f"at most the greatest offset {self.offset:g}"
+            problems.append(
+                Problem("Bounds.least_offset", f"{self.least_offset:g}", expected, "correct it")
+            )
+        if not problems and self.radius and self.density is not None:
+            problems.append(_radius_twice(where))
+        if problems:
+            raise BadInput(*problems)
+
+    def completed(self, machine: Machine, link: str) -> tuple[float, float]:
+        """Return greatest mass [kg] and offset [m], with the machine's defaults.
+
+        Raises
+        ------
+        BadInput
+            If a default is not known, or below the least offset.
+        """
+        lengths = machine.linkage.lengths
+        mass = self.mass or sum(machine.mass(name).mass for name in machine.linkage.links)
+        offset = self.offset or lengths.get(link)
+        if not mass:
+            raise bad(f"bounds.{link}", "a machine without mass", "a greatest mass", "give mass")
+        if offset is None:
+            raise bad(f"bounds.{link}", "no offset", "a greatest offset", "give offset")
+        if self.least_offset > offset:
+            least = f"least offset {self.least_offset:g}"
+            raise bad(f"bounds.{link}", least, f"at most {offset:g}", "give offset too")
+        return mass, offset
+
+
+def bounds_by_link(
+    links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
+) -> dict[str, Bounds]:
+    """Return the bounds of each link, or raise BadInput where they are none or name another."""
+    if isinstance(bounds, Mapping):
+        for link in bounds:
+            require_link(link, links, "bounds")
+        given = {link: bounds.get(link, Bounds()) for link in links}
+    else:
+        given = dict.fromkeys(links, Bounds() if bounds is None else bounds)
+    for each in given.values():
+        if not isinstance(each, Bounds):
+            raise bad("bounds", type(each).__name__, "Bounds", "give Bounds(mass=..., offset=...)")
+    return given
+
+
 def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight]) -> Machine:
     """Return the machine with counterweights added to its links.
 
@@ -126,34 +185,29 @@ def with_counterweights(machine: Machine, counterweights: Iterable[Counterweight
     """
     require_machine(machine)
     masses = dict(machine.masses)
-    links = tuple(machine.linkage.links)
     for weight in counterweights:
-        require_link(weight.link, links, "Counterweight.link")
-        before = masses.get(weight.link, MassDistribution())
-        masses[weight.link] = before + weight.distribution
+        require_link(weight.link, tuple(machine.linkage.links), "Counterweight.link")
+        masses[weight.link] = masses.get(weight.link, MassDistribution()) + weight.distribution
     return replace(machine, masses=masses)
 
 
-def require_link(link: object, links: tuple[str, ...], where: str) -> None:
-    """Raise BadInput where a linkage has no such moving link."""
-    if link not in links:
-        raise bad(where, repr(link), f"one of {', '.join(links)}", "correct the name")
+def _not_positive(where: str, values: Mapping[str, float | None]) -> list[Problem]:
+    given = {name: value for name, value in values.items() if value is not None}
+    return not_finite(where, given) or [
+        Problem(f"{where}.{name}", f"{value:g}", "a number above zero", "correct it")
+        for name, value in given.items()
+        if value <= 0.0
+    ]
 
 
-def require_machine(machine: object) -> None:
-    """Raise BadInput for what is no Machine."""
-    from . import Machine
+def _cylinder_problems(where: str, density: float | None, thickness: float | None) -> list[Problem]:
+    problems = _not_positive(where, {"density": density, "thickness": thickness})
+    if not problems and (density is None) != (thickness is None):
+        expected = "both density and thickness, or none"
+        problems.append(Problem(f"{where}.density", "one of the two", expected, "give both"))
+    return problems
 
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one of a linkage")
 
-
-def finite_number(value: object, where: str) -> float:
-    """Return a finite number, or raise BadInput."""
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError) as refusal:
-        raise bad(where, repr(value)[:60], "a number", "correct it") from refusal
-    if not math.isfinite(number):
-        raise bad(where, repr(value)[:60], "a finite number", "correct it")
-    return number
+def _radius_twice(where: str) -> Problem:
+    expected = "a radius, or density and thickness"
+    return Problem(f"{where}.radius", "all three", expected, "leave one out")

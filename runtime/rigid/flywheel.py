@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ..core.errors import bad
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .blocks import Array
-from .forces import described, driving_torque
-from .loads import not_finite
-from .machine import Machine
+from ..linkages.linkage import Array
+from .forces import driving_torque
+from .inputs import not_finite
+from .machine import Machine, require_machine
 from .one_freedom import OneFreedom
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ _TAIL = 1e-12
 # Forward dynamics confirm the coefficient of fluctuation to this share of it.
 _CONFIRMED = 1e-5
 _ITERATIONS = 60
+_MOST_TOPS = 16
+_TO_POWERS = np.linalg.inv(np.vander(np.arange(-3.0, 4.0), increasing=True))
 _WILD = 10.0
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
 _SETTLED, _UNSETTLED = 16.0 * _EPS, 1e-12
@@ -132,7 +134,7 @@ def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
         error=tail + 32.0 * _EPS * size + _polish_error(energy),
         error_norm="energy fluctuation [J]",
         checks=DeferredChecks(partial(_mean_check, machine, speed, mean, size)),
-        provenance=provenance(described(machine)),
+        provenance=provenance(machine.provenance),
     )
 
 
@@ -220,8 +222,8 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     True
     """
     if not_finite("flywheel_inertia", {"fluctuation": fluctuation}) or not 0 < fluctuation < 1:
-        found = repr(fluctuation)[:60]
-        raise bad("fluctuation", found, "a number between 0 and 1", "0.02 is usual")
+        given = repr(fluctuation)[:60]
+        raise bad("fluctuation", given, "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
     first_order = steady.energy_fluctuation / (fluctuation * speed**2)
     balance = _Balance(machine, steady)
@@ -247,7 +249,7 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
         checks=DeferredChecks(
             partial(_confirmed, machine, inertia, motor, float(speeds[0]), reached, share, moved)
         ),
-        provenance=provenance(described(machine)),
+        provenance=provenance(machine.provenance),
     )
 
 
@@ -273,11 +275,11 @@ class _Balance:
             if load is None:
                 load = self.system.load(self.theta, self.sign * speeds)
             motor = float(np.mean(load))
-            found = self._speeds(inertia, -_integral(load))
-            if found is None:
+            changed = self._speeds(inertia, -_integral(load))
+            if changed is None:
                 return _WILD, self.sign * speeds, motor, 0.0
-            moved = float(np.max(np.abs(found - speeds))) / self.speed
-            speeds = found
+            moved = float(np.max(np.abs(changed - speeds))) / self.speed
+            speeds = changed
             if self.still is not None:
                 moved = 0.0
             if moved <= _SETTLED:
@@ -356,17 +358,30 @@ def _integral(values: Array) -> Array:
 
 
 def _extreme(values: Array) -> tuple[float, float]:
-    """Return the greatest value of a periodic function between its samples, and its angle."""
+    """Return the greatest value of a periodic function between its samples, and its angle.
+
+    Every local maximum that may be the greatest is polished: a sample is lower than the summit
+    beside it by an eighth of the second differences.
+    """
+    before, after = np.roll(values, 1), np.roll(values, -1)
+    lower = float(np.max(values) - np.max(np.abs(before - 2.0 * values + after)))
+    tops = np.flatnonzero((values >= before) & (values >= after) & (values >= lower))
+    # Of a function that all but stays the same, the highest samples are enough.
+    highest = tops[np.argsort(-values[tops], kind="stable")[:_MOST_TOPS]]
+    return max((_summit(values, int(top)) for top in highest), key=lambda each: each[0])
+
+
+def _summit(values: Array, top: int) -> tuple[float, float]:
+    """Return value and angle of the summit beside a sample."""
     n = values.size
-    top = int(np.argmax(values))
     # Seven samples about the top; the polynomial through them is off by the eighth power.
-    x = np.arange(-3.0, 4.0)
     y = values[(top + np.arange(-3, 4)) % n] - values[top]
-    polynomial = np.polynomial.Polynomial(np.linalg.solve(np.vander(x, increasing=True), y))
+    polynomial = np.polynomial.Polynomial(_TO_POWERS @ y)
     slope = polynomial.deriv()
+    curve = slope.deriv()
     at = 0.0
     for _ in range(8):
-        bend = slope.deriv()(at)
+        bend = curve(at)
         if bend == 0.0:
             break
         at = float(np.clip(at - slope(at) / bend, -1.0, 1.0))
@@ -413,21 +428,19 @@ def _confirmed(
     )
     speeds = np.abs(run.speed)
     middle = (np.max(speeds) + np.min(speeds)) / 2.0
-    found = float((np.max(speeds) - np.min(speeds)) / middle)
-    gap = abs(found - reached) / max(reached, 1e-12)
+    gap = abs((np.max(speeds) - np.min(speeds)) / middle - reached) / max(reached, 1e-12)
     return {
-        "fluctuation by forward dynamics, relative": Check(gap, _CONFIRMED + share),
+        "fluctuation by forward dynamics, relative": Check(float(gap), _CONFIRMED + share),
         "speeds not settled, relative": Check(moved, _UNSETTLED),
     }
 
 
-def _require(machine: Any, speed: float) -> None:
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one")
+def _require(machine: Machine, speed: float) -> None:
+    require_machine(machine)
     machine.linkage.require_full_turn()
     if not_finite("speed", {"speed": speed}) or speed == 0:
-        found = repr(speed)[:60]
-        raise bad("speed", found, "a finite crank speed, not zero", "give one in rad/s")
+        given = repr(speed)[:60]
+        raise bad("speed", given, "a finite crank speed, not zero", "give one in rad/s")
     turns = _SCATTERED + _TURN * _TURNS[:, np.newaxis]
     torque = driving_torque(machine, turns, speed).torque
     size = float(np.max(np.abs(torque)))

@@ -1,18 +1,22 @@
-"""Error figure of the forces: what a round-off of every number they come from does to them."""
+"""Errors of the forces from round-off, and self-checks from the motion alone."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .blocks import BLOCK, Array
-from .loads import Load, Spring, TorsionSpring, frozen
-from .machine import Machine
+from ..core.results import Check
+from ..linkages.linkage import Array
+from ..linkages.parametric import ANGLE
+from .evaluation import BLOCK
+from .loads import Load, Spring, TorsionSpring, Wrench, at_first_joint, frozen
+from .machine import Machine, wrenches
 from .masses import MassDistribution
+from .parametric import ParametricMachine
 
 NORM = (
     "worst force component [N], worst torque or moment over the longest link [N], absolute,"
@@ -24,82 +28,78 @@ _UNIT = float(np.finfo(float).eps) / 2.0
 # random machines near folds, near change points and with short links the worst needed 18.4 against
 # 60 digits, all others less than 9 (tests/error_estimates has a part of them).
 _FACTOR = 24.0
-# Where the figure is as large as this share of what is added up, the linkage folds, and first
+# Where the error is as large as this share of what is added up, the linkage folds, and first
 # order tells nothing: the forces may be as large as one likes.
-MEANINGFUL = 0.5
+_MEANINGFUL = 0.5
+# Places at which the checks are made, beside those where a force is largest.
+_PLACES = 24
 
 
-def figure(machine: Machine, theta: Array, speed: Array, acceleration: Array) -> Array:
-    """Return the error figure of all forces, in the common shape.
-
-    Parameters
-    ----------
-    machine : Machine
-        The machine.
-    theta, speed, acceleration : ndarray
-        Crank angle [rad], speed [rad/s], acceleration [rad/s^2].
-
-    Returns
-    -------
-    ndarray
-        See :func:`figure_and_size`.
-    """
-    return figure_and_size(machine, theta, speed, acceleration)[0]
+def error(machine: Machine, theta: Array, speed: Array, acceleration: Array) -> Array:
+    """Return the error of all forces, in the common shape; see :func:`error_and_size`."""
+    return error_and_size(machine, theta, speed, acceleration)[0]
 
 
-def figure_and_size(
+def error_and_size(
     machine: Machine, theta: Array, speed: Array, acceleration: Array
 ) -> tuple[Array, Array]:
-    """Return the error figure, and the forces that its parts bring about, in the common shape.
+    """Return the error, and the forces that its parts bring about, in the common shape.
 
-    The figure is a few units of round-off times ``|f| + sum |x df/dx|``, the sum over crank angle,
+    The error is a few units of round-off times ``|f| + sum |x df/dx|``, the sum over crank angle,
     lengths, masses, moments, inertias and drive, of the worst of all forces.  The derivatives come
-    from the emitted functions by the rules of differentiation, so that they grow near a fold with
-    every power of the sine that the forces do.  What springs and loads add are the round-offs of
-    their own wrenches.  What a load's callable returns counts as exact.  Beyond a share of
-    :data:`MEANINGFUL` of what the masses, the drive and the wrenches bring about, added up without
-    regard to signs, the figure is infinite: the linkage folds within the round-off of its lengths.
+    from the emitted functions by a complex step, so that they grow near a fold with every power of
+    the sine that the forces do.  What springs and loads add are the round-offs of their wrenches.
+    What a load's callable returns counts as exact.  Beyond a share of a half of what the masses,
+    the drive and the wrenches bring about, added up without regard to signs, the error is infinite:
+    the linkage folds within the round-off of its lengths.
     """
     batch = np.broadcast_shapes(theta.shape, speed.shape, acceleration.shape)
     given = [np.ravel(np.broadcast_to(item, batch)) for item in (theta, speed, acceleration)]
-    found, size = np.empty(given[0].size), np.empty(given[0].size)
-    acting = _frozen_loads(machine, *given)
+    errors, size = np.empty(given[0].size), np.empty(given[0].size)
+    loads = _frozen_loads(machine, *given)
     scaled = _Scaled(machine)
-    for where in _blocks(found.size):
-        own = [(fx[where], fy[where], couple[where]) for fx, fy, couple in acting]
-        found[where], size[where] = scaled.figure(own, *(item[where] for item in given))
-    return found.reshape(batch), size.reshape(batch)
-
-
-def share_of(error: Array, size: Array) -> Array:
-    """Return the figure over what is added up, zero where nothing acts."""
-    return np.where(size > 0.0, error / np.where(size > 0.0, size, 1.0), 0.0)
-
-
-def _blocks(size: int) -> Iterator[slice]:
-    # A dual number is some twenty numbers wide.
+    # Some twenty derivatives of each number.
     step = BLOCK // 8
-    return (slice(start, start + step) for start in range(0, size, step))
+    for where in (slice(start, start + step) for start in range(0, errors.size, step)):
+        part = [_FrozenLoad(one.load, one.force[where], one.couple[where]) for one in loads]
+        errors[where], size[where] = scaled.error(part, *(item[where] for item in given))
+    return errors.reshape(batch), size.reshape(batch)
+
+
+def _share_of(errors: Array, size: Array) -> Array:
+    """Return the error over what is added up, zero where nothing acts."""
+    return np.where(size > 0.0, errors / np.where(size > 0.0, size, 1.0), 0.0)
+
+
+@dataclass(frozen=True)
+class _FrozenLoad:
+    """A load with its force (n, 2), along its axes, and couple (n,) at given angles."""
+
+    load: Load
+    force: Array
+    couple: Array
+
+    def wrenches(self, motion: Any, _: Array) -> dict[str, Wrench]:
+        return {self.load.link: at_first_joint(self.load, motion, self.force, self.couple)}
 
 
 def _frozen_loads(
     machine: Machine, theta: Array, speed: Array, acceleration: Array
-) -> list[tuple[Array, Array, Array]]:
-    """Return force components, as given along the load's axes, and couple of each load."""
+) -> list[_FrozenLoad]:
     if not machine.loads:
         return []
     motion = machine.linkage.motion(theta, speed, acceleration)
-    found = []
+    loads = []
     for load in machine.loads:
         force, couple = frozen(load, motion, speed)
-        fx, fy = (np.broadcast_to(force[..., i], theta.shape) for i in (0, 1))
-        found.append((fx, fy, np.broadcast_to(couple, theta.shape)))
-    return found
+        full = np.broadcast_to(force, (*theta.shape, 2))
+        loads.append(_FrozenLoad(load, full, np.broadcast_to(couple, theta.shape)))
+    return loads
 
 
 @dataclass(frozen=True)
 class _Acting:
-    """A machine as the sensitivities take it: masses, weights, loads as numbers, springs."""
+    """A machine as its derivatives take it: masses, gravity, frozen loads, springs."""
 
     masses: Mapping[str, MassDistribution]
     gravity: tuple[float, float]
@@ -124,9 +124,9 @@ class _Scaled:
         self.longest = max(abs(size) for size in shorter.values())
         self.masses = {
             link: MassDistribution(
-                self._rate(own.mass), own.along, own.across, self._length(own.inertia)
+                self._rate(mass.mass), mass.along, mass.across, self._length(mass.inertia)
             )
-            for link, own in machine.masses.items()
+            for link, mass in machine.masses.items()
         }
         gx, gy = machine.gravity
         self.gravity = self._length(gx), self._length(gy)
@@ -155,29 +155,29 @@ class _Scaled:
             free_length=float(self._length(spring.free_length)),
         )
 
-    def figure(
-        self, acting: list[tuple[Array, Array, Array]], theta: Array, speed: Array, change: Array
+    def error(
+        self, loads: list[_FrozenLoad], theta: Array, speed: Array, change: Array
     ) -> tuple[Array, Array]:
-        """Return the figure and what is added up [N] at angles of one axis."""
-        from ..linkages.subject import ANGLE, Subject
-
-        loads = tuple(
-            self._load(load, *wrench)
-            for load, wrench in zip(self.machine.loads, acting, strict=True)
+        """Return the error and what is added up [N] at angles of one axis."""
+        acting: Any = _Acting(
+            self.masses,
+            self.gravity,
+            tuple(self._load(load) for load in loads),
+            self.springs,
+            self.machine.loaded,
         )
-        whole: Any = _Acting(self.masses, self.gravity, loads, self.springs, self.machine.loaded)
-        subject = Subject(self.linkage, whole, theta, speed, change)
-        numbers = subject.values
+        model = ParametricMachine(self.linkage, theta, speed, change, machine=acting)
+        numbers = model.values
         fixed = [n for n in self.linkage.names if numbers[n] or n == "offset"]
         moments = [n for n, value in numbers.items() if value and "." in n]
         names = (ANGLE, *fixed, *moments)
         with np.errstate(all="ignore"):
-            values, slopes = subject.derivatives(numbers, names)
+            values, slopes = model.derivatives(numbers, names)
             steps = [np.abs(theta), *(self._step(n, numbers[n]) for n in names[1:])]
-            drives = self._drives(subject)
+            drives = self._drives(model)
             moved, size = np.zeros(theta.shape), np.zeros(theta.shape)
-            for name in subject._module.RETURNS["forces"]:
-                arm = self.longest if subject.unit(name) == "N m" else 1.0
+            for name in model.forces:
+                arm = self.longest if model.unit(name) == "N m" else 1.0
                 terms = [
                     step * np.abs(slope) for step, slope in zip(steps, slopes[name], strict=True)
                 ]
@@ -186,10 +186,10 @@ class _Scaled:
                 parts = parts + sum(np.abs(part[name]) for part in drives)
                 moved = np.fmax(moved, (sum(terms[:split]) + parts) / arm)
                 size = np.fmax(size, parts / arm)
-            wrenches = self._wrenches(acting, theta, speed, change)
-            found, size = _FACTOR * _UNIT * (moved + wrenches), size + wrenches
-            known = np.isfinite(found) & (share_of(found, size) <= MEANINGFUL)
-        return np.where(known, found, np.inf), size
+            pulls = self._pulls(loads, theta, speed, change)
+            errors, size = _FACTOR * _UNIT * (moved + pulls), size + pulls
+            known = np.isfinite(errors) & (_share_of(errors, size) <= _MEANINGFUL)
+        return np.where(known, errors, np.inf), size
 
     def _step(self, name: str, value: float) -> float:
         """Return what a number counts as in round-offs."""
@@ -200,35 +200,29 @@ class _Scaled:
         lengths = self.linkage.lengths
         return abs(value) + (lengths["crank"] + lengths["coupler"]) / 4.0
 
-    def _load(self, load: Load, fx: Array, fy: Array, couple: Array) -> Any:
-        return SimpleNamespace(
-            link=load.link,
-            force=(fx, fy),
-            couple=self._length(couple),
-            along=float(self._length(load.along)),
-            across=float(self._length(load.across)),
-            axes=load.axes,
-        )
+    def _load(self, one: _FrozenLoad) -> _FrozenLoad:
+        places = {n: float(self._length(getattr(one.load, n))) for n in ("along", "across")}
+        scaled: Any = replace(one.load, **places)  # type: ignore[arg-type]
+        return _FrozenLoad(scaled, one.force, self._length(one.couple))
 
     @staticmethod
-    def _drives(subject: Any) -> list[Mapping[str, Array]]:
+    def _drives(model: ParametricMachine) -> list[Mapping[str, Array]]:
         """Return the forces at no speed and at no acceleration, which may cancel each other."""
-        if not np.any(subject.acceleration):
+        if not np.any(model.acceleration):
             return []
-        parts = ({"speed": np.zeros_like(subject.speed)}, {"acceleration": np.zeros(1)})
-        return [replace(subject, **part).evaluate(subject.values) for part in parts]
+        parts = ({"speed": np.zeros_like(model.speed)}, {"acceleration": np.zeros(1)})
+        return [replace(model, **part).evaluate(model.values) for part in parts]
 
-    def _wrenches(
-        self, acting: list[tuple[Array, Array, Array]], theta: Array, speed: Array, change: Array
-    ) -> Array:
+    def _pulls(self, loads: list[_FrozenLoad], theta: Array, speed: Array, change: Array) -> Array:
         """Return how large the parts of the wrenches are, seen in the joints [N]."""
         total: Array = np.zeros(theta.shape)
-        if not (acting or self.springs):
+        if not (loads or self.springs):
             return total
         motion = self.linkage.motion(theta, speed, change)
-        for load, (fx, fy, couple) in zip(self.machine.loads, acting, strict=True):
-            reach = self._length(abs(load.along) + abs(load.across)) + self.longest
-            total = total + np.hypot(fx, fy) * reach + np.abs(self._length(couple))
+        for one in loads:
+            reach = self._length(abs(one.load.along) + abs(one.load.across)) + self.longest
+            force = np.hypot(one.force[:, 0], one.force[:, 1])
+            total = total + force * reach + np.abs(self._length(one.couple))
         total = total + self._tensions(motion) * self.longest
         return np.asarray(total / _shortest_arm(self.linkage.lengths, motion))
 
@@ -262,3 +256,138 @@ def _shortest_arm(lengths: Mapping[str, float], motion: Any) -> Array:
     sine = np.abs(np.sin(motion.transmission_angle))
     bars = (lengths[name] for name in ("coupler", "follower") if name in lengths)
     return np.asarray(min(bars) * sine)
+
+
+def checks(
+    machine: Machine,
+    theta: Array,
+    speed: Array,
+    acceleration: Array,
+    values: Mapping[str, Array],
+) -> dict[str, Check]:
+    """Return the checks that the values at hand allow, at some of the places.
+
+    Residuals over the error, at places all over and where a force is largest; and the error itself
+    over the forces that the parts of the machine bring about, which fails at a fold.
+    """
+    batch = np.broadcast_shapes(theta.shape, speed.shape, acceleration.shape)
+    if int(np.prod(batch, dtype=int)) == 0:
+        return {}
+    flat = {name: np.ravel(value) for name, value in values.items()}
+    chosen = _places(flat)
+    given = [
+        np.ravel(np.broadcast_to(item, batch))[chosen] for item in (theta, speed, acceleration)
+    ]
+    forces = {name: value[chosen] for name, value in flat.items()}
+    errors, size = error_and_size(machine, *given)
+    allowed = np.maximum(errors, np.finfo(float).tiny)
+    broken = sum(int(np.count_nonzero(~np.isfinite(value))) for value in values.values())
+    share = float(np.max(_share_of(errors, size)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        gaps = _Balance(machine, *given).residuals(forces)
+        return {
+            "values that are not finite": Check(float(broken), 0.0),
+            "error over what is added up": Check(share, _MEANINGFUL),
+        } | {
+            f"{name} over the figure": Check(float(np.max(np.abs(gap) / allowed)), 1.0)
+            for name, gap in gaps.items()
+        }
+
+
+def _places(values: Mapping[str, Array]) -> NDArray[np.intp]:
+    """Return places all over, and those at which each of the values is largest."""
+    size = next(iter(values.values())).size
+    spread = np.linspace(0, size - 1, _PLACES).astype(int)
+    peaks = [int(np.argmax(np.abs(value))) for value in values.values()]
+    return np.unique(np.concatenate([spread, np.array(peaks, dtype=int)]))
+
+
+class _Balance:
+    """Newton's and Euler's equations at some places."""
+
+    def __init__(self, machine: Machine, theta: Array, speed: Array, acceleration: Array) -> None:
+        self.machine = machine
+        self.motion = machine.linkage.motion(theta, speed, acceleration)
+        self.unit = machine.linkage.motion(theta)
+        self.inertia = {link: self._momentum(link) for link in machine.linkage.links}
+        self.acting = wrenches(machine, self.motion, speed)
+        self.outside = wrenches(machine, self.motion, speed, "outside")
+        self.longest = max(abs(length) for length in machine.linkage.lengths.values())
+
+    def residuals(self, forces: Mapping[str, Array]) -> dict[str, Array]:
+        """Return by how much each balance that can be made fails [N]."""
+        gaps = {}
+        if "torque" in forces:
+            power = self._power(self.acting) - self._power(self.inertia)
+            gaps["power balance"] = (forces["torque"] + power) / self.longest
+        if "shaking_x" in forces:
+            fx, fy, _ = self._frame()
+            gap = np.hypot(forces["shaking_x"] - fx, forces["shaking_y"] - fy)
+            gaps["shaking force against -dP/dt"] = gap
+        if "shaking_moment" in forces:
+            gap = forces["shaking_moment"] - self._frame()[2]
+            gaps["shaking moment against -dH/dt"] = gap / self.longest
+        if "x12" in forces:
+            gaps["equilibrium of the links"] = self._statics(forces)
+        return gaps
+
+    def _momentum(self, link: str) -> Wrench:
+        """Return the rate of change of a link's momentum, and of its moment at the first joint."""
+        moving, mass = self.motion.link(link), self.machine.mass(link)
+        cos, sin = np.cos(moving.angle), np.sin(moving.angle)
+        x, y = cos * mass.along - sin * mass.across, sin * mass.along + cos * mass.across
+        ax, ay = moving.acceleration[..., 0], moving.acceleration[..., 1]
+        alpha, square = moving.angular_acceleration, moving.speed**2
+        return (
+            mass.mass * ax - alpha * y - square * x,
+            mass.mass * ay + alpha * x - square * y,
+            mass.inertia * alpha + x * ay - y * ax,
+        )
+
+    def _power(self, by_link: Mapping[str, Wrench]) -> Array:
+        """Return the power at a crank speed of 1 rad/s."""
+        total: Array = np.zeros(np.shape(self.motion.theta2))
+        for link, (fx, fy, couple) in by_link.items():
+            moving = self.unit.link(link)
+            vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
+            total = total + fx * vx + fy * vy + couple * moving.speed
+        return total
+
+    def _frame(self) -> Wrench:
+        """Return what the momenta and the outside leave for the frame, moment about A."""
+        total: list[Array] = [np.zeros(np.shape(self.motion.theta2)) for _ in range(3)]
+        for by_link, sign in ((self.inertia, -1.0), (self.outside, 1.0)):
+            for link, (fx, fy, couple) in by_link.items():
+                origin = self.motion.link(link).origin
+                moment = couple + origin[..., 0] * fy - origin[..., 1] * fx
+                parts = zip(total, (fx, fy, moment), strict=True)
+                total = [old + sign * part for old, part in parts]
+        return total[0], total[1], total[2]
+
+    def _statics(self, forces: Mapping[str, Array]) -> Array:
+        """Return the worst of the nine equations (Smith 4.4-4.6) [N]."""
+        none: Any = np.zeros(np.shape(self.motion.theta2))
+        places = self.motion.joints
+        meeting = places["B"] if "couple34" in forces else places["C"]
+        gaps = []
+        first = {"12": places["A"], "23": places["B"], "34": meeting, "41": meeting}
+        for link, (ahead, behind) in zip(
+            self.machine.linkage.links, (("12", "23"), ("23", "34"), ("34", "41")), strict=True
+        ):
+            origin = self.motion.link(link).origin
+            acting = self.acting.get(link, (none, none, none))
+            total = [a - b for a, b in zip(acting, self.inertia[link], strict=True)]
+            for joint, sign in ((ahead, 1.0), (behind, -1.0)):
+                # The follower and the rod turn on their own first joint, where 41 acts.
+                arm = (origin if joint == "41" else first[joint]) - origin
+                fx, fy = forces["x" + joint], forces["y" + joint]
+                turned = arm[..., 0] * fy - arm[..., 1] * fx + forces.get("couple" + joint, none)
+                total = [
+                    old + sign * part for old, part in zip(total, (fx, fy, turned), strict=True)
+                ]
+            gaps += [total[0], total[1]]
+            if link != "crank":
+                gaps.append(total[2] / self.longest)
+            elif "torque" in forces:
+                gaps.append((total[2] + forces["torque"]) / self.longest)
+        return np.asarray(np.max(np.abs(gaps), axis=0))

@@ -2,40 +2,168 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.deferred import Deferred
+from ..core.deferred import Deferred, DeferredField
 from ..core.errors import bad
-from ..core.results import DeferredChecks, provenance
-from .blocks import Array, evaluate
-from .force_modules import force_module
-from .force_result import FRAME_FORCE, RigidForces
-from .machine import Machine
+from ..core.plotting import axes_or_new
+from ..core.results import BROADCAST, DeferredChecks, Result, provenance
+from ..linkages.linkage import Array
+from .evaluation import FRAME_FORCE, Evaluation, Output
+from .machine import Machine, require_machine
 
-Output: TypeAlias = Literal["pins", "torque", "shaking_force", "shaking_moment"]
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_LATER = DeferredField()
 OUTPUTS: tuple[Output, ...] = ("pins", "torque", "shaking_force", "shaking_moment")
+_POLAR = {
+    "12": ("x12", "y12", "pin force 12"),
+    "23": ("x23", "y23", "pin force 23"),
+    "34": ("x34", "y34", "pin force 34"),
+    "41": ("x41", "y41", "pin force 41"),
+    "frame": ("shaking_x", "shaking_y", "force on the frame"),
+}
+_CURVES = {
+    "torque": ("torque", "driving torque [N m]"),
+    "moment": ("shaking_moment", "shaking moment about A [N m]"),
+}
+_DEFAULTS = ("frame", "34", "torque", "moment")
+# Labels keep this share of the picture away from each other.
+_APART = 0.06
+_MARKS = np.radians(np.arange(0.0, 360.0, 30.0))
 
-_KERNELS = {
-    "pins": "pin_forces",
-    "torque": "driving_torque",
-    "shaking_force": "shaking_force",
-    "shaking_moment": "shaking_moment",
-}
-_OWN_NAMES = {
-    "torque": ("torque",),
-    "shaking_force": FRAME_FORCE,
-    "shaking_moment": ("shaking_moment",),
-}
-# What springs and dampers bring to the frame, its pins bring back: they change none of these.
-_FRAME_NAMES = (*FRAME_FORCE, "shaking_moment")
-# Lengths from 2^-60 to 2^60 keep their powers within what a float holds; others are scaled.
-_SAFE_EXPONENT = 60
+
+@dataclass(frozen=True, kw_only=True)
+class RigidForces(Result):
+    """Forces of a rigid machine; every array has the common shape of angles, speeds, accelerations.
+
+    Signs are Smith's (Fig. 11): ``f_ij`` is the force of link i upon link j, the torque acts on the
+    crank, anticlockwise positive.  What was not requested raises :class:`BadInput`.
+
+    ``error`` and the checks are computed when they are first read: power balance, the momenta,
+    and the statics of each link, at some of the angles.
+
+    Attributes
+    ----------
+    theta2, speed, acceleration : ndarray
+        Crank angle [rad], crank speed [rad/s] and crank acceleration [rad/s^2], as given.
+    values : mapping of str to ndarray
+        The arrays by name: ``x12`` ... ``y41`` [N], the couple of the sliding joint where there is
+        one [N m], ``torque`` [N m], ``shaking_x``, ``shaking_y`` [N], ``shaking_moment`` [N m].
+    """
+
+    theta2: Array
+    speed: Array
+    acceleration: Array
+    values: Mapping[str, Array]
+    error: Any = _LATER
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        (
+            *("theta2", "speed", "acceleration", "torque", "error", "couple34", "couple41"),
+            *(axis + joint for axis in "xy" for joint in ("12", "23", "34", "41")),
+            *FRAME_FORCE,
+            "shaking_moment",
+        ),
+        BROADCAST,
+    )
+
+    def __getitem__(self, name: str) -> Array:
+        """Return one array of ``values``.
+
+        Raises
+        ------
+        BadInput
+            If it was not requested.
+        """
+        if name not in self.values:
+            fix = "ask for it in outputs"
+            raise bad("RigidForces", f"no {name}", f"one of {sorted(self.values)}", fix)
+        return self.values[name]
+
+    def _pair(self, x: str, y: str) -> Array:
+        return np.stack((self[x], self[y]), axis=-1)
+
+    @property
+    def f12(self) -> Array:
+        """Force of the frame on the crank at A [N], shape (..., 2)."""
+        return self._pair("x12", "y12")
+
+    @property
+    def f23(self) -> Array:
+        """Force of link 2 on link 3 at B [N], shape (..., 2)."""
+        return self._pair("x23", "y23")
+
+    @property
+    def f34(self) -> Array:
+        """Force of link 3 on link 4 [N], shape (..., 2); a quick-return's acts at B."""
+        return self._pair("x34", "y34")
+
+    @property
+    def f41(self) -> Array:
+        """Force of link 4 on the frame [N], shape (..., 2)."""
+        return self._pair("x41", "y41")
+
+    @property
+    def sliding_couple(self) -> Array:
+        """Couple in the sliding joint [N m]: of link 3 on 4 (quick-return), or of 4 on the frame.
+
+        Raises
+        ------
+        BadInput
+            If there is no sliding joint, or the pin forces were not requested.
+        """
+        return self["couple34" if "couple34" in self.values else "couple41"]
+
+    @property
+    def torque(self) -> Array:
+        """Driving torque on the crank [N m]."""
+        return self["torque"]
+
+    @property
+    def shaking_force(self) -> Array:
+        """Force on the frame [N], shape (..., 2); defined in :func:`rigid_forces`."""
+        return self._pair(*FRAME_FORCE)
+
+    @property
+    def shaking_moment(self) -> Array:
+        """Moment on the frame about A [N m]; defined in :func:`rigid_forces`."""
+        return self["shaking_moment"]
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the numeric fields and the values by name."""
+        return {**super().arrays(), **self.values}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain lists, numbers and strings, ready for JSON."""
+        plain = super().to_dict()
+        values = plain.pop("values")
+        return {**plain, **values}
+
+    def plot(self, ax: Axes | None = None, joint: str | None = None) -> Axes:
+        """Draw a polar diagram (Smith Figs. 12-16), or the torque against the crank angle.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw.
+        joint : {"12", "23", "34", "41", "frame", "torque", "moment"}, optional
+            The pin force of a joint, the force on the frame, the torque or the moment; by default
+            the first of frame, 34, torque, moment that was requested.
+
+        Raises
+        ------
+        BadInput
+            If the joint is unknown or its force was not requested.
+        """
+        return _draw(self, ax, joint)
 
 
 def rigid_forces(
@@ -82,14 +210,14 @@ def rigid_forces(
     (2, 2)
     """
     wanted = _wanted(outputs)
-    _require_machine(machine)
+    require_machine(machine)
     angles, speeds, accelerations = (
         _numbers(name, value)
         for name, value in (("theta", theta), ("speed", speed), ("acceleration", acceleration))
     )
     batch = _common_shape(angles, speeds, accelerations)
     values = Evaluation(machine, angles, speeds, accelerations, batch).values(wanted)
-    from . import force_checks, force_errors
+    from . import force_errors
 
     state = (machine, angles, speeds, accelerations)
     return RigidForces(
@@ -98,10 +226,10 @@ def rigid_forces(
         acceleration=accelerations,
         values=values,
         method="closed form",
-        error=Deferred(partial(force_errors.figure, *state)),
+        error=Deferred(partial(force_errors.error, *state)),
         error_norm=force_errors.NORM,
-        checks=DeferredChecks(partial(force_checks.checks, *state, values)),
-        provenance=provenance(described(machine)),
+        checks=DeferredChecks(partial(force_errors.checks, *state, values)),
+        provenance=provenance(machine.provenance),
     )
 
 
@@ -133,141 +261,12 @@ def shaking_moment(
     return rigid_forces(machine, theta, speed, acceleration, ("shaking_moment",))
 
 
-class Evaluation:
-    """The emitted functions at given angles, speeds and accelerations.
-
-    Parameters
-    ----------
-    machine : Machine
-        The machine.
-    theta, speed, acceleration : ndarray
-        Crank angle [rad], speed [rad/s], acceleration [rad/s^2].
-    batch : tuple of int
-        Their common shape.
-
-    Raises
-    ------
-    BadInput
-        If there is no emitted module for the linkage.
-    """
-
-    def __init__(
-        self, machine: Machine, theta: Array, speed: Array, acceleration: Array, batch: Any
-    ) -> None:
-        self.machine, self.batch = machine, batch
-        self.theta, self.speed, self.acceleration = theta, speed, acceleration
-        longest = max(abs(size) for size in machine.linkage.lengths.values())
-        exponent = int(np.frexp(longest)[1])
-        self.exponent = exponent if abs(exponent) > _SAFE_EXPONENT else 0
-        self.kernels = force_module(machine, not np.any(acceleration))
-
-    def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:
-        """Return the wanted forces by name.
-
-        Raises
-        ------
-        BadInput
-            If one is not finite.
-        """
-        names: list[str] = []
-        calls: list[tuple[str, list[str]]] = []
-        for function in self._functions(wanted):
-            returned = self.kernels.returned[function]
-            own = [name for name in returned if name in self._names(wanted)]
-            calls.append((function, own))
-            names += own
-        out = np.empty((len(names), *self.batch))
-        rows = {name: place for place, name in enumerate(names)}
-        with np.errstate(all="ignore"):
-            total = sum(self._inertia(out, rows, *call) for call in calls)
-            if self.machine.loaded:
-                total += self._loads(out, rows)
-        if self.exponent:
-            for name in ("torque", "shaking_moment", "couple34", "couple41"):
-                if name in rows:
-                    out[rows[name]] = np.ldexp(out[rows[name]], self.exponent)
-        if not math.isfinite(total):
-            self._refuse()
-        return {name: out[row] for name, row in rows.items()}
-
-    def _functions(self, wanted: tuple[Output, ...]) -> list[str]:
-        # Two functions of a part repeat what they share: the one of everything costs less.
-        return [_KERNELS[wanted[0]]] if len(wanted) == 1 else ["forces"]
-
-    def _names(self, wanted: tuple[Output, ...]) -> set[str]:
-        names = {name for output in wanted for name in _OWN_NAMES.get(output, ())}
-        return names | (set(self.kernels.returned["pin_forces"]) if "pins" in wanted else set())
-
-    def _inertia(self, out: Array, rows: Mapping[str, int], function: str, own: list[str]) -> float:
-        motion = [_plain(self.theta), _plain(self.speed)]
-        if self.kernels.accelerated:
-            motion.append(_plain(self.acceleration))
-        masses: list[float] = []
-        for link in self.machine.linkage.links:
-            mass = self.machine.mass(link)
-            masses += [math.ldexp(mass.mass, self.exponent), mass.along]
-            masses += [] if self.kernels.straight else [mass.across]
-            masses.append(math.ldexp(mass.inertia, -self.exponent))
-        arguments = [*motion, *self._geometry(), *map(np.float64, masses)]
-        return self._evaluate(function, arguments, out, rows, own)
-
-    def _loads(self, out: Array, rows: Mapping[str, int]) -> float:
-        motion = self.machine.linkage.motion(self.theta, self.speed)
-        outside = self.machine.wrenches(motion, self.speed, "outside")
-        springs = self.machine.wrenches(motion, self.speed, "springs")
-        total = 0.0
-        inner = [name for name in rows if name not in _FRAME_NAMES]
-        for wrenches, own in ((outside, list(rows)), (springs, inner)):
-            if not (wrenches and own):
-                continue
-            parts: list[Any] = []
-            for link in self.machine.linkage.links:
-                fx, fy, couple = wrenches.get(link, (0.0, 0.0, 0.0))
-                parts += [fx, fy, np.ldexp(couple, -self.exponent)]
-            arguments = [_plain(self.theta), *self._geometry(), *map(_plain, parts)]
-            total += self._evaluate("load_forces", arguments, out, rows, own, add=True)
-        return total
-
-    def _evaluate(
-        self,
-        function: str,
-        arguments: Sequence[Any],
-        out: Array,
-        rows: Mapping[str, int],
-        own: list[str],
-        add: bool = False,
-    ) -> float:
-        returned = self.kernels.returned[function]
-        places = [(rows[name], returned.index(name)) for name in own]
-        call: Callable[..., Any] = getattr(self.kernels.module, function)
-        return evaluate(call, arguments, out, places, add=add)
-
-    def _geometry(self) -> list[np.float64]:
-        lengths = self.machine.linkage.lengths
-        return [
-            np.float64(math.ldexp(value, -self.exponent) if name in lengths else value)
-            for name, value in self.kernels.geometry(self.machine.linkage)
-        ]
-
-    def _refuse(self) -> None:
-        """Say why something is not finite: an angle out of reach, or numbers too large."""
-        self.machine.linkage.motion(self.theta)
-        found = "forces beyond the largest float, or a fold of the linkage"
-        fix = "use other units, or keep the angles off the fold"
-        raise bad("rigid_forces", found, "finite forces", fix)
-
-
 def _wanted(outputs: Sequence[Output]) -> tuple[Output, ...]:
     given = (outputs,) if isinstance(outputs, str) else tuple(outputs)
     unknown = [item for item in given if item not in OUTPUTS]
     if unknown or not given:
         raise bad("outputs", f"{unknown or 'nothing'}", f"some of {OUTPUTS}", "correct the names")
     return tuple(output for output in OUTPUTS if output in given)
-
-
-def _require_machine(machine: object) -> None:
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one")
 
 
 def _numbers(name: str, value: ArrayLike) -> Array:
@@ -289,17 +288,91 @@ def _common_shape(theta: Array, speed: Array, acceleration: Array) -> tuple[int,
         raise bad("theta, speed, acceleration", found, "shapes that broadcast", fix) from refusal
 
 
-def _plain(value: Any) -> Any:
-    """Return one number as NumPy's, whose powers and quotients overflow without an exception."""
-    return np.float64(value) if np.ndim(value) == 0 else value
+def _draw(forces: RigidForces, ax: Axes | None, joint: str | None) -> Axes:
+    """Draw one of the forces; see :meth:`RigidForces.plot`."""
+    known = {**_POLAR, **_CURVES}
+    if joint is None:
+        there = [name for name in _DEFAULTS if known[name][0] in forces.values]
+        joint = there[0]
+    if joint not in known:
+        raise bad("joint", repr(joint), f"one of {sorted(known)}", "correct the name")
+    columns = [forces[name] for name in known[joint][:-1]]
+    label = known[joint][-1]
+    if columns[0].ndim == 0:
+        raise bad("plot", "one crank angle", "an array of them", "ask for more angles")
+    ax = axes_or_new(ax)
+    if joint in _CURVES:
+        return _over_the_turn(ax, forces.theta2, columns[0], label)
+    for still, other, axis in ((0, 1, "Y"), (1, 0, "X")):
+        # A force that keeps its line, such as that of a guide, has no polar diagram.
+        if not np.any(columns[still]):
+            return _over_the_turn(ax, forces.theta2, columns[other], f"{label}, {axis} [N]")
+    return _hodograph(ax, forces.theta2, columns[0], columns[1], label)
 
 
-def described(machine: Machine) -> dict[str, str]:
-    """Return lengths, assembly and masses for the provenance."""
-    lengths = machine.linkage.lengths.items()
-    found = {f"links.{name}": repr(float(size)) for name, size in lengths}
-    found["links.assembly"] = str(getattr(machine.linkage, "assembly", ""))
-    for link, mass in machine.masses.items():
-        numbers = (mass.mass, mass.along, mass.across, mass.inertia)
-        found[f"masses.{link}"] = " ".join(repr(float(number)) for number in numbers)
-    return found
+def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
+    degrees = np.degrees(np.broadcast_to(theta, values.shape))
+    for row, value in _curves(degrees, values):
+        ax.plot(row, value)
+    ax.axhline(0.0, color="0.7", linewidth=0.8)
+    ax.set_xlabel("crank angle [deg]")
+    ax.set_ylabel(label)
+    return ax
+
+
+def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:
+    angles = np.broadcast_to(theta, x.shape)
+    for _, across, up in _curves(angles, x, y):
+        ax.plot(across, up)
+    _mark(ax, *_curves(angles, x, y)[0])
+    ax.plot(0.0, 0.0, "+", color="k")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("X [N]")
+    ax.set_ylabel("Y [N]")
+    ax.set_title(label)
+    return ax
+
+
+def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
+    """Mark every 30 degrees of crank angle; no text where the marks crowd."""
+    written: list[tuple[float, float]] = []
+    apart = _APART * float(max(np.ptp(x), np.ptp(y)))
+    for angle in _MARKS:
+        place = _passing(theta, float(angle))
+        if place is None:
+            continue
+        left, share = place
+        px, py = (float(c[left] + share * (c[left + 1] - c[left])) for c in (x, y))
+        ax.plot(px, py, "o", color="k", markersize=3)
+        if any(np.hypot(px - qx, py - qy) < apart for qx, qy in written):
+            continue
+        written.append((px, py))
+        # Away from the origin, where the curve seldom goes.
+        size = float(np.hypot(px, py)) or 1.0
+        ax.annotate(
+            f"{np.degrees(angle):.0f}°",
+            (px, py),
+            xytext=(14.0 * px / size, 10.0 * py / size),
+            textcoords="offset points",
+            fontsize=7,
+            ha="center",
+            va="center",
+        )
+
+
+def _curves(*arrays: Array) -> list[tuple[Array, ...]]:
+    """Return the curves along the first axis of angles; those of several speeds one by one."""
+    flat = [np.atleast_1d(item).reshape(-1, item.shape[-1]) for item in arrays]
+    return list(zip(*flat, strict=True))
+
+
+def _passing(theta: Array, angle: float) -> tuple[int, float] | None:
+    """Return where a rising row of angles passes one, up to whole turns: interval and share."""
+    if theta.size < 2 or not np.all(np.diff(theta) > 0):
+        return None
+    turn = 2.0 * np.pi
+    first = angle + turn * np.ceil((theta[0] - angle) / turn - 1e-12)
+    if first > theta[-1]:
+        return None
+    left = min(max(int(np.searchsorted(theta, first, side="right")) - 1, 0), theta.size - 2)
+    return left, float((first - theta[left]) / (theta[left + 1] - theta[left]))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from numbers import Real
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
+from .inputs import not_finite
 
 Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = tuple[str, float, float]
@@ -133,7 +132,7 @@ class Load:
             If a callable returns something else than finite numbers of the right shape.
         """
         force, couple = frozen(self, motion, crank_speed)
-        return {self.link: _at_first_joint(self, motion, force, couple)}
+        return {self.link: at_first_joint(self, motion, force, couple)}
 
 
 def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
@@ -152,7 +151,8 @@ def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
     return force, evaluated(load.couple, given, 0, f"Load.couple on {load.link}", shape)
 
 
-def _at_first_joint(load: Load, motion: Any, force: Array, couple: Array) -> Wrench:
+def at_first_joint(load: Load, motion: Any, force: Array, couple: Array) -> Wrench:
+    """Return a force along the load's axes and a couple as a wrench at the link's first joint."""
     angle = motion.link(load.link).angle
     cos, sin = np.cos(angle), np.sin(angle)
     fx, fy = force[..., 0], force[..., 1]
@@ -233,21 +233,21 @@ class Spring:
         if constant == 0.0 and self.damping == 0.0:
             pull = self.stiffness * span
         else:
-            if not np.all(length > 0):
+            if not np.all(np.real(length) > 0):
                 found = "points that meet"
                 fix = "move a point, or leave free length, preload and damping zero"
                 raise bad("Spring", found, "points that stay apart", fix)
             unit = span / length[..., None]
             rate = np.sum(unit * (b.velocity - a.velocity), axis=-1)
             pull = self.stiffness * span + (constant + self.damping * rate)[..., None] * unit
-        found_wrenches = {}
+        wrenches = {}
         for end, place, sign in ((self.first, a, 1.0), (self.second, b, -1.0)):
             if end[0] != FRAME:
                 origin = motion.link(end[0]).origin
                 x, y = np.moveaxis(place.position - origin, -1, 0)
                 fx, fy = sign * pull[..., 0], sign * pull[..., 1]
-                found_wrenches[end[0]] = (fx, fy, x * fy - y * fx)
-        return found_wrenches
+                wrenches[end[0]] = (fx, fy, x * fy - y * fx)
+        return wrenches
 
     def potential(self, motion: Any) -> Array:
         """Return the energy stored [J], zero at the free length."""
@@ -258,7 +258,10 @@ class Spring:
     def _span(self, motion: Any) -> tuple[_Place, _Place, Array, Array]:
         a, b = (_place(motion, *end) for end in (self.first, self.second))
         span = b.position - a.position
-        return a, b, span, np.hypot(span[..., 0], span[..., 1])
+        # Beside the real axis, where derivatives come from, there is no hypot.
+        real = not np.iscomplexobj(span)
+        length = np.hypot(*np.moveaxis(span, -1, 0)) if real else np.sqrt(np.sum(span**2, axis=-1))
+        return a, b, span, np.asarray(length)
 
 
 @dataclass(frozen=True)
@@ -440,19 +443,6 @@ def _one_more(given: Any, shape: tuple[int, ...]) -> Any:
 def _with_first(values: Array, shape: tuple[int, ...], inner: tuple[int, ...]) -> Array:
     flat = np.broadcast_to(values, (*shape, *inner)).reshape(-1, *inner)
     return np.concatenate([flat, flat[:1]])
-
-
-def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
-    """Return a problem for each value that is no finite number, or below the least."""
-    wanted = "a finite number" + ("" if least == -math.inf else f", at least {least:g}")
-    return [
-        Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
-        for name, value in values.items()
-        if isinstance(value, bool)
-        or not isinstance(value, Real)
-        or not math.isfinite(value)
-        or value < least
-    ]
 
 
 def _end_problems(where: str, end: object) -> list[Problem]:

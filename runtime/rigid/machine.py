@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import reduce
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..linkages import Linkage
-from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench, not_finite
+from .inputs import not_finite
+from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
+
+if TYPE_CHECKING:
+    from .parametric import ParametricMachine
 
 AnySpring: TypeAlias = Spring | TorsionSpring
 Part: TypeAlias = Literal["all", "outside", "springs", "nonconservative"]
@@ -99,55 +103,51 @@ class Machine:
     def _heavy(self) -> bool:
         return self.gravity != _NONE and any(mass.mass > 0 for mass in self.masses.values())
 
-    def wrenches(self, motion: Any, speed: ArrayLike, part: Part = "all") -> dict[str, Wrench]:
-        """Return what acts on each loaded link, as force and couple at its first joint.
-
-        Parameters
-        ----------
-        motion : Motion
-            Of the linkage, at the crank speed.
-        speed : array_like
-            Crank speed [rad/s].
-        part : {"all", "outside", "springs", "nonconservative"}
-            Everything; loads and weights; springs and dampers; or what no potential energy
-            accounts for: loads and dampers.
-
-        Returns
-        -------
-        dict of str to (ndarray, ndarray, ndarray)
-            Force components [N] in the fixed frame and couple [N m].
+    def parametric(
+        self, theta: Array, speed: Array, acceleration: Array, masses: str = "fixed"
+    ) -> ParametricMachine:
+        """Return motion and forces as functions of lengths and masses, for tolerances.
 
         Raises
         ------
         BadInput
-            As :meth:`Load.wrenches` and :meth:`Spring.wrenches`.
+            If the machine has a load that is a function.
         """
-        crank_speed = np.asarray(speed, dtype=float)
-        sources: list[dict[str, Wrench]] = []
-        if part in ("all", "outside") and self._heavy:
-            sources.append(self._weights(motion))
-        if part != "springs":
-            sources += [load.wrenches(motion, crank_speed) for load in self.loads]
-        if part in ("all", "springs"):
-            sources += [spring.wrenches(motion, crank_speed) for spring in self.springs]
-        elif part == "nonconservative":
-            dampers = (spring.dampers for spring in self.springs)
-            sources += [item.wrenches(motion, crank_speed) for item in dampers if item is not None]
-        total: dict[str, Wrench] = {}
-        for source in sources:
-            for link, wrench in source.items():
-                total[link] = _added(total[link], wrench) if link in total else wrench
-        return total
+        from .parametric import ParametricMachine, require_constant_loads
 
-    def _weights(self, motion: Any) -> dict[str, Wrench]:
-        gx, gy = self.gravity
-        found = {}
-        for link, own in self.masses.items():
-            angle = motion.link(link).angle
-            x, y = _turned(angle, own)
-            none = np.zeros(np.shape(angle))
-            found[link] = (none + own.mass * gx, none + own.mass * gy, x * gy - y * gx)
-        return found
+        require_constant_loads(self)
+        drive = (theta, speed, acceleration)
+        return ParametricMachine(self.linkage, *drive, machine=self, bars=masses == "bars")
+
+    def course(self, name: str, speed: float) -> Callable[[Array], Array]:
+        """Return a force as a function of the crank angle at constant crank speed [rad/s].
+
+        Raises
+        ------
+        BadInput
+            If the crank cannot turn fully, or there is no such force.
+        """
+        from .forces import OUTPUTS, rigid_forces
+
+        self.linkage.require_full_turn()
+        known = rigid_forces(self, np.zeros(1), speed).values
+        if name not in known:
+            raise bad("source", repr(name), f"one of {', '.join(known)}", "choose a force")
+        # What is wanted alone takes a shorter way than all pin forces.
+        alone = {"shaking_x": "shaking_force", "shaking_y": "shaking_force"}.get(name, name)
+        outputs = [output for output in OUTPUTS if output == alone] or ["pins"]
+        return lambda theta: rigid_forces(self, theta, speed, outputs=outputs)[name]
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """Lengths, assembly and masses, for results."""
+        numbers = {
+            f"masses.{link}": " ".join(
+                repr(float(number)) for number in (m.mass, m.along, m.across, m.inertia)
+            )
+            for link, m in self.masses.items()
+        }
+        return {"links.assembly": "", **self.linkage.provenance, **numbers}
 
     def kinetic_energy(self, theta: ArrayLike, speed: ArrayLike) -> Array:
         """Return the kinetic energy [J].
@@ -164,13 +164,13 @@ class Machine:
         """
         motion = self.linkage.motion(theta, speed)
         parts = []
-        for link, own in self.masses.items():
+        for link, mass in self.masses.items():
             moving = motion.link(link)
-            x, y = _turned(moving.angle, own)
+            x, y = _turned(moving.angle, mass)
             vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
-            translation = own.mass * (vx * vx + vy * vy) / 2.0
+            translation = mass.mass * (vx * vx + vy * vy) / 2.0
             mixed = moving.speed * (x * vy - y * vx)
-            parts.append(translation + mixed + own.inertia * moving.speed**2 / 2.0)
+            parts.append(translation + mixed + mass.inertia * moving.speed**2 / 2.0)
         return _sum(parts, motion)
 
     def potential_energy(self, theta: ArrayLike) -> Array:
@@ -187,11 +187,11 @@ class Machine:
         parts = [spring.potential(motion) for spring in self.springs]
         if self._heavy:
             gx, gy = self.gravity
-            for link, own in self.masses.items():
+            for link, mass in self.masses.items():
                 moving = motion.link(link)
-                x, y = _turned(moving.angle, own)
+                x, y = _turned(moving.angle, mass)
                 ox, oy = np.moveaxis(np.asarray(moving.origin), -1, 0)
-                parts.append(-gx * (own.mass * ox + x) - gy * (own.mass * oy + y))
+                parts.append(-gx * (mass.mass * ox + x) - gy * (mass.mass * oy + y))
         return _sum(parts, motion)
 
     def power(self, theta: ArrayLike, speed: ArrayLike, part: Part = "nonconservative") -> Array:
@@ -202,7 +202,7 @@ class Machine:
         theta, speed : array_like
             Crank angle [rad] and crank speed [rad/s]; they broadcast.
         part : str
-            Which of the wrenches, as :meth:`wrenches`; by default those that no potential energy
+            Which of the wrenches, as :func:`wrenches`; by default those that no potential energy
             accounts for.
 
         Raises
@@ -212,21 +212,80 @@ class Machine:
         """
         motion = self.linkage.motion(theta, speed)
         parts = []
-        for link, (fx, fy, couple) in self.wrenches(motion, speed, part).items():
+        for link, (fx, fy, couple) in wrenches(self, motion, speed, part).items():
             moving = motion.link(link)
             vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
             parts.append(fx * vx + fy * vy + couple * moving.speed)
         return _sum(parts, motion)
 
 
+def wrenches(
+    machine: Machine, motion: Any, speed: ArrayLike, part: Part = "all"
+) -> dict[str, Wrench]:
+    """Return what acts on each loaded link, as force and couple at its first joint.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its masses and gravity, loads and springs.
+    motion : Motion
+        Of the linkage, at the crank speed.
+    speed : array_like
+        Crank speed [rad/s].
+    part : {"all", "outside", "springs", "nonconservative"}
+        Everything; loads and weights; springs and dampers; or what no potential energy accounts
+        for: loads and dampers.
+
+    Returns
+    -------
+    dict of str to (ndarray, ndarray, ndarray)
+        Force components [N] in the fixed frame and couple [N m].
+
+    Raises
+    ------
+    BadInput
+        As :meth:`Load.wrenches` and :meth:`Spring.wrenches`.
+    """
+    crank_speed = np.asarray(speed, dtype=float)
+    sources: list[dict[str, Wrench]] = []
+    if part in ("all", "outside") and machine.gravity != _NONE:
+        sources.append(_weights(machine, motion))
+    if part != "springs":
+        sources += [load.wrenches(motion, crank_speed) for load in machine.loads]
+    if part in ("all", "springs"):
+        sources += [spring.wrenches(motion, crank_speed) for spring in machine.springs]
+    elif part == "nonconservative":
+        dampers = (spring.dampers for spring in machine.springs)
+        sources += [item.wrenches(motion, crank_speed) for item in dampers if item is not None]
+    total: dict[str, Wrench] = {}
+    for source in sources:
+        for link, (fx, fy, couple) in source.items():
+            x, y, c = total.get(link, (0.0, 0.0, 0.0))
+            total[link] = x + fx, y + fy, c + couple
+    return total
+
+
+def _weights(machine: Machine, motion: Any) -> dict[str, Wrench]:
+    gx, gy = machine.gravity
+    weights = {}
+    for link, mass in machine.masses.items():
+        angle = motion.link(link).angle
+        x, y = _turned(angle, mass)
+        none = np.zeros(np.shape(angle))
+        weights[link] = (none + mass.mass * gx, none + mass.mass * gy, x * gy - y * gx)
+    return weights
+
+
+def require_machine(machine: object) -> None:
+    """Raise BadInput for what is no Machine."""
+    if not isinstance(machine, Machine):
+        raise bad("machine", type(machine).__name__, "a Machine", "build one of a linkage")
+
+
 def _turned(angle: Array, mass: MassDistribution) -> tuple[Array, Array]:
     """Return the first moments in the fixed frame."""
     cos, sin = np.cos(angle), np.sin(angle)
     return cos * mass.along - sin * mass.across, sin * mass.along + cos * mass.across
-
-
-def _added(first: Wrench, second: Wrench) -> Wrench:
-    return first[0] + second[0], first[1] + second[1], first[2] + second[2]
 
 
 def _sum(parts: Iterable[Array], motion: Any) -> Array:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass
-from numbers import Real
 
 from ..core.errors import BadInput, Problem, bad
+from .inputs import not_finite
 
 # Data with ten digits may lie this far beyond what a rigid body can have.
 _ROUNDING = 1e-9
@@ -170,10 +170,5 @@ class MassDistribution:
 
 
 def _require_numbers(**values: object) -> None:
-    problems = [
-        Problem(f"MassDistribution.{name}", repr(value)[:60], "a finite number", "correct it")
-        for name, value in values.items()
-        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value)
-    ]
-    if problems:
+    if problems := not_finite("MassDistribution", values):
         raise BadInput(*problems)

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
-from .loads import not_finite
+from .inputs import not_finite
 
 TorqueLaw: TypeAlias = Callable[[Any, Any, Any], Any]
 

@@ -1,17 +1,19 @@
-"""The machine as one degree of freedom: reduced inertia, and the torque that the loads ask for."""
+"""The machine as one degree of freedom: reduced inertia, and the torque that the loads require."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.errors import bad
-from .blocks import Array
-from .forces import Evaluation
-from .machine import Machine
-from .tables import ReducedTable, reduced_table
+from ..linkages.linkage import Array
+from .evaluation import Evaluation
+from .machine import Machine, Part, wrenches
 
 _FIRST = np.array([0.0, 1.0])
 _SECOND = np.array([1.0, 0.0])
@@ -21,6 +23,10 @@ _LEAST_SHARE = 1e-12
 _TABLE_SHARE = 1e-5
 _TURN = 2.0 * np.pi
 _SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
+_FEWEST, _MOST = 64, 1024
+# A series ends in round-off, and meets its function off the samples, or is not used.
+_TAIL, _OFF = 1e-14, 1e-12
+_PROBES = (0.37, 1.91, 4.05, 5.83, 7.77)
 
 
 class OneFreedom:
@@ -45,8 +51,8 @@ class OneFreedom:
     def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:
         real = isinstance(flywheel, Real) and not isinstance(flywheel, bool)
         if not (real and np.isfinite(flywheel) and flywheel >= 0):
-            found = repr(flywheel)[:60]
-            raise bad("flywheel", found, "a finite inertia, zero or more", "correct it")
+            given = repr(flywheel)[:60]
+            raise bad("flywheel", given, "a finite inertia, zero or more", "correct it")
         self.machine, self.flywheel = machine, float(flywheel)
         self.hasty = any(load.given == "motion" for load in machine.loads) or any(
             spring.dampers is not None for spring in machine.springs
@@ -63,47 +69,75 @@ class OneFreedom:
         """
         angles = np.asarray(theta, dtype=float)[..., np.newaxis]
         batch = (*angles.shape[:-1], 2)
-        found = Evaluation(self._bare, angles, _FIRST, _SECOND, batch).values(("torque",))["torque"]
-        return found[..., 0], found[..., 1]
+        torque = Evaluation(self._bare, angles, _FIRST, _SECOND, batch).values(("torque",))[
+            "torque"
+        ]
+        return torque[..., 0], torque[..., 1]
 
     def load(self, theta: Any, speed: Any) -> Array:
-        """Return the torque [N m] that weights, loads, springs and dampers ask for.
+        """Return the torque [N m] that weights, loads, springs and dampers require.
 
         Raises
         ------
         BadInput
             As :meth:`Machine.wrenches`.
         """
+        return self._required(theta, speed, "all")[0]
+
+    def _required(self, theta: Any, speed: Any, *parts: Part) -> list[Array]:
+        """Return the torques [N m] that parts of the wrenches require."""
         angles, speeds = np.asarray(theta, dtype=float), np.asarray(speed, dtype=float)
-        batch = np.broadcast_shapes(angles.shape, speeds.shape)
+        none = np.zeros(np.broadcast_shapes(angles.shape, speeds.shape))
         if not self.machine.loaded:
-            return np.zeros(batch)
+            return [none] * len(parts)
         unit = self.machine.linkage.motion(angles)
         motion = self.machine.linkage.motion(angles, speeds) if self.hasty else unit
-        total: Array = np.zeros(batch)
-        for link, (fx, fy, couple) in self.machine.wrenches(motion, speeds).items():
-            moving = unit.link(link)
-            vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
-            total = total - (fx * vx + fy * vy + couple * moving.speed)
-        return total
+        required = []
+        for part in parts:
+            total: Array = none
+            for link, (fx, fy, couple) in wrenches(self.machine, motion, speeds, part).items():
+                moving = unit.link(link)
+                vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
+                total = total - (fx * vx + fy * vy + couple * moving.speed)
+            required.append(total)
+        return required
 
-    def table(self) -> ReducedTable | None:
-        """Return J, J'/2 and the load as Fourier series, where the crank turns fully.
+    def tables(
+        self,
+    ) -> tuple[Callable[[float], float], Callable[[float, float], tuple[float, float]]]:
+        """Return what an integrator evaluates often.
 
-        None where the series would be long, or the inertia nearly vanishes somewhere: such a
-        machine is evaluated directly.
+        The inertia [kg m^2] with the flywheel by the angle; and, by angle and speed, the torques
+        [N m] that everything requires, and that loads and dampers require, which no potential
+        energy accounts for.  They are Fourier series where the crank turns fully and these are
+        short, the inertia nearly vanishes nowhere, and the torque depends on the angle alone.
         """
-        if not self.machine.linkage.crank_turns:
-            return None
-        inertia = self.coefficients(self._scan())[0]
-        if np.min(inertia) + self.flywheel < _TABLE_SHARE * np.max(inertia):
-            return None
+        inertia: Callable[[float], float] | None = None
+        if self.machine.linkage.crank_turns:
+            scanned = self.coefficients(self._scan())[0]
+            if np.min(scanned) + self.flywheel >= _TABLE_SHARE * np.max(scanned):
+                inertia = _series(lambda theta: self.coefficients(theta)[0])
+        exact = inertia or (lambda theta: float(self.coefficients(theta)[0]))
+        return (lambda theta: exact(theta) + self.flywheel), self._torques(inertia is not None)
+
+    def _torques(self, series: bool) -> Callable[[float, float], tuple[float, float]]:
         loads = self.machine.loads
         # A callable may do something new in a later turn.
         lawful = not any(callable(item.force) or callable(item.couple) for item in loads)
-        still = lawful and not self.hasty and self.machine.loaded
-        load = (lambda theta: self.load(theta, 0.0)) if still else None
-        return reduced_table(lambda theta: self.coefficients(theta)[0], load)
+        if series and lawful and not self.hasty:
+            every = _series(lambda theta: self.load(theta, 0.0))
+            given = _series(lambda theta: self._required(theta, 0.0, "nonconservative")[0])
+            if every and given:
+                return lambda theta, speed: (every(theta), given(theta) if loads else 0.0)
+        parts: tuple[Part, ...] = ("all", "nonconservative")
+        if not (loads or self.hasty):
+            parts = ("all",)
+
+        def torques(theta: float, speed: float) -> tuple[float, float]:
+            required = [float(value) for value in self._required(theta, speed, *parts)]
+            return required[0], required[1] if len(required) > 1 else 0.0
+
+        return torques
 
     def acceleration(self, theta: Any, speed: Any, torque: Any) -> Array:
         """Return the crank acceleration [rad/s^2] under a motor torque [N m]."""
@@ -148,9 +182,9 @@ class OneFreedom:
             ends = max(dip - spacing, low), min(dip + spacing, high)
             least, at = self._least_inertia(*ends)
             if not least > _LEAST_SHARE * middle:
-                found = f"none at {at:.6g} rad, where the links that have mass stand still"
+                none = f"none at {at:.6g} rad, where the links that have mass stand still"
                 fix = "give the crank an inertia, or add a flywheel"
-                raise bad("Machine.masses", found, "inertia at every crank angle", fix)
+                raise bad("Machine.masses", none, "inertia at every crank angle", fix)
 
     def _scan(self, low: float = -np.inf, high: float = np.inf) -> Array:
         """Return angles over a turn or a range; they miss its ends, and special positions."""
@@ -167,3 +201,39 @@ class OneFreedom:
             width = (high - low) / 12.0
             low, high = max(low, angles[best] - width), min(high, angles[best] + width)
         return float(inertia[best]) + self.flywheel, float(angles[best])
+
+
+@dataclass(frozen=True)
+class _Series:
+    """A function of the crank angle as a Fourier series: what an integrator evaluates often.
+
+    Attributes
+    ----------
+    orders, terms : ndarray, shape (k,)
+        ``i`` times the harmonics, and complex coefficients; the function is the real part of their
+        sum with the waves.
+    """
+
+    orders: NDArray[np.complexfloating]
+    terms: NDArray[np.complexfloating]
+
+    def __call__(self, theta: float) -> float:
+        return float((self.terms @ np.exp(self.orders * theta)).real)
+
+
+def _series(function: Callable[[Array], Array]) -> _Series | None:
+    """Return a function as harmonics down to round-off; None where there are too many."""
+    count = _FEWEST
+    while count <= _MOST:
+        values = np.asarray(function(_TURN * np.arange(count) / count))
+        harmonics = np.fft.rfft(values) * (2.0 / count)
+        harmonics[0] /= 2.0
+        sizes, largest = np.abs(harmonics), float(np.max(np.abs(values)))
+        if float(np.max(sizes[-max(1, sizes.size // 4) :])) <= _TAIL * largest:
+            kept = int(np.max(np.nonzero(sizes > 1e-17 * largest)[0], initial=0)) + 1
+            kept = min(kept, 3 * sizes.size // 4)
+            series = _Series(1j * np.arange(kept), harmonics[:kept])
+            gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
+            return series if gap <= _OFF * largest else None
+        count *= 2
+    return None

@@ -1,441 +1,782 @@
-"""The best counterweights for a weighted sum of peak forces, within bounds, with a proof."""
+"""Counterweights that make a weighted sum of peaks least: conic hull, descent, a proved bound.
+
+Every force is linear in what a counterweight adds to its link, ``p = (m, m u, m v, m (u^2 + v^2) +
+inertia about its centre)``, so that the peak of its magnitude over the crank angle is convex in p.
+The counterweights themselves form no convex set, for the last entry is a product; their convex hull
+is an intersection of second-order cones.  The least sum over the hull, from Clarabel, and weak
+duality prove how low any counterweight can come; SciPy's SLSQP descends from the hull's optimum
+among the counterweights themselves.  The peaks between sampled angles are added at each optimum
+(Remez's exchange), until none is higher than the bound that the problem has for it.
+
+Per link, masses are scaled by the greatest mass and lengths by the greatest offset; forces by their
+peak without counterweights, or by what is allowed of it.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
+from scipy import linalg, optimize, sparse
 
-from ..core.errors import bad
-from ..core.results import Check, Result, provenance
-from .barrier import PER_LINK, Array, Room
-from .bounds import Bounds, required_bounds
-from .cases import Case, case_counterweights
-from .counterweights import (
-    Counterweight,
-    finite_number,
-    require_link,
-    require_machine,
-    with_counterweights,
-)
-from .force_basis import TERMS, ForceBasis
+from ..core.errors import BadInput, bad
+from ..linkages.linkage import Array
+from .machine import Machine
 from .masses import MassDistribution
-from .search import Found, Measure, Search, best_counterweights, rms
+from .peaks import forces_of, highest
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+Measure: TypeAlias = Literal["peak", "rms"]
+Peaks: TypeAlias = Mapping[str, tuple[Array, Array]]  # angles (k,) and sizes (k,) of each force
 
-    from . import Machine
+PER_LINK = 4  # mass, two first moments, inertia; of a design: mass, place, inertia over mass
+_FIRST_GRID, _LAST_GRID = 256, 8192
+# The tail of the forces' spectrum at which the peaks between samples are safe.
+_TAIL = 1e-10
+_COARSE = 8  # samples between the angles that a search starts with
+_ROUNDS = 12
+# Clarabel's tolerances: beyond 1e-10 round-off leads it astray, and the gap no longer shrinks.
+_CONIC = 1e-10
+# What a peak may be above its bound: of the hull as Clarabel solves, of the descent near round-off.
+_HULL_EXCESS, _EXCESS = 1e-9, 1e-11
+_GAP = 1e-7  # other starts are tried where more than this is unproved, over the unit
+_ACTIVE = 1e-7
+# Newton steps on the KKT conditions; step of the differences, and what leaves the active set.
+_POLISHING, _STEP, _LONGEST_STEP = 4, 1e-5, 1e-3
+_BROKEN = 1e-8  # a limit passed by less, relative, is met
+_UNFELT = 1e-9
 
-# The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
-DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
 
-# A force below this, over the largest of its kind, is no force to compare with.
-_NO_FORCE = 1e-12
-_ROUND_OFF = 2e-14
-_OPTIMAL = 1e-5
-
-
-@dataclass(frozen=True, kw_only=True)
-class Balancing(Result):
-    """Counterweights that make a weighted sum of relative peaks least, and what they do.
-
-    ``error`` says how far ``value`` can be above the least possible one, over the unbalanced
-    linkage's (the sum of the weights); weak duality proves it for all counterweights in bounds.
+@dataclass(frozen=True)
+class Room:
+    """Where a link's counterweight may be, in scaled lengths: greatest mass and offset are 1.
 
     Attributes
     ----------
-    counterweights : mapping of str to Counterweight
-        By link; a link without one needs none.
-    machine : Machine
-        The balanced machine.
-    weights, limits : mapping of str to float
-        Of the relative peaks, as given.
-    value : float
-        Weighted sum of the relative peaks.
-    lower_bound : float
-        What no counterweights within the bounds can undercut.
-    measure : {"peak", "rms"}
-        Of which quantity the sum is; "peak" below means it.
-    unbalanced : mapping of str to float
-        Peak of every force without counterweights [N] and of torque and moment [N m].
-    relative : mapping of str to float
-        Peaks with the counterweights over those without; a force that was zero is left out.
-    peak_angles : mapping of str to float
-        Crank angle [rad] of each peak with the counterweights.
+    nearest : float
+        Least offset, from 0 to 1.
+    stiffness : float
+        Inertia about the centre over mass squared: ``1/(2 pi h rho)`` of a cylinder; 0 for a point.
+    free : float
+        Greatest inertia about the centre over mass of a disc with free radius: half its square.
     """
 
-    counterweights: Mapping[str, Counterweight]
-    machine: Machine
-    weights: Mapping[str, float]
-    limits: Mapping[str, float] = field(default_factory=dict)
+    nearest: float = 0.0
+    stiffness: float = 0.0
+    free: float = 0.0
+
+    @property
+    def rigid(self) -> bool:
+        """True where the inertia follows from the mass alone: points at one offset."""
+        return self.nearest >= 1.0 and self.stiffness == 0.0 and self.free == 0.0
+
+    def least(self, gradient: Array) -> float:
+        """Return the least of ``gradient . p`` over the counterweights themselves."""
+        g_mass, g_along, g_across, g_inertia = (float(g) for g in gradient)
+        pull = float(np.hypot(g_along, g_across))
+        offsets = [self.nearest, 1.0]
+        if g_inertia > 0.0:
+            offsets.append(min(max(pull / (2.0 * g_inertia), self.nearest), 1.0))
+        linear = g_mass + min((g_inertia * r - pull) * r for r in offsets)
+        linear += min(g_inertia, 0.0) * self.free
+        square = g_inertia * self.stiffness
+        masses = [0.0, 1.0]
+        if square > 0.0:
+            masses.append(min(max(-linear / (2.0 * square), 0.0), 1.0))
+        return min((linear + square * m) * m for m in masses)
+
+
+@dataclass(frozen=True)
+class Cones:
+    """``|fixed + basis p| <= t[bound]`` at n angles, the force having d components.
+
+    Attributes
+    ----------
+    bound : int
+        Which of the bounds t.
+    fixed, basis : ndarray (n, d), ndarray (n, d, 4 links)
+        Force without counterweights, and of each unit parameter.
+    """
+
+    bound: int
+    fixed: Array
+    basis: Array
+
+    def values(self, p: Array) -> Array:
+        """Return the force (n, d) with the parameters p."""
+        return np.asarray(self.fixed + self.basis @ p)
+
+    def joined(self, more: Cones) -> Cones:
+        """Return the same with more angles."""
+        fixed, basis = ((self.fixed, more.fixed), (self.basis, more.basis))
+        return Cones(self.bound, np.concatenate(fixed), np.concatenate(basis))
+
+
+@dataclass(frozen=True)
+class PeakProblem:
+    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks.
+
+    Attributes
+    ----------
+    rooms : sequence of Room
+        One per link.
+    cones : sequence of Cones
+        The forces.
+    cost, ceilings : ndarray
+        Weight of each bound t, and its greatest value, ``inf`` where free.
+    """
+
+    rooms: Sequence[Room]
+    cones: Sequence[Cones]
+    cost: Array
+    ceilings: Array
+
+    def bounds(self, p: Array) -> Array:
+        """Return the least t with the parameters p."""
+        t = np.zeros(len(self.cost))
+        for cone in self.cones:
+            peak = float(np.max(np.linalg.norm(cone.values(p), axis=1)))
+            t[cone.bound] = max(t[cone.bound], peak)
+        return t
+
+    def lower_bound(self, pulls: Sequence[Array], ceiling_prices: Array) -> float:
+        """Return what no counterweight can undercut, whatever the multipliers are.
+
+        Parameters
+        ----------
+        pulls : sequence of ndarray (n, d)
+            Multipliers of the forces of each of the cones; scaled down where they exceed
+            what cost and ceiling prices allow.
+        ceiling_prices : ndarray
+            Multipliers of the ceilings, zero or more.
+        """
+        capped = np.isfinite(self.ceilings)
+        prices = np.where(capped, np.maximum(ceiling_prices, 0.0), 0.0)
+        spent = np.zeros(len(self.cost))
+        for cone, pull in zip(self.cones, pulls, strict=True):
+            spent[cone.bound] += float(np.sum(np.linalg.norm(pull, axis=1)))
+        tiny = np.finfo(float).tiny
+        scale = np.minimum(1.0, (self.cost + prices) / np.maximum(spent, tiny))
+        constant = -float(prices[capped] @ self.ceilings[capped])
+        gradient = np.zeros(PER_LINK * len(self.rooms))
+        for cone, pull in zip(self.cones, pulls, strict=True):
+            fair = scale[cone.bound] * pull
+            constant += float(np.sum(fair * cone.fixed))
+            gradient += np.einsum("nd,ndp->p", fair, cone.basis)
+        parts = np.split(gradient, len(self.rooms))
+        return constant + sum(
+            room.least(part) for room, part in zip(self.rooms, parts, strict=True)
+        )
+
+
+def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
+    """Return the parameters that are best in the convex hull, and a lower bound.
+
+    None where no parameters meet the ceilings.
+    """
+    import clarabel
+
+    count, bounds = PER_LINK * len(problem.rooms), len(problem.cost)
+    # Variables: p, t, and the square of its mass for each link where that counts.
+    stiff = [i for i, room in enumerate(problem.rooms) if room.stiffness]
+    size = count + bounds + len(stiff)
+    rows: list[Array] = []
+    right: list[Array] = []
+    cones: list[Any] = []
+
+    def add(kind: Any, matrix: Array, constant: Array) -> None:
+        """Ask for ``constant + matrix z`` in a cone."""
+        rows.append(-matrix)
+        right.append(constant)
+        cones.append(kind)
+
+    for cone in problem.cones:
+        n, d = cone.fixed.shape
+        matrix, constant = np.zeros((n, d + 1, size)), np.zeros((n, d + 1))
+        matrix[:, 0, count + cone.bound] = 1.0
+        matrix[:, 1:, :count] = cone.basis
+        constant[:, 1:] = cone.fixed
+        rows.append(-matrix.reshape(-1, size))
+        right.append(constant.ravel())
+        cones += [clarabel.SecondOrderConeT(d + 1)] * n
+    unit = np.eye(size)
+    capped = np.flatnonzero(np.isfinite(problem.ceilings))
+    if len(capped):
+        cone = clarabel.NonnegativeConeT(len(capped))
+        add(cone, -unit[count + capped], problem.ceilings[capped])
+    for i, room in enumerate(problem.rooms):
+        m, a, b, j = unit[PER_LINK * i : PER_LINK * (i + 1)]
+        square = unit[count + bounds + stiff.index(i)] if room.stiffness else np.zeros(size)
+        reach = j - room.stiffness * square
+        add(
+            clarabel.SecondOrderConeT(4),
+            np.array([m + reach, m - reach, 2 * a, 2 * b]),
+            np.zeros(4),
+        )
+        add(clarabel.SecondOrderConeT(3), np.array([m, a, b]), np.zeros(3))
+        most = (1.0 + room.stiffness + room.free) * m
+        sides = [-m] if room.rigid else [-m, most - j, reach - room.nearest**2 * m]
+        add(clarabel.NonnegativeConeT(len(sides)), np.array(sides), np.eye(len(sides))[0])
+        if room.rigid:
+            add(clarabel.ZeroConeT(1), np.array([j - m]), np.zeros(1))
+        if room.stiffness:
+            one = np.array([1.0, -1.0, 0.0])
+            add(clarabel.SecondOrderConeT(3), np.array([square, square, 2 * m]), one)
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = _CONIC
+    cost = np.concatenate([np.zeros(count), problem.cost, np.zeros(len(stiff))])
+    matrix = sparse.csc_matrix(np.concatenate(rows))
+    empty = sparse.csc_matrix((size, size))
+    solver = clarabel.DefaultSolver(empty, cost, matrix, np.concatenate(right), cones, settings)
+    solved = solver.solve()
+    if "Infeasible" in str(solved.status):
+        return None
+    prices, place, pulls = np.array(solved.z), 0, []
+    for cone in problem.cones:
+        n, d = cone.fixed.shape
+        pulls.append(-prices[place : place + n * (d + 1)].reshape(n, d + 1)[:, 1:])
+        place += n * (d + 1)
+    ceiling_prices = np.zeros(bounds)
+    ceiling_prices[capped] = prices[place : place + len(capped)]
+    p = np.array(solved.x[:count])
+    return _within(problem.rooms, p), problem.lower_bound(pulls, ceiling_prices)
+
+
+def _within(rooms: Sequence[Room], p: Array) -> Array:
+    """Return parameters that bodies can have: the solver leaves its cones by round-off."""
+    m, a, b, j = p.reshape(-1, PER_LINK).T
+    moment = np.hypot(a, b)
+    short = np.minimum(1.0, 1.0 / np.maximum(moment, 1.0))
+    m = np.clip(np.maximum(m, moment), 0.0, 1.0)
+    least = (moment * short) ** 2 / np.where(m > 0.0, m, 1.0)
+    stiffness = np.array([room.stiffness for room in rooms])
+    j = np.maximum(j, least + stiffness * m * m)
+    return np.stack([m, a * short, b * short, j], axis=1).ravel()
+
+
+@dataclass(frozen=True)
+class Design:
+    """One counterweight on each link: mass, place along and across, free inertia over mass."""
+
+    rooms: Sequence[Room]
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """Least and greatest value of each variable."""
+        low = [(0.0, -1.0, -1.0, 0.0) for _ in self.rooms]
+        high = [(1.0, 1.0, 1.0, room.free) for room in self.rooms]
+        return np.ravel(low), np.ravel(high)
+
+    @property
+    def _stiffness(self) -> Array:
+        return np.array([room.stiffness for room in self.rooms])
+
+    def parameters(self, x: Array) -> Array:
+        """Return p: mass, first moments, inertia of each link's counterweight."""
+        m, u, v, q = x.reshape(-1, PER_LINK).T
+        inertia = m * (u * u + v * v + self._stiffness * m + q)
+        return np.stack([m, m * u, m * v, inertia], axis=1).ravel()
+
+    def jacobian(self, x: Array) -> Array:
+        """Return dp/dx."""
+        blocks = [
+            [
+                [1.0, 0.0, 0.0, 0.0],
+                [u, m, 0.0, 0.0],
+                [v, 0.0, m, 0.0],
+                [u * u + v * v + 2.0 * c * m + q, 2.0 * m * u, 2.0 * m * v, m],
+            ]
+            for (m, u, v, q), c in zip(x.reshape(-1, PER_LINK), self._stiffness, strict=True)
+        ]
+        return np.asarray(linalg.block_diag(*blocks))
+
+    def conditions(self, x: Array) -> tuple[Array, Array]:
+        """Return how far each counterweight is within its greatest and beyond its least offset."""
+        values, slopes = [], []
+        for i, room in enumerate(self.rooms):
+            u, v = x[PER_LINK * i + 1 : PER_LINK * i + 3]
+            for sign, level in ((-1.0, 1.0), (1.0, room.nearest)):
+                slope = np.zeros(len(x))
+                slope[PER_LINK * i + 1 : PER_LINK * i + 3] = 2.0 * sign * u, 2.0 * sign * v
+                if level > 0.0:
+                    values.append(sign * (u * u + v * v - level * level))
+                    slopes.append(slope)
+        return np.array(values), np.array(slopes)
+
+    def realised(self, p: Array, unfelt: Sequence[bool]) -> Array:
+        """Return counterweights with the mass and first moments p, and the inertia if they can.
+
+        Parameters
+        ----------
+        p : ndarray
+            In the convex hull.
+        unfelt : sequence of bool
+            Links of which only the first moments matter: these get the least mass.
+        """
+        x: list[float] = []
+        for room, (m, a, b, j), light in zip(
+            self.rooms, p.reshape(-1, PER_LINK).tolist(), unfelt, strict=True
+        ):
+            moment = float(np.hypot(a, b))
+            mass = min(max(moment if light else m, moment, 0.0), 1.0)
+            u, v = (a / mass, b / mass) if mass > 0.0 else (0.0, 0.0)
+            offset = float(np.hypot(u, v))
+            wanted = min(max(offset, room.nearest), 1.0)
+            u, v = (u * wanted / offset, v * wanted / offset) if offset > 0.0 else (wanted, 0.0)
+            spare = j / mass - (u * u + v * v) - room.stiffness * mass if mass > 0.0 else 0.0
+            x += [mass, u, v, 0.0 if light else min(max(spare, 0.0), room.free)]
+        return np.array(x)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Counterweights: variables of the design, value, proved lower bound, KKT residual."""
+
+    x: Array
     value: float
-    lower_bound: float
-    measure: Measure
-    unbalanced: Mapping[str, float]
-    relative: Mapping[str, float]
-    peak_angles: Mapping[str, float]
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the relative peaks as bars, those with a weight darker."""
-        from ..core.plotting import axes_or_new
-
-        ax = axes_or_new(ax)
-        names = list(self.relative)
-        counted = [self.weights.get(name, 0.0) > 0.0 for name in names]
-        colours = ["tab:blue" if weighted else "lightsteelblue" for weighted in counted]
-        bars = ax.bar(names, [self.relative[name] for name in names], color=colours)
-        ax.bar_label(bars, fmt="%.3f", padding=2)
-        ax.axhline(1.0, color="black", linewidth=0.8)
-        ax.set_ylabel("peak over that of the unbalanced linkage")
-        ax.set_title("pale: without a weight")
-        ax.tick_params(axis="x", rotation=20)
-        return ax
+    bound: float
+    residual: float
 
 
-def balance(
-    machine: Machine,
-    speed: float,
-    *,
-    acceleration: float = 0.0,
-    weights: Mapping[str, float] | None = None,
-    links: Sequence[str] | None = None,
-    bounds: Bounds | Mapping[str, Bounds] | None = None,
-    limits: Mapping[str, float] | None = None,
-    angles: ArrayLike | None = None,
-    measure: Measure = "peak",
-) -> Balancing:
-    """Return the counterweights that make a weighted sum of peak forces least.
+class _Epigraph:
+    """The descent in ``z = (x, t)``: minimise ``cost . t`` with ``|F|^2 <= t^2`` at every angle."""
 
-    Minimises ``sum of w_k max |F_k(theta)| / max |F_k,unbalanced(theta)|``.  All forces are linear
-    in mass, first moments and inertia of a counterweight (Smith 4.4-4.6), so that the sum is convex
-    in these.  Their convex hull is searched first (barrier method: no start can mislead it), then
-    the counterweights themselves, to the last digit, from the answer.
+    def __init__(self, problem: PeakProblem, design: Design) -> None:
+        self.problem, self.design = problem, design
+        low, high = design.box
+        self.n = len(low)
+        self.cost = np.concatenate([np.zeros(self.n), problem.cost])
+        self.low = np.concatenate([low, np.zeros(len(problem.cost))])
+        self.high = np.concatenate([high, problem.ceilings])
 
-    Parameters
+    def minimum(self, start: Array) -> Array:
+        """Return the local optimum that SLSQP reaches from variables x."""
+        t = np.minimum(self.problem.bounds(self.design.parameters(start)), self.high[self.n :])
+        z = np.concatenate([start, t])
+        minimize: Any = optimize.minimize
+        reached = minimize(
+            lambda z: float(self.cost @ z),
+            z,
+            jac=lambda z: self.cost,
+            bounds=optimize.Bounds(self.low, self.high),
+            constraints={"type": "ineq", "fun": self.slacks, "jac": self.slopes},
+            method="SLSQP",
+            options={"ftol": 1e-15, "maxiter": 300},
+        ).x
+        # SLSQP may break down where constraints are all but dependent: its start then stays.
+        z = reached if np.all(np.isfinite(reached)) else z
+        return np.asarray(np.clip(z, self.low, self.high)[: self.n])
+
+    def slacks(self, z: Array) -> Array:
+        """Return t^2 - |F|^2 of every force, then the design's conditions."""
+        p, t = self.design.parameters(z[: self.n]), z[self.n :]
+        forces = [
+            t[cone.bound] ** 2 - np.sum(cone.values(p) ** 2, axis=1) for cone in self.problem.cones
+        ]
+        return np.concatenate([*forces, self.design.conditions(z[: self.n])[0]])
+
+    def slopes(self, z: Array) -> Array:
+        """Return their Jacobian."""
+        x, t = z[: self.n], z[self.n :]
+        p, turned = self.design.parameters(x), self.design.jacobian(x)
+        rows = []
+        for cone in self.problem.cones:
+            row = np.zeros((len(cone.fixed), len(z)))
+            row[:, : self.n] = -2.0 * np.einsum("nd,ndp->np", cone.values(p), cone.basis) @ turned
+            row[:, self.n + cone.bound] = 2.0 * t[cone.bound]
+            rows.append(row)
+        conditions = self.design.conditions(x)[1]
+        return np.concatenate([*rows, np.pad(conditions, ((0, 0), (0, len(t))))])
+
+    def _constraints(self, z: Array) -> tuple[Array, Array]:
+        """Return all that must be zero or more, the ends of the variables last; with Jacobian."""
+        unit = np.eye(len(z))
+        values = np.concatenate([self.slacks(z), z - self.low, self.high - z])
+        return values, np.concatenate([self.slopes(z), unit, -unit])
+
+    def _multipliers(self, z: Array) -> tuple[Array, float]:
+        """Return the multipliers of all constraints, and the residual of the KKT conditions."""
+        values, slopes = self._constraints(z)
+        active = np.flatnonzero(np.abs(values) <= _ACTIVE)
+        prices = np.zeros(len(values))
+        if len(active):
+            prices[active] = optimize.nnls(slopes[active].T, self.cost)[0]
+        rest = np.max(np.abs(self.cost - prices @ slopes)) / np.max(np.abs(self.cost))
+        return prices, float(max(rest, np.max(np.abs(values[prices > 0.0]), initial=0.0)))
+
+    def polished(self, x: Array) -> Array:
+        """Return x after Newton's method on the KKT conditions, where SLSQP leaves flat directions.
+
+        The second derivatives are central differences of the exact first ones.
+        """
+        z = np.concatenate([x, self.problem.bounds(self.design.parameters(x))])
+        prices, least = self._multipliers(z)
+        best = z
+        for _ in range(_POLISHING):
+            used = np.flatnonzero(prices)
+            values, slopes = (part[used] for part in self._constraints(z))
+            bend = [
+                prices
+                @ (self._constraints(z + e)[1] - self._constraints(z - e)[1])
+                / (-2.0 * _STEP)
+                for e in _STEP * np.eye(len(z))
+            ]
+            none = np.zeros((len(used), len(used)))
+            matrix = np.block([[np.array(bend), -slopes.T], [slopes, none]])
+            right = np.concatenate([prices @ self._constraints(z)[1] - self.cost, -values])
+            step = np.linalg.lstsq(matrix, right, rcond=1e-9)[0][: len(z)]
+            if not np.max(np.abs(step)) < _LONGEST_STEP:
+                break
+            z = z + step
+            prices, residual = self._multipliers(z)
+            if residual < least:
+                best, least = z, residual
+        return np.asarray(np.clip(best, self.low, self.high)[: self.n])
+
+    def proof(self, x: Array) -> tuple[float, float]:
+        """Return the residual of the KKT conditions, and the lower bound of their multipliers."""
+        p = self.design.parameters(x)
+        prices, residual = self._multipliers(np.concatenate([x, self.problem.bounds(p)]))
+        pulls, place = [], 0
+        for cone in self.problem.cones:
+            price = prices[place : place + len(cone.fixed)]
+            pulls.append(2.0 * price[:, np.newaxis] * cone.values(p))
+            place += len(cone.fixed)
+        return residual, self.problem.lower_bound(
+            pulls, prices[len(prices) - len(self.problem.cost) :]
+        )
+
+
+@dataclass(frozen=True)
+class ForceBasis:
+    """A machine at one speed: the forces at any angle, and what each unit of mass adds.
+
+    Attributes
     ----------
     machine : Machine
-        The unbalanced machine.
-    speed : float
-        Crank speed [rad/s].
-    acceleration : float
-        Crank acceleration [rad/s^2], the same at every angle.
-    weights : mapping of str to float
-        Any of shaking_force, shaking_moment, torque, f12, f23, f34, f41; by default 1 for f23 (the
-        crank pin), torque and shaking_moment (the moment on the frame).
+        Without the counterweights.
     links : sequence of str
-        Links that may carry a counterweight each; by default those that turn about the frame.
-    bounds : Bounds or mapping of str to Bounds
-        Where the counterweights may be; by default no heavier than all links together and no
-        further out than the link is long.
-    limits : mapping of str to float
-        Relative peaks that must not be passed, with or without a weight.
-    angles : array_like
-        Crank angles [rad] that count; by default a whole turn, peaks between samples included.
-    measure : {"peak", "rms"}
-        Count the root mean square of each force instead of its peak.
-
-    Returns
-    -------
-    Balancing
-        With the check "gap or KKT residual": proved the best, or at least stationary.
-
-    Raises
-    ------
-    BadInput
-        If a name is unknown, a weight or bound impossible, a weighted force zero without
-        counterweights, limits cannot be met, or the crank cannot turn and no angles are given.
-    """
-    search, all_terms = searched(
-        machine, speed, acceleration, weights, links, bounds, limits, angles, measure
-    )
-    found = best_counterweights(search)
-    return described(machine, search, all_terms, found)
-
-
-def searched(
-    machine: Machine,
-    speed: float,
-    acceleration: float,
-    weights: Mapping[str, float] | None,
-    links: Sequence[str] | None,
-    bounds: Bounds | Mapping[str, Bounds] | None,
-    limits: Mapping[str, float] | None,
-    angles: ArrayLike | None,
-    measure: Measure = "peak",
-) -> tuple[Search, ForceBasis]:
-    """Return the search that :func:`balance` makes, and the basis of every force.
-
-    Raises
-    ------
-    BadInput
-        As :func:`balance`.
-    """
-    require_machine(machine)
-    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    if measure not in ("peak", "rms"):
-        raise bad("measure", repr(measure), "'peak' or 'rms'", "choose one")
-    wanted = _terms(DEFAULT_WEIGHTS if weights is None else weights, "weights", zero=True)
-    tops = _terms(limits or {}, "limits", zero=False)
-    if not any(wanted.values()):
-        raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
-    wanted = {term: weight for term, weight in wanted.items() if weight > 0.0}
-    chosen = _links(machine, links)
-    rooms, masses, lengths = _rooms(machine, chosen, bounds)
-    terms = tuple(term for term in TERMS if term in wanted or term in tops)
-    everything = ForceBasis(machine, chosen, speed, acceleration, TERMS, masses, lengths)
-    theta, between = _angles(machine, everything, angles)
-    nothing = np.zeros(PER_LINK * len(chosen))
-    peaks = _sizes(everything, theta, nothing, between, measure)[0]
-    zero = _zero_forces(peaks)
-    for term in terms:
-        if term in zero:
-            fix = "leave it out: it has no peak to compare with"
-            raise bad(f"weights.{term}", "no such force without counterweights", "a force", fix)
-    basis = ForceBasis(machine, chosen, speed, acceleration, terms, masses, lengths)
-    scales = {term: peaks[term] for term in terms}
-    # A mean over the samples has no peaks between them.
-    between = between and measure == "peak"
-    return Search(basis, theta, between, scales, rooms, wanted, tops, measure), everything
-
-
-def _sizes(
-    basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Return the peak or root mean square of each force, and the angle of the peak."""
-    found = basis.peaks(theta, p, between)
-    where = {term: float(at[int(np.argmax(size))]) for term, (at, size) in found.items()}
-    if measure == "rms":
-        return {term: rms(force) for term, force in basis.forces(theta, p).items()}, where
-    return {term: float(size.max()) for term, (_, size) in found.items()}, where
-
-
-def described(machine: Machine, search: Search, everything: ForceBasis, found: Found) -> Balancing:
-    """Return the result for what a search found."""
-    added = _counterweights(search, found.x)
-    balanced = with_counterweights(machine, added.values())
-    p = _parameters(search, added)
-    sampling = (search.between, search.measure)
-    unbalanced, _ = _sizes(everything, search.theta, np.zeros_like(p), *sampling)
-    balanced_sizes, where = _sizes(everything, search.theta, p, *sampling)
-    zero = _zero_forces(unbalanced)
-    gap = (found.value - found.bound) / search.unit
-    over = search.broken(search.peaks(p))
-    return Balancing(
-        counterweights=added,
-        machine=balanced,
-        weights=dict(search.weights),
-        limits=dict(search.limits),
-        value=found.value,
-        lower_bound=found.bound,
-        unbalanced=unbalanced,
-        measure=search.measure,
-        relative={t: balanced_sizes[t] / unbalanced[t] for t in TERMS if t not in zero},
-        peak_angles=where,
-        method="barrier over the convex hull, SLSQP and Newton on the KKT conditions",
-        error=max(gap, _ROUND_OFF),
-        error_norm="weighted sum above the least possible one, over the unbalanced linkage's",
-        error_kind="bound",
-        checks={
-            "gap or KKT residual": Check(min(gap, found.residual), _OPTIMAL),
-            "limits passed, relative": Check(max(over, 0.0), 1e-7),
-        },
-        provenance=provenance({"speed": repr(everything.speed)}),
-    )
-
-
-def peaks_of(
-    machine: Machine,
-    speed: float,
-    acceleration: float = 0.0,
-    angles: ArrayLike | None = None,
-) -> dict[str, float]:
-    """Return the peak of every force over a turn of the crank [N; N m], between samples too.
-
-    Parameters
-    ----------
-    machine : Machine
-        With or without counterweights.
+        Links that carry counterweights.
     speed, acceleration : float
         Of the crank [rad/s, rad/s^2].
-    angles : array_like
-        Crank angles [rad] that count instead.
-
-    Raises
-    ------
-    BadInput
-        As :func:`balance`.
+    terms : sequence of str
+        Which forces.
+    masses, lengths : ndarray
+        Units of mass [kg] and length [m] of each link's parameters.
     """
-    return {
-        term: size for term, (size, _) in _turn_peaks(machine, speed, acceleration, angles).items()
-    }
 
+    machine: Machine
+    links: Sequence[str]
+    speed: float
+    acceleration: float
+    terms: Sequence[str]
+    masses: Array
+    lengths: Array
 
-def _turn_peaks(
-    machine: Machine, speed: float, acceleration: float, angles: ArrayLike | None
-) -> dict[str, tuple[float, float]]:
-    """Return peak and its angle for every force."""
-    require_machine(machine)
-    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
-    one = np.ones(1)
-    link = tuple(machine.linkage.links[:1])
-    basis = ForceBasis(machine, link, speed, acceleration, TERMS, one, one)
-    theta, between = _angles(machine, basis, angles)
-    found = basis.peaks(theta, np.zeros(PER_LINK), between)
-    return {
-        term: (float(size.max()), float(at[int(np.argmax(size))]))
-        for term, (at, size) in found.items()
-    }
+    def forces(self, theta: Array, p: Array | None = None) -> dict[str, Array]:
+        """Return each term (n, d) at n angles, with the parameters p of the counterweights."""
+        machine = self.machine
+        if p is not None:
+            masses = dict(machine.masses)
+            for i, link in enumerate(self.links):
+                added = self._distribution(i, p[PER_LINK * i : PER_LINK * (i + 1)])
+                masses[link] = masses.get(link, MassDistribution()) + added
+            machine = replace(machine, masses=masses)
+        return forces_of(machine, theta, self.speed, self.acceleration, self.terms)
 
+    def unit_forces(self, theta: Array) -> dict[str, Array]:
+        """Return what each scaled parameter adds: (n, d, 4 links) for each term.
 
-def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
-    """Return the names of forces that are round-off: pins and shaking force, torque and moment."""
-    moments = ("torque", "shaking_moment")
-    forces = max(peaks[term] for term in TERMS if term not in moments)
-    most = {term: forces for term in TERMS}
-    most |= dict.fromkeys(moments, max(peaks[term] for term in moments))
-    return {term for term in TERMS if not peaks[term] > _NO_FORCE * most[term]}
+        The unit vectors are differences of bodies that exist: a point at the first joint, a ring
+        about it, and points beside it.
+        """
+        bodies = ((1, 0, 0, 0), (1, 1, 0, 1), (1, 0, 1, 1), (1, 0, 0, 1))
+        columns: dict[str, list[Array]] = {term: [] for term in self.terms}
+        drive = (self.speed, self.acceleration, self.terms)
+        for i, link in enumerate(self.links):
+            alone = [
+                replace(
+                    self.machine,
+                    masses={link: self._distribution(i, np.array(body, dtype=float))},
+                    loads=(),
+                    springs=(),
+                )
+                for body in bodies
+            ]
+            mass, along, across, ring = (forces_of(one, theta, *drive) for one in alone)
+            for term, parts in columns.items():
+                parts += [mass[term], along[term] - ring[term], across[term] - ring[term]]
+                parts += [ring[term] - mass[term]]
+        return {term: np.stack(parts, axis=-1) for term, parts in columns.items()}
 
-
-def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
-    """Return the counterweights of design variables; none where the mass is zero."""
-    added, place = {}, 0
-    for i, (link, room) in enumerate(zip(search.basis.links, search.rooms, strict=True)):
-        m, u, v = (float(item) for item in x[place : place + 3])
-        q = float(x[place + 3]) if room.own > 0.0 else 0.0
-        place += 3 + (room.own > 0.0)
-        if m <= 0.0:
-            continue
-        mass, length = float(search.basis.masses[i]), float(search.basis.lengths[i])
-        # Own inertia over mass is half the square of the radius.
-        radius = length * float(np.sqrt(2.0 * (q + room.stiffness * m)))
-        added[link] = Counterweight(link, m * mass, u * length, v * length, radius)
-    return added
-
-
-def _parameters(search: Search, added: Mapping[str, Counterweight]) -> Array:
-    p: list[float] = []
-    for i, link in enumerate(search.basis.links):
-        body = added[link].distribution if link in added else MassDistribution()
-        mass, length = float(search.basis.masses[i]), float(search.basis.lengths[i])
+    def _distribution(self, i: int, p: Array) -> MassDistribution:
+        m, a, b, j = (float(x) for x in p)
+        mass, length = float(self.masses[i]), float(self.lengths[i])
         moment = mass * length
-        p += [body.mass / mass, body.along / moment, body.across / moment]
-        p.append(body.inertia / (moment * length))
-    return np.array(p)
+        return MassDistribution(m * mass, a * moment, b * moment, j * moment * length)
+
+    def grid(self) -> Array:
+        """Return equally spaced angles of a turn, dense enough for the peaks between them."""
+        n = _FIRST_GRID
+        while True:
+            theta = 2.0 * np.pi * np.arange(n) / n
+            spectra = [np.abs(np.fft.rfft(force, axis=0)) for force in self.forces(theta).values()]
+            tails = [float(s[len(s) * 3 // 4 :].max() / (s.max() or 1.0)) for s in spectra]
+            if n >= _LAST_GRID or max(tails) < _TAIL:
+                return theta
+            n *= 2
 
 
-def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, float]:
-    found = {}
-    for term, value in given.items():
-        if term not in TERMS:
-            raise bad(where, repr(term), f"one of {', '.join(TERMS)}", "correct the name")
-        number = finite_number(value, f"{where}.{term}")
-        if number < 0.0 or (number == 0.0 and not zero):
-            expected = "zero or more" if zero else "above zero"
-            raise bad(f"{where}.{term}", f"{number:g}", expected, "correct it")
-        found[term] = number
-    return found
+@dataclass(frozen=True)
+class Search:
+    """Everything about one search that stays as it is.
 
-
-def _links(machine: Machine, links: Sequence[str] | None) -> tuple[str, ...]:
-    own = tuple(machine.linkage.links)
-    if links is None:
-        # The first and the last link are joined to the frame; a slider does not turn.
-        return tuple(link for link in (own[0], own[-1]) if link != "slider")
-    chosen = (links,) if isinstance(links, str) else tuple(links)
-    for link in chosen:
-        require_link(link, tuple(name for name in own if name != "slider"), "links")
-    if not chosen or len(set(chosen)) != len(chosen):
-        raise bad("links", repr(chosen), "different links, at least one", "correct the list")
-    return chosen
-
-
-def _rooms(
-    machine: Machine, links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
-) -> tuple[list[Room], Array, Array]:
-    rooms, masses, lengths = [], [], []
-    for own in required_bounds(machine, links, bounds).values():
-        mass, offset = own.required_mass, own.required_offset
-        own_inertia = own.inertia_over_square * mass / offset**2
-        half = 0.5 * (own.radius / offset) ** 2
-        rooms.append(Room(own.least_offset / offset, own_inertia, half))
-        masses.append(mass)
-        lengths.append(offset)
-    return rooms, np.array(masses), np.array(lengths)
-
-
-def _angles(machine: Machine, basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
-    if angles is not None:
-        try:
-            theta = np.asarray(angles, dtype=float).ravel()
-        except (TypeError, ValueError) as refusal:
-            raise bad("angles", repr(angles)[:60], "angles [rad]", "correct it") from refusal
-        if theta.size == 0 or not np.all(np.isfinite(theta)):
-            raise bad("angles", "nothing or not finite", "finite angles [rad]", "correct it")
-        return theta, False
-    if not machine.linkage.crank_turns:
-        fix = "give angles that the crank can reach"
-        raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
-    return basis.grid(), True
-
-
-def compare_case(
-    machine: Machine,
-    case: Case,
-    speed: float,
-    offsets: float | Mapping[str, float] | None = None,
-    *,
-    acceleration: float = 0.0,
-    angles: ArrayLike | None = None,
-    density: float | None = None,
-    thickness: float | None = None,
-) -> Balancing:
-    """Return what a case of Smith's Fig. 20 does to every peak force.
-
-    Parameters
+    Attributes
     ----------
-    machine, case, offsets, density, thickness
-        As :func:`balance_case`.
-    speed, acceleration, angles
-        As :func:`balance`.
+    basis : ForceBasis
+        The forces that count.
+    theta : ndarray
+        Sampled angles.
+    between : bool
+        True where peaks between the samples count.
+    unbalanced : mapping of str to float
+        Peaks of every force without counterweights [N; N m].
+    rooms : sequence of Room
+        One for each link of the basis.
+    weights, limits : mapping of str to float
+        Of the relative peaks.
+    measure : {"peak", "rms"}
+        What counts of each force: its peak, or its root mean square over the sampled angles.
+    """
 
-    Returns
-    -------
-    Balancing
-        Without weights: nothing was optimised.  The check "shaking force left" of (c) and (d) is
-        the peak that is left, over the unbalanced one.
+    basis: ForceBasis
+    theta: Array
+    between: bool
+    unbalanced: Mapping[str, float]
+    rooms: Sequence[Room]
+    weights: Mapping[str, float]
+    limits: Mapping[str, float]
+    measure: Measure = "peak"
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Forces with a weight or a limit, in the order of the basis."""
+        used = {*self.weights, *self.limits}
+        return tuple(term for term in self.basis.terms if term in used)
+
+    @property
+    def unit(self) -> float:
+        """Weighted sum of the relative peaks of the unbalanced linkage."""
+        return sum(self.weights.values())
+
+    def _unit_of(self, term: str) -> float:
+        """Return the unit of a term's bound t, of relative peaks: a low limit counts as 1."""
+        return min(1.0, self.limits.get(term, 1.0))
+
+    def problem(self, theta: Mapping[str, Array]) -> PeakProblem:
+        """Return the problem with the peaks at angles of each term's."""
+        terms = self.terms
+        units = np.array([self._unit_of(term) for term in terms])
+        cost = units * [self.weights.get(term, 0.0) for term in terms]
+        tops = np.array([self.limits.get(term, np.inf) for term in terms]) / units
+        joined = np.concatenate([theta[term] for term in terms])
+        fixed, basis = self.basis.forces(joined), self.basis.unit_forces(joined)
+        cones, first = [], 0
+        for k, term in enumerate(terms):
+            rows = slice(first, first + len(theta[term]))
+            size = self.unbalanced[term] * units[k]
+            cone = Cones(k, fixed[term][rows] / size, basis[term][rows] / size)
+            cones.append(cone if self.measure == "peak" else _mean_square(cone))
+            first += len(theta[term])
+        return PeakProblem(self.rooms, cones, cost, tops)
+
+    def start(self) -> PeakProblem:
+        """Return the problem with some of the samples, or all that count."""
+        theta = self.theta[::_COARSE] if self.between else self.theta
+        return self.problem(dict.fromkeys(self.terms, theta))
+
+    def peaks(self, p: Array) -> dict[str, tuple[Array, Array]]:
+        """Return angles and relative sizes of the highest peaks with parameters p."""
+        sizes = sizes_of(self.basis, self.theta, p, self.between, self.measure)
+        return {term: (at, size / self.unbalanced[term]) for term, (at, size) in sizes.items()}
+
+    def value(self, peaks: Peaks) -> float:
+        """Return the weighted sum of relative peaks."""
+        return sum(weight * float(peaks[term][1].max()) for term, weight in self.weights.items())
+
+    def broken(self, peaks: Peaks) -> float:
+        """Return how far a peak is above its limit, over the limit."""
+        over = [float(peaks[term][1].max()) / top - 1.0 for term, top in self.limits.items()]
+        return max(over, default=0.0)
+
+    def penalised(self, p: Array) -> float:
+        """Return the value; infinite where a limit is passed by more than round-off."""
+        peaks = self.peaks(p)
+        return self.value(peaks) if self.broken(peaks) < _BROKEN else math.inf
+
+    def exchanged(self, problem: PeakProblem, p: Array) -> tuple[PeakProblem, float]:
+        """Return the problem with the high peaks among its angles, and how far they are above it.
+
+        The excess is in units of the bounds t.
+        """
+        if not self.between:
+            return problem, 0.0
+        peaks, t, chosen, excess = self.peaks(p), problem.bounds(p), {}, 0.0
+        for k, term in enumerate(self.terms):
+            at, size = peaks[term][0], peaks[term][1] / self._unit_of(term)
+            excess = max(excess, float(size.max() - t[k]))
+            high = size >= min((1.0 - 1e-3) * t[k], float(size.max()))
+            chosen[term] = at[high]
+        more = self.problem(chosen).cones
+        cones = [old.joined(new) for old, new in zip(problem.cones, more, strict=True)]
+        return replace(problem, cones=cones), excess
+
+
+def sizes_of(
+    basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
+) -> dict[str, tuple[Array, Array]]:
+    """Return angles and sizes of the highest peaks of each force with parameters p [N; N m].
+
+    The root mean square counts as one peak, at the first of the angles.
+    """
+    if between and measure == "peak":
+        peaks = highest(lambda at: basis.forces(at, p), theta, around=True)
+        return {term: (at, np.linalg.norm(force, axis=1)) for term, (at, force) in peaks.items()}
+    sizes = {}
+    for term, force in basis.forces(theta, p).items():
+        size = np.linalg.norm(force, axis=1)
+        top = int(np.argmax(size))
+        whole = size[top] if measure == "peak" else np.sqrt(np.mean(size**2))
+        sizes[term] = (theta[top : top + 1], np.array([whole]))
+    return sizes
+
+
+def _mean_square(cone: Cones) -> Cones:
+    """Return one force of a few components whose magnitude is the root mean square of many."""
+    count = cone.basis.shape[-1]
+    columns = np.concatenate([cone.basis, cone.fixed[..., None]], axis=-1).reshape(-1, count + 1)
+    short = np.asarray(np.linalg.qr(columns / np.sqrt(len(cone.fixed)), mode="r"))
+    return Cones(cone.bound, short[None, :, count], short[None, :, :count])
+
+
+def best_counterweights(search: Search) -> Candidate:
+    """Return the best counterweights that are known, and the proof of how good they are.
 
     Raises
     ------
     BadInput
-        As :func:`balance_case` and :func:`balance`.
+        If no counterweights meet the limits.
     """
-    added = case_counterweights(machine, case, offsets, density=density, thickness=thickness)
-    balanced = with_counterweights(machine, added.values())
-    before = _turn_peaks(machine, speed, acceleration, angles)
-    after = _turn_peaks(balanced, speed, acceleration, angles)
-    unbalanced = {term: size for term, (size, _) in before.items()}
-    zero = _zero_forces(unbalanced)
-    relative = {t: after[t][0] / unbalanced[t] for t in TERMS if t not in zero}
-    checks = {}
-    if case in ("c", "d") and "shaking_force" in relative:
-        checks["shaking force left"] = Check(relative["shaking_force"], 1e-10)
-    return Balancing(
-        counterweights=added,
-        machine=balanced,
-        weights={},
-        value=0.0,
-        lower_bound=0.0,
-        measure="peak",
-        unbalanced=unbalanced,
-        relative=relative,
-        peak_angles={term: angle for term, (_, angle) in after.items()},
-        method=f"case ({case}) in closed form",
-        error=_ROUND_OFF,
-        error_norm="relative peaks, over the largest of them",
-        checks=checks,
-        provenance=provenance({"speed": repr(float(speed))}),
-    )
+    problem, p, bound = _hull(search)
+    design = Design(search.rooms)
+    unfelt = _unfelt(problem)
+    candidates = [_descended(search, problem, bound, design.realised(p, unfelt))]
+    if candidates[0].value - candidates[0].bound > _GAP * search.unit:
+        candidates += [_descended(search, problem, bound, x) for x in _starts(design)]
+    chosen = min(candidates, key=lambda each: each.value)
+    bound = max(each.bound for each in candidates)
+    x = _lightened(search, problem, chosen, unfelt)
+    value = search.value(search.peaks(design.parameters(x)))
+    return Candidate(x, value, min(bound, value), chosen.residual)
+
+
+def _hull(search: Search) -> tuple[PeakProblem, Array, float]:
+    """Return the optimum over the convex hull, true peaks included: problem, p, lower bound."""
+    problem, bound = search.start(), 0.0  # no sum of magnitudes is less
+    for _ in range(_ROUNDS):
+        solved = hull_minimum(problem)
+        if solved is None:
+            raise _out_of_reach(search, problem)
+        p, bound = solved[0], max(bound, solved[1])
+        problem, excess = search.exchanged(problem, p)
+        if excess < _HULL_EXCESS:
+            break
+    return problem, p, bound
+
+
+def _out_of_reach(search: Search, problem: PeakProblem) -> BadInput:
+    """Return the complaint about limits that can be met only so many times higher."""
+    limits, free = search.limits, np.full(1, np.inf)
+    for _ in range(_ROUNDS):
+        capped = [cone for cone in problem.cones if np.isfinite(problem.ceilings[cone.bound])]
+        tops = problem.ceilings[[cone.bound for cone in capped]]
+        shared = [Cones(0, c.fixed / t, c.basis / t) for c, t in zip(capped, tops, strict=True)]
+        solved = hull_minimum(PeakProblem(problem.rooms, shared, np.ones(1), free))
+        p = np.zeros(PER_LINK * len(search.rooms)) if solved is None else solved[0]
+        problem, excess = search.exchanged(problem, p)
+        if excess < _HULL_EXCESS:
+            break
+    times = max(1.0, 1.0 + search.broken(search.peaks(p)))
+    names = ", ".join(f"{term} {top:g}" for term, top in limits.items())
+    # Rounded up: what is named can be given.
+    least = [f"{term} at least {_rounded_up(times * top)}" for term, top in limits.items()]
+    together = "" if len(limits) == 1 else " where all are raised alike"
+    fix = "raise a limit, or allow more mass or offset"
+    return bad("limits", names, ", ".join(least) + together, fix)
+
+
+def _rounded_up(value: float) -> str:
+    """Return a number in four digits, none below it."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 3)
+    return f"{math.ceil(value / unit) * unit:.4g}"
+
+
+def _starts(design: Design) -> list[Array]:
+    """Return further starts, the same ones each time: nothing, and four directions."""
+    links = len(design.rooms)
+    starts = [design.realised(np.zeros(PER_LINK * links), [False] * links)]
+    for u, v in ((-0.7, 0.0), (0.7, 0.0), (0.0, 0.7), (0.0, -0.7)):
+        p = np.tile([0.5, 0.5 * u, 0.5 * v, 0.25], links)
+        starts.append(design.realised(p, [False] * links))
+    return starts
+
+
+def _descended(search: Search, problem: PeakProblem, bound: float, start: Array) -> Candidate:
+    """Return the local optimum near a start, true peaks included, or that where it is no worse."""
+    design = Design(search.rooms)
+    problem, _ = search.exchanged(problem, design.parameters(start))
+    x = start
+    for _ in range(_ROUNDS):
+        x = _Epigraph(problem, design).minimum(x)
+        problem, excess = search.exchanged(problem, design.parameters(x))
+        if excess < _EXCESS:
+            break
+    # The last peaks alone: of several angles beside one peak the multipliers would be a mixture.
+    epigraph = _Epigraph(search.exchanged(search.start(), design.parameters(x))[0], design)
+    best = epigraph.polished(x)
+    value = search.penalised(design.parameters(best))
+    if not value - bound <= _GAP * search.unit:
+        for other in (x, start):
+            least = search.penalised(design.parameters(other))
+            if least < value:
+                value, best = least, other
+    residual, proved = epigraph.proof(best)
+    return Candidate(best, value, max(bound, proved), residual)
+
+
+def _unfelt(problem: PeakProblem) -> list[bool]:
+    """Return for each link whether nothing but the first moments of its counterweight matters."""
+    felt = np.max([np.max(np.abs(cone.basis), axis=(0, 1)) for cone in problem.cones], axis=0)
+    return [bool(max(link[0], link[3]) < _UNFELT) for link in felt.reshape(-1, PER_LINK)]
+
+
+def _lightened(
+    search: Search, problem: PeakProblem, candidate: Candidate, unfelt: Sequence[bool]
+) -> Array:
+    """Return the design with the least mass that serves as well."""
+    design, x = Design(search.rooms), candidate.x
+    allowed = candidate.value + 1e-12 * search.unit
+    lighter = design.realised(design.parameters(x), unfelt)
+    for place in range(0, len(x), PER_LINK):
+        rows = slice(place, place + PER_LINK)
+        for trial in (lighter[rows], np.zeros(PER_LINK)):
+            changed = x.copy()
+            changed[rows] = trial
+            p = design.parameters(changed)
+            promising = changed[place] < x[place] and problem.cost @ problem.bounds(p) <= allowed
+            if promising and search.penalised(p) <= allowed:
+                x = changed
+    return x

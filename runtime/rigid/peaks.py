@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .barrier import Array
-from .force_basis import NODES, summit
+from ..linkages.linkage import Array
+from .forces import OUTPUTS, rigid_forces
+from .machine import Machine
 
-if TYPE_CHECKING:
-    from . import Machine, RigidForces
+TERMS = ("shaking_force", "shaking_moment", "torque", "f12", "f23", "f34", "f41")
+COUPLES = ("couple34", "couple41")
 
+_TURN = 2.0 * np.pi
 _FEWEST, _MOST = 721, 23041
 # Sampled peaks lower than this, over the highest, cannot be the highest one.
 _CANDIDATE = 0.75
-_MOST_CANDIDATES = 64
+_MOST_CANDIDATES = 32
 # A change on doubling the samples that ends the search.
 _SAME = 1e-11
 _EQUAL = 1e-13
+_DEGREE = 12
+_NODES = np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
+_ORDERS = np.arange(_DEGREE + 1.0)[:, np.newaxis]
+_TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
+
+Forces = Callable[[Array], Mapping[str, Array]]
 
 
 @dataclass(frozen=True)
@@ -42,7 +50,11 @@ class ForcePeak:
 
 
 def force_peaks(
-    machine: Machine, span: tuple[float, float], speed: float, acceleration: float = 0.0
+    machine: Machine,
+    speed: float,
+    acceleration: float = 0.0,
+    *,
+    span: tuple[float, float] = (0.0, _TURN),
 ) -> dict[str, ForcePeak]:
     """Return the peak of every pin force, of torque, shaking force, moment and couple.
 
@@ -53,10 +65,10 @@ def force_peaks(
     ----------
     machine : Machine
         Whose forces.
-    span : tuple of 2 floats
-        First and last crank angle [rad]; the ends count.
     speed, acceleration : float
         Of the crank [rad/s, rad/s^2].
+    span : tuple of 2 floats
+        First and last crank angle [rad]; the ends count.
 
     Returns
     -------
@@ -69,70 +81,115 @@ def force_peaks(
     BadInput
         As :func:`~elastolink.runtime.rigid.rigid_forces`.
     """
+
+    def forces(theta: Array) -> dict[str, Array]:
+        return forces_of(machine, theta, speed, acceleration, (*TERMS, *COUPLES))
+
     count = _FEWEST
-    before = _peaks(machine, span, speed, acceleration, count)
+    before = _tops(forces, span, count)
     while True:
         count = 2 * count - 1
-        found = _peaks(machine, span, speed, acceleration, count)
-        change = {name: abs(abs(found[name][0]) - abs(before[name][0])) for name in found}
-        settled = all(change[name] <= _SAME * abs(found[name][0]) for name in found)
+        after = _tops(forces, span, count)
+        change = {name: abs(abs(after[name][0]) - abs(before[name][0])) for name in after}
+        settled = all(change[name] <= _SAME * abs(after[name][0]) for name in after)
         if settled or count >= _MOST:
-            break
-        before = found
-    return {name: ForcePeak(*values, change[name]) for name, values in found.items()}
+            return {name: ForcePeak(*top, change[name]) for name, top in after.items()}
+        before = after
 
 
-def _peaks(
-    machine: Machine, span: tuple[float, float], speed: float, acceleration: float, count: int
-) -> dict[str, tuple[float, float]]:
+def _tops(forces: Forces, span: tuple[float, float], count: int) -> dict[str, tuple[float, float]]:
     """Return value and angle of each peak, from so many samples."""
-    from . import rigid_forces
+    tops = {}
+    for name, (at, values) in highest(forces, np.linspace(*span, count), around=False).items():
+        sizes = _sizes(values)
+        # Of mirrored peaks always the same one.
+        first = int(np.argmax(sizes >= (1.0 - _EQUAL) * sizes.max()))
+        one = values[first]
+        tops[name] = (float(one[0] if one.size == 1 else sizes[first]), float(at[first]))
+    return tops
 
-    def values(theta: Array) -> dict[str, Array]:
-        return _sizes(rigid_forces(machine, theta, speed, acceleration))
 
-    theta = np.linspace(*span, count)
-    width = (span[1] - span[0]) / (count - 1)
-    starts = {name: _local(theta, np.abs(each)) for name, each in values(theta).items()}
+def forces_of(
+    machine: Machine, theta: Array, speed: float, acceleration: float, terms: Sequence[str]
+) -> dict[str, Array]:
+    """Return forces by name, each of shape (n, d); couples only where the machine has them."""
+    of_pins = [term for term in terms if term[0] == "f" or term in COUPLES]
+    wanted = [output for output in OUTPUTS if output in terms or (output == "pins" and of_pins)]
+    result = rigid_forces(machine, theta, speed, acceleration, outputs=wanted)
+    forces = {}
+    for term in terms:
+        if term in COUPLES:
+            if term in result.values:
+                forces[term] = result[term][:, np.newaxis]
+            continue
+        value = np.asarray(getattr(result, term))
+        forces[term] = value[:, np.newaxis] if value.ndim == 1 else value
+    return forces
+
+
+def highest(forces: Forces, theta: Array, *, around: bool) -> dict[str, tuple[Array, Array]]:
+    """Return angles (k,) and values (k, d) of the highest local peaks of each force, by angle.
+
+    Parameters
+    ----------
+    forces : callable
+        Angles to forces by name, each of shape (n, d).
+    theta : ndarray
+        Evenly spaced samples.
+    around : bool
+        Whether they make a whole turn, the end not repeated; else the ends count.
+    """
+    sampled = forces(theta)
+    width = float(theta[1] - theta[0])
+    ends = (-np.inf, np.inf) if around else (theta[0], theta[-1])
+    places = {name: _local(_sizes(each), around) for name, each in sampled.items()}
+    starts = {name: theta[at] for name, at in places.items()}
+    # All at once: an evaluation for all costs little more than one for each.
     for half in (width, width / 8.0):
-        # All at once: an evaluation for all costs little more than one for each.
-        middle = {name: np.clip(at, span[0] + half, span[1] - half) for name, at in starts.items()}
-        joined = np.concatenate([*middle.values()])
-        near = values((joined[:, None] + half * NODES).ravel())
-        place = 0
-        for name, at in middle.items():
-            rows = near[name].reshape(-1, len(NODES))[place : place + len(at)]
-            starts[name] = at + half * np.array([summit(row * row) for row in rows])
-            place += len(at)
-    # A summit is no better than an end or a sample that lies higher.
-    joined = np.sort(np.concatenate([*starts.values(), theta]))
-    final = values(joined)
-    tops = {name: _first_of_the_highest(np.abs(each)) for name, each in final.items()}
-    return {name: (float(final[name][top]), float(joined[top])) for name, top in tops.items()}
+        middles = {name: np.clip(at, ends[0] + half, ends[1] - half) for name, at in starts.items()}
+        offsets = (half * _NODES)[np.newaxis, :]
+        joined = np.concatenate([*middles.values()])
+        near = forces((joined[:, np.newaxis] + offsets).ravel())
+        first = 0
+        for name, at in middles.items():
+            rows = np.sum(near[name] ** 2, axis=1).reshape(-1, len(_NODES))
+            starts[name] = at + half * _summits(rows[first : first + len(at)])
+            first += len(at)
+    final = forces(np.concatenate([*starts.values()]))
+    peaks, first = {}, 0
+    for name, at in starts.items():
+        refined, sample = final[name][first : first + len(at)], sampled[name][places[name]]
+        # Where a load jumps, no polynomial is better than the sample.
+        worse = _sizes(refined) < _sizes(sample)
+        values = np.where(worse[:, np.newaxis], sample, refined)
+        peaks[name] = (np.where(worse, theta[places[name]], at), values)
+        first += len(at)
+    return peaks
 
 
-def _first_of_the_highest(size: Array) -> int:
-    """Return the first place that is as high as any: of two mirrored peaks, always the same."""
-    return int(np.argmax(size >= (1.0 - _EQUAL) * size.max()))
+def _sizes(forces: Array) -> Array:
+    return np.asarray(np.linalg.norm(forces, axis=1))
 
 
-def _local(theta: Array, size: Array) -> Array:
-    """Return the sampled angles of the local maxima that may be the highest, ends included."""
-    padded = np.concatenate([[-np.inf], size, [-np.inf]])
+def _local(size: Array, around: bool) -> Array:
+    """Return the places of the local maxima that may be the highest, in rising order."""
+    edges = (size[-1:], size[:1]) if around else ([-np.inf], [-np.inf])
+    padded = np.concatenate([edges[0], size, edges[1]])
     chosen = (size >= padded[:-2]) & (size >= padded[2:]) & (size >= _CANDIDATE * size.max())
-    found = np.flatnonzero(chosen)
+    places = np.flatnonzero(chosen)
     # Of a force that all but stays the same, the highest samples are enough.
-    highest = found[np.argsort(-size[found], kind="stable")[:_MOST_CANDIDATES]]
-    return np.asarray(theta[highest])
+    return np.sort(places[np.argsort(-size[places], kind="stable")[:_MOST_CANDIDATES]])
 
 
-def _sizes(forces: RigidForces) -> dict[str, Array]:
-    """Return magnitudes of forces; torque, moment and couples with their signs."""
-    found = {}
-    for joint in ("12", "23", "34", "41"):
-        found["f" + joint] = np.hypot(forces["x" + joint], forces["y" + joint])
-    found["torque"] = forces.torque
-    found["shaking_force"] = np.hypot(forces["shaking_x"], forces["shaking_y"])
-    found["shaking_moment"] = forces.shaking_moment
-    found.update({name: forces[name] for name in forces.values if name.startswith("couple")})
-    return found
+def _summits(squares: Array) -> Array:
+    """Return where in [-1, 1] each row's interpolating polynomial is greatest near its top node."""
+    series = _TO_POWERS @ squares.T
+    slope = _ORDERS[1:] * series[1:]
+    bend = _ORDERS[1:-1] * slope[1:]
+    x = _NODES[np.argmax(squares, axis=1)]
+    for _ in range(8):
+        powers = x ** _ORDERS[:-1]
+        rise, curve = np.sum(slope * powers, axis=0), np.sum(bend * powers[:-1], axis=0)
+        falling = curve < 0.0
+        x = np.clip(x - np.where(falling, rise / np.where(falling, curve, 1.0), 0.0), -1.0, 1.0)
+    return np.asarray(x)

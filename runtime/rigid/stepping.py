@@ -7,14 +7,15 @@ flows in.  A machine left to itself keeps its energy to round-off, whatever the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from ..core.errors import BadInput, bad
-from .blocks import Array
+from ..linkages.linkage import Array
 from .motors import TorqueLaw
 from .one_freedom import OneFreedom
 
@@ -148,7 +149,7 @@ def integrate(
     if not abs(speed0) < _FASTEST:
         raise _too_fast(speed0, 0.0)
     motion = _Motion(system, law)
-    state = np.array([theta0, motion.root(theta0) * speed0, 0.0])
+    state = np.array([theta0, math.sqrt(motion.inertia(theta0)) * speed0, 0.0])
     if stuck := _cannot_start(system, law, theta0, speed0, goals.reversals):
         return Run(system, _Standing(state), "stalled", stuck)
     # What is too large overflows quietly here, and is refused by its speed.
@@ -205,75 +206,49 @@ class _Standing:
         return np.repeat(self.state[:, np.newaxis], np.size(time), axis=1)
 
 
-@dataclass
 class _Motion:
     """Rates of crank angle, ``sqrt(J + flywheel) omega``, and work."""
 
-    system: OneFreedom
-    law: TorqueLaw
-    table: Any = field(init=False)
-    powered: bool = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.table = self.system.table()
-        self.powered = bool(self.system.machine.loads) or self.system.hasty
-
-    def _inertia(self, theta: float) -> tuple[float, float | None]:
-        """Return the inertia with the flywheel, and the load torque where the table has it."""
-        if self.table is None:
-            return float(self.system.coefficients(theta)[0]) + self.system.flywheel, None
-        inertia, _, load = self.table(theta)
-        known = self.table.loaded or not self.system.machine.loaded
-        return inertia + self.system.flywheel, load if known else None
-
-    def root(self, theta: float) -> float:
-        """Return the square root of the inertia with the flywheel."""
-        return float(np.sqrt(self._inertia(theta)[0]))
+    def __init__(self, system: OneFreedom, law: TorqueLaw) -> None:
+        self.system, self.law = system, law
+        self.inertia, self.loads = system.tables()
 
     def __call__(self, time: float, state: Array) -> Array:
         theta, momentum = float(state[0]), float(state[1])
         try:
-            inertia, load = self._inertia(theta)
+            root = math.sqrt(self.inertia(theta))
         except BadInput:
             if self.system.machine.linkage.crank_turns:
                 raise
             # A trial beyond the crank's range: the step is refused and shortened.
             return np.full(3, np.nan)
-        root = float(np.sqrt(inertia))
         speed = momentum / root
         if not abs(speed) < _FASTEST:
             raise _too_fast(speed, time)
         torque = float(self.law(speed, theta, time))
-        power = 0.0
-        if load is None:
-            load = float(self.system.load(theta, speed))
-        if self.powered:
-            power = float(self.system.machine.power(theta, speed))
-        return np.array([speed, (torque - load) / root, torque * speed + power])
+        required, lost = self.loads(theta, speed)
+        return np.array([speed, (torque - required) / root, (torque - lost) * speed])
 
     def scale(self, time: float, state: Array) -> Array:
         """Return what angle, ``u`` and work are small against."""
         theta, momentum = float(state[0]), float(state[1])
-        inertia, load = self._inertia(theta)
-        speed = momentum / float(np.sqrt(inertia))
-        if load is None:
-            load = float(self.system.load(theta, speed))
-        torque = abs(float(self.law(speed, theta, time))) + abs(load)
-        size = max(abs(momentum), float(np.sqrt(torque))) or 1.0
+        speed = momentum / math.sqrt(self.inertia(theta))
+        torque = abs(float(self.law(speed, theta, time))) + abs(self.loads(theta, speed)[0])
+        size = max(abs(momentum), math.sqrt(torque)) or 1.0
         return np.array([1.0, size, size**2])
 
     def longest_step(self, state: Array, rates: Array, angle: float) -> float:
         """Return the time [s] in which the crank turns by an angle, judged from here."""
-        change = abs(float(rates[1])) / self.root(float(state[0]))
+        change = abs(float(rates[1])) / math.sqrt(self.inertia(float(state[0])))
         speed = abs(float(rates[0]))
         pace = speed + float(np.sqrt(speed * speed + 2.0 * change * angle))
         return 2.0 * angle / pace if 0.0 < pace < np.inf else np.inf
 
 
 def _too_fast(speed: float, time: float) -> BadInput:
-    found = f"a crank speed of {speed:.3g} rad/s after {time:.3g} s"
+    reached = f"a crank speed of {speed:.3g} rad/s after {time:.3g} s"
     fix = "take a smaller torque or load, a shorter run, or check the units"
-    return bad("run_up", found, f"a speed below {_FASTEST:g} rad/s", fix)
+    return bad("run_up", reached, f"a speed below {_FASTEST:g} rad/s", fix)
 
 
 def _cannot_start(
@@ -314,7 +289,7 @@ class _Events:
         """Return the first event in a step, if there is one: its time, status and message."""
         if self.direction == 0.0:
             self.direction = float(np.sign(state[1]))
-        found: list[tuple[float, Status, str]] = []
+        events: list[tuple[float, Status, str]] = []
         low, high = self.range
         margin = _FOLD
         watched: list[tuple[Callable[[Array], float], Status, str]] = [
@@ -335,8 +310,8 @@ class _Events:
             )
         for rule, status, message in watched:
             if np.isfinite(rule(state)) and rule(state) > 0:
-                found.append((_root(rule, piece, begin, end), status, message))
-        return min(found, key=lambda item: item[0]) if found else None
+                events.append((_root(rule, piece, begin, end), status, message))
+        return min(events, key=lambda item: item[0]) if events else None
 
 
 def _root(rule: Callable[[Array], float], piece: Any, begin: float, end: float) -> float:

@@ -1,4 +1,4 @@
-"""The figure of tolerances against exact extremes of many digits, over random four-bars."""
+"""The error estimate of tolerances against exact extremes of many digits, over random four-bars."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.length_tolerances import tolerances
 from linkage_truth import motion, random_linkage
 
+SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 _OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")
 
 
@@ -31,12 +32,12 @@ def _extreme(lengths, widths, theta, assembly):
     return worst
 
 
-@pytest.mark.slow
-def test_worst_cases():
+@SCENES
+def test_worst_cases(scenes):
     random = np.random.default_rng(41)
     actual, figures, drawn = [], [], 0
     with mpmath.workdps(40):
-        while drawn < 200:
+        while drawn < scenes:
             shape = random_linkage(random, ("rocker", "drag")[drawn % 2])
             assembly = "open" if shape.assembly > 0 else "crossed"
             linkage = FourBar(**shape.lengths, assembly=assembly)
@@ -61,12 +62,13 @@ def test_worst_cases():
     assert np.median(figure[known] / off[known]) <= 1e3
 
 
+@SCENES
 @pytest.mark.parametrize("distribution", ["normal", "uniform"])
-def test_spreads_of_trials(distribution):
+def test_spreads_of_trials(distribution, scenes):
     """Tolerances so narrow that the first order is all: its spread is the exact one."""
     random = np.random.default_rng(43)
     ratios = []
-    for seed in range(200):
+    for seed in range(scenes):
         shape = random_linkage(random, "rocker")
         linkage = FourBar(**shape.lengths, assembly="open" if shape.assembly > 0 else "crossed")
         widths = {name: 1e-7 * size for name, size in linkage.lengths.items()}
@@ -78,6 +80,6 @@ def test_spreads_of_trials(distribution):
         off = np.abs(trial.standard_deviation - trial.expected)
         # All outputs are of one draw.
         ratios.append(float(np.median(trial.error / np.maximum(off, 1e-300))))
-    assert len(ratios) > 150
+    assert len(ratios) > 0.75 * scenes
     assert np.mean(np.array(ratios) >= 1.0) >= 0.98
     assert np.median(ratios) <= 1e3

@@ -122,6 +122,7 @@ def test_bounds_of_points_hold_and_are_not_idle(machines):
             limits = [(-z / size, x * peak / size) for z in first]
             least = least_radius(second / size, [*limits, (0 * peak, reach / size)])
             assert y - least <= error
-            # All are of the order of 1: no difference below its round-off means anything.
-            ratios.append(np.array([error / max(abs(y - least), np.finfo(float).eps / 2.0)]))
+            # The bound is of what lies above.  All are of the order of 1: no difference below its
+            # round-off means anything.
+            ratios.append(np.array([error / max(y - least, np.finfo(float).eps / 2.0)]))
     verdict(ratios, POINTS * machines)

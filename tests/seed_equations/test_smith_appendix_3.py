@@ -70,6 +70,15 @@ def test_stopping_rule():
     assert full.b == pytest.approx(np.zeros(6), abs=1e-8)
 
 
+@pytest.mark.parametrize("repair", [set(), {"stop"}])
+def test_a_series_that_vanishes_at_the_first_places_stops_at_once(repair):
+    """It starts from zero and two intervals, and compares once: any sine series, and more."""
+    for f in (np.sin, lambda z: np.sin(2 * z) ** 2 * np.cos(2 * z)):
+        early = fousim(0.0, TURN, f, 6, 1e-6, repair)
+        assert early.intervals == 2
+        assert max(np.max(np.abs(early.a)), np.max(np.abs(early.b))) < 1e-12
+
+
 @establishes(
     "Smith",
     "Appendix 3 interval",

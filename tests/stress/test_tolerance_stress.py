@@ -27,11 +27,12 @@ def with_masses(linkage, size):
     return Machine(linkage, dict.fromkeys(linkage.links, body), gravity=(0.0, -9.81))
 
 
+@pytest.mark.parametrize("scenes", [12, pytest.param(60, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("size", [1e-200, 1e-3, 1.0, 1e3, 1e150])
-def test_random_linkages(size):
+def test_random_linkages(size, scenes):
     random = np.random.default_rng(int(abs(np.log10(size))))
     shown = refused = 0
-    while shown < 60:
+    while shown < scenes:
         try:
             linkage = drawn(random, size)
         except BadInput:
@@ -59,4 +60,4 @@ def test_random_linkages(size):
         assert found.passed, dict(found.checks)
         trial = found.monte_carlo(100, seed=shown)
         assert trial.passed, dict(trial.checks)
-    assert refused < shown
+    assert refused <= shown

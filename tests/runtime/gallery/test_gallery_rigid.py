@@ -16,7 +16,7 @@ from elastolink.runtime.gallery.sketches import arrow, turning_arrow
 from elastolink.runtime.gallery.smith_forces import INCH, TURN, example, peak
 from elastolink.runtime.gallery.smith_linkages import four_bar_of
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.rigid import balance_case, rigid_forces
+from elastolink.runtime.rigid import case_counterweights, rigid_forces, with_counterweights
 from gallery_rows import require_rows
 from scipy.optimize import brentq
 
@@ -137,10 +137,9 @@ def test_the_pulses_cross_where_the_peaks_found_by_roots_do():
 def test_point_masses_alone_would_have_no_best_offset():
     # What the note on Fig. 23(d) says: without a size of its own the nearest weight is the best.
     machine, speed = example()
-    peaks = [
-        peak(rigid_forces(balance_case(machine, "d", INCH * offset), TURN, speed).f23)[0]
-        for offset in (0.25, 1.0, 3.0, 6.0)
-    ]
+    cases = [case_counterweights(machine, "d", INCH * offset) for offset in (0.25, 1.0, 3.0, 6.0)]
+    balanced = [with_counterweights(machine, weights.values()) for weights in cases]
+    peaks = [peak(rigid_forces(one, TURN, speed).f23)[0] for one in balanced]
     assert np.all(np.diff(peaks) > 0.0)
 
 

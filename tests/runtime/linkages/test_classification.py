@@ -1,4 +1,4 @@
-"""Grashof's and Barker's classes: every class, refusals, tolerances, inversions, sliding links."""
+"""Grashof's and Barker's classes, and the base planes of Barker's solution space."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.linkages.barker import CLASSES, LINKS
-from elastolink.runtime.linkages.classification import SYMBOLS, classify, classify_many
+from elastolink.runtime.linkages.base_planes import base_plane
+from elastolink.runtime.linkages.classification import SYMBOLS, classify
 
 
 def grashof_symbol(lengths):
-    """Read Barker's table word by word; '' where the four cannot move."""
+    """Barker's table word by word; '' where the four cannot move."""
     s, p, q, longest = sorted(lengths)
     lengths = list(lengths)
     if longest >= s + p + q:
@@ -32,10 +33,11 @@ def grashof_symbol(lengths):
 GRID = [*itertools.product(range(1, 8), repeat=4)]
 
 
+@pytest.mark.smoke
 def test_all_small_integers_have_the_class_of_the_table():
     expected = [grashof_symbol(lengths) for lengths in GRID]
     assert set(expected) == set(SYMBOLS)
-    assert [SYMBOLS[number] for number in classify_many(GRID)] == expected
+    assert [SYMBOLS[number] for number in classify(np.array(GRID))] == expected
     for lengths, symbol in zip(GRID, expected, strict=True):
         if symbol:
             assert classify(lengths).symbol == symbol
@@ -45,7 +47,7 @@ def test_all_small_integers_have_the_class_of_the_table():
 
 
 def test_inversions_are_the_classes_of_the_lengths_taken_in_turn():
-    for lengths in GRID[::7]:
+    for lengths in GRID[::14]:
         if not grashof_symbol(lengths):
             continue
         found = classify(lengths)
@@ -65,7 +67,7 @@ def reaches_every_angle(lengths, i, j):
 
 
 def test_turning_links_are_those_that_a_sweep_turns():
-    for lengths in GRID[::3]:
+    for lengths in GRID[::6]:
         if grashof_symbol(lengths):
             found = classify(lengths).relative_turns
             for i, j in itertools.combinations(range(4), 2):
@@ -102,7 +104,7 @@ def test_a_tolerance_finds_pairs_and_equal_links():
 @pytest.mark.parametrize("scale", [2.0**-1074, 2.0**-1000, 1.0, 2.0**1020])
 def test_scale_changes_nothing(scale):
     lengths = np.array([7.0, 2.0, 6.0, 3.0]) * scale
-    assert SYMBOLS[classify_many(lengths)] == classify(lengths.tolist()).symbol == "CPCRR"
+    assert SYMBOLS[classify(lengths[None])[0]] == classify(lengths.tolist()).symbol == "CPCRR"
 
 
 @pytest.mark.parametrize(
@@ -161,3 +163,45 @@ def test_quick_return(crank, turns):
     assert found.turns["rod"] == turns
     assert found.category == "Grashof"
     assert np.sign(found.distance) == (1 if turns else -1)
+
+
+@pytest.mark.parametrize("lam", [0.7, 1.2, 3.0**0.5, 2.5, 20.0])
+def test_regions_fill_the_plane_and_hold_their_class(lam):
+    plane = base_plane(lam, 61)
+    assert sum(plane.shares.values()) == pytest.approx(1.0, abs=1e-12)
+    random = np.random.default_rng(3)
+    for symbol, corners in plane.regions.items():
+        weights = random.dirichlet(np.ones(len(corners)), 50)
+        coupler, output, frame = (weights @ corners).T
+        lengths = np.stack([frame, np.ones_like(frame), coupler, output], -1)
+        assert {SYMBOLS[number] for number in classify(lengths)} == {symbol}
+    assert {SYMBOLS[n] for n in np.unique(plane.numbers)} >= {"GCCC", "GRCR", "GRRC"}
+    assert ("RRR2" in plane.regions) == (lam < 1.7)
+    assert ("GCRR" in plane.regions) == (lam > 1.8)
+
+
+def test_borders_are_change_points():
+    for ends in base_plane(1.2).borders.values():
+        coupler, output, frame = ends.mean(axis=0)
+        sums = (frame + 1 - coupler - output, frame + coupler - 1 - output)
+        assert min(map(abs, (*sums, frame + output - 1 - coupler))) < 1e-14
+
+
+def test_picture_marks_the_linkage():
+    axes = base_plane(1.2, 5).plot(mark=(0.7, 0.7, 0.6))
+    assert {text.get_text() for text in axes.texts} == {*base_plane(1.2, 5).regions}
+
+
+@pytest.mark.parametrize("bad", [(0.5,), (float("nan"),), (1.0, 1)])
+def test_planes_without_linkages_are_refused(bad):
+    with pytest.raises(BadInput):
+        base_plane(*bad)
+
+
+def test_the_mark_leaves_its_symbol_free():
+    # Coupler, follower and frame of one length: the middle of the region, where its symbol stood.
+    ax = classify((12.0, 6.0, 12.0, 12.0)).plot()
+    symbol = next(text for text in ax.texts if text.get_text() == "GCRR")
+    ax.figure.canvas.draw()
+    mark = ax.transData.transform(ax.lines[-1].get_xydata()[0])
+    assert not symbol.get_window_extent().padded(4.0).contains(*mark)

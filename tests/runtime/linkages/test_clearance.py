@@ -28,21 +28,21 @@ def sides(found):
     return [float(found.below), float(found.above)]
 
 
-def four_bar_trial(linkage, theta, plays, link, count=24):
-    """Return all angles of a link, less the nominal one, with every pin on the rim of its hole."""
+def trial_sides(linkage, theta, plays, link, exact, count):
+    """How far a link falls and rises with every pin on the rim of its hole or in the middle."""
     l1, l2, l3, l4 = linkage.lengths.values()
-    rim = np.exp(1j * np.linspace(0.0, TURN, count, endpoint=False))
-    discs = [plays.get(joint, 0.0) / 2 * (rim if joint in plays else rim[:1]) for joint in JOINTS]
-    found = []
-    for a, b, c, d in itertools.product(*(np.append(disc, 0.0) for disc in discs)):
-        pin, pivot = a + l2 * np.exp(1j * theta) + b, l1 + d - c
-        span = pivot - pin
-        cosine = (abs(span) ** 2 + l3**2 - l4**2) / (2 * abs(span) * l3)
-        if abs(cosine) <= 1.0:
-            third = np.angle(span) + linkage.branch * np.arccos(cosine)
-            fourth = np.angle(pin + l3 * np.exp(1j * third) - pivot)
-            found.append(third if link == "coupler" else fourth)
-    return np.array(found)
+    rim = np.append(np.exp(1j * np.linspace(0.0, TURN, count, endpoint=False)), 0.0)
+    discs = [plays[joint] / 2 * rim if joint in plays else np.zeros(1) for joint in JOINTS]
+    a, b, c, d = np.meshgrid(*discs, sparse=True)
+    pin, pivot = a + l2 * np.exp(1j * theta) + b, l1 + d - c
+    span = pivot - pin
+    cosine = (np.abs(span) ** 2 + l3**2 - l4**2) / (2 * np.abs(span) * l3)
+    with np.errstate(invalid="ignore"):
+        angle = np.angle(span) + linkage.branch * np.arccos(cosine)
+    if link == "follower":
+        angle = np.angle(pin + l3 * np.exp(1j * angle) - pivot)
+    tried = wrapped(angle[np.isfinite(angle)] - exact.nominal)
+    return -tried.min(), tried.max()
 
 
 @pytest.mark.parametrize("link", ["follower", "coupler"])
@@ -54,11 +54,10 @@ def test_all_pins_by_trial(lengths, assembly, link):
     plays = {joint: size * lengths[1] / 8 for joint, size in plays.items()}
     for theta in (0.3, 2.1, 4.4):
         exact = clearance_range(linkage, plays, theta, link=link)
-        tried = wrapped(four_bar_trial(linkage, theta, plays, link, 12) - exact.nominal)
+        tried = trial_sides(linkage, theta, plays, link, exact, 12)
         # Never beyond; short of it by no more than 12 places of each pin allow, 1 - cos(15 deg).
-        for reached, end in ((-tried.min(), exact.below), (tried.max(), exact.above)):
-            assert reached <= end * (1 + 1e-9)
-            assert reached >= 0.96 * end
+        for reached, end in zip(tried, sides(exact), strict=True):
+            assert 0.96 * end <= reached <= end * (1 + 1e-9)
         inner = clearance_range(linkage, {"12": 0.0, "41": 0.0}, theta, link=link)
         assert inner.width == 0.0
 
@@ -66,11 +65,10 @@ def test_all_pins_by_trial(lengths, assembly, link):
 def test_dense_trial_of_one_pin():
     linkage = FourBar(*LONG_CRANK)
     for theta, joint in itertools.product((0.0, 0.7, 3.0), JOINTS):
-        plays = {joint: 0.5}
         exact = clearance_range(linkage, 0.5, theta, joint=joint)
-        tried = wrapped(four_bar_trial(linkage, theta, plays, "follower", 20001) - exact.nominal)
+        tried = trial_sides(linkage, theta, {joint: 0.5}, "follower", exact, 20001)
         # As in the ledger: such a search misses the extremes by 2e-8 of the movement.
-        assert [-tried.min(), tried.max()] == pytest.approx(sides(exact), rel=1e-7)
+        assert tried == pytest.approx(sides(exact), rel=1e-7)
 
 
 @pytest.mark.parametrize("link", ["follower", "coupler"])
@@ -84,48 +82,44 @@ def test_the_joint_does_not_matter(link):
 
 
 def many_digits(lengths, branch, theta, play):
-    """Return how far the follower falls and rises, with 60 digits, from arc cosines alone."""
-    with mpmath.workdps(60):
-        l1, l2, l3, l4, theta, play = (mpmath.mpf(float(v)) for v in (*lengths, theta, play))
-        d = mpmath.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * mpmath.cos(theta))
+    """How far the follower falls and rises, from arc cosines alone."""
+    l1, l2, l3, l4, theta, play = (mpmath.mpf(float(v)) for v in (*lengths, theta, play))
+    d = mpmath.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * mpmath.cos(theta))
 
-        def angle(side):
-            return mpmath.acos((d**2 + l4**2 - side**2) / (2 * d * l4))
+    def angle(side):
+        return mpmath.acos((d**2 + l4**2 - side**2) / (2 * d * l4))
 
-        rise, fall = angle(l3 + play / 2) - angle(l3), angle(l3) - angle(l3 - play / 2)
-        return (rise, fall) if branch > 0 else (fall, rise)
+    rise, fall = angle(l3 + play / 2) - angle(l3), angle(l3) - angle(l3 - play / 2)
+    return (rise, fall) if branch > 0 else (fall, rise)
 
 
-@pytest.mark.parametrize("size", [1e-2, 1e-6, 1e-12, 1e-200])
+@pytest.mark.parametrize("size", [1e-2, 1e-6, 1e-12])
 @pytest.mark.parametrize("assembly", ["open", "crossed"])
 def test_relative_accuracy_of_vanishing_clearances(size, assembly):
     for lengths in FOUR_BARS:
         linkage = FourBar(*lengths, assembly)
-        play = size * lengths[1]
-        with mpmath.workdps(460 if size < 1e-100 else 60):
-            for theta in (0.0, 0.3, 2.0, 3.1, 5.5):
-                exact = clearance_range(linkage, play, theta)
-                if size < 1e-100:
-                    continue
-                true = many_digits(lengths, linkage.branch, theta, play)
-                for value, truth in zip((exact.below, exact.above), true, strict=True):
-                    assert float(abs(mpmath.mpf(float(value)) / truth - 1)) < 2e-14
-        # Far below the round-off of the angles the first order is exact.
-        if size == 1e-200:
-            assert exact.width == pytest.approx(exact.small, rel=1e-14)
+        for theta in (0.0, 0.3, 2.0, 3.1, 5.5):
+            exact = clearance_range(linkage, size * lengths[1], theta)
+            with mpmath.workdps(60):
+                true = many_digits(lengths, linkage.branch, theta, size * lengths[1])
+            for value, truth in zip((exact.below, exact.above), true, strict=True):
+                assert float(abs(mpmath.mpf(float(value)) / truth - 1)) < 2e-14
+            # Far below the round-off of the angles the first order is exact.
+            least = clearance_range(linkage, 1e-200 * lengths[1], theta)
+            assert least.width == pytest.approx(least.small, rel=1e-14)
 
 
 def test_first_order_is_left_with_the_third_power():
     linkage = FourBar(*LONG_CRANK)
     plays = np.array([0.2, 0.1, 0.05, 0.025])
     for theta in (0.0, 1.0, 2.5):
-        found = [clearance_range(linkage, float(c), theta) for c in plays]
-        apart = np.array([r.width - r.small for r in found])
-        sides = np.array([r.above - r.below for r in found])
+        ranges = [clearance_range(linkage, float(c), theta) for c in plays]
+        apart = np.array([r.width - r.small for r in ranges])
+        uneven = np.array([r.above - r.below for r in ranges])
         assert np.log2(apart[:-1] / apart[1:]) == pytest.approx(3.0, abs=0.02)
         # One side alone is left with the second: the sum cancels it.
-        assert np.log2(sides[:-1] / sides[1:]) == pytest.approx(2.0, abs=0.02)
-    # The ledger's own figures: too small by 1.0e-6, 1.0e-4, 2.6e-3 of itself.
+        assert np.log2(uneven[:-1] / uneven[1:]) == pytest.approx(2.0, abs=0.02)
+    # The ledger: too small by 1.0e-6, 1.0e-4, 2.6e-3 of itself.
     for c, part in ((0.01, 1.02e-6), (0.1, 1.02e-4), (0.5, 2.56e-3)):
         found = clearance_range(linkage, c, 0.0)
         assert (found.width - found.small) / found.width == pytest.approx(part, rel=0.01)
@@ -185,10 +179,10 @@ def test_double_rocker_near_its_dead_position_by_trial():
         assert exact.folds
         # Every follower angle whose pin is within the reach of the coupler.
         pin = 8.0 * np.exp(1j * theta)
-        turn = np.linspace(-np.pi, np.pi, 2_000_001)
+        turn = np.linspace(-np.pi, np.pi, 500_001)
         tip = 10.0 + 10.0 * np.exp(1j * (turn + exact.nominal))
         inside = turn[np.abs(np.abs(tip - pin) - 4.0) <= 0.15]
-        assert [-inside.min(), inside.max()] == pytest.approx(sides(exact), abs=TURN / 1e6)
+        assert [-inside.min(), inside.max()] == pytest.approx(sides(exact), abs=TURN / 2.5e5)
 
 
 def test_a_follower_without_any_limit():
@@ -213,8 +207,8 @@ LINKAGES = (
 @pytest.mark.parametrize("linkage", LINKAGES, ids=str)
 def test_extremes_over_the_cycle_against_a_scan(linkage, play):
     ranges = ((0.0, TURN),) if linkage.crank_turns else linkage.crank_ranges()
-    # Close to the ends, where a fold begins, the steps are a thousandth of the way from the end.
-    way = np.geomspace(1e-9, 0.5, 20001)
+    # Close to the ends, where a fold begins, the steps are 1/200 of the way from the end.
+    way = np.geomspace(1e-9, 0.5, 4001)
     theta = np.concatenate([low + (high - low) * np.append(way, 1 - way) for low, high in ranges])
     sliding = {SliderCrank: "41", QuickReturn: "34"}.get(type(linkage), "34")
     for link in (None, "coupler"):
@@ -235,11 +229,12 @@ def test_extremes_over_the_cycle_against_a_scan(linkage, play):
                 assert there.width == pytest.approx([great.width, least.width], rel=1e-12)
 
 
+@pytest.mark.smoke
 def test_figure_10():
     # Smith's Fig. 10: greatest at 0, a second maximum at 180 deg, least in between.
     found = clearance_range(FourBar(*LONG_CRANK), 0.1, np.radians([0.0, 180.0]))
-    assert found.worst.theta2 == 0.0
-    assert found.worst.width == found.width[0]
+    assert found.greatest.theta2 == 0.0
+    assert found.greatest.width == found.width[0]
     # By trial in the ledger: 0.0503 rad for both sides, 0.0252 for the one.
     assert [found.width[0], found.below[0]] == pytest.approx([0.0503, 0.0252], abs=5e-5)
     half = clearance_range(FourBar(*LONG_CRANK), 0.5, np.pi)
@@ -312,7 +307,7 @@ def test_scale_changes_nothing():
     small = clearance_range(SliderCrank(1.0, 3.0, 0.4), 0.1, ANGLES)
     large = clearance_range(SliderCrank(1024.0, 3072.0, 409.6), 102.4, ANGLES)
     assert large.width == pytest.approx(1024.0 * small.width, rel=1e-13)
-    assert large.worst.width == pytest.approx(1024.0 * small.worst.width, rel=1e-13)
+    assert large.greatest.width == pytest.approx(1024.0 * small.greatest.width, rel=1e-13)
 
 
 def test_picture_has_a_curve_for_each_clearance():
@@ -345,25 +340,24 @@ def test_refusals(arguments, word):
 
 def test_refusals_of_joint_link_linkage_and_reach():
     linkage = FourBar(*LONG_CRANK)
-    with pytest.raises(BadInput, match="leave it out"):
-        clearance_range(linkage, {"34": 0.1}, 0.0, joint="23")
-    with pytest.raises(BadInput, match="follower, coupler"):
-        clearance_range(linkage, 0.1, 0.0, link="rod")
-    with pytest.raises(BadInput, match="QuickReturn"):
-        clearance_range("linkage", 0.1, 0.0)
-    with pytest.raises(BadInput, match="cannot reach"):
-        clearance_range(FourBar(10.0, 8.0, 4.0, 10.0), 0.1, 0.0)
-    with pytest.raises(BadInput, match="cannot reach"):
-        clearance_range(FourBar(2.0, 2.0, 3.0, 3.0), 0.1, 0.0)
+    rocker, flat = FourBar(10.0, 8.0, 4.0, 10.0), FourBar(2.0, 2.0, 3.0, 3.0)
+    for given, clearance, options, word in (
+        (linkage, {"34": 0.1}, {"joint": "23"}, "leave it out"),
+        (linkage, 0.1, {"link": "rod"}, "follower, coupler"),
+        ("linkage", 0.1, {}, "QuickReturn"),
+        (rocker, 0.1, {}, "cannot reach"),
+        (flat, 0.1, {}, "cannot reach"),
+    ):
+        with pytest.raises(BadInput, match=word):
+            clearance_range(given, clearance, 0.0, **options)
 
 
 def test_shapes_and_export(tmp_path):
     found = clearance_range(FourBar(*LONG_CRANK), 0.1, np.zeros((2, 3)))
     assert found.width.shape == (2, 3) == found.error.shape
     assert clearance_range(FourBar(*LONG_CRANK), 0.1, []).width.shape == (0,)
-    told = json.loads(found.save(tmp_path / "play.json").read_text())
-    assert told["greatest"]["theta2"] == 0.0 and told["clearances"] == {"34": 0.1}
-    assert (tmp_path / "play.json").exists()
+    saved = json.loads(found.save(tmp_path / "play.json").read_text())
+    assert saved["greatest"]["theta2"] == 0.0 and saved["clearances"] == {"34": 0.1}
     rows = found.save(tmp_path / "play.csv").read_text().splitlines()
     assert len(rows) == 7
 

@@ -1,14 +1,16 @@
-"""Coupler curves: place, length, curvature, cusps, double points, cognates, each by two routes."""
+"""Coupler curves and their moving pictures: place, length, cusps, double points, cognates."""
 
 import json
+from contextlib import suppress
 
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
-from elastolink.runtime.linkages.cognate_linkages import cognates
-from elastolink.runtime.linkages.coupler_sextic import sextic_nodes, sextic_residual
-from elastolink.runtime.linkages.curves import coupler_curve
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank, pictures
+from elastolink.runtime.linkages.circuits import Circuit
+from elastolink.runtime.linkages.curves import coupler_curve, sextic_residual
+from elastolink.runtime.linkages.pictures import animate
+from PIL import Image
 from scipy.integrate import quad
 
 CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
@@ -19,35 +21,34 @@ DOUBLE_ROCKER = FourBar(2.0, 1.7, 1.0, 1.5)
 INWARD_ROCKER = FourBar(3.0, 2.0, 1.0, 1.5)
 TWO_RANGES = FourBar(3.0, 2.5, 1.0, 2.2)
 SLIDER = SliderCrank(1.0, 3.0, 0.3)
-SHORT_SLIDER = SliderCrank(2.0, 1.0, 0.3)
-OFFSET_SLIDER = SliderCrank(2.0, 2.2, 1.5)
 ROD = QuickReturn(2.0, 1.0, 4.0)
 ALL = [
     (CRANK_ROCKER, "coupler"),
-    (CROSSED, "coupler"),
-    (DRAG_LINK, "coupler"),
+    (CRANK_ROCKER, "crank"),
     (DRAG_LINK, "follower"),
     (TRIPLE_ROCKER, "coupler"),
     (DOUBLE_ROCKER, "coupler"),
-    (INWARD_ROCKER, "coupler"),
     (INWARD_ROCKER, "follower"),
     (TWO_RANGES, "coupler"),
-    (SLIDER, "coupler"),
     (SLIDER, "slider"),
-    (SHORT_SLIDER, "coupler"),
-    (OFFSET_SLIDER, "coupler"),
+    (SliderCrank(2.0, 1.0, 0.3), "coupler"),
+    (SliderCrank(2.0, 2.2, 1.5), "coupler"),
     (ROD, "rod"),
-    (ROD, "block"),
     (QuickReturn(1.0, 2.0, 4.0), "block"),
-    (CRANK_ROCKER, "crank"),
 ]
 
 
 def assembled(linkage, branch):
-    """Return the same lengths in the assembly of a sign."""
+    """The same lengths in the assembly of a sign."""
     if isinstance(linkage, QuickReturn):
         return linkage
     return type(linkage)(*linkage.lengths.values(), assembly="open" if branch > 0 else "crossed")
+
+
+def random_four_bar(rng):
+    while True:
+        with suppress(BadInput):
+            return FourBar(*rng.uniform(0.3, 3.0, 4))
 
 
 def complex_of(places):
@@ -55,26 +56,27 @@ def complex_of(places):
 
 
 @pytest.mark.parametrize(("linkage", "link"), ALL)
-@pytest.mark.parametrize("circuit", [0, 1])
-def test_agrees_with_the_motion_of_each_assembly(linkage, link, circuit):
-    try:
-        curve = coupler_curve(linkage, 0.7, 0.4, link=link, circuit=circuit, points=64)
-    except BadInput:
-        assert circuit == 1
-        return
-    assert curve.passed
-    for i in range(64):
-        own = assembled(linkage, curve.branch[i]).motion(curve.theta2[i])
-        point = own.point(link, 0.7, 0.4)
-        # Towards a dead centre the emitted motion passes its own round-off on.
-        loose = 1e-13 + 20 * float(own.error)
-        assert curve.position[i] == pytest.approx(point.position, abs=loose)
-        for mine, theirs in (
-            (curve.velocity[i], point.velocity),
-            (curve.acceleration[i], point.acceleration),
-        ):
-            size = max(1.0, float(np.max(np.abs(theirs))))
-            assert mine == pytest.approx(theirs, abs=loose * 200 * size * size)
+def test_agrees_with_the_motion_of_each_assembly(linkage, link):
+    for circuit in (0, 1):
+        try:
+            curve = coupler_curve(linkage, 0.7, 0.4, link=link, circuit=circuit, points=64)
+        except BadInput:
+            assert circuit == 1
+            continue
+        assert curve.passed
+        for branch in set(curve.branch):
+            of = curve.branch == branch
+            motion = assembled(linkage, branch).motion(curve.theta2[of])
+            point = motion.point(link, 0.7, 0.4)
+            # Towards a dead centre the emitted motion amplifies its round-off.
+            loose = (1e-13 + 20 * motion.error)[:, None]
+            assert np.all(np.abs(curve.position[of] - point.position) <= loose)
+            for series, emitted in (
+                (curve.velocity[of], point.velocity),
+                (curve.acceleration[of], point.acceleration),
+            ):
+                size = np.maximum(1.0, np.max(np.abs(emitted), axis=1))[:, None]
+                assert np.all(np.abs(series - emitted) <= loose * 200 * size**2)
 
 
 @pytest.mark.parametrize("linkage", [CRANK_ROCKER, DRAG_LINK, SLIDER, ROD])
@@ -89,32 +91,34 @@ def test_the_crank_pin_runs_round_a_circle(linkage):
     assert len(curve.cusp_theta2) == len(curve.double_theta2) == 0
 
 
-@pytest.mark.parametrize(("linkage", "link"), [(CRANK_ROCKER, "coupler"), (SLIDER, "coupler")])
-def test_length_and_area_by_another_quadrature(linkage, link):
-    curve = coupler_curve(linkage, 1.3, -0.9, link=link)
+@pytest.mark.parametrize("linkage", [CRANK_ROCKER, SLIDER])
+def test_length_and_area_by_another_quadrature(linkage):
+    curve = coupler_curve(linkage, 1.3, -0.9)
 
     def speed(theta):
-        return float(np.hypot(*linkage.motion(theta).point(link, 1.3, -0.9).velocity))
+        return float(np.hypot(*linkage.motion(theta).point("coupler", 1.3, -0.9).velocity))
 
     def sector(theta):
-        at = linkage.motion(theta).point(link, 1.3, -0.9)
+        at = linkage.motion(theta).point("coupler", 1.3, -0.9)
         return 0.5 * float((complex(*at.position).conjugate() * complex(*at.velocity)).imag)
 
-    length, loose = quad(speed, 0, 2 * np.pi, epsabs=1e-12, epsrel=1e-12, limit=400)
-    assert abs(curve.length - length) <= loose + curve.length_error
-    area, loose = quad(sector, 0, 2 * np.pi, epsabs=1e-12, epsrel=1e-12, limit=400)
-    assert abs(curve.area - area) <= loose + curve.area_error
+    for value, error, rate in (
+        (curve.length, curve.length_error, speed),
+        (curve.area, curve.area_error, sector),
+    ):
+        exact, loose = quad(rate, 0, 2 * np.pi, epsabs=1e-11, epsrel=1e-11, limit=400)
+        assert abs(value - exact) <= loose + error
 
 
 @pytest.mark.parametrize("linkage", [TRIPLE_ROCKER, INWARD_ROCKER, TWO_RANGES])
 def test_a_swinging_crank_length_is_that_of_the_polygon(linkage):
     curve = coupler_curve(linkage, 0.7, 0.6)
     chords = []
-    for count in (20_000, 40_000):
+    for count in (10_000, 20_000):
         places = coupler_curve(linkage, 0.7, 0.6, points=count).position
         chords.append(np.sum(np.abs(np.diff(complex_of(places), append=complex_of(places[:1])))))
     # Chords fall short by a second-order term, which two of them cancel.
-    assert curve.length == pytest.approx((4 * chords[1] - chords[0]) / 3, rel=1e-12)
+    assert curve.length == pytest.approx((4 * chords[1] - chords[0]) / 3, rel=1e-11)
 
 
 def test_arc_run_out_and_back():
@@ -131,12 +135,10 @@ def test_arc_run_out_and_back():
 
 
 def pole_in_coupler(linkage, theta):
-    """Return the instantaneous centre in the coupler's (the block's) axes."""
+    """The instantaneous centre in the coupler's (the block's) axes: v + i w (z - origin) = 0."""
     name = "block" if isinstance(linkage, QuickReturn) else "coupler"
     at = linkage.motion(theta).link(name)
-    velocity = complex(*at.velocity)
-    # v + i w (z - origin) = 0
-    arm = -velocity / (1j * float(at.speed))
+    arm = -complex(*at.velocity) / (1j * float(at.speed))
     return name, arm * np.exp(-1j * float(at.angle))
 
 
@@ -158,8 +160,7 @@ def test_a_sample_on_the_cusp_itself():
     name, place = pole_in_coupler(SLIDER, np.pi)
     curve = coupler_curve(SLIDER, place.real, place.imag, link=name, points=32)
     at = int(np.argmin(np.abs(np.exp(1j * (curve.theta2 - np.pi)) - 1)))
-    shift = np.linalg.norm(curve.centre[at] - curve.position[at])
-    assert shift < 1e-6
+    assert np.linalg.norm(curve.centre[at] - curve.position[at]) < 1e-6
     assert abs(curve.curvature[at]) > 1e6
     assert not np.any(np.isnan(curve.curvature))
 
@@ -168,7 +169,7 @@ def test_a_sample_on_the_cusp_itself():
 def test_near_a_cusp_the_path_has_a_loop_or_a_bend(distance):
     name, place = pole_in_coupler(CRANK_ROCKER, 0.6)
     at = CRANK_ROCKER.motion(0.6)
-    # The moving centrode runs across the acceleration of its pole.
+    # The moving centrode crosses the acceleration of its pole.
     turned = complex(*at.point(name, place.real, place.imag).acceleration)
     normal = turned / abs(turned) * np.exp(-1j * float(at.theta3))
     loops = 0
@@ -184,16 +185,29 @@ def test_near_a_cusp_the_path_has_a_loop_or_a_bend(distance):
     assert loops == 1
 
 
-def test_an_ordinary_cusp_is_a_double_point_of_the_sextic():
-    _, place = pole_in_coupler(CRANK_ROCKER, 2.0)
-    curve = coupler_curve(CRANK_ROCKER, place.real, place.imag)
-    nodes = sextic_nodes(CRANK_ROCKER, place.real, place.imag)
-    gaps = np.linalg.norm(nodes.position - curve.cusp_position[0], axis=1)
-    assert np.min(gaps) < 1e-9
+def sextic_nodes(linkage, place):
+    """Double points of both circuits in closed form, and whether a linkage reaches each.
+
+    The two bars demand conj(p) g u + p conj(g) conj(u) = M and conj(w) d u + w conj(d) conj(u) = -N
+    of the coupler's direction u (see `sextic_residual`); both leave u undecided on the circle
+    through A, D and the third singular focus f g/l3, w = r conj(g) d p, at the roots r of a cubic.
+    """
+    frame, crank, coupler, follower = linkage.lengths.values()
+    rest = coupler - place
+    product = np.conj(place) * rest
+    q = np.array([abs(product) ** 2, -2.0 * product.real, 1.0])
+    first = np.polyadd([frame**2], (abs(place) ** 2 - crank**2) * q)
+    second = (abs(rest) ** 2 - follower**2) * q
+    second = np.polyadd([abs(product) ** 2 * frame**2, 0.0, 0.0], second)
+    roots = np.roots(np.polyadd(abs(rest) ** 2 * np.polymul([1.0, 0.0], first), second))
+    real = roots[np.abs(roots.imag) <= 1e-7 * np.abs(roots)].real
+    points = frame / (1.0 - real * product)
+    m = np.abs(points) ** 2 + abs(place) ** 2 - crank**2
+    return points, np.abs(m) < 2.0 * np.abs(points * place)
 
 
 def both_passages_alike(linkage, place, p):
-    """Tell whether the two positions that meet in a double point are of one assembly."""
+    """Whether the two positions that meet in a double point are of one assembly."""
     frame, crank, coupler, _ = linkage.lengths.values()
     size = abs(p) ** 2 + abs(place) ** 2 - crank**2
     sides = []
@@ -203,49 +217,46 @@ def both_passages_alike(linkage, place, p):
     return sides[0] == sides[1]
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_double_points_are_those_of_the_cubic(seed):
-    rng = np.random.default_rng(seed)
-    while True:
-        try:
-            linkage = FourBar(*rng.uniform(0.3, 3.0, 4))
-            break
-        except BadInput:
-            continue
-    place = complex(rng.uniform(-2, 3), rng.uniform(-2, 2)) * linkage.coupler
-    nodes = sextic_nodes(linkage, place.real, place.imag)
-    everywhere = complex_of(nodes.position)
-    found, count = [], 0
-    for circuit in (0, 1):
-        try:
-            curve = coupler_curve(linkage, place.real, place.imag, circuit=circuit)
-        except BadInput:
-            continue
-        count += 1
-        curve.require()
-        found += list(complex_of(curve.double_position))
-    size = sum(linkage.lengths.values()) + abs(place)
-    for p in found:
-        assert np.min(np.abs(everywhere - p)) < 1e-9 * size
-    crossing = everywhere[nodes.crossing]
-    if linkage.crank_turns:
-        crossing = [p for p in crossing if both_passages_alike(linkage, place, p)]
-    if linkage.crank_turns or count == 1:
-        assert len(found) == len(crossing)
-    # All lie on the circle through A, D and the third singular focus.
-    focus = linkage.frame * place / linkage.coupler
-    for p in everywhere:
-        ratio = (p / (p - linkage.frame)) / (focus / (focus - linkage.frame))
-        assert abs(ratio.imag) < 1e-9 * abs(ratio)
+def test_an_ordinary_cusp_is_a_double_point_of_the_sextic():
+    _, place = pole_in_coupler(CRANK_ROCKER, 2.0)
+    curve = coupler_curve(CRANK_ROCKER, place.real, place.imag)
+    nodes, _ = sextic_nodes(CRANK_ROCKER, place)
+    assert np.min(np.abs(nodes - complex_of(curve.cusp_position[0]))) < 1e-9
+
+
+@pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
+def test_double_points_are_those_of_the_cubic(scenes):
+    for seed in range(scenes):
+        rng = np.random.default_rng(seed)
+        linkage = random_four_bar(rng)
+        place = complex(rng.uniform(-2, 3), rng.uniform(-2, 2)) * linkage.coupler
+        everywhere, crossed = sextic_nodes(linkage, place)
+        doubles, count = [], 0
+        for circuit in (0, 1):
+            with suppress(BadInput):
+                curve = coupler_curve(linkage, place.real, place.imag, circuit=circuit)
+                count += 1
+                curve.require()
+                doubles += list(complex_of(curve.double_position))
+        size = sum(linkage.lengths.values()) + abs(place)
+        for p in doubles:
+            assert np.min(np.abs(everywhere - p)) < 1e-9 * size
+        crossing = everywhere[crossed]
+        if linkage.crank_turns:
+            crossing = [p for p in crossing if both_passages_alike(linkage, place, p)]
+        if linkage.crank_turns or count == 1:
+            assert len(doubles) == len(crossing)
+        # All lie on the circle through A, D and the third singular focus.
+        focus = linkage.frame * place / linkage.coupler
+        ratio = (everywhere / (everywhere - linkage.frame)) / (focus / (focus - linkage.frame))
+        assert np.all(np.abs(ratio.imag) < 1e-9 * np.abs(ratio))
 
 
 def test_the_sextic_refuses_other_points():
     curve = coupler_curve(CRANK_ROCKER, 1.0, 0.5)
-    lengths, place = CRANK_ROCKER.lengths, 1.0 + 0.5j
-    on = sextic_residual(lengths, place, complex_of(curve.position))
-    off = sextic_residual(lengths, place, complex_of(curve.position) + 1e-6)
-    assert np.max(on) < 1e-15
-    assert np.max(off) > 1e-8
+    places = complex_of(curve.position)
+    assert np.max(sextic_residual(CRANK_ROCKER.lengths, 1.0 + 0.5j, places)) < 1e-15
+    assert np.max(sextic_residual(CRANK_ROCKER.lengths, 1.0 + 0.5j, places + 1e-6)) > 1e-8
 
 
 @pytest.mark.parametrize(
@@ -258,13 +269,14 @@ def test_the_sextic_refuses_other_points():
         (TRIPLE_ROCKER, 0.7, 0.6),
         (DOUBLE_ROCKER, 0.7, 0.6),
         (CRANK_ROCKER, 3.0, 0.0),
+        *((random_four_bar(np.random.default_rng(n)), 0.9, 0.8) for n in range(2)),
     ],
 )
 def test_cognates_trace_the_same_curve(linkage, along, across):
     curve = coupler_curve(linkage, along, across)
-    for cognate in cognates(linkage, along, across):
+    for cognate in curve.cognates():
         other = cognate.curve()
-        assert other.length == pytest.approx(curve.length, rel=1e-11)
+        assert other.length == pytest.approx(curve.length, rel=1e-10)
         assert abs(other.area) == pytest.approx(abs(curve.area), rel=1e-10, abs=1e-11)
         places = complex_of(cognate.placed(other.position))
         residual = sextic_residual(linkage.lengths, complex(along, across), places)
@@ -273,9 +285,9 @@ def test_cognates_trace_the_same_curve(linkage, along, across):
         far = np.abs(places[::40, None] - complex_of(curve.position)[None])
         chord = np.max(np.abs(np.diff(complex_of(curve.position))))
         assert np.max(np.min(far, axis=1)) < chord
-        mine = np.sort_complex(np.round(complex_of(curve.double_position), 8))
+        doubles = np.sort_complex(np.round(complex_of(curve.double_position), 8))
         theirs = np.sort_complex(np.round(complex_of(cognate.placed(other.double_position)), 8))
-        assert theirs == pytest.approx(mine, abs=1e-7)
+        assert theirs == pytest.approx(doubles, abs=1e-7)
 
 
 @pytest.mark.parametrize("unit", [0.0254, 1e-150, 1e150])
@@ -287,6 +299,7 @@ def test_unit_of_length(unit):
     assert curve.double_position == pytest.approx(plain.double_position * unit, rel=1e-11)
 
 
+@pytest.mark.smoke
 def test_mirror():
     plain = coupler_curve(CRANK_ROCKER, 1.0, -1.5)
     mirrored = coupler_curve(CROSSED, 1.0, 1.5)
@@ -294,6 +307,23 @@ def test_mirror():
     assert mirrored.length == pytest.approx(plain.length, rel=1e-14)
     assert mirrored.area == pytest.approx(plain.area, rel=1e-12)
     assert mirrored.double_position == pytest.approx(plain.double_position * [1, -1], abs=1e-13)
+
+
+@pytest.mark.parametrize(("detuned", "pairs"), [(-1e-6, ((0, 1),)), (1e-6, ())])
+def test_tacnode_of_a_symmetric_curve(detuned, pairs):
+    """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
+
+    It is 2 l sin((g - mu)/2) from D, g the angle from CB to CP, mu the transmission angle: the same
+    on the axis of symmetry at theta = 0 and pi where 2 g = 2 pi + mu(0) + mu(pi).  Both branches
+    are at right angles to the axis there, and touch.
+    """
+    frame, crank, arm = 2.0, 0.8, 1.7
+    least, greatest = (2.0 * np.arcsin((frame + s * crank) / (2.0 * arm)) for s in (-1, 1))
+    angle = np.pi + 0.5 * (least + greatest) + detuned
+    place = arm + arm * np.exp(1j * (np.pi + angle))
+    curve = coupler_curve(FourBar(frame, crank, arm, arm), place.real, place.imag)
+    assert np.linalg.norm(curve.position[0] - curve.position[360]) < 2e-6
+    assert curve.tacnodes == pairs
 
 
 @pytest.mark.parametrize(
@@ -316,43 +346,100 @@ def test_refusals(arguments, options, word):
     assert "\n" not in str(refusal.value)
 
 
-def test_refusals_of_cognates_and_nodes():
-    with pytest.raises(BadInput, match="FourBar"):
-        cognates(SLIDER, 1.0)
+def test_refusals_of_cognates():
+    for linkage, along, link in ((SLIDER, 1.0, "coupler"), (CRANK_ROCKER, 1.0, "follower")):
+        with pytest.raises(BadInput, match=r"four-bar|FourBar|coupler"):
+            coupler_curve(linkage, along, link=link).cognates()
     for along in (0.0, 2.0):
         with pytest.raises(BadInput, match="joint"):
-            cognates(CRANK_ROCKER, along)
-        with pytest.raises(BadInput, match="joint"):
-            sextic_nodes(CRANK_ROCKER, along)
+            coupler_curve(CRANK_ROCKER, along).cognates()
 
 
 @pytest.mark.parametrize("ending", ["json", "csv", "npz"])
 def test_saving(tmp_path, ending):
     curve = coupler_curve(INWARD_ROCKER, 0.7, 0.6, points=32)
-    path = curve.save(tmp_path / f"curve.{ending}")
-    assert path.stat().st_size > 500
-    told = json.loads(json.dumps(curve.to_dict()))
-    assert len(told["double_position"]) == 2 and told["passed"]
+    assert curve.save(tmp_path / f"curve.{ending}").stat().st_size > 500
+    saved = json.loads(json.dumps(curve.to_dict()))
+    assert len(saved["double_position"]) == 2 and saved["passed"]
 
 
-def test_picture_marks_what_was_found():
+def test_picture_marks_double_points():
     ax = coupler_curve(INWARD_ROCKER, 0.7, 0.6).plot()
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
     assert labels == ["point of the coupler", "double point"]
 
 
-@pytest.mark.parametrize(("detuned", "pairs"), [(-1e-6, ((0, 1),)), (1e-6, ())])
-def test_tacnode_of_a_symmetric_curve(detuned, pairs):
-    """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
+@pytest.mark.parametrize("linkage", [CRANK_ROCKER, INWARD_ROCKER, SLIDER])
+def test_frames_and_bytes_of_a_moving_picture(tmp_path, linkage):
+    curve = coupler_curve(linkage, 1.0, 0.5)
+    first = animate(linkage, tmp_path / "one.gif", curves=[curve], frames=4, fps=20)
+    second = animate(linkage, tmp_path / "two.gif", curves=[curve], frames=4, fps=20)
+    assert first.read_bytes() == second.read_bytes()
+    with Image.open(first) as picture:
+        assert picture.n_frames == 4
+        assert picture.info["duration"] == 50
+        assert picture.info["loop"] == 0
+        stills = []
+        for i in range(4):
+            picture.seek(i)
+            stills.append(np.asarray(picture.convert("RGB")))
+    assert all(np.any(stills[0] != still) for still in stills[1:])
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.gif", "two.gif"]
 
-    It is 2 l sin((g - mu)/2) from D, g the angle from CB to CP, mu the transmission angle: the same
-    on the axis of symmetry at theta = 0 and pi where 2 g = 2 pi + mu(0) + mu(pi).  Both branches
-    are at right angles to the axis there, and touch.
-    """
-    frame, crank, arm = 2.0, 0.8, 1.7
-    least, greatest = (2.0 * np.arcsin((frame + s * crank) / (2.0 * arm)) for s in (-1, 1))
-    angle = np.pi + 0.5 * (least + greatest) + detuned
-    place = arm + arm * np.exp(1j * (np.pi + angle))
-    curve = coupler_curve(FourBar(frame, crank, arm, arm), place.real, place.imag)
-    assert np.linalg.norm(curve.position[0] - curve.position[360]) < 2e-6
-    assert curve.tacnodes == pairs
+
+def test_bars_slider_and_block_are_drawn_in_place():
+    for s in np.linspace(0.1, 6.0, 7):
+        joints = {name: complex(*at) for name, at in CRANK_ROCKER.motion(s).joints.items()}
+        drawn = pictures._bars(Circuit(CRANK_ROCKER), s)
+        for bar, ends in (("crank", "AB"), ("coupler", "BC"), ("follower", "DC")):
+            assert drawn[bar] == pytest.approx([joints[end] for end in ends], abs=1e-14)
+    drawn = pictures._bars(Circuit(SLIDER), 0.7)
+    centre = np.mean(drawn["slider"][:-1])
+    assert centre == pytest.approx(drawn["coupler"][1], abs=1e-14)
+    assert centre.imag == pytest.approx(0.3, abs=1e-15)
+    drawn = pictures._bars(Circuit(ROD), 0.7)
+    corners = drawn["block"][:-1]
+    assert np.mean(corners) == pytest.approx(drawn["crank"][1], abs=1e-14)
+    # Two sides of the block lie along the rod.
+    along = np.angle(drawn["rod"][1] - drawn["rod"][0])
+    assert np.angle(corners[0] - corners[1]) == pytest.approx(along, abs=1e-14)
+    assert abs(drawn["rod"][1] - drawn["rod"][0]) == pytest.approx(4.0, abs=1e-14)
+
+
+def test_quick_return_with_two_paths(tmp_path):
+    curves = [coupler_curve(ROD, 0.5, 0.2, link="block"), coupler_curve(ROD, 4.0, link="rod")]
+    path = animate(ROD, tmp_path / "rod.gif", curves=curves, frames=2)
+    assert path.read_bytes()[:6] == b"GIF89a"
+
+
+@pytest.mark.parametrize(
+    ("linkage", "path", "options", "word"),
+    [
+        (None, "a.gif", {}, "linkage"),
+        (CRANK_ROCKER, "a.png", {}, "gif"),
+        (CRANK_ROCKER, "missing/a.gif", {}, "writable"),
+        (CRANK_ROCKER, "a.gif", {"frames": 1}, "frames"),
+        (CRANK_ROCKER, "a.gif", {"fps": 0}, "fps"),
+        (CRANK_ROCKER, "a.gif", {"circuit": 2}, "circuit"),
+        (CRANK_ROCKER, "a.gif", {"curves": ["x"]}, "curves"),
+        (CRANK_ROCKER, "a.gif", {"curves": [coupler_curve(SLIDER, 1.0)]}, "another linkage"),
+    ],
+)
+def test_pictures_refused_write_nothing(tmp_path, linkage, path, options, word):
+    with pytest.raises(BadInput, match=word):
+        animate(linkage, tmp_path / path, **options)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupted_picture_leaves_the_old_one(tmp_path, monkeypatch):
+    path = tmp_path / "old.gif"
+    path.write_bytes(b"old")
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pictures._Film, "picture", stop)
+    with pytest.raises(KeyboardInterrupt):
+        animate(CRANK_ROCKER, path, frames=3)
+    assert path.read_bytes() == b"old"
+    assert len(list(tmp_path.iterdir())) == 1

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
-from elastolink.runtime.linkages.transmission import mechanical_advantage, transmission_angle
+from elastolink.runtime.linkages.transmission import transmission_angle
 
 ROCKERS = [(12, 6, 12, 12), (5, 1, 5, 2), (0.547, 0.170, 0.328, 0.525), (10, 1, 10, 4)]
 
@@ -71,13 +71,19 @@ def test_slider_crank_against_a_sweep(sizes, assembly):
     )
     for angle in found.dead_centres.values():
         assert abs(linkage.motion(angle).slider_velocity) < 1e-14
-    assert found.swing == pytest.approx(linkage.stroke, rel=1e-14)
-    ratio = linkage.time_ratio
-    assert found.time_ratio == pytest.approx(max(ratio, 1 / ratio), rel=1e-13)
+    outer, inner = linkage.motion([found.dead_centres[k] for k in ("extended", "folded")]).position
+    assert found.swing == pytest.approx(abs(outer - inner), rel=1e-13)
+    assert (found.time_ratio > 1.0) == (linkage.offset != 0.0)
 
 
-def test_quick_return_by_hand():
+def test_strokes_by_hand():
+    # 3-4-5 and 5-12-13: outer 13, inner 5 with offset 3; stroke 12.649... - 4.
+    offset = transmission_angle(SliderCrank(4.0, 9.0, 3.0))
+    assert offset.swing == pytest.approx(np.sqrt(160.0) - 4.0, rel=1e-15)
+    assert transmission_angle(SliderCrank(1.0, 3.0)).swing == pytest.approx(2.0, rel=1e-15)
     found = transmission_angle(QuickReturn(2.0, 1.0, 4.0))
+    ends = found.dead_centres["upper"], found.dead_centres["lower"]
+    assert ends == pytest.approx((2 * np.pi / 3, -2 * np.pi / 3), rel=1e-15)
     assert found.time_ratio == pytest.approx(2.0, rel=1e-15)
     assert found.swing == pytest.approx(math.pi / 3, rel=1e-15)
     assert found.least == found.greatest == math.pi / 2
@@ -91,11 +97,12 @@ def test_mechanical_advantage_is_the_corrected_formula():
     moved = bar.motion(theta)
     beta = np.sin(theta - moved.theta3)
     formula = 3.0 * np.sin(moved.theta4 - moved.theta3) / beta
-    found = mechanical_advantage(bar, theta)
+    found = transmission_angle(bar).mechanical_advantage(theta)
     np.testing.assert_allclose(found.advantage, formula, rtol=1e-12)
     pole = transmission_angle(bar).dead_centres["extended"]
-    assert abs(mechanical_advantage(bar, pole).advantage) > 1e13
-    assert not np.isnan(mechanical_advantage(QuickReturn(2.0, 1.0, 4.0), theta).advantage).any()
+    assert abs(transmission_angle(bar).mechanical_advantage(pole).advantage) > 1e13
+    rod = transmission_angle(QuickReturn(2.0, 1.0, 4.0))
+    assert not np.isnan(rod.mechanical_advantage(theta).advantage).any()
 
 
 @pytest.mark.parametrize("band", [(2.0, 1.0), (-1.0, 1.0), (0.0, 4.0), 3.0, ("a", "b")])

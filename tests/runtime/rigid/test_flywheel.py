@@ -85,6 +85,7 @@ def test_a_flywheel_for_a_sine() -> None:
     assert found.passed
 
 
+@pytest.mark.slow
 def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
     """(I + J) omega^2 delta = 5 (1 - 1/(2 pi)): 5 N m over one radian of each turn."""
     load = Load("crank", couple=lambda t: -5.0 * (np.mod(t, TURN) < 1.0))
@@ -98,6 +99,7 @@ def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
     assert limit == pytest.approx(1e-5 + found.error / (found.inertia + 0.001), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_speeds_that_have_not_settled_fail_the_check(monkeypatch) -> None:
     drag = Load("follower", couple=lambda at: -2.0 * at.speed, given="motion")
     machine = bars(ROCKER, loads=(drag,))
@@ -132,16 +134,22 @@ def test_a_torque_must_repeat_turn_by_turn(law) -> None:
         torque_fluctuation(bars(ROCKER, loads=(Load("crank", couple=law),)), 8.0)
 
 
-@pytest.mark.parametrize("speed", [8.0, -8.0])
+DRAG = {"loads": (Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)}
+DAMPED = {"springs": (Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)}
+
+
 @pytest.mark.parametrize(
-    "more",
+    ("more", "speed"),
     [
-        {},
-        {"gravity": (0.0, -9.81)},
-        {"loads": (Load("follower", couple=lambda at: -2.0 * at.speed, given="motion"),)},
-        {"springs": (Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 0.2, 4.0),)},
+        ({}, 8.0),
+        ({}, -8.0),
+        ({"gravity": (0.0, -9.81)}, 8.0),
+        ({"gravity": (0.0, -9.81)}, -8.0),
+        (DAMPED, -8.0),
+        pytest.param(DAMPED, 8.0, marks=pytest.mark.slow),
+        pytest.param(DRAG, 8.0, marks=pytest.mark.slow),
+        pytest.param(DRAG, -8.0, marks=pytest.mark.slow),
     ],
-    ids=["bare", "weights", "drag", "spring"],
 )
 def test_forward_dynamics_confirm_the_flywheel(speed, more) -> None:
     machine = bars(ROCKER, **more)

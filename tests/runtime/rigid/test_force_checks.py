@@ -1,4 +1,4 @@
-"""Checks, files and pictures of rigid forces: at single angles, by multipliers, along a guide."""
+"""Checks, files and pictures of rigid forces: at single angles, along a guide."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ from elastolink.runtime.rigid import (
     rigid_forces,
     shaking_force,
 )
-from elastolink.runtime.rigid.force_checks import checks
-from elastolink.runtime.rigid.force_multipliers import multipliers
+from elastolink.runtime.rigid.force_errors import checks
 
 LINKAGES = [
     FourBar(0.3, 0.1, 0.28, 0.25),
@@ -26,7 +25,6 @@ LINKAGES = [
     QuickReturn(0.3, 0.1, 0.6),
 ]
 EVERY = pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)
-BY_MULTIPLIERS = "multipliers of Lagrange's equations over the figures"
 
 
 def machine_of(linkage):
@@ -52,34 +50,14 @@ def test_a_single_angle_has_checks_and_a_file(linkage, tmp_path) -> None:
 
 
 @EVERY
-def test_multipliers_are_the_forces(linkage) -> None:
-    machine, theta = machine_of(linkage), np.linspace(0.1, 6.0, 9)
-    speed, acceleration = np.full(9, 5.0), np.full(9, 2.0)
-    found = rigid_forces(machine, theta, speed, acceleration)
-    there, off = multipliers(machine, theta, speed, acceleration)
-    shaking = {name for name in found.values if name.startswith("shaking")}
-    assert set(there) == set(found.values) - shaking
-    for name, value in there.items():
-        np.testing.assert_allclose(value, found[name], atol=1e-12 * np.max(np.abs(found.f12)))
-    # All numbers are of the order of 10 N, and the equations well behaved.
-    assert np.max(off) < 1e-10
-
-
-@EVERY
-def test_links_without_a_mass_have_multipliers_too(linkage) -> None:
-    machine = Machine(linkage, {linkage.links[2]: MassDistribution(1.0, 0.1, 0.0, 0.02)})
-    assert rigid_forces(machine, np.linspace(0.1, 6.0, 9), 5.0).checks[BY_MULTIPLIERS].passed
-
-
-@EVERY
 @pytest.mark.parametrize("name", ["x12", "y23", "x34", "y41", "torque"])
-def test_a_wrong_force_is_not_the_multiplier(linkage, name) -> None:
+def test_a_wrong_force_is_out_of_balance(linkage, name) -> None:
     machine, theta = machine_of(linkage), np.linspace(0.1, 6.0, 9)
     given = (machine, theta, np.full(9, 5.0), np.zeros(9))
     values = dict(rigid_forces(machine, theta, 5.0).values)
-    assert checks(*given, values)[BY_MULTIPLIERS].passed
+    assert all(check.passed for check in checks(*given, values).values())
     values[name] = values[name] + 1e-9
-    assert not checks(*given, values)[BY_MULTIPLIERS].passed
+    assert not checks(*given, values)["equilibrium of the links over the figure"].passed
 
 
 def test_a_peak_between_the_places_is_looked_at() -> None:

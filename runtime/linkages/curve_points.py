@@ -8,7 +8,8 @@ from math import pi
 
 import numpy as np
 
-from ._taylor import Array, Complex, Taylor
+from .circuits import Complex, Taylor
+from .linkage import Array
 
 # A path: parameters, shape (n,), and order, to the series of the place (x + i y) there.
 Path = Callable[[Array, int], Taylor]

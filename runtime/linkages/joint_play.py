@@ -14,7 +14,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from .linkage import Array
+
 Flags = NDArray[np.bool_]
 Sizes = Mapping[str, float]
 
@@ -37,7 +38,7 @@ class Play:
     folds, free : ndarray of bool
         True where the play reaches the other assembly, and where it reaches it on both ways.
     error, nominal_error : ndarray
-        Figures of ``below`` and ``above`` (the worse), and of ``nominal``.
+        Of ``below`` and ``above`` (the worse), and of ``nominal``.
     margin : ndarray
         Radius of the play at which the linkage first folds; negative where it cannot close.
     blur : ndarray
@@ -159,9 +160,9 @@ def _turned(
     inner, outer = least.least, greatest.greatest
     through = nominal.angle() + greatest.angle()
     around = nominal.rest() + least.rest()
-    own = nominal.error()
-    fall_error = np.where(inner, own + greatest.error() + 3 * _EPS * through, fall_error)
-    rise_error = np.where(outer, own + least.error() + 3 * _EPS * around, rise_error)
+    still = nominal.error()
+    fall_error = np.where(inner, still + greatest.error() + 3 * _EPS * through, fall_error)
+    rise_error = np.where(outer, still + least.error() + 3 * _EPS * around, rise_error)
     fall, rise = np.where(inner, through, fall), np.where(outer, around, rise)
     free = inner & outer
     fall, rise = (np.where(free, np.pi, part) for part in (fall, rise))

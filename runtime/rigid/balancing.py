@@ -1,0 +1,565 @@
+"""Balancing: the best counterweights within bounds, the classic cases, and the trade-off curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.errors import BadInput, bad
+from ..core.inputs import require_whole
+from ..core.results import Check, Result, provenance
+from ..linkages.linkage import Array
+from .cases import CASES, Case, Offsets, case_counterweights
+from .counterweights import Bounds, Counterweight, bounds_by_link, with_counterweights
+from .inputs import finite_number, require_link
+from .machine import Machine, require_machine
+from .masses import MassDistribution
+from .optimum import (
+    PER_LINK,
+    Candidate,
+    ForceBasis,
+    Measure,
+    Room,
+    Search,
+    best_counterweights,
+    sizes_of,
+)
+from .peaks import TERMS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
+DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
+
+# A force below this, over the largest of its kind, is no force to compare with.
+_NO_FORCE = 1e-12
+_ROUND_OFF = 2e-14
+_OPTIMAL = 1e-5
+# At the ends of a trade-off one peak is the least possible; so much more is allowed, in units of
+# the unbalanced one, in order to choose between counterweights that are equal in it.
+_ALLOWANCE = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Balancing(Result):
+    """Counterweights that make a weighted sum of relative peaks least, and what they do.
+
+    ``error`` says how far ``value`` can be above the least possible one, over the unbalanced
+    linkage's (the sum of the weights); weak duality proves it for all counterweights in bounds.
+
+    Attributes
+    ----------
+    counterweights : mapping of str to Counterweight
+        By link; a link without one needs none.
+    machine : Machine
+        The balanced machine.
+    weights, limits : mapping of str to float
+        Of the relative peaks, as given; without weights nothing was optimised.
+    value : float
+        Weighted sum of the relative peaks.
+    lower_bound : float
+        What no counterweights within the bounds can undercut.
+    measure : {"peak", "rms"}
+        Of which quantity the sum is; "peak" below means it.
+    unbalanced : mapping of str to float
+        Peak of every force without counterweights [N] and of torque and moment [N m].
+    relative : mapping of str to float
+        Peaks with the counterweights over those without; a force that was zero is left out.
+    peak_angles : mapping of str to float
+        Crank angle [rad] of each peak with the counterweights.
+    """
+
+    counterweights: Mapping[str, Counterweight]
+    machine: Machine
+    weights: Mapping[str, float] = field(default_factory=dict)
+    limits: Mapping[str, float] = field(default_factory=dict)
+    value: float = 0.0
+    lower_bound: float = 0.0
+    measure: Measure = "peak"
+    unbalanced: Mapping[str, float]
+    relative: Mapping[str, float]
+    peak_angles: Mapping[str, float]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the relative peaks as bars, those with a weight darker."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        names = list(self.relative)
+        counted = [self.weights.get(name, 0.0) > 0.0 for name in names]
+        colours = ["tab:blue" if weighted else "lightsteelblue" for weighted in counted]
+        bars = ax.bar(names, [self.relative[name] for name in names], color=colours)
+        ax.bar_label(bars, fmt="%.3f", padding=2)
+        ax.axhline(1.0, color="black", linewidth=0.8)
+        ax.set_ylabel("peak over that of the unbalanced linkage")
+        ax.set_title("pale: without a weight")
+        ax.tick_params(axis="x", rotation=20)
+        return ax
+
+
+def balance(
+    machine: Machine,
+    speed: float,
+    *,
+    acceleration: float = 0.0,
+    weights: Mapping[str, float] | None = None,
+    links: Sequence[str] | None = None,
+    bounds: Bounds | Mapping[str, Bounds] | None = None,
+    limits: Mapping[str, float] | None = None,
+    angles: ArrayLike | None = None,
+    measure: Measure = "peak",
+    case: Case | None = None,
+    offsets: Offsets = None,
+    density: float | None = None,
+    thickness: float | None = None,
+    fraction: float = 0.5,
+) -> Balancing:
+    """Return the counterweights that make a weighted sum of peak forces least, or a classic case.
+
+    Minimises ``sum of w_k max |F_k(theta)| / max |F_k,unbalanced(theta)|``.  All forces are linear
+    in mass, first moments and inertia of a counterweight (Smith 4.4-4.6), so that the sum is convex
+    in these.  The least sum over their convex hull, a second-order cone programme solved by
+    Clarabel, is a lower bound that no start can mislead; from there SciPy's SLSQP descends among
+    the counterweights themselves.
+
+    Parameters
+    ----------
+    machine : Machine
+        The unbalanced machine.
+    speed : float
+        Crank speed [rad/s].
+    acceleration : float
+        Crank acceleration [rad/s^2], the same at every angle.
+    weights : mapping of str to float
+        Any of shaking_force, shaking_moment, torque, f12, f23, f34, f41; by default 1 for f23 (the
+        crank pin), torque and shaking_moment (the moment on the frame).
+    links : sequence of str
+        Links that may carry a counterweight each; by default those that turn about the frame.
+    bounds : Bounds or mapping of str to Bounds
+        Where the counterweights may be; by default no heavier than all links together and no
+        further out than the link is long.
+    limits : mapping of str to float
+        Relative peaks that must not be passed, with or without a weight.
+    angles : array_like
+        Crank angles [rad] that count; by default a whole turn, peaks between samples included.
+    measure : {"peak", "rms"}
+        Count the root mean square of each force instead of its peak.
+    case : {"a", "b", "c", "d", "reciprocating"}, optional
+        A case of Smith's Fig. 20, or a slider-crank's crank alone, in place of the optimum; see
+        :func:`~elastolink.runtime.rigid.case_counterweights`.
+    offsets, density, thickness, fraction
+        Of a case: distance of the counterweights from their pivots [m], cylinders [kg/m^3, m] in
+        place of point masses, share of the reciprocating mass.
+
+    Returns
+    -------
+    Balancing
+        With the check "gap or KKT residual": proved the best, or at least stationary.  Of cases (c)
+        and (d) the check "shaking force left" is the peak that is left, over the unbalanced one.
+
+    Raises
+    ------
+    BadInput
+        If a name is unknown, a weight or bound impossible, a weighted force zero without
+        counterweights, limits cannot be met, or the crank cannot turn and no angles are given; if
+        there is no such case for the linkage, or a choice of the optimum stands beside a case.
+    """
+    if case is None:
+        search, everything = _searched(
+            machine, speed, acceleration, weights, links, bounds, limits, angles, measure
+        )
+        return _described(machine, search, everything, best_counterweights(search))
+    beside = {"weights": weights, "links": links, "bounds": bounds, "limits": limits}
+    for name, value in beside.items():
+        if value is not None:
+            raise bad(name, f"beside case {case!r}", "the optimum, without a case", "leave it out")
+    added = case_counterweights(
+        machine, case, offsets, density=density, thickness=thickness, fraction=fraction
+    )
+    return _compared(machine, case, added, speed, acceleration, angles)
+
+
+def _compared(
+    machine: Machine,
+    case: Case,
+    added: Mapping[str, Counterweight],
+    speed: float,
+    acceleration: float,
+    angles: ArrayLike | None,
+) -> Balancing:
+    """Return what the counterweights of a case do to every peak."""
+    balanced = with_counterweights(machine, added.values())
+    unbalanced, _ = _turn_peaks(machine, speed, acceleration, angles)
+    after, where = _turn_peaks(balanced, speed, acceleration, angles)
+    relative = _relative(after, unbalanced)
+    checks = {}
+    if case in ("c", "d") and "shaking_force" in relative:
+        checks["shaking force left"] = Check(relative["shaking_force"], 1e-10)
+    return Balancing(
+        counterweights=added,
+        machine=balanced,
+        unbalanced=unbalanced,
+        relative=relative,
+        peak_angles=where,
+        method=f"case ({case}) in closed form",
+        error=_ROUND_OFF,
+        error_norm="relative peaks, over the largest of them",
+        checks=checks,
+        provenance=provenance({"speed": repr(float(speed))}),
+    )
+
+
+def _searched(
+    machine: Machine,
+    speed: float,
+    acceleration: float,
+    weights: Mapping[str, float] | None,
+    links: Sequence[str] | None,
+    bounds: Bounds | Mapping[str, Bounds] | None,
+    limits: Mapping[str, float] | None,
+    angles: ArrayLike | None,
+    measure: Measure = "peak",
+) -> tuple[Search, ForceBasis]:
+    """Return the search that :func:`balance` makes, and the basis of every force."""
+    require_machine(machine)
+    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
+    if measure not in ("peak", "rms"):
+        raise bad("measure", repr(measure), "'peak' or 'rms'", "choose one")
+    wanted = _terms(DEFAULT_WEIGHTS if weights is None else weights, "weights", zero=True)
+    tops = _terms(limits or {}, "limits", zero=False)
+    wanted = {term: weight for term, weight in wanted.items() if weight > 0.0}
+    if not wanted:
+        raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
+    chosen = _links(machine, links)
+    rooms, masses, lengths = _rooms(machine, chosen, bounds)
+    terms = tuple(term for term in TERMS if term in wanted or term in tops)
+    everything = ForceBasis(machine, chosen, speed, acceleration, TERMS, masses, lengths)
+    theta, between = _angles(machine, everything, angles)
+    peaks, _ = _sizes(everything, theta, np.zeros(PER_LINK * len(chosen)), between, measure)
+    zero = _zero_forces(peaks)
+    for term in terms:
+        if term in zero:
+            fix = "leave it out: it has no peak to compare with"
+            raise bad(f"weights.{term}", "no such force without counterweights", "a force", fix)
+    # A mean over the samples has no peaks between them.
+    between = between and measure == "peak"
+    basis = replace(everything, terms=terms)
+    return Search(basis, theta, between, peaks, rooms, wanted, tops, measure), everything
+
+
+def _described(
+    machine: Machine, search: Search, everything: ForceBasis, best: Candidate
+) -> Balancing:
+    """Return the result for the counterweights of a search."""
+    added = _counterweights(search, best.x)
+    p = _parameters(search, added)
+    balanced, where = _sizes(everything, search.theta, p, search.between, search.measure)
+    relative = _relative(balanced, search.unbalanced)
+    gap = (best.value - best.bound) / search.unit
+    over = max((relative[term] / top - 1.0 for term, top in search.limits.items()), default=0.0)
+    return Balancing(
+        counterweights=added,
+        machine=with_counterweights(machine, added.values()),
+        weights=dict(search.weights),
+        limits=dict(search.limits),
+        value=best.value,
+        lower_bound=best.bound,
+        unbalanced=search.unbalanced,
+        measure=search.measure,
+        relative=relative,
+        peak_angles=where,
+        method="second-order cone programme over the convex hull, SLSQP within",
+        error=max(gap, _ROUND_OFF),
+        error_norm="weighted sum above the least possible one, over the unbalanced linkage's",
+        error_kind="bound",
+        checks={
+            "gap or KKT residual": Check(min(gap, best.residual), _OPTIMAL),
+            "limits passed, relative": Check(max(over, 0.0), 1e-7),
+        },
+        provenance=provenance({"speed": repr(everything.speed)}),
+    )
+
+
+def _sizes(
+    basis: ForceBasis, theta: Array, p: Array, between: bool, measure: Measure
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Return the peak or root mean square of each force, and the angle of the peak."""
+    sizes = sizes_of(basis, theta, p, between, measure)
+    where = {term: float(at[int(np.argmax(size))]) for term, (at, size) in sizes.items()}
+    return {term: float(size.max()) for term, (_, size) in sizes.items()}, where
+
+
+def _turn_peaks(
+    machine: Machine, speed: float, acceleration: float, angles: ArrayLike | None
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Return peak and its angle for every force of a machine as it is."""
+    speed, acceleration = finite_number(speed, "speed"), finite_number(acceleration, "acceleration")
+    basis = ForceBasis(machine, (), speed, acceleration, TERMS, np.zeros(0), np.zeros(0))
+    theta, between = _angles(machine, basis, angles)
+    return _sizes(basis, theta, np.zeros(0), between, "peak")
+
+
+def _relative(after: Mapping[str, float], before: Mapping[str, float]) -> dict[str, float]:
+    zero = _zero_forces(before)
+    return {term: after[term] / before[term] for term in TERMS if term not in zero}
+
+
+def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
+    """Return the names of forces that are round-off: pins and shaking force, torque and moment."""
+    moments = ("torque", "shaking_moment")
+    forces = max(peaks[term] for term in TERMS if term not in moments)
+    most = dict.fromkeys(TERMS, forces)
+    most |= dict.fromkeys(moments, max(peaks[term] for term in moments))
+    return {term for term in TERMS if not peaks[term] > _NO_FORCE * most[term]}
+
+
+def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
+    """Return the counterweights of design variables; none where the mass is zero."""
+    added = {}
+    for i, (link, room) in enumerate(zip(search.basis.links, search.rooms, strict=True)):
+        m, u, v, q = (float(item) for item in x[PER_LINK * i : PER_LINK * (i + 1)])
+        mass, length = float(search.basis.masses[i]), float(search.basis.lengths[i])
+        # Inertia about the centre over mass is half the square of the radius.
+        radius = length * float(np.sqrt(2.0 * (q + room.stiffness * m)))
+        if m > 0.0:
+            added[link] = Counterweight(link, m * mass, u * length, v * length, radius)
+    return added
+
+
+def _parameters(search: Search, added: Mapping[str, Counterweight]) -> Array:
+    p: list[float] = []
+    for i, link in enumerate(search.basis.links):
+        body = added[link].distribution if link in added else MassDistribution()
+        mass, length = float(search.basis.masses[i]), float(search.basis.lengths[i])
+        moment = mass * length
+        p += [body.mass / mass, body.along / moment, body.across / moment]
+        p.append(body.inertia / (moment * length))
+    return np.array(p)
+
+
+def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, float]:
+    terms = {}
+    for term, value in given.items():
+        if term not in TERMS:
+            raise bad(where, repr(term), f"one of {', '.join(TERMS)}", "correct the name")
+        number = finite_number(value, f"{where}.{term}")
+        if number < 0.0 or (number == 0.0 and not zero):
+            expected = "zero or more" if zero else "above zero"
+            raise bad(f"{where}.{term}", f"{number:g}", expected, "correct it")
+        terms[term] = number
+    return terms
+
+
+def _links(machine: Machine, links: Sequence[str] | None) -> tuple[str, ...]:
+    moving = tuple(machine.linkage.links)
+    if links is None:
+        # The first and the last link are joined to the frame; a slider does not turn.
+        return tuple(link for link in (moving[0], moving[-1]) if link != "slider")
+    chosen = (links,) if isinstance(links, str) else tuple(links)
+    for link in chosen:
+        require_link(link, tuple(name for name in moving if name != "slider"), "links")
+    if not chosen or len(set(chosen)) != len(chosen):
+        raise bad("links", repr(chosen), "different links, at least one", "correct the list")
+    return chosen
+
+
+def _rooms(
+    machine: Machine, links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
+) -> tuple[list[Room], Array, Array]:
+    rooms, masses, lengths = [], [], []
+    for link, each in bounds_by_link(links, bounds).items():
+        mass, offset = each.completed(machine, link)
+        stiffness = 0.0
+        if each.density is not None and each.thickness is not None:
+            # Inertia of a cylinder over the square of its mass: 1/(2 pi h rho).
+            stiffness = mass / (2.0 * np.pi * each.thickness * each.density * offset**2)
+        free = 0.5 * (each.radius / offset) ** 2
+        rooms.append(Room(each.least_offset / offset, stiffness, free))
+        masses.append(mass)
+        lengths.append(offset)
+    return rooms, np.array(masses), np.array(lengths)
+
+
+def _angles(machine: Machine, basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:
+    """Return the angles that count, and whether the peaks between them count too."""
+    if angles is not None:
+        try:
+            theta = np.asarray(angles, dtype=float).ravel()
+        except (TypeError, ValueError) as refusal:
+            raise bad("angles", repr(angles)[:60], "angles [rad]", "correct it") from refusal
+        if theta.size == 0 or not np.all(np.isfinite(theta)):
+            raise bad("angles", "nothing or not finite", "finite angles [rad]", "correct it")
+        return theta, False
+    if not machine.linkage.crank_turns:
+        fix = "give angles that the crank can reach"
+        raise bad("angles", "a crank that cannot turn fully", "angles [rad]", fix)
+    return basis.grid(), True
+
+
+@dataclass(frozen=True, kw_only=True)
+class TradeOff(Result):
+    """Least possible second peak over the first one allowed, each over the unbalanced linkage's.
+
+    ``error`` says for each point how far ``second_values`` may be above the least possible one.
+
+    Attributes
+    ----------
+    first, second : str
+        Names of the two forces.
+    first_values, second_values : ndarray
+        Relative peaks of the points of the curve; the first rises, the second falls.
+    points : tuple of Balancing
+        Counterweights and all other peaks of each point.
+    cases : mapping of str to (float, float)
+        Relative peaks of the cases of Smith's Fig. 20 that the linkage has.
+    """
+
+    first: str
+    second: str
+    first_values: Array
+    second_values: Array
+    points: tuple[Balancing, ...]
+    cases: Mapping[str, tuple[float, float]]
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("first_values", "second_values", "error"), ("point",)
+    )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the curve, and for each point its counterweights and all relative peaks."""
+        kept = ("counterweights", "relative", "peak_angles")
+        points = [point.to_dict() for point in self.points]
+        return {
+            **super().to_dict(),
+            "points": [{name: point[name] for name in kept} for point in points],
+        }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the curve and mark the cases of Smith's Fig. 20."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        ax.plot(self.first_values, self.second_values, ".-", label="least possible")
+        for name, (x, y) in self.cases.items():
+            ax.plot(x, y, "s", color="black", markersize=5)
+            ax.annotate(f"({name})", (x, y), textcoords="offset points", xytext=(6, 5))
+        ax.set_xlabel(f"peak {self.first.replace('_', ' ')}, over the unbalanced linkage's")
+        ax.set_ylabel(f"peak {self.second.replace('_', ' ')}, over the unbalanced linkage's")
+        # Full force balance lies on an axis: its mark stays whole.
+        ax.margins(0.06)
+        ax.axvline(0.0, color="0.8", lw=0.8, zorder=0)
+        ax.legend()
+        return ax
+
+
+def trade_off(
+    machine: Machine,
+    speed: float,
+    first: str = "shaking_force",
+    second: str = "torque",
+    points: int = 13,
+    *,
+    acceleration: float = 0.0,
+    links: Sequence[str] | None = None,
+    bounds: Bounds | Mapping[str, Bounds] | None = None,
+    offsets: Offsets = None,
+    angles: ArrayLike | None = None,
+) -> TradeOff:
+    """Return the trade-off (Pareto) curve of two peak forces.
+
+    From the least possible first peak to that with which the second is least, equally spaced limits
+    are set to the first and the second is minimised, each time as :func:`balance` does.  (At the
+    two ends, 1e-6 more than the least possible is allowed.)
+
+    Parameters
+    ----------
+    machine, speed, acceleration, links, bounds, angles
+        As :func:`balance`.
+    first, second : str
+        Two of shaking_force, shaking_moment, torque, f12, f23, f34, f41.
+    points : int
+        Number of points, from 2 to 1000.
+    offsets : float or mapping of str to float
+        Of the marked cases, as :func:`balance`; (c) has a counterweight on the coupler, and may lie
+        below a curve whose ``links`` have none.
+
+    Returns
+    -------
+    TradeOff
+        With the check "gap or KKT residual" for the worst point.
+
+    Raises
+    ------
+    BadInput
+        As :func:`balance`, and for equal or unknown forces, or another number of points.
+    """
+    for name, term in (("first", first), ("second", second)):
+        if term not in TERMS:
+            raise bad(name, repr(term), f"one of {', '.join(TERMS)}", "correct the name")
+    if first == second:
+        raise bad("second", repr(second), "another force than the first", "choose another")
+    require_whole("points", points, 2, 1000)
+    both = {first: 1.0, second: 1.0}
+    search, everything = _searched(machine, speed, acceleration, both, links, bounds, None, angles)
+    (low, least), (high, _) = _end(search, first, second), _end(search, second, first)
+    ends = [_described(machine, search, everything, end).relative[first] for end in (low, high)]
+    bests = [low]
+    for limit in np.linspace(ends[0], ends[1], points)[1:-1]:
+        top = max(float(limit), least + _ALLOWANCE)
+        limited = replace(search, weights={second: 1.0}, limits={first: top})
+        bests.append(best_counterweights(limited))
+    bests.append(high)
+    results = tuple(_described(machine, search, everything, one) for one in bests)
+    values = [np.array([one.relative[term] for one in results]) for term in (first, second)]
+    # The second peak has the weight 1, and is relative already.
+    gaps = np.array([max(one.value - one.bound, 1e-13) for one in bests])
+    worst = max(min(gap, one.residual) for gap, one in zip(gaps, bests, strict=True))
+    return TradeOff(
+        first=first,
+        second=second,
+        first_values=values[0],
+        second_values=values[1],
+        points=results,
+        cases=_cases(machine, everything.speed, acceleration, offsets, angles, (first, second)),
+        method="limits to the first peak; second-order cone programmes, SLSQP within",
+        error=gaps,
+        error_norm="second peak above the least possible one, absolute, entrywise",
+        error_kind="bound",
+        checks={"gap or KKT residual": Check(worst, _OPTIMAL)},
+        provenance=provenance({"speed": repr(everything.speed)}),
+    )
+
+
+def _end(search: Search, term: str, other: str) -> tuple[Candidate, float]:
+    """Return the least of the other peak where one is the least possible, and that one."""
+    least = best_counterweights(replace(search, weights={term: 1.0})).value
+    limits = {term: least + _ALLOWANCE}
+    return best_counterweights(replace(search, weights={other: 1.0}, limits=limits)), least
+
+
+def _cases(
+    machine: Machine,
+    speed: float,
+    acceleration: float,
+    offsets: Offsets,
+    angles: ArrayLike | None,
+    terms: tuple[str, str],
+) -> dict[str, tuple[float, float]]:
+    """Return the relative peaks of the cases that the linkage has."""
+    peaks: dict[str, tuple[float, float]] = {}
+    for case in CASES:
+        try:
+            added = case_counterweights(machine, case, offsets)
+        except BadInput:
+            if offsets is not None and case != "d":
+                raise
+            # A slider-crank has no case (d), and a link without a length no default offset.
+            continue
+        relative = _compared(machine, case, added, speed, acceleration, angles).relative
+        peaks[case] = relative[terms[0]], relative[terms[1]]
+    return peaks

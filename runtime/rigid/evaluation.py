@@ -1,0 +1,227 @@
+"""The emitted functions of forces at many angles: the smallest that serve, block by block."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from itertools import product
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from ...derive.spec import ModelSpec
+from ..core.errors import bad
+from ..linkages.linkage import Array, arguments
+from .machine import Machine, Part, wrenches
+
+Output: TypeAlias = Literal["pins", "torque", "shaking_force", "shaking_moment"]
+
+FRAME_FORCE = ("shaking_x", "shaking_y")
+# Measured with a dozen outputs: 8192 to 24576 entries take the same time within a few percent.
+BLOCK = 8192
+_KERNELS = {
+    "pins": "pin_forces",
+    "torque": "driving_torque",
+    "shaking_force": "shaking_force",
+    "shaking_moment": "shaking_moment",
+}
+_NAMES = {
+    "torque": ("torque",),
+    "shaking_force": FRAME_FORCE,
+    "shaking_moment": ("shaking_moment",),
+}
+# What springs and dampers bring to the frame, its pins bring back: they change none of these.
+_FRAME_NAMES = (*FRAME_FORCE, "shaking_moment")
+_MOMENTS = ("torque", "shaking_moment", "couple34", "couple41")
+# Lengths from 2^-60 to 2^60 keep their powers within what a float holds; others are scaled.
+_SAFE_EXPONENT = 60
+
+
+@cache
+def force_kernels(mechanism: str, drop: tuple[str, ...] = ()) -> Any:
+    """Return the emitted module of a mechanism's forces, without the terms that are dropped."""
+    name = ModelSpec(mechanism, "forces", drop=drop).name()
+    return import_module(f"...generated.{name}", __package__)
+
+
+class Evaluation:
+    """The emitted functions at given angles, speeds and accelerations.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    theta, speed, acceleration : ndarray
+        Crank angle [rad], speed [rad/s], acceleration [rad/s^2].
+    batch : tuple of int
+        Their common shape.
+    """
+
+    def __init__(
+        self, machine: Machine, theta: Array, speed: Array, acceleration: Array, batch: Any
+    ) -> None:
+        self.machine, self.batch, self.theta = machine, batch, theta
+        longest = max(abs(size) for size in machine.linkage.lengths.values())
+        exponent = int(np.frexp(longest)[1])
+        self.exponent = exponent if abs(exponent) > _SAFE_EXPONENT else 0
+        drop: tuple[str, ...] = ()
+        if not np.any(acceleration):
+            straight = all(mass.across == 0.0 for mass in machine.masses.values())
+            drop = ("across", "crank_acceleration") if straight else ("crank_acceleration",)
+        self.kernels = force_kernels(machine.linkage.mechanism, drop)
+        self.numbers = self._numbers(speed, acceleration)
+
+    def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:
+        """Return the wanted forces by name.
+
+        Raises
+        ------
+        BadInput
+            If one is not finite.
+        """
+        # Two functions of a part repeat what they share: the one of everything costs less.
+        function = _KERNELS[wanted[0]] if len(wanted) == 1 else "forces"
+        kept = {name for output in wanted for name in _NAMES.get(output, ())}
+        kept |= set(self.kernels.RETURNS["pin_forces"]) if "pins" in wanted else set()
+        names = [name for name in self.kernels.RETURNS[function] if name in kept]
+        out = np.empty((len(names), *self.batch))
+        rows = {name: place for place, name in enumerate(names)}
+        with np.errstate(all="ignore"):
+            total = self._add(function, self.numbers, out, rows, names)
+            if self.machine.loaded:
+                total += self._loads(out, rows)
+        if self.exponent:
+            for name in (name for name in _MOMENTS if name in rows):
+                out[rows[name]] = np.ldexp(out[rows[name]], self.exponent)
+        if not math.isfinite(total):
+            self.machine.linkage.motion(self.theta)  # says which angle is out of reach
+            where = "forces beyond the largest float, or a fold of the linkage"
+            fix = "use other units, or keep the angles off the fold"
+            raise bad("rigid_forces", where, "finite forces", fix)
+        return {name: out[row] for name, row in rows.items()}
+
+    def _numbers(self, speed: Array, acceleration: Array) -> dict[str, Any]:
+        """Return drive, geometry and masses as the emitted functions call them."""
+        linkage = self.machine.linkage
+        numbers: dict[str, Any] = {"speed": speed, "acceleration": acceleration}
+        lengths = linkage.lengths.items()
+        numbers |= {name: math.ldexp(size, -self.exponent) for name, size in lengths}
+        numbers["assembly"] = linkage.branch
+        numbers["winding"] = float(numbers["crank"] > numbers.get("frame", math.inf))
+        for place, link in enumerate(linkage.links, start=2):
+            mass = self.machine.mass(link)
+            numbers[f"mass{place}"] = math.ldexp(mass.mass, self.exponent)
+            numbers |= {f"along{place}": mass.along, f"across{place}": mass.across}
+            numbers[f"inertia{place}"] = math.ldexp(mass.inertia, -self.exponent)
+        return numbers
+
+    def _loads(self, out: Array, rows: Mapping[str, int]) -> float:
+        speed = self.numbers["speed"]
+        motion = self.machine.linkage.motion(self.theta, speed)
+        total = 0.0
+        inner = [name for name in rows if name not in _FRAME_NAMES]
+        parts: tuple[tuple[Part, list[str]], ...] = (("outside", list(rows)), ("springs", inner))
+        for part, names in parts:
+            by_link = wrenches(self.machine, motion, speed, part) if names else {}
+            if not by_link:
+                continue
+            numbers = dict(self.numbers)
+            for place, link in enumerate(self.machine.linkage.links, start=2):
+                fx, fy, couple = by_link.get(link, (0.0, 0.0, 0.0))
+                numbers |= {f"fx{place}": fx, f"fy{place}": fy}
+                numbers[f"couple{place}"] = np.ldexp(couple, -self.exponent)
+            total += self._add("load_forces", numbers, out, rows, names, more=True)
+        return total
+
+    def _add(
+        self,
+        function: str,
+        numbers: Mapping[str, Any],
+        out: Array,
+        rows: Mapping[str, int],
+        names: list[str],
+        more: bool = False,
+    ) -> float:
+        """Evaluate an emitted function into the named rows, or add it to what is there."""
+        call: Callable[..., Any] = getattr(self.kernels, function)
+        given = [self.theta, *(numbers[name] for name in arguments(call)[1:])]
+        returned = self.kernels.RETURNS[function]
+        places = [(rows[name], returned.index(name)) for name in names]
+        # One number as NumPy's, whose powers and quotients overflow without an exception.
+        plain = [np.float64(item) if np.ndim(item) == 0 else item for item in given]
+        return _evaluate(call, plain, out, places, add=more)
+
+
+def _evaluate(
+    function: Callable[..., Any],
+    given: Sequence[Any],
+    out: Array,
+    rows: Sequence[tuple[int, int]],
+    *,
+    add: bool,
+    block: int = BLOCK,
+) -> float:
+    """Evaluate a function that broadcasts, in blocks that stay in the processor's cache.
+
+    An argument that does not vary along an axis is not spread along it: what depends on the crank
+    angle alone is evaluated once for all the speeds of a block.
+
+    Parameters
+    ----------
+    function : callable
+        Returns an array, or a tuple of arrays, that broadcast to the batch.
+    given : sequence of float or ndarray
+        They broadcast to the batch.
+    out : ndarray, shape (k, *batch)
+        Filled.
+    rows : sequence of (int, int)
+        Row of ``out``, and the place of what belongs there among the returned arrays.
+    add : bool
+        Add to what is there, instead of replacing it.
+
+    Returns
+    -------
+    float
+        The sum of some of the returned arrays: no finite number where an entry is none.
+    """
+    total = 0.0
+    if out.size == 0 or not rows:
+        return total
+    watched = {rows[0][1], rows[min(1, len(rows) - 1)][1], rows[-1][1]}
+    for where in _blocks(out.shape[1:], block):
+        returned = function(*(_part(item, where) for item in given))
+        arrays = returned if isinstance(returned, tuple) else (returned,)
+        into: Any = (slice(None), *where)
+        target = out[into]
+        for row, place in rows:
+            if add:
+                target[row] += arrays[place]
+            else:
+                target[row] = arrays[place]
+        # An angle out of reach spoils every row; what overflows shows in the first ones or the
+        # last, to which the others add up.  All of them would take a twentieth of the time.
+        for place in watched:
+            total += float(np.add.reduce(arrays[place], axis=None))
+    return total
+
+
+def _part(item: Any, where: tuple[slice, ...]) -> Any:
+    """Return the part of an argument that broadcasts to a block."""
+    if not (isinstance(item, np.ndarray) and item.ndim):
+        return item
+    ends = where[len(where) - item.ndim :]
+    return item[tuple(s if n > 1 else slice(None) for s, n in zip(ends, item.shape, strict=True))]
+
+
+def _blocks(batch: tuple[int, ...], block: int) -> Iterator[tuple[slice, ...]]:
+    """Yield the index of each block: long in the last axes, of at most ``block`` entries."""
+    lengths: list[int] = []
+    left = block
+    for size in reversed(batch):
+        lengths.insert(0, max(1, min(size, left)))
+        left = max(1, left // lengths[0])
+    ranges = [range(0, size, step) for size, step in zip(batch, lengths, strict=True)]
+    for starts in product(*ranges):
+        yield tuple(slice(a, a + step) for a, step in zip(starts, lengths, strict=True))

@@ -1,0 +1,39 @@
+"""Checks of the numbers and names that machines, loads and counterweights are given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from numbers import Real
+
+from ..core.errors import Problem, bad
+
+
+def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
+    """Return a problem for each value that is no finite number, or below the least."""
+    wanted = "a finite number" + ("" if least == -math.inf else f", at least {least:g}")
+    return [
+        Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
+        for name, value in values.items()
+        if isinstance(value, bool)
+        or not isinstance(value, Real)
+        or not math.isfinite(value)
+        or value < least
+    ]
+
+
+def finite_number(value: object, where: str) -> float:
+    """Return a finite number, or raise BadInput."""
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError) as refusal:
+        raise bad(where, repr(value)[:60], "a number", "correct it") from refusal
+    if not math.isfinite(number):
+        raise bad(where, repr(value)[:60], "a finite number", "correct it")
+    return number
+
+
+def require_link(link: object, links: tuple[str, ...], where: str) -> None:
+    """Raise BadInput where a linkage has no such moving link."""
+    if link not in links:
+        raise bad(where, repr(link), f"one of {', '.join(links)}", "correct the name")

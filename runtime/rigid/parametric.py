@@ -1,0 +1,134 @@
+"""The forces of a machine as functions of its lengths and masses, for derivatives and samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import bad
+from ..linkages.linkage import emitted
+from ..linkages.parametric import Parametric
+from .evaluation import force_kernels
+from .machine import Machine, Part, wrenches
+
+MOMENTS = ("mass", "along", "across", "inertia")
+# How mass, first moments and inertia of a bar grow with its length.
+_GROWTH = {"mass": 1, "along": 2, "across": 1, "inertia": 3}
+
+
+@dataclass(frozen=True)
+class ParametricMachine(Parametric):
+    """Motion and forces of a machine at given crank angles as functions of its numbers.
+
+    Attributes
+    ----------
+    machine : Machine
+        Its loads must be constant.
+    bars : bool
+        Whether the masses grow with the links' lengths as those of bars.
+    """
+
+    machine: Machine
+    bars: bool = False
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Every number by name: those of the linkage, ``link.mass`` and so on."""
+        values = super().values
+        for link in self.linkage.links:
+            mass = self.machine.mass(link)
+            values |= {f"{link}.{name}": float(getattr(mass, name)) for name in MOMENTS}
+        return values
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return (*super().outputs, *self.forces)
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """Names of the forces."""
+        return tuple(force_kernels(self.linkage.mechanism).RETURNS["forces"])
+
+    def unit(self, name: str) -> str:
+        """Return the unit of an output; rates are in time, whatever the speed."""
+        if name in self.forces:
+            couple = name in ("torque", "shaking_moment") or name.startswith("couple")
+            return "N m" if couple else "N"
+        return self.linkage.moves.unit_of(name)
+
+    def evaluate(self, numbers: Mapping[str, Any]) -> dict[str, Any]:
+        """Return every output of the numbers; what cannot close is not finite."""
+        theta = self._angle(numbers)
+        with np.errstate(all="ignore"):
+            moved = self._moved(theta, numbers)
+            return moved | self._forces(theta, numbers, moved)
+
+    def _size(self, name: str) -> float:
+        if "." not in name:
+            return super()._size(name)
+        kind = name.partition(".")[2]
+        return max(abs(getattr(mass, kind)) for mass in self.machine.masses.values()) or 1.0
+
+    def _forces(
+        self, theta: Any, numbers: Mapping[str, Any], moved: Mapping[str, Any]
+    ) -> dict[str, Any]:
+        kernels, links = force_kernels(self.linkage.mechanism), self.linkage.links
+        lengths = {name: numbers[name] for name in self.linkage.names}
+        given = {"speed": self.speed, "acceleration": self.acceleration, **lengths}
+        masses = {}
+        for place, link in enumerate(links, start=2):
+            mass = self._mass(link, numbers)
+            masses[link] = SimpleNamespace(**mass)
+            given |= {f"{name}{place}": value for name, value in mass.items()}
+        forces = emitted(self.linkage, kernels, "forces", theta, given)
+        if not self.machine.loaded:
+            return forces
+        motion = self._motion(theta, numbers, moved)
+        acting: Any = SimpleNamespace(
+            masses=masses,
+            gravity=self.machine.gravity,
+            loads=self.machine.loads,
+            springs=self.machine.springs,
+        )
+        # What springs bring to the frame, its pins bring back.
+        inner = [name for name in forces if not name.startswith("shaking")]
+        parts: tuple[tuple[Part, list[str]], ...] = (("outside", list(forces)), ("springs", inner))
+        for part, names in parts:
+            pushed: dict[str, Any] = dict(lengths)
+            by_link = wrenches(acting, motion, self.speed, part)
+            for place, link in enumerate(links, start=2):
+                keys = (f"fx{place}", f"fy{place}", f"couple{place}")
+                pushed |= dict(zip(keys, by_link.get(link, (0.0, 0.0, 0.0)), strict=True))
+            more = emitted(self.linkage, kernels, "load_forces", theta, pushed)
+            forces |= {name: forces[name] + more[name] for name in names}
+        return forces
+
+    def _mass(self, link: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
+        mass = {name: numbers[f"{link}.{name}"] for name in MOMENTS}
+        # The block and the slider are no bars.
+        if not self.bars or link not in self.linkage.names:
+            return mass
+        grown = numbers[link] / self.linkage.lengths[link]
+        return {name: value * grown ** _GROWTH[name] for name, value in mass.items()}
+
+
+def require_constant_loads(machine: Machine) -> None:
+    """Refuse what has no known derivative: loads that are functions.
+
+    Raises
+    ------
+    BadInput
+        If the machine has one.
+    """
+    if any(callable(item.force) or callable(item.couple) for item in machine.loads):
+        raise bad(
+            "tolerances",
+            "a machine with a load that is a function",
+            "masses, gravity, constant loads and springs",
+            "leave it out, or ask for the linkage alone",
+        )

@@ -1,0 +1,682 @@
+"""Motions of every linkage: many digits, symmetry and limits, ranges, refusals, the result."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank, classify
+from elastolink.runtime.linkages.linkage import _checks
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from linkage_truth import motion as four_bar_motion
+from sliding_truth import rod_motion, slider_motion
+
+TURN = 2.0 * np.pi
+LINKAGES = {
+    "crank rocker": FourBar(5.0, 1.0, 4.5, 2.2),
+    "crank rocker, crossed": FourBar(10.0, 8.0, 10.0, 10.0, "crossed"),
+    "drag link": FourBar(1.0, 3.0, 2.5, 3.5),
+    "drag link, crossed": FourBar(2.0, 4.0, 5.0, 4.5, "crossed"),
+    "engine": SliderCrank(1.0, 3.5),
+    "offset": SliderCrank(1.0, 3.5, 0.8),
+    "offset, crossed": SliderCrank(1.0, 2.5, -1.2, "crossed"),
+    "quick-return": QuickReturn(2.0, 1.0, 4.0),
+    "Whitworth": QuickReturn(1.0, 2.5, 4.0),
+}
+EVERY = pytest.mark.parametrize("linkage", LINKAGES.values(), ids=LINKAGES)
+FOUR_BARS = pytest.mark.parametrize("bar", [v for v in LINKAGES.values() if isinstance(v, FourBar)])
+
+
+def outputs(linkage):
+    return (*linkage.moves.places, *linkage.moves.rates)
+
+
+def place_rates(linkage):
+    """Return pairs of names: what moves, and its rate."""
+    rates = [name for name in linkage.moves.rates if name[:5] == "omega" or "velocity" in name]
+    places = [name for name in linkage.moves.places if name != "transmission_angle"]
+    second = [n.replace("omega", "alpha").replace("velocity", "acceleration") for n in rates]
+    return [*zip(places, rates, strict=True), *zip(rates, second, strict=True)]
+
+
+def gap(linkage, motion):
+    """Distance by which the loop fails to close, over the longest link."""
+    size = linkage.lengths
+    pin = linkage.crank * np.exp(1j * motion.theta2)
+    if isinstance(linkage, FourBar):
+        chain = pin + linkage.coupler * np.exp(1j * motion.theta3) - linkage.frame
+        chain = chain - linkage.follower * np.exp(1j * motion.theta4)
+    elif isinstance(linkage, SliderCrank):
+        chain = pin + linkage.coupler * np.exp(1j * motion.theta3)
+        chain = chain - motion.position - 1j * linkage.offset
+    else:
+        chain = motion.slide * np.exp(1j * motion.theta4) - linkage.frame - pin
+    return np.abs(chain) / max(abs(value) for value in size.values())
+
+
+def truth(linkage, theta2):
+    """Return the motion at a crank angle by another derivation, in mpmath's digits."""
+    numbers = {name: mpmath.mpf(value) for name, value in linkage.geometry.items()}
+    kinds = {FourBar: four_bar_motion, SliderCrank: slider_motion, QuickReturn: rod_motion}
+    return numbers, kinds[type(linkage)]({**numbers, "theta2": theta2})
+
+
+# ---------------------------------------------------------------- positions and rates
+
+
+@pytest.mark.smoke
+@EVERY
+def test_motion_in_thirty_digits(linkage):
+    theta = np.linspace(-8.0, 8.0, 41)
+    motion = linkage.motion(theta)
+    assert motion.passed
+    with mpmath.workdps(30):
+        exact = [truth(linkage, mpmath.mpf(float(t)))[1] for t in theta]
+    for name in outputs(linkage):
+        value, found = np.array([float(m[name]) for m in exact]), getattr(motion, name)
+        if name in ("theta3", "theta4"):
+            # The reference does not count the turns.
+            assert np.max(np.abs(np.exp(1j * value) - np.exp(1j * found))) < 1e-13
+        else:
+            np.testing.assert_allclose(found, value, rtol=0, atol=2e-14 * np.abs(value).max())
+
+
+T = 0.4
+
+
+def theta(t):
+    return 3 * t + 2 * t**2
+
+
+def place(linkage, link, along, across, t):
+    """Place of a point in the fixed frame at a time, as a complex mpmath number."""
+    angle = theta(t)
+    n, m = truth(linkage, angle)
+    pin = n["crank"] * mpmath.expj(angle)
+    if isinstance(linkage, FourBar):
+        starts = {"coupler": (pin, m["theta3"]), "follower": (n["frame"], m["theta4"])}
+    elif isinstance(linkage, SliderCrank):
+        pinned = mpmath.mpc(m["position"], n["offset"])
+        starts = {"coupler": (pin, m["theta3"]), "slider": (pinned, 0)}
+    else:
+        starts = {"block": (pin, m["theta4"]), "rod": (-n["frame"], m["theta4"])}
+    start, turned = {**starts, "crank": (mpmath.mpf(0), angle)}[link]
+    return start + mpmath.mpc(along, across) * mpmath.expj(turned)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "link"), [(v, link) for k, v in LINKAGES.items() for link in v.links]
+)
+@pytest.mark.parametrize(("along", "across"), [(0.3, -0.8), (3.4, 0.2)])
+def test_points_move_as_their_places_differentiated(linkage, link, along, across):
+    """In time, with crank speed and acceleration, from 40 digits."""
+    motion = linkage.motion(theta(T), 3 + 4 * T, 4.0)
+    found = motion.point(link, along, across)
+    with mpmath.workdps(40):
+        for order, vector in enumerate((found.position, found.velocity, found.acceleration)):
+
+            def of_time(t):
+                return place(linkage, link, along, across, t)
+
+            exact = complex(mpmath.diff(of_time, mpmath.mpf(T), order) if order else of_time(T))
+            size = 10.0 * max(1.0, abs(exact))
+            assert vector == pytest.approx([exact.real, exact.imag], rel=0, abs=1e-14 * size)
+
+
+@EVERY
+def test_rates_are_spectral_derivatives(linkage):
+    count = 2048
+    angle = TURN * np.arange(count) / count
+    motion = linkage.motion(angle)
+    wave = np.fft.fftfreq(count, 1.0 / count) * 1j
+    for name, rate in place_rates(linkage):
+        value, slope = getattr(motion, name), getattr(motion, rate)
+        growth = round(float(np.mean(slope))) if name.startswith("theta") else 0.0
+        found = np.fft.ifft(wave * np.fft.fft(value - growth * angle)).real + growth
+        # The transform's round-off, times the highest wave number.
+        allowed = 1e-15 * count * max(1.0, np.abs(value).max()) * max(1.0, np.abs(slope).max())
+        np.testing.assert_allclose(found, slope, rtol=0, atol=allowed)
+
+
+@EVERY
+def test_angles_are_continuous_and_periodic_over_many_turns(linkage):
+    steps = 720
+    motion = linkage.motion(TURN * np.arange(-5 * steps, 5 * steps + 1) / steps)
+    for name in outputs(linkage):
+        value = getattr(motion, name)
+        turns = np.rint((value[steps] - value[0]) / TURN) if name in ("theta3", "theta4") else 0.0
+        back = value[steps:] - value[:-steps] - TURN * turns
+        assert np.all(np.abs(back) <= 1e-12 * max(1.0, np.abs(value).max()))
+    for name, rate in place_rates(linkage):
+        jump = np.abs(np.diff(getattr(motion, name)))
+        assert np.all(jump <= 1.05 * np.abs(getattr(motion, rate)).max() * TURN / steps + 1e-14)
+    for name in set(outputs(linkage)) & {"theta3", "theta4"}:
+        assert -np.pi < getattr(motion, name)[5 * steps] <= 1.5 * np.pi
+
+
+@FOUR_BARS
+def test_half_turns_over_a_thousand_turns(bar):
+    """Where sin(theta2) = 0 the diagonal lies along the frame: hand geometry, Smith (2.2)."""
+    halves = np.arange(-2000, 2001)
+    motion = bar.motion(halves * np.pi)
+    allowed = 1e-13 * np.maximum(1.0, np.abs(halves * np.pi))
+    assert np.all(gap(bar, motion) <= allowed)
+    diagonal = np.where(halves % 2 == 0, bar.frame - bar.crank, bar.frame + bar.crank)
+    # Triangle BCD by the law of cosines; a negative diagonal points backwards, and turns C over.
+    cosine = (bar.coupler**2 - bar.follower**2 + diagonal**2) / (2 * bar.coupler * diagonal)
+    expected = bar.branch * np.sign(diagonal) * np.arccos(cosine)
+    assert np.all(np.abs(np.exp(1j * motion.theta3) - np.exp(1j * expected)) <= allowed)
+    squares = bar.coupler**2 + bar.follower**2 - diagonal**2
+    between = np.arccos(squares / (2 * bar.coupler * bar.follower))
+    np.testing.assert_allclose(motion.transmission_angle, between, rtol=1e-13)
+    inner = motion.theta4 - motion.theta3
+    np.testing.assert_allclose(np.cos(between), np.cos(inner), atol=2e-12)
+    assert np.all(np.sign(np.sin(inner)) == bar.branch)
+
+
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+@pytest.mark.parametrize(
+    "lengths",
+    [
+        (3.0, 1.0, 2.0 + 1e-13, 2.0),
+        (2.0, 1.0, 2.0 + 5e-13, 1.0 + 1e-12),
+        (1.0, 2.0, 2.0 + 5e-13, 1.0 + 1e-12),
+        (1.0 + 3e-10, 1.0, 1.0 + 1e-10, 1.0 + 3e-10),
+        (1e-6, 1.0, 1.0, 0.5),
+    ],
+)
+def test_angles_stay_continuous_a_hair_from_folding(lengths, assembly):
+    """Walking with steps refined towards each dead centre, no branch is changed."""
+    bar = FourBar(*lengths, assembly)
+    near = np.geomspace(1e-14, np.pi / 2, 4000)
+    half = np.concatenate([-near[::-1], [0.0], near])
+    motion = bar.motion(np.unique(np.concatenate([half + k * np.pi for k in range(-4, 5)])))
+    for angle in (motion.theta3, motion.theta4):
+        assert np.abs(np.diff(angle)).max() < 0.5
+    assert np.all(gap(bar, motion) < 1e-13)
+
+
+# ---------------------------------------------------------------- symmetry, hand cases, limits
+
+
+@FOUR_BARS
+def test_mirror_about_the_frame_swaps_the_assemblies(bar):
+    """Turned over, open becomes crossed and every angle changes its sign."""
+    angle = np.linspace(-9.0, 9.0, 401)
+    other = FourBar(*bar.lengths.values(), "open" if bar.assembly == "crossed" else "crossed")
+    one, two = bar.motion(angle), other.motion(-angle)
+    for name in outputs(bar):
+        sign = 1.0 if name.startswith(("omega", "transmission")) else -1.0
+        np.testing.assert_array_equal(getattr(one, name), sign * getattr(two, name))
+
+
+def test_mirrors_of_the_slider_crank():
+    """About the crank's vertical the assemblies, about the guide the offset change their signs."""
+    angle = np.linspace(-7.0, 7.0, 101)
+    one = SliderCrank(1.0, 3.0, 0.7).motion(angle)
+    other = SliderCrank(1.0, 3.0, 0.7, "crossed").motion(np.pi - angle)
+    below = SliderCrank(1.0, 3.0, -0.7).motion(-angle)
+    np.testing.assert_allclose(one.position, -other.position, rtol=1e-14)
+    np.testing.assert_allclose(one.theta3, np.pi - other.theta3, atol=1e-14)
+    np.testing.assert_allclose(one.slider_acceleration, -other.slider_acceleration, atol=2e-14)
+    np.testing.assert_allclose(one.theta3, -below.theta3, atol=3e-16)
+    np.testing.assert_allclose(one.slider_acceleration, below.slider_acceleration, atol=3e-15)
+
+
+def test_parallelogram_and_extremes_of_the_rod_by_hand():
+    """Away from its change points theta3 = 0 and theta4 = theta2; 30 degrees to either side."""
+    bar = FourBar(2.0, 1.0, 2.0, 1.0)
+    assert not bar.crank_turns
+    motion = bar.motion([0.3, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(motion.theta3, 0.0, atol=1e-14)
+    np.testing.assert_allclose(motion.theta4, [0.3, 1.0, 2.0, 3.0], rtol=1e-14)
+    np.testing.assert_allclose(motion.alpha4, 0.0, atol=1e-12)
+    rod = QuickReturn(2.0, 1.0, 4.0)
+    assert rod.eps == 0.5
+    motion = rod.motion([0.0, TURN / 3, -TURN / 3, np.pi])
+    np.testing.assert_allclose(motion.theta4, [0.0, np.pi / 6, -np.pi / 6, 0.0], atol=1e-15)
+    np.testing.assert_allclose(motion.slide, [3.0, np.sqrt(3.0), np.sqrt(3.0), 1.0], rtol=1e-15)
+    np.testing.assert_allclose(motion.omega4, [1 / 3, 0.0, 0.0, -1.0], atol=1e-15)
+
+
+@pytest.mark.parametrize("ratio", [1e2, 1e4, 1e8])
+def test_a_long_coupler_moves_the_slider_as_a_cosine(ratio):
+    """position - coupler = crank cos(theta2) - crank^2 sin^2(theta2) / (2 coupler) + ..."""
+    angle = np.linspace(0.0, TURN, 41)
+    motion = SliderCrank(1.0, ratio).motion(angle)
+    allowed = 0.6 / ratio + 4e-16 * ratio
+    np.testing.assert_allclose(motion.position - ratio, np.cos(angle), rtol=0, atol=allowed)
+    for name, expected in (
+        ("slider_velocity", -np.sin(angle) - np.sin(2 * angle) / (2 * ratio)),
+        ("slider_acceleration", -np.cos(angle) - np.cos(2 * angle) / ratio),
+    ):
+        np.testing.assert_allclose(getattr(motion, name), expected, atol=2 / ratio**2 + 1e-15)
+
+
+@pytest.mark.parametrize("assembly", ["open", "crossed"])
+@pytest.mark.parametrize("height", [1e3, 1e5, 1e7])
+def test_a_slider_crank_is_a_four_bar_with_a_long_follower(height, assembly):
+    """The follower's pivot a height h below the guide: its tip leaves the guide by s^2 / 2 h.
+
+    The frame then leans by atan2(-(h - offset), 0): the four-bar's angles are turned by it.
+    """
+    crank, coupler, offset = 1.0, 3.0, 0.4
+    angle = np.linspace(0.3, 6.0, 9)
+    slider = SliderCrank(crank, coupler, offset, assembly).motion(angle)
+    # Pivot straight below the middle of the stroke.
+    middle = 0.5 * (slider.position.min() + slider.position.max())
+    pivot = middle + 1j * (offset - height)
+    lean = np.angle(pivot)
+    moved = FourBar(abs(pivot), crank, coupler, height, assembly).motion(angle - lean)
+    apart = np.exp(1j * (moved.theta3 + lean)) - np.exp(1j * slider.theta3)
+    assert np.abs(apart).max() < 2.0 / height + 4e-16 * height
+    allowed = 2.0 / height + 1e-14 * height
+    np.testing.assert_allclose(moved.omega3, slider.omega3, atol=allowed)
+    # The follower stands upright: its tip moves to the left as it turns anticlockwise.
+    np.testing.assert_allclose(-height * moved.omega4, slider.slider_velocity, atol=allowed)
+
+
+def test_a_small_crank_swings_the_rod_in_proportion():
+    """theta4 = eps sin - eps^2 sin(2 theta2) / 2 + ..., the expansion of the small-crank papers."""
+    angle = np.linspace(0.0, TURN, 31)
+    for eps in (1e-2, 1e-4, 1e-9):
+        motion = QuickReturn(1.0, eps, 1.0 + eps).motion(angle)
+        series = eps * np.sin(angle) - eps**2 / 2 * np.sin(2 * angle)
+        np.testing.assert_allclose(motion.theta4, series, atol=eps**3 + 1e-16 * eps)
+        slide = 1 + eps * np.cos(angle)
+        np.testing.assert_allclose(motion.slide, slide, rtol=0, atol=eps**2 + 4e-16)
+
+
+def test_inversions_of_the_quick_return():
+    """Seen from the crank another quick-return; held at the rod, a slider-crank."""
+    angle = np.linspace(-7.0, 7.0, 61)
+    here = QuickReturn(1.0, 2.5, 3.5).motion(angle)
+    there = QuickReturn(2.5, 1.0, 3.5).motion(-angle)
+    np.testing.assert_allclose(angle - here.theta4, -there.theta4, atol=2e-15)
+    np.testing.assert_allclose(here.slide, there.slide, rtol=1e-15)
+    np.testing.assert_allclose(here.omega4, 1 - there.omega4, atol=2e-15)
+    np.testing.assert_allclose(here.alpha4, there.alpha4, atol=2e-15)
+    inverse = SliderCrank(1.0, 2.5).motion(-here.theta4)
+    np.testing.assert_allclose(inverse.position, here.slide, rtol=1e-14)
+    turned = np.exp(1j * inverse.theta3) / np.exp(1j * (here.theta2 - here.theta4))
+    np.testing.assert_allclose(turned, 1.0, atol=6e-15)
+
+
+# ---------------------------------------------------------------- joints, links, drives
+
+
+@EVERY
+def test_joints_are_points_of_both_links_that_they_join(linkage):
+    motion = linkage.motion(np.linspace(0.0, 6.0, 12).reshape(3, 4), 4.6, 4.0)
+    joints = motion.joints
+    for link, letters in linkage.bars.items():
+        np.testing.assert_array_equal(motion.link(link).origin, joints[letters[0]])
+        if len(letters) == 2:
+            end = motion.point(link, linkage.lengths[link]).position
+            np.testing.assert_allclose(end, joints[letters[1]], rtol=0, atol=1e-14)
+    assert all(value.shape == (3, 4, 2) for value in joints.values())
+    np.testing.assert_array_equal(joints["A"], 0.0)
+
+
+def test_the_coupler_ends_where_its_neighbour_is_to_the_last_digit():
+    angle = np.linspace(0.0, 6.0, 25)
+    bar = FourBar(5.0, 1.0, 4.5, 2.2).motion(angle, 10.0, 3.0)
+    slide = SliderCrank(1.0, 3.5, 0.7).motion(angle, 10.0, 3.0)
+    for one, other in (
+        (bar.point("coupler", 4.5), bar.point("follower", 2.2)),
+        (slide.point("coupler", 3.5), slide.point("slider", 0.0)),
+    ):
+        for name in ("position", "velocity", "acceleration"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+
+
+def test_points_and_drives_broadcast():
+    motion = FourBar(5.0, 1.0, 4.5, 2.2).motion(np.linspace(0.0, 6.0, 5), np.array([[1.0], [10.0]]))
+    assert motion.theta3.shape == motion.omega4.shape == motion.error.shape == (2, 5)
+    np.testing.assert_allclose(motion.alpha4[1], 100.0 * motion.alpha4[0], rtol=1e-15)
+    along = np.linspace(0.0, 5.0, 5)
+    together = motion.point("coupler", along, 0.1)
+    assert together.position.shape == (2, 5, 2)
+    for i, one in enumerate(along):
+        alone = motion.point("coupler", one, 0.1)
+        np.testing.assert_array_equal(alone.acceleration[:, i], together.acceleration[:, i])
+
+
+@EVERY
+def test_without_a_speed_rates_are_per_crank_angle(linkage):
+    here, there = linkage.motion(1.0), linkage.motion(1.0, 7.0, 3.0)
+    assert here.relative and here.omega2 == 1.0 and here.alpha2 == 0.0 and not there.relative
+    one, other = (m.point(linkage.links[1], 0.3, 0.2) for m in (here, there))
+    np.testing.assert_allclose(other.velocity, 7.0 * one.velocity, rtol=1e-14)
+    expected = 49.0 * one.acceleration + 3.0 * one.velocity
+    np.testing.assert_allclose(other.acceleration, expected, atol=1e-12)
+    rates = [name for name in linkage.moves.rates if "velocity" in name]
+    assert {here.unit(name) for name in rates} <= {"m/rad"}
+    assert {there.unit(name) for name in rates} <= {"m/s"}
+
+
+@EVERY
+def test_shapes_and_scales_do_not_matter(linkage):
+    angle = np.linspace(0.0, 6.0, 12)
+    base = linkage.motion(angle)
+    shaped, listed = linkage.motion(angle.reshape(3, 2, 2)), linkage.motion(list(angle))
+    single = linkage.motion(6.0)
+    assert linkage.motion([]).error.shape == (0,)
+    more = [linkage.assembly] if hasattr(linkage, "assembly") else []
+    scaled = {
+        scale: type(linkage)(*(scale * v for v in linkage.lengths.values()), *more).motion(angle)
+        for scale in (2.0**-900, 2.0**-30, 2.0**1000)
+    }
+    for name in (*outputs(linkage), "error"):
+        value = getattr(base, name)
+        np.testing.assert_array_equal(getattr(shaped, name).ravel(), value)
+        np.testing.assert_array_equal(getattr(listed, name), value)
+        assert getattr(single, name).shape == ()
+        assert getattr(single, name) == pytest.approx(value[-1], rel=1e-15)
+        for scale, motion in scaled.items():
+            factor = scale if name.startswith(("position", "slide")) else 1.0
+            np.testing.assert_array_equal(getattr(motion, name), factor * value)
+
+
+# ---------------------------------------------------------------- ranges and change points
+
+
+@pytest.mark.parametrize(
+    ("linkage", "count"),
+    [
+        (FourBar(4.0, 3.0, 2.0, 2.0), 1),
+        (FourBar(3.0, 2.0, 3.5, 1.2), 2),
+        (FourBar(4.0, 1.0, 4.0, 1.0), 2),
+        (FourBar(1.0, 2.0, 1.5, 3.5), 1),
+        (FourBar(5.0, 1.0, 5.0, 2.0), 1),
+        (FourBar(3.0, 1.0, 2.0, 2.0), 1),
+        (SliderCrank(1.0, 3.0, 0.5), 1),
+        (SliderCrank(1.0, 1.2, -0.5, "crossed"), 1),
+        (SliderCrank(1.0, 0.5, 0.2), 2),
+        (SliderCrank(1.0, 0.5, 1.2), 1),
+        (SliderCrank(1.0, 1.0, 0.0), 2),
+        (SliderCrank(1.0, 3.0, 2.0), 1),
+        (QuickReturn(2.0, 1.0, 2.5), 1),
+        (QuickReturn(1.0, 2.0, 2.5), 1),
+        (QuickReturn(1.0, 1.0, 2.0), 1),
+        (QuickReturn(1.0, 1.0, 1.5), 2),
+    ],
+)
+def test_crank_ranges_hold_every_angle_that_is_reached_and_no_other(linkage, count):
+    spans = linkage.crank_ranges()
+    assert len(spans) == count
+    for angle in np.linspace(-np.pi, np.pi, 161)[:-1] + 1e-4:
+        inside = any((angle - low) % TURN < high - low for low, high in spans)
+        if isinstance(linkage, FourBar):
+            diagonal = abs(linkage.frame - linkage.crank * np.exp(1j * angle))
+            reached = linkage.reach[0] < diagonal < linkage.reach[1]
+        elif isinstance(linkage, SliderCrank):
+            reached = abs(linkage.offset - linkage.crank * np.sin(angle)) < linkage.coupler
+        else:
+            reached = abs(linkage.frame + linkage.crank * np.exp(1j * angle)) < linkage.rod
+        assert inside == reached
+        if reached:
+            assert linkage.motion(angle).passed
+        else:
+            with pytest.raises(BadInput, match="theta: found"):
+                linkage.motion(angle)
+
+
+def test_ends_of_ranges_by_hand():
+    ((low, high),) = SliderCrank(1.0, 1.2, 0.5).crank_ranges()
+    # 0.5 - sin(theta) = 1.2 at both ends.
+    assert np.sin([low, high]) == pytest.approx([-0.7, -0.7], abs=1e-15)
+    with pytest.raises(BadInput, match=r"a crank angle in \(-0.775397, 3.91699\) rad"):
+        SliderCrank(1.0, 1.2, 0.5).motion(-1.0)
+    bar = FourBar(4.0, 3.0, 2.0, 2.0)
+    with pytest.raises(BadInput, match=r"theta: found 1.5 rad; expected a diagonal BD between"):
+        bar.motion([0.1, 1.5, 0.2])
+    edge = np.arccos((16 + 9 - 16) / 24)
+    inside = bar.motion(np.linspace(-edge, edge, 50)[1:-1])
+    assert inside.passed and np.all(gap(bar, inside) < 1e-13)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "theta2", "folds"),
+    [
+        (FourBar(4.0, 1.0, 4.0, 1.0), np.linspace(0.1, 6.0, 12), 1),
+        (FourBar(4.0, 1.0, 4.0, 1.0), np.linspace(0.1, 3.0, 12), 0),
+        (FourBar(4.0, 1.0, 4.0, 1.0), np.linspace(3.2, 9.5, 12), 2),
+        (FourBar(3.0, 2.0, 3.5, 1.2), [-1.0, 1.0], 2),
+        (SliderCrank(1.0, 1.0), [1.4, 1.7], 1),
+        (SliderCrank(1.0, 1.0), [-1.5, 0.3, 1.5], 0),
+        (QuickReturn(1.0, 1.0, 3.0), [3.0, 3.3], 1),
+        (QuickReturn(2.0, 1.0, 2.5), [1.3, 4.9 + TURN], 2),
+    ],
+)
+def test_an_angle_range_across_a_change_point_fails_a_check(linkage, theta2, folds):
+    motion = linkage.motion(theta2)
+    assert motion.checks["folds within the angles"].value == folds
+    assert motion.passed == (folds == 0)
+
+
+def test_a_change_point_itself_is_no_motion_but_its_neighbours_are():
+    for lengths in ((2.0, 1.0, 2.0, 1.0), (1.0, 1.0, 1.0, 1.0)):
+        bar = FourBar(*lengths)
+        assert not bar.crank_turns
+        with pytest.raises(BadInput, match="or folds there"):
+            bar.motion([0.7, 0.0])
+        assert np.all(np.isfinite(bar.motion([1e-100, 0.7, np.pi]).theta4))
+    # Frame and crank as long as coupler and follower: no double is the angle of this one.
+    moved = FourBar(3.0, 1.0, 2.0, 2.0).motion(np.pi)
+    assert moved.passed and moved.transmission_angle == pytest.approx(np.pi, abs=1e-15)
+    slider = SliderCrank(1.0, 1.0)
+    with pytest.raises(BadInput, match="or folds there"):
+        slider.motion(np.pi / 2)
+    # Crank and coupler mirror each other: position 2 cos, theta3 = -theta2.
+    motion = slider.motion([-1.0, 0.5])
+    np.testing.assert_allclose(motion.position, 2 * np.cos([-1.0, 0.5]), rtol=1e-15)
+    # With eps = 1 the rod's angle is half of the crank's, and jumps at the rod's pivot.
+    motion = QuickReturn(1.0, 1.0, 3.0).motion([-3.0, 0.5, 3.0])
+    np.testing.assert_allclose(motion.theta4, [-1.5, 0.25, 1.5], rtol=1e-15)
+    np.testing.assert_array_equal(motion.alpha4, 0.0)
+    with pytest.raises(BadInput, match=r"crank angle in \(-3.14159, 3.14159\) rad"):
+        QuickReturn(1.0, 1.0, 3.0).motion(np.pi)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "word"),
+    [
+        (FourBar(4.0, 3.0, 2.0, 2.0), "the crank cannot turn fully"),
+        (SliderCrank(1.0, 1.0), "the crank cannot turn fully"),
+        (QuickReturn(1.0, 1.0, 3.0), "eps = 1"),
+        (QuickReturn(2.0, 1.0, 2.9), "at least 3, frame and crank"),
+    ],
+)
+def test_a_crank_that_does_not_turn_is_named(linkage, word):
+    assert not linkage.crank_turns
+    with pytest.raises(BadInput, match=word):
+        linkage.require_full_turn()
+
+
+def test_round_off_of_sums_decides_nothing():
+    """As :func:`classify` has it, the lengths are what their doubles are."""
+    # 0.3... + 0.1 + 0.3... exceeds 0.7... by less than the sum of the three is rounded.
+    barely = FourBar(0.30000000000000004, 0.7000000000000001, 0.1, 0.30000000000000004)
+    ((low, high),) = barely.crank_ranges()
+    assert 0.0 < high < 1e-7 and low == -high
+    turning = FourBar(1.0, 0.1, 0.30000000000000004, 0.8)
+    assert turning.crank_turns
+    assert turning.crank_ranges() == ((-np.pi, np.pi),)
+    assert all(classify(bar).turns["crank"] == bar.crank_turns for bar in (barely, turning))
+    # 0.2 + 0.1 is a little more than 0.3: a rod given as the sum of the two is long enough.
+    assert QuickReturn(0.2, 0.1, 0.3).crank_turns
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(st.lists(st.integers(1, 12), min_size=4, max_size=4))
+def test_tenths_are_as_their_class_says(tenths):
+    """Lengths of tenths lie on change points, or a round-off beside them."""
+    lengths = [0.1 * n for n in tenths]
+    frame, crank, coupler, follower = exact = [*map(Fraction, lengths)]
+    if 2 * max(exact) >= sum(exact):
+        with pytest.raises(BadInput, match="cannot close"):
+            FourBar(*lengths)
+    else:
+        bar = FourBar(*lengths)
+        turns = abs(frame - crank) > abs(coupler - follower) and frame + crank < coupler + follower
+        assert bar.crank_turns == turns
+        if turns:
+            assert bar.crank_ranges() == ((-np.pi, np.pi),)
+        else:  # at a change point with frame and crank in line the end is at pi, a fold
+            assert bar._folds(np.array([-0.1, 6.0])) > 0
+    if coupler >= frame + crank:
+        with pytest.raises(BadInput, match="guide"):
+            SliderCrank(*lengths[:3])
+    else:
+        assert SliderCrank(*lengths[:3]).crank_turns == (crank - frame > coupler)
+    if coupler <= abs(frame - crank):
+        with pytest.raises(BadInput, match="rod"):
+            QuickReturn(*lengths[:3])
+    else:
+        assert QuickReturn(*lengths[:3]).crank_ranges()
+
+
+# ---------------------------------------------------------------- random lengths and refusals
+
+LENGTH = st.floats(1e-3, 1e3)
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(
+    st.sampled_from([FourBar, SliderCrank, QuickReturn]),
+    st.tuples(LENGTH, LENGTH, LENGTH, LENGTH),
+    st.floats(-1.0, 1.0),
+    st.sampled_from(["open", "crossed"]),
+    st.lists(st.floats(-1e4, 1e4), min_size=1),
+)
+def test_random_lengths_are_refused_or_close(kind, lengths, share, assembly, angles):
+    first, second = lengths[:2]
+    try:
+        if kind is FourBar:
+            linkage = FourBar(*lengths, assembly)
+        elif kind is SliderCrank:
+            linkage = SliderCrank(first, second, share * 1.5 * (first + second), assembly)
+        else:
+            linkage = QuickReturn(first, second, (1.5 + share) * (first + second))
+        if linkage.crank_turns:
+            assert linkage.motion(np.linspace(0.0, TURN, 33)).passed
+        motion = linkage.motion(angles)
+    except BadInput as refusal:
+        assert "\n" not in str(refusal) and "found" in str(refusal)
+        return
+    assert np.all(gap(linkage, motion) <= 1e-13 * np.maximum(1.0, np.abs(angles)))
+    assert all(np.all(np.isfinite(getattr(motion, n))) for n in (*outputs(linkage), "error"))
+    if kind is FourBar:
+        assert np.all(np.sign(np.sin(motion.theta4 - motion.theta3)) * linkage.branch >= -1e-12)
+    if kind is SliderCrank:
+        assert np.all(np.cos(motion.theta3) * linkage.branch >= -1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "lengths", "word"),
+    [
+        (FourBar, (10.0, 1.0, 2.0, 3.0), r"frame: found 10; expected less than 6, the sum"),
+        (FourBar, (1.0, 4.0, 1.0, 2.0), r"crank: found 4; expected less than 4"),
+        (FourBar, (1.0, -1.0, 1.0, 1.0), r"crank: found -1.0; expected a positive finite length"),
+        (FourBar, (1.0, 0.0, 1.0, 1.0), r"crank: found 0.0"),
+        (FourBar, (np.nan, 1.0, 1.0, 1.0), r"frame: found nan"),
+        (FourBar, (np.inf, 1.0, 1.0, 1.0), r"frame: found inf"),
+        (FourBar, ("5 in", 1.0, 1.0, 1.0), r"frame: found '5 in'"),
+        (FourBar, (None, 1.0, 1.0, 1.0), r"frame: found None"),
+        (FourBar, (1j, 1.0, 1.0, 1.0), r"frame: found 1j"),
+        (SliderCrank, (1.0, 2.0, 3.0), r"offset: found 3; expected less than 3 in magnitude"),
+        (SliderCrank, (1.0, -2.0), r"coupler: found -2.0"),
+        (SliderCrank, (1.0, 2.0, np.nan), r"offset: found nan; expected a finite length"),
+        (SliderCrank, (1.0, 2.0, 0.0, "upside"), r"found 'upside'; expected 'open' or 'crossed'"),
+        (QuickReturn, (2.0, 1.0, 0.9), "the rod never reaches the block"),
+        (QuickReturn, (1.0, 1.0, "long"), "expected a positive finite length"),
+    ],
+)
+def test_lengths_that_make_no_linkage_are_refused(kind, lengths, word):
+    with pytest.raises(BadInput, match=word):
+        kind(*lengths)
+
+
+def test_all_problems_are_listed_at_once():
+    with pytest.raises(BadInput) as refusal:
+        FourBar(-1.0, np.nan, 1.0, 1.0, assembly="twisted")
+    assert len(refusal.value.problems) == 3
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        ((np.nan,), "theta: found a value that is not finite"),
+        (([0.0, -np.inf],), "theta: found a value that is not finite"),
+        (("north",), "theta: found"),
+        (([[1.0], [1.0, 2.0]],), "theta: found"),
+        ((1j,), "theta: found"),
+        ((None,), "theta: found"),
+        ((1.0, np.nan), "speed: found"),
+        ((1.0, "fast"), "speed: found"),
+        ((1.0, 1.0, [np.inf]), "acceleration: found"),
+        (([0.0, 1.0, 2.0], [1.0, 2.0]), "shapes that broadcast"),
+    ],
+)
+def test_what_is_no_angle_and_no_drive_is_refused(given, word):
+    with pytest.raises(BadInput, match=word):
+        LINKAGES["engine"].motion(*given)
+    motion = LINKAGES["crank rocker"].motion(1.0)
+    with pytest.raises(BadInput, match="link: found 'rod'; expected one of crank, coupler, foll"):
+        motion.link("rod")
+    with pytest.raises(BadInput, match="along, across: found a value that is not finite"):
+        motion.point("coupler", np.nan)
+
+
+# ---------------------------------------------------------------- the result
+
+
+@EVERY
+def test_result_carries_error_checks_and_picture(linkage, tmp_path):
+    motion = linkage.motion(np.linspace(0.0, TURN, 91), speed=100.0, acceleration=5.0)
+    motion.require()
+    assert motion.error.shape == motion.theta2.shape
+    axes = motion.plot()
+    assert len(axes.lines) == (4 if isinstance(linkage, FourBar) else 3)
+    assert "10^" in axes.get_legend().get_texts()[2].get_text()
+    saved = json.loads(motion.save(tmp_path / "motion.json").read_text())
+    assert set(outputs(linkage)) < set(saved) and saved["passed"] is True
+    assert saved["linkage"]["crank"] == linkage.crank
+    assert "theta2" in motion.save(tmp_path / "motion.csv").read_text().splitlines()[0]
+    again = pickle.loads(pickle.dumps(motion))
+    assert again.passed and again.linkage == linkage
+    assert motion.provenance["links.crank"] == repr(linkage.crank)
+    assert {"elastolink", "numpy"} <= set(motion.provenance)
+
+
+def test_error_grows_towards_a_dead_centre_and_with_the_turns():
+    near = [np.pi / 2, np.pi - 1e-3, np.pi]
+    for linkage in (FourBar(3.0, 1.0, 2.0 + 1e-9, 2.0), QuickReturn(1.0, 1.0 - 1e-9, 2.0)):
+        error = linkage.motion(near).error
+        assert error[0] < 1e-14 < 30 * error[0] < error[1] < error[2] < 1e-5
+    early, late = LINKAGES["drag link"].motion([1.0, 1.0 + 1000 * TURN]).error
+    assert late > 50 * early
+    far = FourBar(5.0, 1.0, 5.0, 2.0).motion([1e15])
+    assert far.checks["loop closure over longest link"].limit <= 1e-8
+
+
+def test_checks_see_a_rate_that_is_wrong():
+    """The closure of speeds and accelerations is no empty promise."""
+    slider = LINKAGES["offset"]
+    motion = slider.motion([1.0, 2.0])
+    m = {"theta2": motion.theta2, **{name: getattr(motion, name) for name in outputs(slider)}}
+    for name in ("position", "slider_velocity", "slider_acceleration"):
+        m[name] = m[name] * 2.0**slider.scale
+    assert all(check.passed for check in _checks(slider, m, motion.error).values())
+    for name, which in (("omega3", "speeds"), ("slider_acceleration", "accelerations")):
+        wrong = {**m, name: m[name] * (1 + 1e-13)}
+        assert not _checks(slider, wrong, motion.error)[
+            f"closure of {which} over the figure"
+        ].passed

@@ -106,7 +106,6 @@ def test_what_is_required_and_declared():
         "data",
         "benchmark",
         "cluster",
-        "dae",
         "fatigue",
         "dev",
     }

@@ -1,18 +1,23 @@
-"""Constrained systems: consistent initial values, motion on the constraints, its stability."""
+"""Constrained systems: consistent initial values, motion on the constraints, its stability.
+
+``constrained_motion`` integrates, ``periodic_orbit`` finds a motion that repeats, and
+``orbit_multipliers`` tells its stability; all three take a
+:class:`~elastolink.runtime.core.families.Constrained`, such as ``free_free_rod`` makes.
+"""
 
 from __future__ import annotations
 
+from ..core.families import Constrained, Guard
 from .consistent import ConsistentState, consistent_state
-from .guards import Guard
-from .motion import constrained_motion
+from .equations import constraint_norms
+from .motion import METHODS, ConstrainedMotion, constrained_motion
 from .multipliers import ConstrainedMultipliers, orbit_multipliers
-from .norms import constraint_norms
 from .orbits import PeriodicOrbit, periodic_orbit
-from .result import ConstrainedMotion
-from .steppers import motion_with_variations, tangent_basis
 
 __all__ = [
+    "METHODS",
     "ConsistentState",
+    "Constrained",
     "ConstrainedMotion",
     "ConstrainedMultipliers",
     "Guard",
@@ -20,8 +25,6 @@ __all__ = [
     "consistent_state",
     "constrained_motion",
     "constraint_norms",
-    "motion_with_variations",
     "orbit_multipliers",
     "periodic_orbit",
-    "tangent_basis",
 ]

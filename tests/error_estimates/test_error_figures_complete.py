@@ -95,8 +95,6 @@ DELEGATED = {
     "driving_torque": "rigid_forces",
     "link_frequencies": "natural_frequencies",
     "pin_forces": "rigid_forces",
-    "rod_motion": "constrained_motion",
-    "rod_orbit": "periodic_orbit",
     "shaking_force": "rigid_forces",
     "shaking_moment": "rigid_forces",
     "sweep": "stability_chart",

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from .free_free import FreeFreeBasis, FreeFreeModes, free_free_roots
     from .galerkin import GalerkinIntegrals, galerkin_integrals
     from .linear import rod_system
-    from .motion import rod_motion
-    from .orbit import rod_orbit
     from .overhang import OverhangBasis
     from .overhang_spectrum import OverhangFrequencies, overhang_frequencies, overhang_roots
     from .polynomial import PolynomialBasis
@@ -38,8 +36,6 @@ _PUBLIC = {
     "overhang_frequencies": "overhang_spectrum",
     "overhang_roots": "overhang_spectrum",
     "rigid_state": "constrained",
-    "rod_motion": "motion",
-    "rod_orbit": "orbit",
     "rod_system": "linear",
     "tip_deflection": "constrained",
 }
@@ -60,8 +56,6 @@ __all__ = [
     "overhang_frequencies",
     "overhang_roots",
     "rigid_state",
-    "rod_motion",
-    "rod_orbit",
     "rod_system",
     "tip_deflection",
 ]

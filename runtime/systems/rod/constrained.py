@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ....derive.spec import ModelSpec
 from ...core.errors import bad
-from ...core.families import Array, Constrained
+from ...core.families import Array, Constrained, Guard
 from ...linkages import QuickReturn
 from ..modules import find_module
 from .free_free import FreeFreeModes
@@ -20,6 +21,8 @@ from .inputs import require_drop, require_numbers, require_points
 
 DROPPED = ("tension",)
 _DERIVATIVES = ("", "_d1", "_d2", "_d3")
+# Deflections over the length beyond which the equations mean nothing any more.
+_BENT = 0.5
 _STATIONS = np.linspace(0.0, 1.0, 21)
 
 
@@ -47,11 +50,6 @@ class FreeFreeRod(Constrained):
     modes: FreeFreeModes = field(kw_only=True)
     speed: float = field(kw_only=True)
     bending_stiffness: float = field(kw_only=True)
-
-    @property
-    def period(self) -> float:
-        """Duration of a revolution of the crank [s]."""
-        return 2.0 * np.pi / abs(self.speed)
 
 
 class RigidState(NamedTuple):
@@ -146,14 +144,39 @@ def free_free_rod(
         },
         provenance={**(provenance or {}), **emitted.provenance},
     )
-    own = {f.name: getattr(system, f.name) for f in fields(Constrained)}
-    return FreeFreeRod(
-        **own,
+    fields_of = {f.name: getattr(system, f.name) for f in fields(Constrained)}
+    made = FreeFreeRod(
+        **fields_of,
         linkage=linkage,
         modes=shapes,
         speed=float(speed),
         bending_stiffness=float(bending_stiffness),
     )
+    return replace(
+        made,
+        period=2.0 * np.pi / abs(made.speed),
+        # A crank longer than the base takes the rod round with it.
+        advance=2.0 * np.pi * np.sign(speed) * (linkage.crank > frame) * np.eye(made.size)[2],
+        reference=partial(_undeformed, made),
+        watch=partial(largest_deflection, made),
+        guards=(
+            Guard(partial(_overhang, made), "the block left the end of the rod"),
+            Guard(partial(_unbent, made), f"the deflection passed {_BENT:g} of the rod's length"),
+        ),
+    )
+
+
+def _undeformed(rod: FreeFreeRod, t: Array) -> tuple[Array, Array]:
+    q, qd = rigid_state(rod, rod.speed * t)
+    return q, qd
+
+
+def _overhang(rod: FreeFreeRod, t: float, q: Array, qd: Array) -> float:
+    return float(1.0 - place_of_block(rod, q, t))
+
+
+def _unbent(rod: FreeFreeRod, t: float, q: Array, qd: Array) -> float:
+    return _BENT - float(largest_deflection(rod, q, t))
 
 
 class _AtBlock:

@@ -189,11 +189,12 @@ def test_constraints_are_compiled() -> None:
 
 @pytest.mark.slow
 def test_a_constrained_motion_is_the_same() -> None:
-    from elastolink.runtime.systems.rod import rod_motion
+    from elastolink.runtime.constrained import constrained_motion
 
     overrides = {"model.formulation": "free_free", "model.modes": 2}
     plain = el.load_scene("beale_1992_flexible_rod", overrides=overrides).system()
-    one, other = rod_motion(plain, 0.25), rod_motion(compiled(plain), 0.25)
+    span = 0.25 * plain.period
+    one, other = (constrained_motion(rod, span=span) for rod in (plain, compiled(plain)))
     assert np.max(np.abs(one.q - other.q)) <= 1e-11 * np.max(np.abs(one.q))
 
 

@@ -209,7 +209,7 @@ def _require_reach(linkage: Linkage, sizes: Mapping[str, float], theta: Array) -
 def _in_closed_form(subject: Subject, slopes: dict[str, Array]) -> None:
     """Put the emitted derivatives in the place of those by the rules."""
     from ...derive.spec import ModelSpec
-    from ..systems.modules import find_module
+    from ..core.modules import find_module
 
     module = find_module(ModelSpec(subject.mechanism, "sensitivities")).module
     linkage = subject.linkage

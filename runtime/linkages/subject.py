@@ -179,7 +179,7 @@ class Subject:
     @cached_property
     def _module(self) -> Any:
         from ...derive.spec import ModelSpec
-        from ..systems.modules import find_module
+        from ..core.modules import find_module
 
         return find_module(ModelSpec(self.mechanism, "forces")).module
 

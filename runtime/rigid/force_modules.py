@@ -67,7 +67,7 @@ def force_module(machine: Machine, steady: bool) -> ForceModule:
 @lru_cache(maxsize=16)
 def _module(mechanism: str, drop: tuple[str, ...]) -> ForceModule:
     from ...derive.spec import ModelSpec
-    from ..systems.modules import find_module
+    from ..core.modules import find_module
 
     module = find_module(ModelSpec(mechanism, "forces", drop=drop)).module
     names = tuple(signature(module.forces).parameters)

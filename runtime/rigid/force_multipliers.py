@@ -65,7 +65,7 @@ def multipliers(
 @lru_cache(maxsize=3)
 def _module(mechanism: str) -> Any:
     from ...derive.spec import ModelSpec
-    from ..systems.modules import find_module
+    from ..core.modules import find_module
 
     return find_module(ModelSpec(mechanism, "multibody")).module
 

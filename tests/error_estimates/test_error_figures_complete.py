@@ -50,7 +50,6 @@ COVERED = {
     "multiplier_surfaces": "test_hill_case_errors.py",
     "natural_frequencies": "test_frequency_errors.py",
     "orbit_multipliers": "test_orbit_errors.py",
-    "overhang_frequencies": "test_overhang_errors.py",
     "periodic_orbit": "test_orbit_errors.py",
     "perturbation_boundaries": "test_perturbation_errors.py",
     "piecewise_approximation": "test_hill_case_errors.py",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.systems.rod import PolynomialBasis, TwoSegmentBasis
-from elastolink.runtime.systems.rod.overhang import overhang_roots
-from elastolink.runtime.systems.rod.segments import FACTORS
+from elastolink.runtime.systems.rod import PolynomialBasis, TwoSegmentBasis, overhang_roots
+from elastolink.runtime.systems.rod.polynomials import FACTORS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh

@@ -40,13 +40,12 @@ def problem(peers: Iterable[str], methods: Iterable[str] | None) -> Problem:
     one of collocation, both at 1e-13.  Peers get the accelerations of the emitted functions.
     """
     from ...scenes import load_scene
-    from ...systems.rod import rigid_state
-    from ...systems.rod.constrained import FreeFreeRod
+    from ...systems.rod import FreeFreeRod
 
     overrides = {"model.formulation": "free_free", "model.modes": 2}
     rod = cast(FreeFreeRod, load_scene("beale_1992_flexible_rod", overrides=overrides).system())
-    start = rigid_state(rod, 0.0)
-    times = np.linspace(0.0, rod.period, _EACH + 1, dtype=np.float64)
+    start = rod.undeformed(0.0)
+    times = np.linspace(0.0, 2.0 * np.pi / abs(rod.speed), _EACH + 1, dtype=np.float64)
     march = partial(constrained_motion, rod, samples=_EACH, guards=())
     truth = march(method="projection", rtol=_TIGHT).q
     again = march(method="collocation", rtol=_TIGHT).q
@@ -67,7 +66,7 @@ def problem(peers: Iterable[str], methods: Iterable[str] | None) -> Problem:
     ]
 
     def theirs(peer: str, tolerance: float) -> Work:
-        return lambda: _peer(peer, rod, start.q, start.qd, times, tolerance)
+        return lambda: _peer(peer, rod, *start, times, tolerance)
 
     absent = []
     for peer in peers:

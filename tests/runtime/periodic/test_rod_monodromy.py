@@ -87,7 +87,7 @@ def test_damping_is_never_taken_for_a_mirror_image():
     damped = turn(rod(damping=20.0), symplectic=False)
     assert not damped.mirrored
     skew = rod().with_terms(
-        el.runtime.families.Term("Kg", None, lambda t: np.sin(t)[:, None, None] * np.eye(3))
+        el.runtime.core.families.Term("Kg", None, lambda t: np.sin(t)[:, None, None] * np.eye(3))
     )
     assert not turn(skew, symplectic=True).mirrored
 

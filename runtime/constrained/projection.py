@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .equations import Array, Equations, NoConvergence, State, Step, StoppedEarly, Tolerance
+from .equations import SMALL, Array, Equations, NoConvergence, State, Step, StoppedEarly, Tolerance
 
 # Where SciPy ends.
 _TIGHTEST = 3e-14
@@ -40,7 +40,7 @@ def projection(
         np.concatenate([start.x, start.v]),
         end,
         rtol=max(tolerance.rtol, _TIGHTEST),
-        atol=tolerance.rtol * np.repeat([tolerance.place, tolerance.speed], n),
+        atol=tolerance.rtol * np.repeat([tolerance.place, SMALL * tolerance.speed], n),
         max_step=tolerance.longest,
     )
     state = start

@@ -12,7 +12,7 @@ from elastolink.runtime.constrained import consistent_state, constrained_motion
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems import free_free_rod
 
-SOME = [20, pytest.param(200, marks=pytest.mark.slow)]
+SOME = [10, pytest.param(100, marks=pytest.mark.slow)]
 
 
 def check(ratios):
@@ -43,7 +43,7 @@ def test_pendulums_at_any_tolerance(method, tightest, loosest, scenes):
     check(ratios)
 
 
-@pytest.mark.parametrize("scenes", [8, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [6, pytest.param(60, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
 def test_stiff_rods(rtol, scenes):
     """Some hundred radians of the fastest vibration; the truth is a run at 1e-12."""
@@ -84,7 +84,7 @@ def _still(q, t):
     return np.zeros(len(q))
 
 
-@pytest.mark.parametrize("scenes", [10, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [5, pytest.param(60, marks=pytest.mark.slow)])
 def test_forces_that_jump(scenes):
     """A mass on a spring with a force of constant size towards the middle: arcs of cosines."""
     rng = np.random.default_rng(9)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mpmath
 import numpy as np
+import pytest
 from elastolink.runtime.systems.rod import OverhangBasis
 from galerkin_integrals import galerkin_integrals
 from overhang_reference import DIGITS, mode_at, product
@@ -37,6 +38,7 @@ class Turned:
         return (ahead - 2 * here + behind) / self.STEP**2
 
 
+@pytest.mark.slow
 def test_all_four_integrals_in_many_digits():
     theta = 1.1
     found = galerkin_integrals(theta, 2, **ROD)

@@ -73,7 +73,7 @@ def test_the_pendulum_turns_as_its_elliptic_function(turns):
     assert np.max(gap) < 1e-14 * turns**2
 
 
-@pytest.mark.parametrize(("rtol", "start"), [(1e-6, 20.0), (1e-12, 20.0), (1e-9, 1.9), (1e-9, 2.1)])
+@pytest.mark.parametrize(("rtol", "start"), [(1e-6, 20.0), (1e-9, 1.9), (1e-9, 2.1)])
 def test_windows_over_many_turns(rtol, start):
     """Fast turns, and swings and turns that nearly stop at the top, which double errors often."""
     circle = Circle(gravity=1.0, start=start)

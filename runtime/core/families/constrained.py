@@ -191,13 +191,12 @@ class _AtState:
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
         passed = {name: self.given[name](vectors[0], time) for name in self.module.EXTERNAL}
         alone = time.ndim == 0 and all(vector.ndim == 1 for vector in vectors)
-        if alone and self._single is not None and not any(map(np.ndim, passed.values())):
+        if alone and self._single is not None:
             # Plain floats are five times faster than arrays of no dimension.
             function, places = self._single
             state = [number for vector in vectors for number in vector.tolist()]
-            numbers = {name: float(value) for name, value in passed.items()}  # type: ignore[arg-type]
             try:
-                return places.filled(function(*state, float(time), **numbers, **self.values))
+                return places.filled(function(*state, float(time), **passed, **self.values))
             except (OverflowError, ZeroDivisionError):
                 pass  # plain floats refuse what arrays return as infinite
         columns = [vector[..., i] for vector in vectors for i in range(vector.shape[-1])]

@@ -273,7 +273,7 @@ class _AtBlock:
         """Return a derivative of one mode as a function of coordinates and time."""
 
         def value(q: Array, t: Array) -> ArrayLike:
-            if q.ndim == 1 and np.ndim(t) == 0:
+            if q.ndim == 1 and (isinstance(t, float) or t.ndim == 0):
                 return self._single(float(q[2]), float(t))[order][index]
             return self._batch(q[..., 2], t)[order][..., index]
 

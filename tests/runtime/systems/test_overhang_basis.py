@@ -11,7 +11,7 @@ from elastolink.runtime.systems.rod import (
     overhang_roots,
 )
 from elastolink.runtime.systems.rod.overhang import root_count
-from overhang_reference import DIGITS, Drift, gauss, mode_at, naive_modes, product, root
+from overhang_reference import DIGITS, Drift, gauss, naive_modes, root
 from overhang_truth import NAMED
 
 EPS = float(np.finfo(float).eps)
@@ -116,12 +116,9 @@ def test_slope_and_moment_are_continuous_at_the_block():
             assert np.max(np.abs(beyond - before) / size) < 1e-10
 
 
-@pytest.mark.parametrize(
-    "place",
-    [0.31, *(pytest.param(p, marks=pytest.mark.slow) for p in (NAMED["a node of slope"], 0.95))],
-)
-def test_drift_against_differences_in_many_digits(place):
+def test_drift_against_differences_in_many_digits():
     """A central difference with the step 1e-12 errs by 1e-24 times the third derivative."""
+    place = NAMED["a node of slope"]
     basis, xi = OverhangBasis(3), np.array([place])
     x = np.array([0.1, 0.7 * place, 0.5 * (1 + place), 1.0])
     for order in (0, 2):
@@ -132,19 +129,6 @@ def test_drift_against_differences_in_many_digits(place):
                 exact = [float(moved.side(mpmath.mpf(eta), order, eta > place)) for eta in x]
             size = start ** (order + 1)
             np.testing.assert_allclose(found[:, mode], exact, rtol=0, atol=1e-13 * size)
-
-
-def test_rates_of_roots_against_differences_in_many_digits():
-    basis = OverhangBasis(6)
-    for place in (0.12, 0.43, NAMED["a node of slope"], 0.8, 0.999):
-        xi = np.array([place])
-        for start, rate in zip(basis.roots(xi)[0], basis.root_rates(xi)[0], strict=True):
-            with mpmath.workdps(50):
-                step = mpmath.mpf(10) ** -15
-                ahead, behind = (root(place + k * step, start) for k in (1, -1))
-                exact = (ahead - behind) / (2 * step)
-            # The rate changes by beta^2 times what round-off changes in the place.
-            assert abs(float(exact) - rate) < 8 * EPS * start**2
 
 
 # ---------------------------------------------------------------- integrals
@@ -189,26 +173,6 @@ def test_closed_forms_against_quadrature(place):
         power = power_of_root(name) / 2
         size = np.outer(beta**power, beta**power) if found.ndim == 2 else np.ones_like(beta)
         assert np.max(np.abs(found - exact) / size) < 1e-12, name
-
-
-@pytest.mark.slow
-def test_closed_forms_against_many_digits():
-    place, basis = 0.43, OverhangBasis(3)
-    xi = np.array([place])
-    roots = basis.roots(xi)[0]
-    with mpmath.workdps(DIGITS):
-        at = mpmath.mpf(place)
-        kinds = {
-            "e": [mode_at(at, float(start)) for start in roots],
-            "f": [Drift(at, float(start)) for start in roots],
-        }
-        for name, ((one, m), (two, n)) in PRODUCTS.items():
-            weight = (lambda eta: (1 - eta**2) / 2) if name == "tension" else (lambda eta: 1)
-            found = basis.array(name, xi)[0]
-            for i, j in ((0, 0), (2, 1)):
-                exact = product(kinds[one][i], kinds[two][j], (m, n), weight)
-                size = float(roots[i] * roots[j]) ** (power_of_root(name) / 2)
-                assert abs(float(exact) - found[i, j]) < 40 * EPS * size, (name, i, j)
 
 
 def test_integrals_agree_where_the_block_is_at_the_tip():

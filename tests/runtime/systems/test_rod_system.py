@@ -161,8 +161,9 @@ def test_a_rigid_turn_sees_the_frame_alone(drop):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("damping", 500.0), pytest.param("internal_damping", 1.0, marks=pytest.mark.slow)],
+    [("damping", 500.0), ("internal_damping", 1.0)],
 )
+@pytest.mark.slow
 def test_canonical_form_with_d_is_the_second_order_form(name, value):
     numbers = {**NUMBERS, "damping": 0.0, "internal_damping": 0.0, name: value}
     system, speed = rod_system(PlainBasis(2), **numbers), 100.0
@@ -198,6 +199,7 @@ def test_canonical_form_with_d_is_the_second_order_form(name, value):
     assert np.max(np.abs(other.y[:2, -1] * scale[:2] - truth)) > 1e-4 * np.max(np.abs(truth))
 
 
+@pytest.mark.slow
 def test_energy_of_a_damped_motion_is_balanced():
     """The balance holds with D, and fails where the motion had D and the balance has not."""
     system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 400.0})

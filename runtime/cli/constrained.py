@@ -11,7 +11,8 @@ from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..constrained import ConstrainedMultipliers, PeriodicOrbit
+    from ..constrained.multipliers import ConstrainedMultipliers
+    from ..constrained.orbits import PeriodicOrbit
     from ..scenes import Scene
     from ..systems.rod import FreeFreeRod
 

@@ -255,14 +255,14 @@ class _Astray:
     ----------
     x, v : ndarray, shape (n,)
         At the beginning.
-    carried, own : ndarray, shape (s + 2, n)
+    carried, local : ndarray, shape (s + 2, n)
         Legendre terms of the accelerations that this brings, and those that the window adds.
     """
 
     x: Array
     v: Array
     carried: Array
-    own: Array
+    local: Array
 
     @classmethod
     def of(cls, window: _Window, after: State, x: Array, v: Array) -> _Astray:
@@ -276,17 +276,17 @@ class _Astray:
             np.tensordot(points.values, slope, axes=1) for slope in (slopes.by_x, slopes.by_v)
         )
         place, speed = h * h * (points.terms_twice @ lacking), h * (points.terms_once @ lacking)
-        own = points.smooth @ (by_x @ place[..., None] + by_v @ speed[..., None])[..., 0]
+        local = points.smooth @ (by_x @ place[..., None] + by_v @ speed[..., None])[..., 0]
         ahead = x + h * points.c[:, None] * v
         carried = (slopes.by_x @ ahead[..., None])[..., 0] + slopes.by_v @ v
-        both = np.tensordot(points.series, window.unwind(np.stack([carried, own], -1)), axes=1)
-        carried, own = np.moveaxis(both, -1, 0)
-        lacking[:-2] += own
+        both = np.tensordot(points.series, window.unwind(np.stack([carried, local], -1)), axes=1)
+        carried, local = np.moveaxis(both, -1, 0)
+        lacking[:-2] += local
         return cls(x, v, np.concatenate([carried, np.zeros((2, len(x)))]), lacking)
 
     def added(self, window: _Window) -> float:
         """Return what the window itself adds by its end, relative."""
-        return window.units.of(*_gain(window.h, self.own))
+        return window.units.of(*_gain(window.h, self.local))
 
     def at_end(
         self, equations: Equations, window: _Window, after: State
@@ -296,10 +296,11 @@ class _Astray:
         Where a force jumps the sign of what a window adds is not known, nor that of what its
         iteration left: all is taken to go one way.
         """
-        (x, v), own, units = _gain(window.h, self.carried), _gain(window.h, self.own), window.units
+        (x, v), local = _gain(window.h, self.carried), _gain(window.h, self.local)
+        units = window.units
         x, v = self.x + window.h * self.v + x, self.v + v
-        x = x + np.copysign(np.abs(own[0]) + window.left * units.place, x)
-        v = v + np.copysign(np.abs(own[1]) + window.left * units.speed, v)
+        x = x + np.copysign(np.abs(local[0]) + window.left * units.place, x)
+        v = v + np.copysign(np.abs(local[1]) + window.left * units.speed, v)
         try:
             x, v = equations.nearest(after.t, after.x + x, after.v + v)
         except NoConvergence:
@@ -319,7 +320,7 @@ def _step(window: _Window, after: State, astray: _Astray | None) -> Step:
     if astray is not None:
         along = astray.x + h * points.all[:, None] * astray.v
         along = np.abs(along + h * h * (points.terms_twice @ astray.carried))
-        along += np.abs(h * h * (points.terms_twice @ astray.own))
+        along += np.abs(h * h * (points.terms_twice @ astray.local))
         error = np.max(along, axis=0) + window.left * window.units.place
     inner = before.t + h * points.c[_EACH - 1 : -1 : _EACH]
     return Step(before, after, at, window.units.place, inner, error)

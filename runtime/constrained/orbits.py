@@ -674,8 +674,8 @@ def _checked(
             raise bad("q, qd", "none", "a guess: the system has no reference motion", "give both")
         even = np.arange(_SAMPLES) * (period / _SAMPLES)
         q, qd = (
-            own if given is None else given
-            for given, own in zip((q, qd), system.reference(even), strict=True)
+            reference if given is None else given
+            for given, reference in zip((q, qd), system.reference(even), strict=True)
         )
     gain = numbers("advance", system.advance if advance is None else advance)
     states = [_states(name, values, n) for name, values in (("q", q), ("qd", qd))]
@@ -768,8 +768,8 @@ def _first(system: Constrained, guess: _Guess) -> tuple[Shooting, Ring]:
     return Shooting(equations, mean), replace(ring, a=spline(ring.times, 2))
 
 
-def _no_guess(found: str) -> Exception:
-    return bad("guess", found, "a motion that stays finite for a period", "give a better one")
+def _no_guess(reason: str) -> Exception:
+    return bad("guess", reason, "a motion that stays finite for a period", "give a better one")
 
 
 def _followed(system: Constrained, guess: _Guess, samples: int) -> _Guess:
@@ -798,7 +798,7 @@ def frozen_rates(equations: Equations, guess: _Guess, rate: float) -> Array:
 
 
 def _steps(rates: Array, period: float) -> int:
-    """Return how many steps the fastest motion asks for."""
+    """Return how many steps the fastest motion needs."""
     fastest = float(np.max(rates, initial=0.0))
     wanted = np.ceil(fastest * period / _PHASE)
     if not wanted <= _MOST_STEPS:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..constrained import ConstrainedMotion, constrained_motion
+from ..constrained import constrained_motion
 from ..core.errors import LinearRangeWarning
 from ..core.families import Array
 from ..scenes import load_scene
@@ -37,6 +37,8 @@ from .style import COLOURS, legend_below
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from ..constrained.motion import ConstrainedMotion
 
 # The free-free equations as printed have the frame term, and no tension.
 _FRAME = ("tension",)

@@ -154,8 +154,8 @@ def _first_frequency(numbers: dict[str, float]) -> float:
     from .rod.overhang import OverhangBasis
 
     rod = {name: numbers[name] for name in ("length", "bending_stiffness", "mass_per_length")}
-    found = OverhangBasis(1).frequencies(numbers["frame"] / numbers["length"], **rod)
-    return float(found.frequencies[0, 0])
+    first = OverhangBasis(1).frequencies(numbers["frame"] / numbers["length"], **rod)
+    return float(first.frequencies[0, 0])
 
 
 def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:

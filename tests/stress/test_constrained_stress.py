@@ -12,10 +12,10 @@ from elastolink.runtime.constrained import (
     METHODS,
     consistent_state,
     constrained_motion,
-    constraint_norms,
     orbit_multipliers,
     periodic_orbit,
 )
+from elastolink.runtime.constrained.equations import constraint_norms
 from elastolink.runtime.core.errors import BadInput, RedundantConstraints
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems import free_free_rod

@@ -165,14 +165,14 @@ class FreeFreeModes:
         b, p, ends = self.roots, self.parity, self.end_slopes
         rows, columns = np.triu_indices(self.size, 1)
         pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
-        found = _slope_products(*pairs)
+        across = _slope_products(*pairs)
         plain, second = _slope_squares(ends)
-        made = []
-        for products, squares in zip(found, (plain, np.zeros(self.size), second), strict=True):
+        integrals = []
+        for products, squares in zip(across, (plain, np.zeros(self.size), second), strict=True):
             whole = np.diag(squares)
             whole[rows, columns] = whole[columns, rows] = products
-            made.append(whole)
-        return made[0], made[1], made[2]
+            integrals.append(whole)
+        return integrals[0], integrals[1], integrals[2]
 
     def tension(self) -> Array:
         """Return ``int (1 - eta^2)/2 psi_i' psi_j'``, the tension of a rod that turns about a pin.

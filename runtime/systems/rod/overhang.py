@@ -127,9 +127,9 @@ def overhang_roots(place: ArrayLike, modes: int) -> Array:
     where = np.repeat(xi, modes)
     # The residual is positive below the first root and changes its sign at each.
     sign = np.tile(1.0 - 2.0 * (np.arange(modes) % 2), len(xi))
-    found = (lower + upper) / 2
-    active = np.arange(found.size)
-    beta = found.copy()
+    roots = (lower + upper) / 2
+    active = np.arange(roots.size)
+    beta = roots.copy()
     for _ in range(_NEWTON_STEPS):
         residual, slope = _characteristic(beta, where[active])
         above = residual * sign[active] > 0
@@ -141,13 +141,13 @@ def overhang_roots(place: ArrayLike, modes: int) -> Array:
         step = np.where((step >= low) & (step <= high), step, (low + high) / 2)
         # The last correction is quadratically small before the next one, but for round-off.
         done = (np.abs(correction) <= _LAST_STEP * beta) | (high - low <= 4 * _ROUND * beta)
-        found[active] = np.where(done, np.clip(beta - correction, low, high), step)
+        roots[active] = np.where(done, np.clip(beta - correction, low, high), step)
         going = ~done
         if not np.any(going):
             break
         lower[active], upper[active] = low, high
         active, beta = active[going], step[going]
-    return found.reshape(len(xi), modes)
+    return roots.reshape(len(xi), modes)
 
 
 def root_count(place: ArrayLike, beta: ArrayLike) -> NDArray[np.int64]:
@@ -189,7 +189,7 @@ def root_count(place: ArrayLike, beta: ArrayLike) -> NDArray[np.int64]:
 class OverhangFrequencies(Result):
     """Natural frequencies of the rod with the block held still, over the block's place.
 
-    ``error`` has the shape of ``frequencies``: the absolute figure [rad/s] from round-off.
+    ``error`` has the shape of ``frequencies``: the absolute error [rad/s] from round-off.
 
     Attributes
     ----------
@@ -227,7 +227,7 @@ class OverhangFrequencies(Result):
 
 @dataclass(frozen=True)
 class _CountCheck:
-    """Counts the roots on both sides of each one found."""
+    """Counts the roots on both sides of each."""
 
     place: Array
     roots: Array
@@ -270,10 +270,10 @@ class _Modes:
     def _diagonal(self, name: str) -> None:
         """Keep what is diagonal because the modes are orthogonal, and of unit square."""
         nt, n = self.roots.shape
-        found: Array = np.zeros((nt, n, n))
+        matrix: Array = np.zeros((nt, n, n))
         index = np.arange(n)
-        found[:, index, index] = 1.0 if name == "overlap" else self.roots**4
-        self._keep(name, found)
+        matrix[:, index, index] = 1.0 if name == "overlap" else self.roots**4
+        self._keep(name, matrix)
 
     def _integrals(self) -> None:
         """Keep all other integrals, from the emitted closed forms."""
@@ -294,13 +294,13 @@ class _Modes:
             of_pair = dict(zip(emitted.RETURNS["pair_integrals"], values, strict=True))
         index = np.arange(n)
         for name, sign in _PAIRS.items():
-            found: Array = np.zeros((nt, n, n))
+            matrix: Array = np.zeros((nt, n, n))
             if name in own:  # of the others, the modes' unit square leaves nothing
-                found[:, index, index] = own[name]
+                matrix[:, index, index] = own[name]
             if of_pair:
-                found[:, first, second] = of_pair[f"{name}_12"]
-                found[:, second, first] = sign * of_pair[f"{name}_12"]
-            self._keep(name, found)
+                matrix[:, first, second] = of_pair[f"{name}_12"]
+                matrix[:, second, first] = sign * of_pair[f"{name}_12"]
+            self._keep(name, matrix)
 
     def _keep(self, name: str, array: Array) -> None:
         array.setflags(write=False)
@@ -489,7 +489,7 @@ class OverhangBasis:
         eta = require_points(x)
         xi, beta = modes.place[:, None, None], modes.roots[:, None, :]
         eta = eta[None, :, None]
-        found = []
+        sides = []
         for function, point, wanted in zip(
             both, (np.minimum(eta, xi), np.maximum(eta, xi)), names, strict=True
         ):
@@ -497,8 +497,8 @@ class OverhangBasis:
             # Far from the tip of a high mode the form that holds near it, which is not chosen
             # there, divides by an exponential that has underflowed.
             with np.errstate(divide="ignore", invalid="ignore"):
-                found.append(function(beta, point, xi, *factors)[which])
-        return np.asarray(np.where(eta <= xi, *found))
+                sides.append(function(beta, point, xi, *factors)[which])
+        return np.asarray(np.where(eta <= xi, *sides))
 
     def _modes(self, place: Array) -> _Modes:
         xi = require_places(place)

@@ -224,8 +224,10 @@ def jacobi(size: int, x: Array, upper: int, lower: int) -> tuple[Array, Array, A
             ]
         )
     norms = np.array([_inverse_norm(k, a, b) for k in range(size)])
-    found = [np.stack([row[m] for row in rows[:size]], axis=-1) * norms * 2**m for m in range(4)]
-    return found[0], found[1], found[2], found[3]
+    value, first, second, third = (
+        np.stack([row[m] for row in rows[:size]], axis=-1) * norms * 2**m for m in range(4)
+    )
+    return value, first, second, third
 
 
 def _inverse_norm(k: int, a: int, b: int) -> float:
@@ -347,22 +349,22 @@ def _through_table(size: int, orthogonal: bool, name: str) -> Array:
 
 def _chebyshev(x: Array, count: int) -> Array:
     """Return the first Chebyshev polynomials, shape ``(nt, count)``."""
-    found = [np.ones_like(x), x]
+    terms = [np.ones_like(x), x]
     for _ in range(count - 2):
-        found.append(2 * x * found[-1] - found[-2])
-    return np.stack(found[:count], axis=-1)
+        terms.append(2 * x * terms[-1] - terms[-2])
+    return np.stack(terms[:count], axis=-1)
 
 
 def _polynomials(size: int, orthogonal: bool, eta: Array) -> tuple[Array, Array, Array, Array]:
     """Return P_k and three derivatives, each of shape ``(*eta.shape, size)``."""
     if orthogonal:
         return jacobi(size, eta, 0, 1)
-    found = [np.stack([eta**k for k in range(size)], axis=-1)]
+    derivatives = [np.stack([eta**k for k in range(size)], axis=-1)]
     for _ in range(3):
-        before = found[-1]
-        found.append(np.zeros_like(before))
-        found[-1][..., 1:] = before[..., :-1] * np.arange(1, size)
-    return found[0], found[1], found[2], found[3]
+        before = derivatives[-1]
+        derivatives.append(np.zeros_like(before))
+        derivatives[-1][..., 1:] = before[..., :-1] * np.arange(1, size)
+    return derivatives[0], derivatives[1], derivatives[2], derivatives[3]
 
 
 # Two polynomials with one slope -------------------------------------------------------------------
@@ -459,8 +461,8 @@ class TwoSegmentBasis:
             for side, length in ((LEFT, xi), (RIGHT, 1 - xi))
             for _, factor in _weights(name, side, xi, xi)
         ]
-        found = np.stack(parts, axis=-1) @ table.reshape(len(table), -1)
-        return found.reshape(len(xi), *table.shape[1:])
+        values = np.stack(parts, axis=-1) @ table.reshape(len(table), -1)
+        return values.reshape(len(xi), *table.shape[1:])
 
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:
         return _segment_samples(self.size, side, s, place)
@@ -502,14 +504,14 @@ def _weights(name: str, side: str, s: Array, xi: Array) -> tuple[tuple[Array, Ar
 def _segment_table(size: int, name: str) -> Array:
     """Return the constant arrays, those of the bay first, for sides of length 1."""
     s, quadrature = nodes(2 * size + 8)
-    found = []
+    arrays = []
     for side, place in ((LEFT, 1), (RIGHT, 0)):
         samples = _segment_samples(size, side, s[None, :], np.array([[place]], s.dtype))
-        found += [
+        arrays += [
             products(name, samples, (weight * quadrature)[None, :])[0]
             for weight, _ in _weights(name, side, s, s)
         ]
-    table = np.stack(found).astype(np.float64)
+    table = np.stack(arrays).astype(np.float64)
     table.setflags(write=False)
     return table
 

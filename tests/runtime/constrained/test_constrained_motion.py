@@ -14,7 +14,7 @@ from elastolink.runtime.constrained import METHODS, consistent_state, constraine
 from elastolink.runtime.constrained.collocation import nodes
 from elastolink.runtime.constrained.equations import Equations, NoConvergence
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, RedundantConstraints
-from elastolink.runtime.core.families import Constrained
+from elastolink.runtime.core.families import Constrained, Guard
 from elastolink.runtime.systems import free_free_rod
 
 CIRCLE = Circle(oblique=np.array([[1.0, 0.3], [0.0, 0.02]]), pivot=np.array([0.4, -0.2]), row=50.0)
@@ -218,7 +218,7 @@ def test_a_guard_stops_where_it_is_met(method):
     """The swinging bob is to stay left of x = 0.4: where sin(angle) = 0.4 it stops."""
     circle = Circle()
     guards = (
-        el.runtime.constrained.Guard(lambda t, q, qd: 0.9 - q[0], "the bob struck the far wall"),
+        Guard(lambda t, q, qd: 0.9 - q[0], "the bob struck the far wall"),
         (lambda t, q, qd: 0.4 - q[0], "the bob struck the wall"),
     )
     found = constrained_motion(

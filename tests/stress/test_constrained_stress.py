@@ -74,10 +74,10 @@ def test_the_pendulum_turns_as_its_elliptic_function(turns):
 
 
 @pytest.mark.parametrize(("rtol", "start"), [(1e-6, 20.0), (1e-9, 1.9), (1e-9, 2.1)])
-def test_windows_over_many_turns(rtol, start):
+def test_windows_of_collocation_over_hundreds_of_turns(rtol, start):
     """Fast turns, and swings and turns that nearly stop at the top, which double errors often."""
     circle = Circle(gravity=1.0, start=start)
-    span = 80 * 2 * np.pi / 20 if start == 20.0 else 50.0
+    span = 300 * 2 * np.pi / 20 if start == 20.0 else 50.0
     found = constrained_motion(circle.system, *circle.state, span, rtol=rtol, samples=40)
     found.require()
     q, _ = circle.exact(found.time)

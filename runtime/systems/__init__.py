@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
+    from ..core.families.modal_damping import with_modal_damping
     from ..core.modules import EmittedModule, find_module
     from .assembly import assemble
-    from .modal_damping import with_modal_damping
     from .rod.floating import free_free_rod
     from .rod.linear import rod_system
 
@@ -25,7 +25,7 @@ _PUBLIC = {
     "find_module": ".core.modules",
     "free_free_rod": "rod.floating",
     "rod_system": "rod.linear",
-    "with_modal_damping": "modal_damping",
+    "with_modal_damping": ".core.families.modal_damping",
 }
 
 __all__ = [

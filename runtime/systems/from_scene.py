@@ -9,10 +9,10 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.families import Array, Constrained, LinearPeriodic
+from ..core.families.modal_damping import with_modal_damping
 from ..core.modules import find_module
 from ..core.periodic_function import PeriodicFunction
 from .assembly import assemble
-from .modal_damping import with_modal_damping
 
 if TYPE_CHECKING:
     from ..scenes import Scene

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic, Term
+from ..errors import bad
+from .linear_periodic import Array, LinearPeriodic, Term
 
 
 def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:

@@ -116,7 +116,6 @@ def test_what_is_required_and_declared():
         "data",
         "benchmark",
         "cluster",
-        "dae",
         "fatigue",
         "dev",
     }

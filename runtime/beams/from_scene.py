@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
 from ..core.families import LinearPeriodic
-from ..systems.modal_damping import with_modal_damping
+from ..core.families.modal_damping import with_modal_damping
 from .frames import frame
 from .inextensible import without_stretching
 from .linear import linear_system

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import argparse
 import sys
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 from ..core.errors import bad
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..constrained import ConstrainedMultipliers, PeriodicOrbit
+    from ..constrained.multipliers import ConstrainedMultipliers
+    from ..constrained.orbits import PeriodicOrbit
     from ..scenes import Scene
     from ..systems.rod import FreeFreeRod
+
+# Times per revolution.
+_SAMPLES = 360
 
 
 def is_constrained(scene: Scene) -> bool:
@@ -45,10 +50,9 @@ def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
 
 def stability(options: argparse.Namespace, scene: Scene) -> int:
     """Find the periodic motion by shooting, and the multipliers about it."""
-    from ..constrained import orbit_multipliers
-    from ..systems.rod import rod_orbit
+    from ..constrained import orbit_multipliers, periodic_orbit
 
-    orbit = rod_orbit(at_speed(options, scene))
+    orbit = periodic_orbit(at_speed(options, scene))
     if not orbit.converged:
         return opt.finish(options, orbit, [f"no periodic motion: {orbit.message}"])
     result = orbit_multipliers(orbit)
@@ -80,8 +84,7 @@ def _verdict(orbit: PeriodicOrbit, found: ConstrainedMultipliers) -> str:
 
 def simulate(options: argparse.Namespace, scene: Scene) -> int:
     """Integrate the constrained equations from the undeformed rod."""
-    from ..constrained.steppers import METHODS
-    from ..systems.rod.motion import rod_motion
+    from ..constrained import METHODS, constrained_motion
 
     for name in ("initial", "steps"):
         if getattr(options, name) is not None:
@@ -91,7 +94,16 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
     if method not in METHODS:
         raise bad("--method", repr(method), f"one of {sorted(METHODS)}", "choose one")
     rod = at_speed(options, scene)
-    result = rod_motion(rod, options.revolutions, method=method, progress=sys.stderr.isatty())
+    revolutions = options.revolutions
+    if not 0 < revolutions < inf:
+        raise bad("--revolutions", revolutions, "a finite number above 0", "correct it")
+    result = constrained_motion(
+        rod,
+        span=revolutions * (2.0 * pi / abs(rod.speed)),
+        method=method,
+        samples=max(1, round(_SAMPLES * revolutions)),
+        progress=sys.stderr.isatty(),
+    )
     norms = [
         (name, f"{float(getattr(result, f'{name}_norm').max()):.2e}")
         for name in ("position", "velocity", "acceleration")

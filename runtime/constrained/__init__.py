@@ -1,27 +1,23 @@
-"""Constrained systems: consistent initial values, motion on the constraints, its stability."""
+"""Constrained systems: consistent initial values, motion on the constraints, its stability.
+
+- ``consistent_state`` moves a state onto the constraints.
+- ``constrained_motion`` integrates, by one of ``METHODS``.
+- ``periodic_orbit`` computes a motion that repeats, ``orbit_multipliers`` its stability.
+
+All take a :class:`~elastolink.runtime.core.families.Constrained`, such as ``free_free_rod`` makes.
+"""
 
 from __future__ import annotations
 
-from .consistent import ConsistentState, consistent_state
-from .guards import Guard
-from .motion import constrained_motion
-from .multipliers import ConstrainedMultipliers, orbit_multipliers
-from .norms import constraint_norms
-from .orbits import PeriodicOrbit, periodic_orbit
-from .result import ConstrainedMotion
-from .steppers import motion_with_variations, tangent_basis
+from .consistent import consistent_state
+from .motion import METHODS, constrained_motion
+from .multipliers import orbit_multipliers
+from .orbits import periodic_orbit
 
 __all__ = [
-    "ConsistentState",
-    "ConstrainedMotion",
-    "ConstrainedMultipliers",
-    "Guard",
-    "PeriodicOrbit",
+    "METHODS",
     "consistent_state",
     "constrained_motion",
-    "constraint_norms",
-    "motion_with_variations",
     "orbit_multipliers",
     "periodic_orbit",
-    "tangent_basis",
 ]

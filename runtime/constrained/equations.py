@@ -1,198 +1,428 @@
-"""What an integrator asks of a constrained system at one state, in scaled variables."""
+"""The equations of a constrained system in scaled coordinates, at one state or at many."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.errors import bad
 from ..core.families import Constrained
 from ..core.families.multipliers import kkt_matrix, scaling
 
 Array = NDArray[np.float64]
 
-# Newton iterations on the constraints before a state counts as out of reach.
-_MOST = 25
+# Part of the largest scaled coordinate below which the tolerance of one is absolute.
+SMALL = 0.01
+# Newton corrections of positions, and halvings of one that would raise the defect.
+_CORRECTIONS, _HALVINGS = 60, 12
+# Newton squares the defect: a correction of this relative size leaves none ...
+_LAST = 1e-9
+# ... and one below this that no longer falls is round-off.
+_ROUND_OFF = 1e-12
 _EPS = float(np.finfo(float).eps)
+# Relative differences of the equations where their derivatives were not emitted: about the square
+# root of the rounding, where rounding and second derivatives do equal harm.
+_APART = 2.0**-20
 
 
 class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
-    """A stage has no solution near its predictor, or one that is not finite."""
+    """The equations have no solution near a state, or one that is not finite."""
 
 
 @dataclass(frozen=True)
 class State:
-    """A state that meets the constraints at all three levels.
+    """A state that meets the constraints at all three levels, scaled.
 
     Attributes
     ----------
     t : float
         Time [s].
-    q, qd, qdd : ndarray, shape (n,)
+    x, v, a : ndarray, shape (n,)
         Coordinates and their time derivatives.
-    multipliers : ndarray, shape (k,)
-        Multipliers.
     """
 
     t: float
-    q: Array
-    qd: Array
-    qdd: Array
+    x: Array
+    v: Array
+    a: Array
+
+
+@dataclass(frozen=True)
+class Step:
+    """One accepted step of a motion, scaled.
+
+    Attributes
+    ----------
+    before, after : State
+        Its ends.
+    at : callable
+        Times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
+        constraints.
+    reach : ndarray, shape (n,)
+        Largest size of the coordinates inside.
+    inner : ndarray
+        Times inside at which to look for what stops a motion.
+    error : ndarray, shape (n,), or None
+        Largest error estimate of the coordinates inside; None where the method has none.
+    """
+
+    before: State
+    after: State
+    at: Callable[[Array], tuple[Array, Array]]
+    reach: Array
+    inner: Array
+    error: Array | None = None
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How exact the steps are to be.
+
+    Attributes
+    ----------
+    rtol : float
+        Relative tolerance of the error of one step.
+    place, speed : float
+        Sizes of scaled coordinates and velocities that are added to their own ones.
+    longest : float
+        Longest step of an explicit method [s].
+    """
+
+    rtol: float
+    place: float
+    speed: float
+    longest: float = np.inf
+
+
+class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is
+    """An integrator cannot go on; the message says why."""
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Accelerations at states, and how they vary: ``da = by_x dx + by_v dv``; scaled.
+
+    The constraints hold at acceleration level for every neighbour, whether or not it meets them at
+    the levels below.
+
+    Attributes
+    ----------
+    a : ndarray, shape (*batch, n)
+        Accelerations.
+    multipliers : ndarray, shape (*batch, k)
+        Multipliers.
+    by_x, by_v : ndarray, shape (*batch, n, n)
+        Derivatives of the accelerations by coordinates and velocities.
+    terms, variations : mapping
+        Arrays of the dynamics and of their variation, not scaled; the latter empty where the
+        system has none.
+    """
+
+    a: Array
     multipliers: Array
+    by_x: Array
+    by_v: Array
+    terms: Mapping[str, Array]
+    variations: Mapping[str, Array]
 
 
 class Equations:
-    """A constrained system with one scaling for a whole motion.
+    """A constrained system in coordinates of unit inertia, with constraint rows of unit length.
 
-    Coordinates are measured by their inertia and constraint rows by their length, in powers of
-    two, so that one small matrix of entries near 1 serves accelerations and projections.
+    The coordinates are ``q = columns x`` and the constraints ``rows Phi``, by powers of two, so
+    that scaling is exact and one matrix of entries near 1 serves accelerations and projections.
 
     Parameters
     ----------
     system : Constrained
         The system; its parameters are single numbers.
-    q, qd : ndarray, shape (n,)
-        Where the scaling is taken.
-    t : float
-        Time there [s].
+    q, qd : ndarray, shape (*batch, n)
+        Where masses and rows are measured: at their largest.
+    t : ndarray, shape batch
+        Times there [s].
+
+    Attributes
+    ----------
+    evaluations : int
+        States at which the dynamics were evaluated.
     """
 
-    def __init__(self, system: Constrained, q: Array, qd: Array, t: float) -> None:
-        self.system = system
-        self.n, self.k = system.size, system.constraints
-        a = system.dynamics(q, qd, t)
-        self.columns, self.rows = scaling(a["mass"], a["jacobian"])
-        self.scale = np.concatenate([self.columns, self.rows])
-        self.outer = self.scale[:, None] * self.scale
+    def __init__(self, system: Constrained, q: Array, qd: Array, t: float | Array) -> None:
+        self.system, self.n, self.k = system, system.size, system.constraints
+        at = system.dynamics(q, qd, t)
+        columns, rows = scaling(at["mass"], at["jacobian"])
+        lead = tuple(range(columns.ndim - 1))
+        self.columns: Array = np.min(columns, axis=lead)
+        self.rows: Array = np.min(rows, axis=lead)
+        self._scale = np.concatenate([self.columns, self.rows])
+        self._outer = self._scale[:, None] * self._scale
         self.evaluations = 0
 
-    def terms(self, t: float, q: Array, qd: Array) -> Mapping[str, Array]:
-        """Return the arrays of the dynamics at a state."""
-        self.evaluations += 1
-        return self.system.dynamics(q, qd, t)
+    def terms(self, t: float | Array, x: Array, v: Array) -> Mapping[str, Array]:
+        """Return the arrays of the dynamics, not scaled."""
+        self.evaluations += x.size // self.n
+        return self.system.dynamics(x * self.columns, v * self.columns, t)
 
-    def matrix(self, a: Mapping[str, Array]) -> Array:
-        """Return the scaled matrix of accelerations and multipliers."""
+    def accelerations(self, t: float | Array, x: Array, v: Array) -> tuple[Array, Array]:
+        """Return accelerations and multipliers.
+
+        Raises
+        ------
+        NoConvergence
+            If they do not exist.
+        """
+        return self._accelerations(self.terms(t, x, v))[1:]
+
+    def _accelerations(self, at: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+        """Return the scaled matrix, accelerations and multipliers."""
+        matrix = self._outer * kkt_matrix(at["mass"], at["jacobian"])
+        right = np.concatenate([at["forces"] - at["rest"], at["gamma"]], axis=-2)
+        both = solved(matrix, self._scale[:, None] * right)[..., 0]
+        return matrix, both[..., : self.n], both[..., self.n :]
+
+    def linearised(self, t: Array, x: Array, v: Array) -> Linearised:
+        """Return accelerations and their derivatives by the state.
+
+        With ``J = Phi_q`` the variation of a motion obeys, as emitted from the Lagrangian::
+
+            M dqdd + D dqd + K dq = J^T dlam,      J dqdd + 2 Jd dqd + Jdd dq = 0.
+
+        Where the system has no variational equations, differences stand for them.
+
+        Raises
+        ------
+        NoConvergence
+            If the accelerations do not exist.
+        """
+        n, columns, rows = self.n, self.columns, self.rows
+        at = self.terms(t, x, v)
+        matrix, a, multipliers = self._accelerations(at)
+        varied: Mapping[str, Array] = {}
+        right = np.empty((*matrix.shape[:-1], 2 * n))
+        if self.system.variations is None:
+            self._differences(t, x, v, at, a, multipliers, right)
+        else:
+            states = (x * columns, v * columns, a * columns, multipliers * rows)
+            varied = self.system.variations(*states, t)
+            right[..., :n, :n] = varied["stiffness"]
+            right[..., :n, n:] = varied["damping"]
+            right[..., n:, :n] = varied["jacobian_acceleration"]
+            right[..., n:, n:] = 2.0 * varied["jacobian_rate"]
+            right *= self._scale[:, None] * np.concatenate([columns, columns])
+        slopes = -solved(matrix, right)
+        return Linearised(a, multipliers, slopes[..., :n, :n], slopes[..., :n, n:], at, varied)
+
+    def _differences(
+        self,
+        t: Array,
+        x: Array,
+        v: Array,
+        at: Mapping[str, Array],
+        a: Array,
+        multipliers: Array,
+        right: Array,
+    ) -> None:
+        """Fill in how the equations vary with accelerations and multipliers held."""
         n = self.n
-        jacobian = a["jacobian"]
-        matrix = np.zeros((n + self.k, n + self.k))
-        matrix[:n, :n] = a["mass"]
-        matrix[:n, n:] = -jacobian.T
-        matrix[n:, :n] = jacobian
-        matrix *= self.outer
-        return matrix
+        wide = float(np.max(np.abs(x), initial=0.0)) or 1.0
+        fast = float(np.max(np.abs(v), initial=0.0)) or wide
+        steps = _APART * np.exp2(np.round(np.log2([wide, fast])))
+        lead = (2 * n, *(1,) * (x.ndim - 1), n)
+        change = np.eye(2 * n)
+        places = x + steps[0] * change[:, :n].reshape(lead)
+        speeds = v + steps[1] * change[:, n:].reshape(lead)
+        away = self.terms(np.broadcast_to(t, places.shape[:-1]), places, speeds)
+        defect = self._defect(away, a, multipliers) - self._defect(at, a, multipliers)
+        right[...] = np.moveaxis(defect, 0, -1) / np.repeat(steps, n)
 
-    def solve(self, matrix: Array, right: Array) -> Array:
-        """Solve with a scaled matrix.
+    def _defect(self, at: Mapping[str, Array], a: Array, multipliers: Array) -> Array:
+        """Return what accelerations and multipliers leave of the equations, scaled."""
+        qdd, force = (a * self.columns)[..., None], (multipliers * self.rows)[..., None]
+        jacobian = at["jacobian"]
+        motion = at["mass"] @ qdd + at["rest"] - at["forces"]
+        motion = motion - np.swapaxes(jacobian, -1, -2) @ force
+        held = jacobian @ qdd - at["gamma"]
+        defect: Array = self._scale * np.concatenate([motion, held], axis=-2)[..., 0]
+        return defect
 
-        Raises
-        ------
-        NoConvergence
-            If the matrix is singular or the answer not finite.
-        """
-        try:
-            found: Array = self.scale * np.linalg.solve(matrix, self.scale * right)
-        except np.linalg.LinAlgError as singular:
-            raise NoConvergence("the constraints' Jacobian lost its rank") from singular
-        if not np.isfinite(found).all():
-            raise NoConvergence("the accelerations are not finite")
-        return found
-
-    def acceleration(self, t: float, q: Array, qd: Array) -> tuple[Array, Array]:
-        """Return accelerations and multipliers at a state.
+    def nearest(self, t: float | Array, x: Array, v: Array) -> tuple[Array, Array]:
+        """Return coordinates and velocities on the constraints, nearest by the masses.
 
         Raises
         ------
         NoConvergence
-            If they do not exist.
-        """
-        a = self.terms(t, q, qd)
-        right = np.concatenate([a["forces"][:, 0] - a["rest"][:, 0], a["gamma"][:, 0]])
-        found = self.solve(self.matrix(a), right)
-        return found[: self.n], found[self.n :]
-
-    def accelerations(self, t: Array, q: Array, qd: Array) -> tuple[Array, Array]:
-        """Return accelerations ``(s, n)`` and multipliers ``(s, k)`` at several states at once.
-
-        Raises
-        ------
-        NoConvergence
-            If they do not exist.
-        """
-        self.evaluations += len(t)
-        a = self.system.dynamics(q, qd, t)
-        matrix = self.outer * kkt_matrix(a["mass"], a["jacobian"])
-        right = np.concatenate([a["forces"] - a["rest"], a["gamma"]], axis=-2)[..., 0]
-        try:
-            found = np.linalg.solve(matrix, (self.scale * right)[..., None])[..., 0]
-        except np.linalg.LinAlgError as singular:
-            raise NoConvergence("the constraints' Jacobian lost its rank") from singular
-        if not np.isfinite(found).all():
-            raise NoConvergence("the accelerations are not finite")
-        found *= self.scale
-        return found[:, : self.n], found[:, self.n :]
-
-    def positions(self, t: float, q: Array, mass: Array) -> Array:
-        """Return the positions nearest to ``q``, in the metric of ``mass``, on the constraints.
-
-        Newton's iteration ends where its correction no longer falls and is of round-off size.
-
-        Raises
-        ------
-        NoConvergence
-            If it does not get there.
+            If the constraints are out of reach.
         """
         if not self.k:
-            return q
-        right = np.zeros(self.n + self.k)
+            return x, v
+        x, _ = self.positions(t, x, self.terms(t, x, v)["mass"])
+        return x, v + self.velocity_change(self.terms(t, x, v), v)
+
+    def positions(
+        self, t: float | Array, x: Array, mass: Array, free: Array | None = None
+    ) -> tuple[Array, int]:
+        """Return the nearest positions on the constraints, and the number of corrections.
+
+        Newton's iteration, damped where a correction would raise the defect.
+
+        Parameters
+        ----------
+        t, x : ndarray, shape batch, (*batch, n)
+            Times and predicted positions.
+        mass : ndarray, shape (*batch, n, n)
+            Metric, not scaled.
+        free : ndarray, shape (n,), optional
+            1 for the coordinates that may move, 0 for those that are held.
+
+        Raises
+        ------
+        NoConvergence
+            If the constraints are out of reach.
+        """
+        at = self._violation(t, x)
         last = np.inf
-        for _ in range(_MOST):
-            a = self.system.violation(q, t)
-            right[self.n :] = -a["constraints"][:, 0]
-            matrix = self.matrix({"mass": mass, "jacobian": a["jacobian"]})
-            change = self.solve(matrix, right)[: self.n]
-            q = q + change
-            size = float(np.max(np.abs(change / self.columns)))
-            scale = float(np.max(np.abs(q / self.columns))) + _EPS
-            # Newton squares the defect: a correction of this size leaves none.
-            if size <= 1e-9 * scale or (size >= 0.5 * last and size <= 1e-12 * scale):
-                return q
-            if not size < 2.0 * last:
-                break
+        for count in range(_CORRECTIONS):
+            change = self._least_change(mass, at["jacobian"], -at["constraints"][..., 0], free)
+            size = np.max(np.abs(change), axis=-1)
+            small = size / (np.max(np.abs(x + change), axis=-1) + _EPS)
+            if np.all((small <= _LAST) | ((small <= _ROUND_OFF) & (size >= 0.5 * last))):
+                return x + change, count + 1
+            x, at = self._damped(t, x, change, at)
             last = size
         raise NoConvergence("the positions do not reach the constraints")
 
-    def nearest(self, t: float, q: Array, qd: Array) -> tuple[Array, Array]:
-        """Return the coordinates and velocities nearest to predicted ones, by the masses.
+    def velocity_change(
+        self, at: Mapping[str, Array], v: Array, free: Array | None = None
+    ) -> Array:
+        """Return the least change of velocities that meets the constraints' rates."""
+        defect = at["velocity_rhs"] - at["jacobian"] @ (v * self.columns)[..., None]
+        return self._least_change(at["mass"], at["jacobian"], defect[..., 0], free)
+
+    def _violation(self, t: float | Array, x: Array) -> Mapping[str, Array]:
+        return self.system.violation(x * self.columns, t)
+
+    def _damped(
+        self, t: float | Array, x: Array, change: Array, at: Mapping[str, Array]
+    ) -> tuple[Array, Mapping[str, Array]]:
+        """Return positions after a correction, halved where it would raise the defect."""
+        before = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
+        factor = np.ones(np.shape(before))
+        for _ in range(_HALVINGS):
+            trial = x + factor[..., None] * change
+            at = self._violation(t, trial)
+            after = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
+            worse = (after > before) & (after > _LAST)
+            if not np.any(worse):
+                break
+            factor = np.where(worse, 0.5 * factor, factor)
+        return trial, at
+
+    def _least_change(
+        self, mass: Array, jacobian: Array, defect: Array, free: Array | None
+    ) -> Array:
+        """Return the least change, by the masses, whose product with the Jacobian is the defect."""
+        n, matrix = self.n, kkt_matrix(mass, jacobian)
+        if free is not None:
+            matrix[..., :n] *= free
+            matrix[..., :n, :] *= free[:, None]
+            each = np.arange(n)
+            matrix[..., each, each] += (1.0 - free) / self.columns**2
+        right = np.zeros((*defect.shape[:-1], n + self.k, 1))
+        right[..., n:, 0] = self.rows * defect
+        return solved(self._outer * matrix, right)[..., :n, 0]
+
+    def state(self, t: float, x: Array, v: Array) -> State:
+        """Return the state on the constraints nearest to a predicted one.
 
         Raises
         ------
         NoConvergence
             If the constraints are out of reach.
         """
-        if not self.k:
-            return q, qd
-        predicted = self.terms(t, q, qd)
-        q = self.positions(t, q, predicted["mass"])
-        a = self.terms(t, q, qd)
-        matrix = self.matrix(a)
-        right = np.zeros(self.n + self.k)
-        right[self.n :] = a["velocity_rhs"][:, 0] - a["jacobian"] @ qd
-        return q, qd + self.solve(matrix, right)[: self.n]
+        return self.at(t, *self.nearest(t, x, v))
 
-    def state(self, t: float, q: Array, qd: Array) -> State:
-        """Return the state nearest to a predicted one, in the metric of the masses.
+    def at(self, t: float, x: Array, v: Array) -> State:
+        """Return the state of coordinates and velocities that meet the constraints."""
+        return State(t, x, v, self.accelerations(t, x, v)[0])
 
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
-        """
-        return self.at(t, *self.nearest(t, q, qd))
 
-    def at(self, t: float, q: Array, qd: Array) -> State:
-        """Return the state of positions and velocities that meet the constraints."""
-        qdd, multipliers = self.acceleration(t, q, qd)
-        return State(t, q, qd, qdd, multipliers)
+def solved(matrix: Array, right: Array) -> Array:
+    """Return the solution of linear equations.
+
+    Raises
+    ------
+    NoConvergence
+        If they are singular or it is not finite.
+    """
+    try:
+        solution = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError as singular:
+        raise NoConvergence("the constraints' Jacobian lost its rank") from singular
+    if not np.isfinite(solution).all():
+        raise NoConvergence("the equations of motion are not finite")
+    return np.asarray(solution, dtype=np.float64)
+
+
+def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]]:
+    """Return the variational equations of a system.
+
+    Raises
+    ------
+    BadInput
+        If it has none.
+    """
+    if system.variations is None:
+        raise bad(
+            "system",
+            "no variational equations",
+            "a constrained system with variations",
+            "emit the model with the output 'variations'",
+        )
+    return system.variations
+
+
+def constraint_norms(
+    system: Constrained, t: Array, q: Array, qd: Array, qdd: Array
+) -> tuple[Array, Array, Array]:
+    """Return the scaled defects of the constraints at the three levels.
+
+    A row of ``Phi``, ``Phi_q qd - rhs`` and ``Phi_q qdd - gamma`` is divided by the length of the
+    row of ``Phi_q S`` (S measures the coordinates by their inertia) and by the size of the scaled
+    coordinates, velocities and accelerations over the motion: 1e-16 is round-off whatever the
+    units.
+
+    Parameters
+    ----------
+    system : Constrained
+        The system.
+    t : ndarray, shape (nt,)
+        Times [s].
+    q, qd, qdd : ndarray, shape (nt, n)
+        Coordinates and their derivatives.
+
+    Returns
+    -------
+    position, velocity, acceleration : ndarray, shape (nt,)
+        Largest scaled defect of a row at each time.
+    """
+    at = system.dynamics(q, qd, t)
+    jacobian = at["jacobian"]
+    columns, rows = scaling(at["mass"], jacobian)
+    defects = (
+        system.violation(q, t)["constraints"],
+        jacobian @ qd[..., None] - at["velocity_rhs"],
+        jacobian @ qdd[..., None] - at["gamma"],
+    )
+    place, speed, push = (
+        float(np.max(np.abs(vector / columns), initial=0.0)) for vector in (q, qd, qdd)
+    )
+    # What cancels in the accelerations is of the size of the centripetal ones.
+    sizes = (place, speed, max(push, speed * (speed / place if place > 0 else 0.0)))
+    norms = [
+        np.max(np.abs(rows * defect[..., 0]), axis=-1, initial=0.0) / (size if size > 0 else 1.0)
+        for defect, size in zip(defects, sizes, strict=True)
+    ]
+    return norms[0], norms[1], norms[2]

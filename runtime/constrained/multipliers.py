@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
-from .gauss_steps import Ring
-from .orbits import OrbitSource, PeriodicOrbit
-from .shooting import Shot, junctions
-from .variational import Array, Scale, Tangent, linearised
+from .equations import Array
+from .orbits import LEFT, OrbitSource, PeriodicOrbit, Shooting, Shot, Tangent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,8 +20,6 @@ if TYPE_CHECKING:
 ComplexArray = NDArray[np.complex128]
 
 _EPS = float(np.finfo(float).eps)
-# Of the difference between a grid and one twice as fine, in the finer one (order 24: 2^-24).
-_LEFT = 1.0 / 64
 # Error from which a multiplier says nothing about stability.
 _TELLING = 0.1
 # In place of an error that is not finite.
@@ -153,26 +149,23 @@ def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
     """
     if orbit.message:
         raise bad("orbit", orbit.message, "a periodic motion", "mend the shooting first")
-    return linear_multipliers(orbit.source, orbit.checks["accuracy"], orbit.provenance)
-
-
-def linear_multipliers(
-    source: OrbitSource, accuracy: Check, origin: Mapping[str, str]
-) -> ConstrainedMultipliers:
-    """Return the multipliers about a motion on a finer and a coarser grid, known so accurately."""
-    fine, coarse = (_Turn.of(source, shot) for shot in (source.fine, source.coarse))
+    source, accuracy = orbit.source, orbit.checks["accuracy"]
+    shooting, ring = source.shooting, source.fine.ring
+    fine, coarse = (_Turn.of(shooting, shot) for shot in (source.fine, source.coarse))
     along = fine.tangent.along
     reduced, rough = fine.reduced, along.T @ coarse.whole @ along
     norm = float(np.linalg.norm(reduced))
     # A rounded coefficient turns all phases of a period alike; a fine step covers some 2.5 rad.
-    rounding = _EPS * (16.0 + 2.0 * len(source.fine.ring.q)) * max(norm, 1.0)
-    shift = float(np.linalg.norm(reduced - rough)) * _LEFT + rounding
+    rounding = _EPS * (16.0 + 2.0 * len(ring.x)) * max(norm, 1.0)
+    shift = float(np.linalg.norm(reduced - rough)) * LEFT + rounding
     if not accuracy.passed:
         # About a motion that is off by so much, the coefficients are off by that part or so.
-        shift += _carried(accuracy.value, source) * max(norm, 1.0)
+        off = np.nan_to_num(accuracy.value, nan=_HOPELESS, posinf=_HOPELESS)
+        shift += float(off) * (2 * np.pi + shooting.rate * ring.period) * max(norm, 1.0)
     physical, error = _eigenvalues(reduced, shift)
-    others, defect, root = _of_violations(fine, source.fine.ring.period, source.scale)
-    size = source.scale.whole
+    others, defect, root = _of_violations(fine, ring.period, shooting.rate)
+    columns = shooting.equations.columns
+    units = np.concatenate([columns, columns * shooting.rate])
     checks = {
         "orbit": accuracy,
         "accuracy": Check(shift / max(norm, 1.0), 1e-6),
@@ -180,86 +173,77 @@ def linear_multipliers(
         "tangent": Check(fine.leak / max(norm, 1.0), 1e-9),
         "liouville": _liouville(fine, source.fine, shift),
     }
-    if not fine.forced:
-        checks |= _conservative(fine, physical, error, shift)
+    if not np.any(source.fine.sweep.slopes.terms["forces"]):
+        checks |= _conservative(fine, _symplectic_form(source), physical, error, shift)
     return ConstrainedMultipliers(
-        method=f"variational equations along {len(source.fine.ring.q)} Gauss-Legendre steps, "
+        method=f"variational equations along {len(ring.x)} Gauss-Legendre steps, "
         "restricted to the tangent space of the constraints",
         error=error,
         error_norm="absolute, of each physical multiplier",
         checks=checks,
-        provenance=provenance(origin),
+        provenance=provenance(orbit.provenance),
         physical=physical,
         others=others,
         others_error=root,
         violation_defect=defect,
-        monodromy=fine.whole * size / size[:, None],
+        monodromy=units[:, None] * fine.whole / units,
         reduced=reduced,
-        basis=along / size[:, None],
-        period=source.fine.ring.period,
+        basis=units[:, None] * along,
+        period=ring.period,
     )
-
-
-def _carried(error: float, source: OrbitSource) -> float:
-    """Return what a relative error of the motion may do to the flow over a period, relatively."""
-    turned = 2 * np.pi + source.scale.rate * source.fine.ring.period
-    return float(np.nan_to_num(error, nan=_HOPELESS, posinf=_HOPELESS) * turned)
 
 
 @dataclass(frozen=True)
 class _Turn:
-    """One turn of the variational equations."""
+    """One turn of the variational equations: all of it, and within the constraints.
+
+    ``leak`` is what leaves the tangent space, ``sign`` and ``logarithm`` tell the determinant.
+    """
 
     whole: Array
     reduced: Array
     leak: float
-    logarithm: float
     sign: float
+    logarithm: float
     tangent: Tangent
-    form: Array
-    forced: bool
 
     @classmethod
-    def of(cls, source: OrbitSource, shot: Shot) -> _Turn:
-        system, scale, ring = source.system, source.scale, shot.ring
-        meeting = junctions(system, ring, scale)
-        back = np.swapaxes(ring.following(meeting.along), -1, -2)
-        carried = shot.sweep.maps @ meeting.along
-        steps = back @ carried
-        left = np.swapaxes(ring.following(meeting.across), -1, -2) @ carried
+    def of(cls, shooting: Shooting, shot: Shot) -> _Turn:
+        ring, maps, meeting = shot.ring, shot.sweep.maps, shooting.junctions(shot.ring)
+        carried = maps @ meeting.along
+        steps = np.swapaxes(ring.following(meeting.along), -1, -2) @ carried
+        leak = np.swapaxes(ring.following(meeting.across), -1, -2) @ carried
         sign, logarithm = np.linalg.slogdet(steps)
-        whole, reduced = np.eye(shot.sweep.maps.shape[-1]), np.eye(steps.shape[-1])
-        for one, inner in zip(shot.sweep.maps, steps, strict=True):
+        whole, reduced = np.eye(maps.shape[-1]), np.eye(steps.shape[-1])
+        for one, inner in zip(maps, steps, strict=True):
             whole, reduced = one @ whole, inner @ reduced
-        first = Tangent(meeting.normals[0], meeting.along[0], meeting.across[0])
         return cls(
             whole,
             reduced,
-            float(np.max(np.abs(left), initial=0.0)),
-            float(np.sum(logarithm)),
+            float(np.max(np.abs(leak), initial=0.0)),
             float(np.prod(sign)),
-            first,
-            _symplectic_form(source, ring),
-            shot.sweep.found.forced,
+            float(np.sum(logarithm)),
+            Tangent(meeting.normals[0], meeting.along[0], meeting.across[0]),
         )
 
 
-def _symplectic_form(source: OrbitSource, ring: Ring) -> Array:
-    """Return the form ``dq . dp' - dq' . dp`` at the start, in scaled states.
+def _symplectic_form(source: OrbitSource) -> Array:
+    """Return the form ``dq . dp' - dq' . dp`` at the start.
 
     With ``p = dL/dqd``, D = M' + P - P^T where P = dp/dq: the antisymmetric part of the damping
     matrix is all of P that the form needs.
     """
-    scale = source.scale
-    found = linearised(source.system, ring.q[:1], ring.qd[:1], ring.start[:1])
-    n = found.mass.shape[-1]
+    equations, ring = source.shooting.equations, source.fine.ring
+    slopes = equations.linearised(ring.start[:1], ring.x[:1], ring.v[:1])
+    columns, n = equations.columns, equations.n
+    mass, damping = (
+        columns[:, None] * array[0] * columns
+        for array in (slopes.terms["mass"], slopes.variations["damping"])
+    )
     form = np.zeros((2 * n, 2 * n))
-    form[:n, :n] = (found.damping[0] - found.damping[0].T) / (2.0 * scale.rate)
-    form[:n, n:] = found.mass[0]
-    form[n:, :n] = -found.mass[0]
-    pair = np.concatenate([scale.size, scale.size])
-    scaled: Array = form / pair[:, None] / pair
-    return scaled
+    form[:n, :n] = (damping - damping.T) / (2.0 * source.shooting.rate)
+    form[:n, n:], form[n:, :n] = mass, -mass
+    return form
 
 
 def _eigenvalues(matrix: Array, shift: float) -> tuple[ComplexArray, Array]:
@@ -280,7 +264,7 @@ def _eigenvalues(matrix: Array, shift: float) -> tuple[ComplexArray, Array]:
     return values[order], error[order]
 
 
-def _of_violations(turn: _Turn, period: float, scale: Scale) -> tuple[ComplexArray, float, float]:
+def _of_violations(turn: _Turn, period: float, rate: float) -> tuple[ComplexArray, float, float]:
     """Return the eigenvalues across the constraints, their defect, and what rounding may do."""
     normals, across = turn.tangent.normals, turn.tangent.across
     k = normals.shape[0] // 2
@@ -289,14 +273,13 @@ def _of_violations(turn: _Turn, period: float, scale: Scale) -> tuple[ComplexArr
     # Violations (Phi, dPhi/dt / rate) before and after: exactly [[1, period rate], [0, 1]].
     square = normals @ across
     carried = np.linalg.solve(square.T, (normals @ turn.whole @ across).T).T
-    exact = np.eye(2 * k)
-    exact[:k, k:] += period * scale.rate * np.eye(k)
+    exact = np.eye(2 * k) + period * rate * np.eye(2 * k, k=k)
     size = float(np.linalg.norm(exact))
     away = float(np.linalg.norm(carried - exact))
     values = np.linalg.eigvals(across.T @ turn.whole @ across).astype(complex)
     # z = value - 1 of a disturbed block: |z|^2 <= (period rate + |z|) |disturbance|.
     disturbed = away + 16.0 * k * _EPS * size * float(np.linalg.cond(square))
-    reach = 2.0 * (np.sqrt(period * scale.rate * disturbed) + disturbed)
+    reach = 2.0 * (np.sqrt(period * rate * disturbed) + disturbed)
     return values, away / size, float(reach)
 
 
@@ -305,28 +288,27 @@ def _liouville(turn: _Turn, shot: Shot, shift: float) -> Check:
 
     The violations have determinant 1, so that of the whole is that of the physical part.
     """
-    ring, sweep = shot.ring, shot.sweep
-    trace = np.trace(sweep.found.by_qd, axis1=-2, axis2=-1)
-    total = float(ring.step * np.sum(trace @ ring.tableau.b))
+    trace = np.trace(shot.sweep.slopes.by_v, axis1=-2, axis2=-1)
+    total = float(shot.ring.step * np.sum(trace @ shot.ring.points.b))
     gap = abs(turn.logarithm - total) if turn.sign > 0 else np.inf
     p = len(turn.reduced)
     return Check(gap, 8 * p * shift * max(1.0, float(np.linalg.norm(turn.reduced))) + 1e-12)
 
 
 def _conservative(
-    turn: _Turn, physical: ComplexArray, error: Array, shift: float
+    turn: _Turn, form: Array, physical: ComplexArray, error: Array, shift: float
 ) -> dict[str, Check]:
     """Check the form that the reduced flow keeps, and that multipliers come in reciprocal pairs."""
     along = turn.tangent.along
-    form = along.T @ turn.form @ along
+    form = along.T @ form @ along
     kept = turn.reduced.T @ form @ turn.reduced
     norm = float(np.linalg.norm(turn.reduced))
     defect = float(np.linalg.norm(kept - form) / (np.linalg.norm(form) * norm**2))
     gaps = np.abs(physical[:, None] * physical - 1.0)
-    own = error / np.maximum(np.abs(physical), np.finfo(float).tiny)
+    relative = error / np.maximum(np.abs(physical), np.finfo(float).tiny)
     partner = np.argmin(gaps, axis=-1)
     value = gaps[np.arange(len(physical)), partner]
-    limit = 4 * (own + own[partner]) + 64 * _EPS
+    limit = 4 * (relative + relative[partner]) + 64 * _EPS
     worst = int(np.argmax(value / limit))
     return {
         "symplectic": Check(defect, max(8 * len(along.T) * shift, 1e-12)),

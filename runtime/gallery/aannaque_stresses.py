@@ -63,7 +63,7 @@ def hybrid_model() -> LinearPeriodic:
 
     Damping 2 %, the form of the thesis; the inertia of the rigid motion by the same masses.
     """
-    from ..systems.modal_damping import with_modal_damping
+    from ..systems import with_modal_damping
 
     base, found = beams(1), _hybrid(1e-10)
     order = [found.labels.index(label) for label in base.labels]

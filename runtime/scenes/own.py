@@ -22,7 +22,7 @@ def own_system(scene: Scene) -> LinearPeriodic:
     Every parameter and every argument of the emitted module is looked up among the scene's
     numbers, as ``KEY`` or as ``TABLE_KEY``; where two tables share a key, only the latter names
     it.  A module that takes something else needs a builder of its own around
-    :func:`elastolink.runtime.systems.assembly.assemble`.
+    :func:`elastolink.runtime.systems.assemble`.
 
     Parameters
     ----------
@@ -34,8 +34,8 @@ def own_system(scene: Scene) -> LinearPeriodic:
     BadInput
         If no module was emitted for the scene's model, or the scene lacks one of its numbers.
     """
-    from ..systems.assembly import assemble
-    from ..systems.modules import find_module
+    from ..core.modules import find_module
+    from ..systems import assemble
 
     emitted = find_module(scene.model_spec())
     numbers = _numbers(scene)

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 # Where each mechanism's equations become a family object; imported when one is asked for.
 _BUILDERS = {
-    "four_bar": ("..systems.coupler", "coupler_system"),
-    "hill": ("..systems.hill", "hill_system"),
-    "quick_return": ("..systems.rod.from_scene", "rod_of_scene"),
+    "four_bar": ("..systems.from_scene", "coupler_system"),
+    "hill": ("..systems.from_scene", "hill_system"),
+    "quick_return": ("..systems.from_scene", "rod_of_scene"),
 }
 _BEAM_BUILDER = ("..beams.from_scene", "beams_of_scene")
 _OWN_BUILDER = (".own", "own_system")

@@ -14,9 +14,9 @@ from typing import Any
 from ...derive.spec import BEAM_FORMULATIONS, Entry, ModelSpec, read_manifest
 from ..core.errors import ElastolinkError, bad
 from ..core.families import LinearPeriodic
+from ..core.modules import search_path
 from ..core.results import Check, provenance
 from ..scenes import Scene, load_scene
-from ..systems.modules import search_path
 from .emitted import EmittedCost, read_cost
 from .evaluation import Evaluated, of_entries, of_linear
 from .explanation import EmittedUse, Explanation, Stage

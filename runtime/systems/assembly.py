@@ -22,7 +22,7 @@ _ROUND = 8.0 * float(np.finfo(float).eps)
 
 
 class BasisArrays(Protocol):
-    """Shapes that depend on the place of a support, by the integrals that a module asks for."""
+    """Shapes that depend on the place of a support, by the integrals that a module needs."""
 
     @property
     def size(self) -> int:
@@ -123,9 +123,9 @@ def _scales(
 def _modal_arrays(
     module: ModuleType, modes: int | None, integrals: _Integrals | None
 ) -> dict[str, Array | Callable[[Array], Array]]:
-    found: dict[str, Array | Callable[[Array], Array]] = {}
+    arrays: dict[str, Array | Callable[[Array], Array]] = {}
     if integrals is not None:
-        found |= {name: partial(integrals, name) for name in integrals.names}
+        arrays |= {name: partial(integrals, name) for name in integrals.names}
     for kernel in ("modal_matrices", "modal_vectors"):
         if kernel not in module.RETURNS:
             continue
@@ -140,14 +140,14 @@ def _modal_arrays(
         names = module.RETURNS[kernel]
         result = (result,) if len(names) == 1 else result
         shape = (modes, modes) if kernel == "modal_matrices" else (modes,)
-        found |= {
+        arrays |= {
             name: np.array(np.broadcast_to(value, shape), dtype=float)
             for name, value in zip(names, result, strict=True)
         }
     for _, _, _, _, name in module.TERMS:
-        if name not in found:
-            found[name] = np.array(getattr(module, name.upper()))
-    return found
+        if name not in arrays:
+            arrays[name] = np.array(getattr(module, name.upper()))
+    return arrays
 
 
 def _integrals(
@@ -165,7 +165,7 @@ def _integrals(
 
 
 class _Integrals:
-    """Integrals over shapes that follow a support, found once for all the terms that ask."""
+    """Integrals over shapes that follow a support, computed once for all terms."""
 
     def __init__(
         self, module: ModuleType, basis: BasisArrays, geometry: Mapping[str, float]
@@ -183,38 +183,38 @@ class _Integrals:
             # A support at the very end, beyond it by rounding.
             place = np.where(place <= 1.0 + _ROUND, np.minimum(place, 1.0), place)
             last = self._last = (theta.copy(), place, {})
-        _, place, found = last
+        _, place, arrays = last
         if name in self._products:
-            return self._product(name, place, found)
-        if name not in found:
-            found[name] = self._basis.array(name, place)
-        return found[name]
+            return self._product(name, place, arrays)
+        if name not in arrays:
+            arrays[name] = self._basis.array(name, place)
+        return arrays[name]
 
     def with_functions(self, change: Callable[[Any], Any]) -> _Integrals:
         """Return the same with its emitted functions changed, for example compiled."""
-        made = copy(self)
-        made._place, made._multiply = change(self._place), change(self._multiply)
-        made._last = None
-        return made
+        changed = copy(self)
+        changed._place, changed._multiply = change(self._place), change(self._multiply)
+        changed._last = None
+        return changed
 
-    def _product(self, name: str, place: Array, found: dict[str, Array]) -> Array:
-        """Return a matrix that is made of products of vectors."""
-        if name not in found:
+    def _product(self, name: str, place: Array, arrays: dict[str, Array]) -> Array:
+        """Return a matrix that is a product of vectors."""
+        if name not in arrays:
             given = {}
             for argument in inspect.signature(self._multiply).parameters:
                 vector, _, end = argument.rpartition("_")
-                if vector not in found:
-                    found[vector] = self._basis.array(vector, place)
-                value = found[vector]
+                if vector not in arrays:
+                    arrays[vector] = self._basis.array(vector, place)
+                value = arrays[vector]
                 given[argument] = value[..., None] if end == "row" else value[..., None, :]
-            made = self._multiply(**given)
-            made = (made,) if len(self._products) == 1 else made
-            found |= dict(zip(self._products, made, strict=True))
-        return found[name]
+            products = self._multiply(**given)
+            products = (products,) if len(self._products) == 1 else products
+            arrays |= dict(zip(self._products, products, strict=True))
+        return arrays[name]
 
 
 class _Shared:
-    """An emitted function of angle, evaluated once for all the terms that ask at one array."""
+    """An emitted function of angle, evaluated once for all terms at one array of angles."""
 
     def __init__(
         self,
@@ -249,7 +249,7 @@ def _angle_kernels(
     external: Mapping[str, Callable[[Array], Array]],
 ) -> dict[str, _Shared]:
     """Return, for each function of angle, the emitted kernel that gives it."""
-    found: dict[str, _Shared] = {}
+    kernels: dict[str, _Shared] = {}
     for kernel, names in module.RETURNS.items():
         if not kernel.endswith("_functions"):
             continue
@@ -260,8 +260,8 @@ def _angle_kernels(
             raise bad("geometry", f"none for {missing}", "a value each", "supply them")
         fixed = {name: geometry[name] for name in wanted if name in geometry}
         passed = {name: external[name] for name in wanted if name in external}
-        found |= dict.fromkeys(names, _Shared(function, names, fixed, passed))
-    return found
+        kernels |= dict.fromkeys(names, _Shared(function, names, fixed, passed))
+    return kernels
 
 
 def _function(
@@ -273,8 +273,8 @@ def _function(
     """Return the modal array, or the function of angle that multiplies it."""
     if angle is None:
         return modal
-    own = angle in shared
-    factor = partial(_of_kernel, shared[angle], angle) if own else external[angle]
+    emitted = angle in shared
+    factor = partial(_of_kernel, shared[angle], angle) if emitted else external[angle]
     return partial(_multiplied, factor, modal)
 
 

@@ -52,7 +52,13 @@ class Circle:
 
         def variations(z, zd, zdd, lam, t):
             slope = -self.row * np.asarray(lam)[..., None] * (matrix.T @ matrix)
-            return {"damping": np.zeros_like(slope), "stiffness": slope}
+            relative = np.asarray(zd) @ matrix.T - self.pivot
+            return {
+                "damping": np.zeros_like(slope),
+                "stiffness": slope,
+                "jacobian_rate": (self.row * relative @ matrix)[..., None, :],
+                "jacobian_acceleration": (self.row * zdd @ matrix.T @ matrix)[..., None, :],
+            }
 
         return Constrained(2, 1, dynamics, violation, variations, labels=("a", "b"))
 

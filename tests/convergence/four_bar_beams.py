@@ -6,7 +6,7 @@ import elastolink as el
 from elastolink.runtime.beams.linear import linear_system
 from elastolink.runtime.beams.linkages import beam_linkage
 from elastolink.runtime.beams.section import Section
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 # Areas [m^2], second moments [m^4], thicknesses [m].
 SECTIONS = {

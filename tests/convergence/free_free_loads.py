@@ -6,10 +6,9 @@ from collections.abc import Callable, Collection
 from dataclasses import replace
 
 import numpy as np
-from elastolink.runtime.constrained import PeriodicOrbit, orbit_multipliers
+from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.systems.rod import FreeFreeBasis, free_free_rod, rod_orbit, rod_system
-from elastolink.runtime.systems.rod.constrained import FreeFreeRod
+from elastolink.runtime.systems.rod import FreeFreeBasis, FreeFreeRod, free_free_rod, rod_system
 
 # Beale & Scott, section 2.1: the very flexible rod.
 ROD = {
@@ -80,7 +79,7 @@ def in_step(size: float, speed: float) -> Load:
 
 def about(system: FreeFreeRod):
     """Return orbit and multipliers of a rod, both having passed their checks."""
-    orbit: PeriodicOrbit = rod_orbit(system)
+    orbit = periodic_orbit(system)
     orbit.require()
     found = orbit_multipliers(orbit)
     found.require()

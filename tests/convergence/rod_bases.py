@@ -20,9 +20,9 @@ from elastolink.runtime.systems.rod import (
     OverhangBasis,
     PolynomialBasis,
     TwoSegmentBasis,
+    overhang_roots,
     rod_system,
 )
-from elastolink.runtime.systems.rod.overhang import overhang_roots
 from rod_reference import Rod, flexible, stiff
 from scipy.linalg import eigh
 

@@ -22,6 +22,7 @@ from rod_bases import (
 from write_rod_convergence import PLACES, TARGET, page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES)
 def test_orders_of_the_frozen_frequencies(place):
     """Over three doublings: 1/n for one polynomial, n^-3 for modes whose shear cannot jump."""
@@ -69,6 +70,7 @@ def test_three_polynomial_modes_are_far_from_it(rod):
     assert order((4, 8, 16), errors) == pytest.approx(1.1, abs=0.25)
 
 
+@pytest.mark.slow
 def test_combination_tongue_of_three_polynomial_modes_is_a_fifth_too_high():
     """Both regions about omega1 + omega2, of growth beyond 1 % a turn; they do not even meet."""
     converged = tongue(TwoSegmentBasis(6), 3530.0)
@@ -82,6 +84,7 @@ def test_a_tongue_wants_a_speed_inside():
         tongue(PolynomialBasis(2), 1000.0, ratio=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rod", RODS)
 def test_the_measures_own_solvers(rod):
     """More angles and shorter steps change nothing that the page states."""

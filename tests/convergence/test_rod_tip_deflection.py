@@ -50,6 +50,7 @@ def test_the_reference_holds_the_block_and_repeats_its_table():
     assert np.max(np.abs(tips[1:] - TIPS[name, True][1][:8])) < 1e-6
 
 
+@pytest.mark.slow
 def test_the_reference_converges_in_third_order_of_its_elements():
     # The block's force makes v''' jump within an element, for the tip's influence line as well:
     # each costs 3/2 powers of the element's length.
@@ -64,6 +65,7 @@ def test_the_reference_converges_in_third_order_of_its_elements():
     assert errors[-1] < 1e-7
 
 
+@pytest.mark.slow
 def test_the_reference_knows_the_static_deflection():
     # A very slow crank: each moment the rod bends as under the resting load m x phi'' w^2.
     rod = flexible(0.2, 2.0)

@@ -55,7 +55,9 @@ def naive_modes(place, roots, x):
             beyond = sum(f * w for f, w in zip(factors[2:], waves, strict=True))
             return np.where(eta <= place, before, beyond)
 
-        found.append(mode(x) / np.sqrt(np.sum(weights * mode(nodes) ** 2)))
+        # Where no digit is left a mode may be zero, and not a number then.
+        with np.errstate(invalid="ignore"):
+            found.append(mode(x) / np.sqrt(np.sum(weights * mode(nodes) ** 2)))
     return np.stack(found, axis=-1)
 
 

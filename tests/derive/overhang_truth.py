@@ -201,7 +201,7 @@ NAMED = {
 
 def exact_root(place, mode):
     """Return a root to many digits, from the emitted residual's bracket of a double."""
-    from elastolink.runtime.systems.rod.overhang import overhang_roots
+    from elastolink.runtime.systems.rod import overhang_roots
 
     start = overhang_roots(place, mode)[0, -1]
     with mpmath.workdps(DIGITS):

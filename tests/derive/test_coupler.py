@@ -21,7 +21,7 @@ from elastolink.generated import (
     four_bar_coupler_printed,
     four_bar_coupler_reduced,
 )
-from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems import assemble
 from linkage_truth import Linkage, end_load, motion
 
 EMITTED = {

@@ -16,7 +16,7 @@ from elastolink.derive.projection.moving_basis import Moments, MovingShapes, pro
 from elastolink.derive.records import EndForce, Essential, PointTerm, Support
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.variational import hamilton, quadratic_action
-from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems import assemble
 from numpy.polynomial.legendre import leggauss
 from rod_newton import PlainBasis, Rod, linear_forces, second_order
 

@@ -21,7 +21,7 @@ from elastolink.derive.ir import Argument
 from elastolink.derive.separation import NotSeparable, StagedSystem, lower_linear_periodic
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.staged import Steps
-from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems import assemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -19,7 +19,7 @@ from elastolink.runtime.beams.recovery import stations_of
 from elastolink.runtime.beams.stress_errors import fibre_factors, largest_difference, stresses
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.linkages import FourBar, SliderCrank
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 BARS, SLIDER_CRANKS, FOUR_BARS = 185, 12, 3
 COUNT, PLACES = 32, 7

@@ -1,4 +1,7 @@
-"""Error figures of constrained motions and consistent states against elliptic functions."""
+"""Error estimates of constrained motions and consistent states against exact motions.
+
+An estimate covers the error in 99 of 100 cases and is within a factor of 100 of it in the median.
+"""
 
 from __future__ import annotations
 
@@ -7,75 +10,90 @@ import pytest
 from constrained_truth import random_circle
 from elastolink.runtime.constrained import consistent_state, constrained_motion
 from elastolink.runtime.core.families import Constrained
+from elastolink.runtime.systems import free_free_rod
 
-SCENES = 200
+SOME = [10, pytest.param(100, marks=pytest.mark.slow)]
 
 
-def ratios(scenes: int, seed: int, **named):
-    """Actual errors over the figures, of all coordinates of random pendulums."""
-    rng = np.random.default_rng(seed)
-    found = []
+def check(ratios):
+    """Look at estimates over actual errors."""
+    ratios = np.asarray(ratios)
+    assert np.mean(ratios >= 1.0) >= 0.99
+    assert np.median(ratios) <= 100.0
+
+
+@pytest.mark.parametrize("scenes", SOME)
+@pytest.mark.parametrize(
+    ("method", "tightest", "loosest"), [("collocation", -13.0, -1.1), ("projection", -12.0, -2.0)]
+)
+def test_pendulums_at_any_tolerance(method, tightest, loosest, scenes):
+    """Swinging or turning in any units and oblique coordinates, by elliptic functions."""
+    rng = np.random.default_rng(1)
+    ratios = []
     for _ in range(scenes):
         circle = random_circle(rng)
-        span = rng.uniform(0.3, 1.0) / np.sqrt(circle.gravity)
-        chosen = {name: value(rng, span) for name, value in named.items()}
-        motion = constrained_motion(circle.system, *circle.state, span, samples=3, **chosen)
+        span = rng.uniform(0.3, 5.0) / np.sqrt(circle.gravity)
+        rtol = 10.0 ** rng.uniform(tightest, loosest)
+        motion = constrained_motion(
+            circle.system, *circle.state, span, samples=3, rtol=rtol, method=method
+        )
         assert motion.success
         q, _ = circle.exact(motion.time)
-        found.append(np.max(np.abs(motion.q - q), axis=0) / motion.error)
-    return np.concatenate(found)
+        ratios.extend(motion.error / np.maximum(np.max(np.abs(motion.q - q), axis=0), 1e-300))
+    check(ratios)
 
 
-def check(found):
-    assert np.mean(found <= 1.0) >= 0.99
-    assert 1.0 / np.median(found) <= 1e3
-
-
-def collocation(rng, span):
-    return "collocation"
-
-
-def projection(rng, span):
-    return "projection"
-
-
-def test_collocation_under_a_tolerance():
-    """By default, at any tolerance that is allowed."""
-    check(ratios(SCENES, 1, rtol=lambda rng, span: 10.0 ** rng.uniform(-13, -1.1)))
-
-
-@pytest.mark.slow
-def test_collocation_with_any_number_of_nodes():
-    check(
-        ratios(
-            SCENES,
-            7,
-            method=collocation,
-            rtol=lambda rng, span: 10.0 ** rng.uniform(-9, -3),
-            stages=lambda rng, span: int(rng.integers(6, 29)),
+@pytest.mark.parametrize("scenes", [6, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+def test_stiff_rods(rtol, scenes):
+    """Some hundred radians of the fastest vibration; the truth is a run at 1e-12."""
+    rng = np.random.default_rng(2)
+    ratios = []
+    for _ in range(scenes):
+        modes, ratio, speed = int(rng.integers(1, 6)), rng.uniform(0.05, 0.6), rng.uniform(3, 200)
+        length = 0.6 * (1 + ratio) * rng.uniform(1.02, 1.5)
+        stiffness, mass = 36456 * 10 ** rng.uniform(-1, 1.5), 7.15 * 10 ** rng.uniform(-0.5, 0.5)
+        rod = free_free_rod(
+            modes,
+            crank_ratio=ratio,
+            frame=0.6,
+            length=length,
+            bending_stiffness=stiffness,
+            mass_per_length=mass,
+            speed=speed,
         )
-    )
+        fastest = (4.73 * modes / length) ** 2 * np.sqrt(stiffness / mass)
+        span = min(0.3 * rod.period, 400.0 / fastest)
+        truth, motion = (
+            constrained_motion(rod, span=span, samples=8, rtol=r, guards=(), watch=_still)
+            for r in (1e-12, rtol)
+        )
+        away = np.max(np.abs(motion.q - truth.q), axis=0)
+        known = away > 3.0 * truth.error
+        # The largest error over the sizes decides: that of a coordinate hardly moved may be less.
+        size = np.max(np.abs(truth.q), axis=0)
+        if known.any():
+            ratios.append(np.max((motion.error / size)[known]) / np.max((away / size)[known]))
+            assert np.all(motion.error[known] >= 0.3 * away[known])
+    check(ratios)
+    assert np.max(ratios) <= 1e3
 
 
-@pytest.mark.slow
-def test_collocation_with_fixed_windows():
-    check(ratios(SCENES, 8, method=collocation, step=lambda rng, s: s / int(rng.integers(1, 8))))
+def _still(q, t):
+    """Deflections that nobody warns of."""
+    return np.zeros(len(q))
 
 
-@pytest.mark.slow
-def test_collocation_where_the_force_jumps():
+@pytest.mark.parametrize("scenes", [5, pytest.param(60, marks=pytest.mark.slow)])
+def test_forces_that_jump(scenes):
     """A mass on a spring with a force of constant size towards the middle: arcs of cosines."""
     rng = np.random.default_rng(9)
-    found = []
-    for _ in range(60):
+    ratios = []
+    for _ in range(scenes):
         force, span = rng.uniform(0.1, 2.0), rng.uniform(2.0, 12.0)
+        rtol = 10.0 ** rng.uniform(-10, -4)
         motion = constrained_motion(
-            towards_the_middle(force),
-            [1.0],
-            [0.0],
-            span,
-            samples=5,
-            rtol=10.0 ** rng.uniform(-10, -4),
+            towards_the_middle(force), [1.0], [0.0], span, samples=5, rtol=rtol
         )
         # To the middle x + force = (1 + force) cos t; from there on mirrored.
         quarter = np.arccos(force / (1.0 + force))
@@ -84,8 +102,8 @@ def test_collocation_where_the_force_jumps():
         side = np.where(half > quarter, -1.0, 1.0)
         part = np.minimum(half, 2 * quarter - half)
         exact = side * ((1.0 + force) * np.cos(part) - force)
-        found.append(np.max(np.abs(motion.q[:, 0] - exact)) / motion.error[0])
-    check(np.array(found))
+        ratios.append(motion.error[0] / np.max(np.abs(motion.q[:, 0] - exact)))
+    check(ratios)
 
 
 def towards_the_middle(force):
@@ -110,65 +128,15 @@ def towards_the_middle(force):
     return Constrained(1, 0, dynamics, violation)
 
 
-@pytest.mark.slow
-def test_projection_under_a_tolerance():
-    check(ratios(SCENES, 1, method=projection, rtol=lambda rng, s: 10.0 ** rng.uniform(-12, -4)))
-
-
-@pytest.mark.slow
-def test_projection_with_fixed_steps():
-    check(ratios(SCENES, 4, method=projection, step=lambda rng, s: s / int(rng.integers(5, 25))))
-
-
-@pytest.mark.slow
-def test_coordinate_partitioning_under_a_tolerance():
-    check(
-        ratios(
-            SCENES,
-            2,
-            method=lambda rng, span: "coordinate_partitioning",
-            rtol=lambda rng, span: 10.0 ** rng.uniform(-7, -4),
-        )
-    )
-
-
-@pytest.mark.slow
-def test_lobatto_with_steps_of_any_length():
-    check(
-        ratios(
-            SCENES,
-            3,
-            method=lambda rng, span: "lobatto",
-            stages=lambda rng, span: int(rng.integers(2, 7)),
-            step=lambda rng, span: span / int(rng.integers(5, 25)),
-        )
-    )
-
-
-@pytest.mark.slow
-def test_gear_gupta_leimkuhler_under_a_tolerance():
-    pytest.importorskip("sksundae")
-    check(
-        ratios(
-            SCENES,
-            5,
-            method=lambda rng, span: "gear_gupta_leimkuhler",
-            rtol=lambda rng, span: 10.0 ** rng.uniform(-7, -4),
-        )
-    )
-
-
-def test_consistent_states():
-    """The defect that is left is a figure of the scaled distance from the constraints."""
+@pytest.mark.parametrize("scenes", SOME)
+def test_consistent_states(scenes):
+    """The defect that is left is an estimate of the scaled distance from the constraints."""
     rng = np.random.default_rng(6)
-    met = []
-    for _ in range(SCENES):
+    for _ in range(scenes):
         circle = random_circle(rng)
         q, qd = circle.state
         off = 0.1 * rng.standard_normal(2)
         found = consistent_state(circle.system, q + np.linalg.solve(circle.oblique, off), qd)
         # Distance from the circle by hand, over the size of the coordinates.
-        x = circle.oblique @ found.q
-        met.append(abs(np.hypot(*x) - 1.0))
+        assert abs(np.hypot(*(circle.oblique @ found.q)) - 1.0) < 1e-12
         assert found.error < 1e-13
-    assert np.max(met) < 1e-12

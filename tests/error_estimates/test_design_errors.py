@@ -24,7 +24,7 @@ from elastolink.runtime.design import (
     quiet_speeds,
     running_speed,
 )
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 from honesty import verdict
 
 SCENES = 200

@@ -13,7 +13,8 @@ from elastolink.derive.models.overhang_integrals import (
     single_integral,
     square_integral,
 )
-from elastolink.runtime.systems.rod import OverhangBasis, galerkin_integrals
+from elastolink.runtime.systems.rod import OverhangBasis
+from galerkin_integrals import galerkin_integrals
 from seed_ledger import establishes
 
 PAPER = "Beale & Scott"

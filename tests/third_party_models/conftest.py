@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from elastolink.derive import regenerate
 from elastolink.derive.spec import ModelSpec
-from elastolink.runtime.systems.modules import EmittedModule, find_module
+from elastolink.runtime.core.modules import EmittedModule, find_module
 
 Emit = Callable[[str, ModelSpec], EmittedModule]
 

@@ -9,7 +9,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
 from elastolink.runtime.simulation.trajectory import simulate
-from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems import assemble
 
 LENGTH, TRAVEL = 2.0, 0.6
 PARAMETERS = {"modal_mass": 1.3, "stiffness": 40.0, "slider_mass": 0.5, "gravity": 9.81}

@@ -151,7 +151,7 @@ def test_the_distance_from_the_guess_is_told(free):
 )
 def test_text_for_numbers_is_refused(pendulum, changes, named):
     given = {"q": [0.0, 0.0, -ROD], "qd": [0.0, 0.0, 0.0], **changes}
-    with pytest.raises(BadInput, match=f"{named}: .* expected numbers"):
+    with pytest.raises(BadInput, match=f"{named}: .* expected real numbers"):
         periodic_orbit(pendulum, PERIOD, **given)
 
 

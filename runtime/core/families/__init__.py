@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .constrained import Constrained
+from .constrained import Constrained, Guard
 from .emitted import array_function
 from .linear_periodic import DAMPING, MATRICES, VECTORS, Array, LinearPeriodic, Term
 from .transcendental import Transcendental
@@ -13,6 +13,7 @@ __all__ = [
     "VECTORS",
     "Array",
     "Constrained",
+    "Guard",
     "LinearPeriodic",
     "Term",
     "Transcendental",

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from inspect import signature
 from types import ModuleType
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +17,23 @@ from .linear_periodic import Array
 from .multipliers import solve_multipliers
 
 External = Callable[[Array, Array], ArrayLike]
+Margin = Callable[[float, Array, Array], float]
+
+
+class Guard(NamedTuple):
+    """A condition under which a motion stops.
+
+    Attributes
+    ----------
+    margin : callable
+        ``margin(t, q, qd)``, positive while the motion may go on; ``q`` and ``qd`` of shape
+        ``(n,)``.
+    reason : str
+        Why it stops, for the message: ``the slider left the rod's end``.
+    """
+
+    margin: Margin
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -43,6 +59,17 @@ class Constrained:
         Names of the coordinates.
     provenance : mapping
         Module and options that the system was made from.
+    period : float or None
+        Period of its dependence on time [s].
+    advance : ndarray, shape () or (n,)
+        What the coordinates of a periodic motion gain over a period: 2 pi for a link that turns.
+    reference : callable or None
+        Times, shape batch, to coordinates and velocities ``(*batch, n)`` of a motion that meets
+        the constraints: from it a motion starts, and near it a periodic one is sought.
+    watch : callable or None
+        ``(q, t)`` to the largest deflection over the length of the link, shape batch.
+    guards : tuple of Guard
+        Conditions beyond which the equations mean nothing.
     """
 
     size: int
@@ -52,6 +79,11 @@ class Constrained:
     variations: Callable[..., Mapping[str, Array]] | None = None
     labels: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+    period: float | None = None
+    advance: ArrayLike = 0.0
+    reference: Callable[[Array], tuple[Array, Array]] | None = None
+    watch: Callable[[Array, Array], ArrayLike] | None = None
+    guards: tuple[Guard, ...] = ()
 
     @classmethod
     def from_module(
@@ -144,16 +176,7 @@ class _AtState:
         function = getattr(self.module, self.name, None)
         if function is None or not all(isinstance(v, float) for v in self.values.values()):
             return None
-        return function, _places(self.module.ARRAYS[self.name])
-
-    @cached_property
-    def _in_a_row(self) -> tuple[Callable[[list[float]], Array], tuple[str, ...]] | None:
-        """What takes its numbers in one row, where the function is compiled, and their names."""
-        function = getattr(self.module, self.name, None)
-        row = getattr(function, "at_numbers", None)
-        if function is None or row is None:
-            return None
-        return row, tuple(signature(function).parameters)
+        return function, _Places.of(self.module.ARRAYS[self.name])
 
     @cached_property
     def _batched(self) -> Callable[..., Mapping[str, Array]]:
@@ -166,31 +189,18 @@ class _AtState:
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
+        passed = {name: self.given[name](vectors[0], time) for name in self.module.EXTERNAL}
         alone = time.ndim == 0 and all(vector.ndim == 1 for vector in vectors)
         if alone and self._single is not None:
-            # Plain floats are several times faster than arrays of no dimension.
+            # Plain floats are five times faster than arrays of no dimension.
             function, places = self._single
-            numbers = [number for vector in vectors for number in vector.tolist()]
-            moment = float(time)
-            given = {
-                name: np.asarray(self.given[name](vectors[0], time))
-                for name in self.module.EXTERNAL
-            }
-            if all(value.ndim == 0 for value in given.values()):
-                passed = {name: float(value) for name, value in given.items()}
-                if self._in_a_row is not None:
-                    row, names = self._in_a_row
-                    rest: dict[str, Any] = {**passed, **self.values}
-                    numbers.append(moment)
-                    numbers += [rest[name] for name in names[len(numbers) :]]
-                    return places.fill_row(row(numbers))
-                try:
-                    return places.fill(function(*numbers, moment, **passed, **self.values))
-                except (OverflowError, ZeroDivisionError):
-                    pass  # plain floats refuse what arrays return as infinite
+            state = [number for vector in vectors for number in vector.tolist()]
+            try:
+                return places.filled(function(*state, float(time), **passed, **self.values))
+            except (OverflowError, ZeroDivisionError):
+                pass  # plain floats refuse what arrays return as infinite
         columns = [vector[..., i] for vector in vectors for i in range(vector.shape[-1])]
-        passed_in = {name: self.given[name](vectors[0], time) for name in self.module.EXTERNAL}
-        return self._batched(*columns, time, **passed_in, **self.values)
+        return self._batched(*columns, time, **passed, **self.values)
 
 
 @dataclass(frozen=True)
@@ -202,34 +212,23 @@ class _Places:
     source: tuple[int, ...]
     parts: tuple[tuple[str, int, int, tuple[int, int]], ...]
 
-    def fill(self, returned: object) -> dict[str, Array]:
+    @classmethod
+    def of(cls, arrays: Places) -> _Places:
+        target: list[int] = []
+        source: list[int] = []
+        parts = []
+        start = 0
+        for name, (shape, filled) in arrays.items():
+            stop = start + shape[0] * shape[1]
+            parts.append((name, start, stop, shape))
+            target += [start + row * shape[1] + column for row, column, _ in filled]
+            source += [position for _, _, position in filled]
+            start = stop
+        return cls(start, np.array(target, dtype=np.intp), tuple(source), tuple(parts))
+
+    def filled(self, returned: object) -> dict[str, Array]:
         """Return the arrays by name."""
         entries = returned if isinstance(returned, tuple) else (returned,)
         whole: Array = np.zeros(self.size)
         whole[self.target] = [entries[i] for i in self.source]
         return {name: whole[a:b].reshape(shape) for name, a, b, shape in self.parts}
-
-    def fill_row(self, returned: Array) -> dict[str, Array]:
-        """Return the arrays by name of what a compiled function returned in one row."""
-        whole: Array = np.zeros(self.size)
-        whole[self.target] = returned[self.places]
-        return {name: whole[a:b].reshape(shape) for name, a, b, shape in self.parts}
-
-    @cached_property
-    def places(self) -> NDArray[np.intp]:
-        """Places of the numbers among those that are returned."""
-        return np.array(self.source, dtype=np.intp)
-
-
-def _places(arrays: Places) -> _Places:
-    target: list[int] = []
-    source: list[int] = []
-    parts = []
-    start = 0
-    for name, (shape, filled) in arrays.items():
-        stop = start + shape[0] * shape[1]
-        parts.append((name, start, stop, shape))
-        target += [start + row * shape[1] + column for row, column, _ in filled]
-        source += [position for _, _, position in filled]
-        start = stop
-    return _Places(start, np.array(target, dtype=np.intp), tuple(source), tuple(parts))

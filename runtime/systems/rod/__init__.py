@@ -1,6 +1,8 @@
 """The flexible rod of a quick-return mechanism: moving bases, and the systems made from them.
 
-The names load on first use: one basis needs nothing of the others.
+``rod_system`` is linear, on one of four bases or on shapes of your own; ``free_free_rod`` is the
+nonlinear rod in a floating frame, with constraints.  The names load on first use: one basis needs
+nothing of the others.
 """
 
 from __future__ import annotations
@@ -11,59 +13,38 @@ from ...core.lazy import on_first_use
 
 if TYPE_CHECKING:
     from .basis import MovingBasis
-    from .constrained import FreeFreeRod, free_free_rod, rigid_state, tip_deflection
-    from .free_free import FreeFreeBasis, FreeFreeModes, free_free_roots
-    from .galerkin import GalerkinIntegrals, galerkin_integrals
+    from .floating import FreeFreeRod, free_free_rod
+    from .free_free import FreeFreeBasis, FreeFreeModes
     from .linear import rod_system
-    from .motion import rod_motion
-    from .orbit import rod_orbit
-    from .overhang import OverhangBasis
-    from .overhang_spectrum import OverhangFrequencies, overhang_frequencies, overhang_roots
-    from .polynomial import PolynomialBasis
-    from .two_segment import TwoSegmentBasis
+    from .overhang import OverhangBasis, OverhangFrequencies, overhang_roots
+    from .polynomials import PolynomialBasis, TwoSegmentBasis
 
 _PUBLIC = {
     "FreeFreeBasis": "free_free",
     "FreeFreeModes": "free_free",
-    "FreeFreeRod": "constrained",
-    "GalerkinIntegrals": "galerkin",
+    "FreeFreeRod": "floating",
     "MovingBasis": "basis",
     "OverhangBasis": "overhang",
-    "OverhangFrequencies": "overhang_spectrum",
-    "PolynomialBasis": "polynomial",
-    "TwoSegmentBasis": "two_segment",
-    "free_free_rod": "constrained",
-    "free_free_roots": "free_free",
-    "galerkin_integrals": "galerkin",
-    "overhang_frequencies": "overhang_spectrum",
-    "overhang_roots": "overhang_spectrum",
-    "rigid_state": "constrained",
-    "rod_motion": "motion",
-    "rod_orbit": "orbit",
+    "OverhangFrequencies": "overhang",
+    "PolynomialBasis": "polynomials",
+    "TwoSegmentBasis": "polynomials",
+    "free_free_rod": "floating",
+    "overhang_roots": "overhang",
     "rod_system": "linear",
-    "tip_deflection": "constrained",
 }
 
 __all__ = [
     "FreeFreeBasis",
     "FreeFreeModes",
     "FreeFreeRod",
-    "GalerkinIntegrals",
     "MovingBasis",
     "OverhangBasis",
     "OverhangFrequencies",
     "PolynomialBasis",
     "TwoSegmentBasis",
     "free_free_rod",
-    "free_free_roots",
-    "galerkin_integrals",
-    "overhang_frequencies",
     "overhang_roots",
-    "rigid_state",
-    "rod_motion",
-    "rod_orbit",
     "rod_system",
-    "tip_deflection",
 ]
 
 

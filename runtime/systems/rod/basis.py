@@ -1,4 +1,4 @@
-"""What a moving basis of the rod's deflection is: shapes that depend on the block's place.
+"""What a moving basis of the rod's deflection is, and what the rods' functions refuse.
 
 The deflection from the line of the block is ``v = L sum_i q_i(t) e_i(eta; xi)``, eta = x/L from 0
 to 1 and xi = x1/L the block's place, with ``e_i(0) = e_i(xi) = 0``.  The equations want integrals
@@ -7,16 +7,24 @@ of the shapes over the rod, functions of xi alone; the angle enters through xi(t
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
+from numbers import Real
+from reprlib import repr as short
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.errors import BadInput, Problem, bad
+from ...core.inputs import numbers, require_whole
 
 Array = NDArray[np.float64]
 
 # Names of the integrals: those with one row and column per shape, and those with one entry.
 MATRIX_ARRAYS = ("overlap", "drift", "drift_drift", "bending", "bending_drift", "tension")
 VECTOR_ARRAYS = ("moment", "mean")
+# Closer to the pin the integrals of some shapes leave the range of a double.
+_NEAREST = 1e-12
 
 
 @runtime_checkable
@@ -73,3 +81,92 @@ class MovingBasis(Protocol):
         BadInput
             If there is no array of that name.
         """
+
+
+def require_array(name: str) -> None:
+    """Refuse the name of an array that no basis has."""
+    known = (*MATRIX_ARRAYS, *VECTOR_ARRAYS)
+    if name not in known:
+        raise bad("array", name, f"one of {', '.join(known)}", "see MovingBasis")
+
+
+def require_modes(modes: object, most: int, why: str) -> int:
+    """Return a number of shapes, refused where it is none from 1 to the most."""
+    return require_whole("modes", modes, 1, most, f"take fewer: {why}")
+
+
+def require_derivative(derivative: int, most: int = 3) -> int:
+    """Return the order of a derivative by eta, refused where it is not offered."""
+    return require_whole("derivative", derivative, 0, most, "higher ones are not offered")
+
+
+def require_places(place: ArrayLike, alone: bool = False) -> Array:
+    """Return the block's places as a vector, refused where the block is not on the rod.
+
+    With ``alone`` a number makes a vector of one.
+    """
+    expected = f"a vector of places x1/L in 0 < x1/L <= 1, not nearer to the pin than {_NEAREST:g}"
+    fix = "keep the block on the rod: a longer rod, or a shorter crank"
+    return _between("place", place, _NEAREST, expected, fix, alone)
+
+
+def require_points(x: ArrayLike, where: str = "x", alone: bool = False) -> Array:
+    """Return points of the rod as a vector, refused where they are not on it.
+
+    With ``alone`` a number makes a vector of one.
+    """
+    return _between(where, x, 0.0, "a vector of places x/L from 0 to 1", "stay on the rod", alone)
+
+
+def _between(
+    where: str, values: ArrayLike, least: float, expected: str, fix: str, alone: bool
+) -> Array:
+    given = numbers(where, values)
+    given = np.atleast_1d(given) if alone else given
+    if given.ndim != 1 or not np.all((given >= least) & (given <= 1.0)):
+        shape = f"shape {given.shape}"
+        if given.size and np.all(np.isfinite(given)):
+            shape += f", values from {np.min(given):.6g} to {np.max(given):.6g}"
+        raise bad(where, shape, expected, fix)
+    return given
+
+
+def require_numbers(
+    values: Mapping[str, object], *, zero: Collection[str] = (), signed: Collection[str] = ()
+) -> None:
+    """Refuse what is not a finite number above 0, all such at once.
+
+    Parameters
+    ----------
+    values : mapping
+        By name.
+    zero : collection of str
+        Names of those that may be 0.
+    signed : collection of str
+        Names of those that may have either sign, but not be 0.
+    """
+    problems = []
+    for name, value in values.items():
+        try:
+            number = float(value) if isinstance(value, Real) else np.nan
+        except OverflowError:
+            number = np.inf
+        if name in signed:
+            usable, expected = abs(number) > 0, "other than 0"
+        elif name in zero:
+            usable, expected = number >= 0, "from 0"
+        else:
+            usable, expected = number > 0, "above 0"
+        if not (usable and np.isfinite(number)):
+            expected = f"a finite number {expected}"
+            problems.append(Problem(name, short(value), expected, "correct it"))
+    if problems:
+        raise BadInput(*problems)
+
+
+def require_drop(drop: object, known: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the terms to leave out, sorted and once each, refused where one is unknown."""
+    whole = isinstance(drop, Collection) and not isinstance(drop, str | bytes)
+    if not whole or any(name not in known for name in drop):  # type: ignore[attr-defined]
+        raise bad("drop", repr(drop), f"some of {known}", "correct it")
+    return tuple(name for name in sorted(known) if name in drop)  # type: ignore[operator]

@@ -13,23 +13,29 @@ from functools import cached_property, lru_cache
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ....generated import beam_free_free_modes as emitted
-from ...core.errors import bad
-from .inputs import require_modes, require_places, require_points
+from .basis import (
+    Array,
+    require_array,
+    require_derivative,
+    require_modes,
+    require_places,
+    require_points,
+)
 
-Array = NDArray[np.float64]
 _Function = Callable[..., tuple[Array, ...]]
-_DEFECT: _Function = emitted.root_defect
-_CONSTANTS: _Function = emitted.mode_constants
-_SHAPES: _Function = emitted.modes
-_PRODUCTS: _Function = emitted.slope_products
-_SQUARES: _Function = emitted.slope_squares
+_root_defect: _Function = emitted.root_defect
+_mode_constants: _Function = emitted.mode_constants
+_modes: _Function = emitted.modes
+_slope_products: _Function = emitted.slope_products
+_slope_squares: _Function = emitted.slope_squares
 # pi to twice the digits of a double: the multiples that roots start from are rounded once.
 _PI = Fraction(pi) + Fraction(1.2246467991473532e-16)
 _NEWTON = 8
-_MOST = 1000  # modes
+_MOST = 1000
+_WHY = "the beam has long ceased to be slender for such modes"
 
 
 @dataclass(frozen=True)
@@ -48,7 +54,7 @@ def _solved(count: int) -> _Roots:
     parity = np.where(np.arange(1, count + 1) % 2 == 1, 1.0, -1.0)
     offset = np.zeros(count)
     for _ in range(_NEWTON):
-        defect, slope = _DEFECT(offset, start, parity)
+        defect, slope = _root_defect(offset, start, parity)
         offset = offset - defect / slope
     roots = start + (offset + rest)
     for array in (roots, parity):
@@ -74,11 +80,7 @@ def free_free_roots(count: int) -> Array:
     BadInput
         If the count is not a whole number from 1 to 1000.
     """
-    return _solved(_counted(count)).roots
-
-
-def _counted(count: int) -> int:
-    return require_modes(count, _MOST, "the beam has long ceased to be slender for such modes")
+    return _solved(require_modes(count, _MOST, _WHY)).roots
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ class FreeFreeModes:
 
     def __post_init__(self) -> None:
         """Refuse a size that is none."""
-        object.__setattr__(self, "size", _counted(self.size))
+        object.__setattr__(self, "size", require_modes(self.size, _MOST, _WHY))
 
     @cached_property
     def roots(self) -> Array:
@@ -121,7 +123,7 @@ class FreeFreeModes:
         """Phase, amplitude and weight of the modes, and their slope at the right end."""
         number = np.arange(1, self.size + 1)
         phase = np.asarray((number + 1) % 4 * (pi / 2), dtype=np.float64)
-        amplitude, weight, slope = _CONSTANTS(self.roots, self.parity)
+        amplitude, weight, slope = _mode_constants(self.roots, self.parity)
         return phase, amplitude, weight, slope
 
     @property
@@ -152,9 +154,7 @@ class FreeFreeModes:
     def at(self, eta: float | Array) -> tuple[Array, Array, Array, Array]:
         """Return the modes and three derivatives at one place, or at places of shape (..., 1)."""
         phase, amplitude, weight, _ = self._constants
-        found = _SHAPES(eta, self.roots, phase, self.parity, amplitude, weight)
-        value, slope, curvature, third = found
-        return value, slope, curvature, third
+        return _modes(eta, self.roots, phase, self.parity, amplitude, weight)  # type: ignore[return-value]
 
     @cached_property
     def slope_integrals(self) -> tuple[Array, Array, Array]:
@@ -165,14 +165,14 @@ class FreeFreeModes:
         b, p, ends = self.roots, self.parity, self.end_slopes
         rows, columns = np.triu_indices(self.size, 1)
         pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
-        found = _PRODUCTS(*pairs)
-        plain, second = _SQUARES(ends)
-        made = []
-        for products, squares in zip(found, (plain, np.zeros(self.size), second), strict=True):
+        across = _slope_products(*pairs)
+        plain, second = _slope_squares(ends)
+        integrals = []
+        for products, squares in zip(across, (plain, np.zeros(self.size), second), strict=True):
             whole = np.diag(squares)
             whole[rows, columns] = whole[columns, rows] = products
-            made.append(whole)
-        return made[0], made[1], made[2]
+            integrals.append(whole)
+        return integrals[0], integrals[1], integrals[2]
 
     def tension(self) -> Array:
         """Return ``int (1 - eta^2)/2 psi_i' psi_j'``, the tension of a rod that turns about a pin.
@@ -235,8 +235,7 @@ class FreeFreeBasis:
         BadInput
             If a point or the block is not on the rod, or the derivative is not one of 0 to 3.
         """
-        if derivative not in range(4):
-            raise bad("derivative", derivative, "0, 1, 2 or 3", "higher ones are not offered")
+        derivative = require_derivative(derivative)
         lean, _ = self._lean(place)
         points = require_points(x)
         eta = points[:, None]
@@ -257,19 +256,26 @@ class FreeFreeBasis:
         BadInput
             If there is no array of that name, or the block is not on the rod.
         """
-        makers = {
-            "overlap": self._overlap,
-            "drift": self._drift,
-            "drift_drift": self._drift_drift,
-            "bending": self._bending,
-            "bending_drift": self._bending_drift,
-            "tension": self._tension,
-            "moment": self._moment,
-            "mean": self._mean,
-        }
-        if name not in makers:
-            raise bad("array", name, f"one of {sorted(makers)}", "see MovingBasis")
-        return makers[name](*self._lean(place))
+        require_array(name)
+        lean, rate = self._lean(place)
+        left, none = np.broadcast_to(self._modes.left_values, lean.shape), np.zeros_like(lean)
+        if name == "overlap":
+            return np.eye(self.size) + _straight(left, lean, left, lean)
+        if name == "drift":
+            return _straight(left, lean, none, rate)
+        if name == "drift_drift":
+            return _straight(none, rate, none, rate)
+        if name == "bending":
+            elastic = np.diag(self._modes.roots**4)
+            return np.broadcast_to(elastic, (len(lean), *elastic.shape)).copy()
+        if name == "bending_drift":
+            return np.zeros((*lean.shape, self.size))
+        if name == "tension":
+            # int (1 - eta^2)/2 psi' = -psi(0)/2 by parts, int (1 - eta^2)/2 = 1/3
+            cross = _outer(left / 2, lean)
+            cross = cross + np.swapaxes(cross, -1, -2)
+            return self._modes.tension() + cross + _outer(lean, lean) / 3.0
+        return -left / 2 - lean / 3 if name == "moment" else -left - lean / 2
 
     def _lean(self, place: Array) -> tuple[Array, Array]:
         """Return the slope of the line through pin and block on each mode, and its rate by xi."""
@@ -278,35 +284,6 @@ class FreeFreeBasis:
         lean = (value - self._modes.left_values) / xi[:, None]
         return lean, (slope - lean) / xi[:, None]
 
-    def _overlap(self, lean: Array, _: Array) -> Array:
-        left = self._modes.left_values
-        return np.eye(self.size) + _straight(left, lean, left, lean)
-
-    def _drift(self, lean: Array, rate: Array) -> Array:
-        return _straight(self._modes.left_values, lean, np.zeros(self.size), rate)
-
-    def _drift_drift(self, lean: Array, rate: Array) -> Array:
-        none = np.zeros(self.size)
-        return _straight(none, rate, none, rate)
-
-    def _bending(self, lean: Array, _: Array) -> Array:
-        elastic = np.diag(self._modes.roots**4)
-        return np.broadcast_to(elastic, (len(lean), *elastic.shape)).copy()
-
-    def _bending_drift(self, lean: Array, _: Array) -> Array:
-        return np.zeros((len(lean), self.size, self.size))
-
-    def _tension(self, lean: Array, _: Array) -> Array:
-        # int (1 - eta^2)/2 psi' = -psi(0)/2 by parts, int (1 - eta^2)/2 = 1/3
-        cross = _outer(np.broadcast_to(self._modes.left_values / 2, lean.shape), lean)
-        return self._modes.tension() + cross + np.swapaxes(cross, -1, -2) + _outer(lean, lean) / 3.0
-
-    def _moment(self, lean: Array, _: Array) -> Array:
-        return -self._modes.left_values / 2 - lean / 3
-
-    def _mean(self, lean: Array, _: Array) -> Array:
-        return -self._modes.left_values - lean / 2
-
 
 def _outer(rows: Array, columns: Array) -> Array:
     return rows[..., :, None] * columns[..., None, :]
@@ -314,6 +291,4 @@ def _outer(rows: Array, columns: Array) -> Array:
 
 def _straight(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Return ``int (a_i + b_i eta) (c_j + d_j eta) d eta``."""
-    shape = np.broadcast_shapes(a.shape, b.shape, c.shape, d.shape)
-    a, b, c, d = (np.broadcast_to(item, shape) for item in (a, b, c, d))
     return _outer(a, c) + (_outer(a, d) + _outer(b, c)) / 2 + _outer(b, d) / 3

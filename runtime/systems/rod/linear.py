@@ -5,20 +5,29 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 
 from ....derive.spec import ModelSpec
+from ...core.errors import bad
 from ...core.families import LinearPeriodic
+from ...core.modules import EmittedModule, find_module
 from ...linkages import QuickReturn
 from ..assembly import assemble
-from ..modules import EmittedModule, find_module
-from .basis import Array, MovingBasis
-from .inputs import require_drop, require_numbers
+from .basis import Array, MovingBasis, require_drop, require_numbers
 
 DROPPED = ("frame", "tension")
+# Bases by name: one needs nothing of the others.
+BASES = {
+    "overhang": (".overhang", "OverhangBasis"),
+    "two_segment": (".polynomials", "TwoSegmentBasis"),
+    "polynomial": (".polynomials", "PolynomialBasis"),
+    "free_free": (".free_free", "FreeFreeBasis"),
+}
 
 
 def rod_system(
-    basis: MovingBasis,
+    basis: MovingBasis | str = "overhang",
+    modes: int = 3,
     *,
     crank_ratio: float,
     frame: float,
@@ -36,8 +45,11 @@ def rod_system(
 
     Parameters
     ----------
-    basis : MovingBasis
-        Shapes of the rod.
+    basis : {"overhang", "two_segment", "polynomial", "free_free"} or MovingBasis
+        Shapes of the rod: the exact modes of the rod held still, polynomials on both sides of the
+        block, the paper's polynomials, free-free modes bent through the block; or your own shapes.
+    modes : int
+        How many shapes; shapes of your own have their number.
     crank_ratio : float
         Crank length over base length G/a_x, positive; not 1.
     frame : float
@@ -68,8 +80,8 @@ def rod_system(
     Raises
     ------
     BadInput
-        If a number is not usable, a term to drop is unknown, or the crank cannot turn fully with
-        the block on the rod.
+        If a number is not usable, a basis or a term to drop is unknown, or the crank cannot turn
+        fully with the block on the rod.
     """
     geometry = {"crank_ratio": crank_ratio, "frame": frame, "length": length}
     parameters = {
@@ -78,17 +90,26 @@ def rod_system(
         "damping": damping,
         "internal_damping": internal_damping,
     }
+    shapes = moving_basis(basis, modes) if isinstance(basis, str) else basis
     dropped = require_drop(drop, DROPPED)
     spec = ModelSpec("quick_return", "moving_basis", flexible=("rod",), drop=dropped)
-    told = {**(provenance or {})}
-    return _made(basis, parameters, find_module(spec), told, geometry)
+    return _assembled(shapes, parameters, find_module(spec), dict(provenance or {}), geometry)
 
 
-def _made(
+def moving_basis(name: str, modes: int) -> MovingBasis:
+    """Return the basis of a name with a number of shapes."""
+    if name not in BASES:
+        raise bad("basis", repr(name), f"one of {list(BASES)}", "choose one")
+    module, kind = BASES[name]
+    basis: MovingBasis = getattr(import_module(module, __package__), kind)(modes)
+    return basis
+
+
+def _assembled(
     basis: MovingBasis,
     parameters: Mapping[str, float],
     emitted: EmittedModule,
-    told: Mapping[str, str],
+    origin: Mapping[str, str],
     geometry: Mapping[str, float],
 ) -> LinearPeriodic:
     free = ("damping", "internal_damping")
@@ -103,14 +124,13 @@ def _made(
         basis=basis,
         labels=basis.labels,
         reference_length=length,
-        provenance={**told, **emitted.provenance},
+        provenance={**origin, **emitted.provenance},
     )
-    rebuild = partial(_made, basis, parameters, emitted, told)
     return replace(
         system,
         limits={name: "non-negative" if name in free else "positive" for name in parameters},
         geometry=dict(geometry),
-        rebuild=rebuild,
+        rebuild=partial(_assembled, basis, parameters, emitted, origin),
         moving_shape=partial(_shapes, basis, linkage),
     )
 

@@ -1,42 +1,55 @@
 """Modes of the rod pinned at one end and held at the block, free at the tip: a moving basis.
 
-The modes of Beale & Scott's section 2.1.  Every integral over them is closed: Green's identity
-leaves values at pin, block and tip.
+The modes of Beale & Scott's section 2.1.  Every root is bracketed and none missed; every integral
+over the modes is closed: Green's identity leaves values at pin, block and tip.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
 from ...core.errors import bad
-from .inputs import require_modes, require_places, require_points
-from .overhang_spectrum import (
-    MOST,
-    WHY,
-    OverhangFrequencies,
-    overhang_frequencies,
-    overhang_roots,
-    root_count,
+from ...core.inputs import numbers
+from ...core.results import Check, DeferredChecks, Result, provenance
+from .basis import (
+    Array,
+    require_array,
+    require_derivative,
+    require_modes,
+    require_numbers,
+    require_places,
+    require_points,
 )
-from .segments import require_array
 
-__all__ = [
-    "OverhangBasis",
-    "OverhangFrequencies",
-    "overhang_frequencies",
-    "overhang_roots",
-    "root_count",
-]
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-
+_Emitted = Callable[..., tuple[Array, ...]]
+_characteristic: Callable[..., tuple[Array, Array]] = emitted.characteristic
+_end_values: _Emitted = emitted.end_values
+_own_integrals: _Emitted = emitted.own_integrals
+_pair_integrals: _Emitted = emitted.pair_integrals
+_OF_OWN, _OF_PAIR = (
+    tuple(inspect.signature(function).parameters) for function in (_own_integrals, _pair_integrals)
+)
+_MOST = 1000
+_WHY = "the beam has long ceased to be slender for such modes"
+_ROUND = float(np.finfo(float).eps)
+_TINY = float(np.finfo(float).tiny)
+_NEWTON_STEPS = 80  # halving alone needs fewer than that
+_LAST_STEP = 1e-10  # the next of Newton's corrections is its square, times a factor
+_LARGEST = 1e5  # value below which roots are counted
+# Errors of a frequency, in roundings: twice that of the root, one, and three of the factors.
+_FREQUENCY_ERROR = 5.0
 _KEPT = 8  # arrays of places whose modes a basis remembers
 # Over two modes: name, and the sign that an exchange of the modes brings.
 _PAIRS = {
@@ -49,16 +62,184 @@ _PAIRS = {
 _OWN_NAMES = {"moment": "moment_integral", "mean": "mean"}
 
 
-def _inputs(function: Callable[..., object]) -> tuple[str, ...]:
-    return tuple(inspect.signature(function).parameters)
+@lru_cache(maxsize=8)
+def _held_bays(count: int) -> tuple[Array, Array]:
+    """Return the first roots of either bay where the rod is held without slope at the block.
+
+    The bay at the pin: ``tan a = tanh a``; the free one: ``1 + cos b cosh b = 0``.
+    """
+    k = np.arange(1, count + 1)
+    turns, halves = np.asarray(k * np.pi), np.asarray((k - 0.5) * np.pi)
+    side = np.where(k % 2 == 1, 1.0, -1.0)
+    pinned, free = turns, halves
+    for _ in range(60):  # contracts by a third at worst
+        pinned = np.asarray(turns + np.arctan(np.tanh(pinned)))
+        free = np.asarray(halves + side * np.arcsin(1 / np.cosh(np.minimum(free, 700.0))))
+    pinned.setflags(write=False)
+    free.setflags(write=False)
+    return pinned, free
 
 
-_Emitted = Callable[..., tuple[Array, ...]]
-_end_values: _Emitted = emitted.end_values
-_own_integrals: _Emitted = emitted.own_integrals
-_pair_integrals: _Emitted = emitted.pair_integrals
-_OF_OWN = _inputs(_own_integrals)
-_OF_PAIR = _inputs(_pair_integrals)
+def _brackets(place: Array, modes: int) -> tuple[Array, Array]:
+    """Return what lies below and above each root, shape ``(nt, modes)``.
+
+    The stiffness against a slope at the block falls from one root of a held bay to the next
+    from plus to minus infinity: exactly one root of the rod lies between two neighbours, and on
+    them where both coincide.  Below the first one there is one more.
+    """
+    pinned, free = _held_bays(modes)
+    xi = place[:, None]
+    with np.errstate(divide="ignore"):
+        held = np.concatenate([pinned / xi, free / (1 - xi)], axis=1)
+    held.sort(axis=1)
+    upper = held[:, :modes]
+    # The sorted values are right to round-off only.
+    lower = np.concatenate([np.zeros_like(xi), upper[:, :-1]], axis=1)
+    return lower * (1 - 4 * _ROUND), upper * (1 + 4 * _ROUND)
+
+
+def overhang_roots(place: ArrayLike, modes: int) -> Array:
+    """Return the roots beta of the rod pinned at an end, held at the block and free at the tip.
+
+    Each lies alone in a bracket (Wittrick and Williams' count with the two bays held at the
+    block); Newton's method, halving where it leaves the bracket, goes on to round-off.
+
+    Parameters
+    ----------
+    place : array_like
+        Places xi = x1/L of the block, shape ``(nt,)`` or a number; above 0, to 1.
+    modes : int
+        Number of roots, from 1 to 1000.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(nt, modes)``, ascending; mode n solves ``e'''' = beta_n^4 e``.
+
+    Raises
+    ------
+    BadInput
+        If the block is not on the rod, or the number is not a whole one from 1 to 1000.
+    """
+    modes = require_modes(modes, _MOST, _WHY)
+    xi = require_places(place, alone=True)
+    lower, upper = (bound.ravel() for bound in _brackets(xi, modes))
+    where = np.repeat(xi, modes)
+    # The residual is positive below the first root and changes its sign at each.
+    sign = np.tile(1.0 - 2.0 * (np.arange(modes) % 2), len(xi))
+    roots = (lower + upper) / 2
+    active = np.arange(roots.size)
+    beta = roots.copy()
+    for _ in range(_NEWTON_STEPS):
+        residual, slope = _characteristic(beta, where[active])
+        above = residual * sign[active] > 0
+        low = np.where(above, beta, lower[active])
+        high = np.where(above, upper[active], beta)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            correction = residual / slope
+        step = beta - correction
+        step = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+        # The last correction is quadratically small before the next one, but for round-off.
+        done = (np.abs(correction) <= _LAST_STEP * beta) | (high - low <= 4 * _ROUND * beta)
+        roots[active] = np.where(done, np.clip(beta - correction, low, high), step)
+        going = ~done
+        if not np.any(going):
+            break
+        lower[active], upper[active] = low, high
+        active, beta = active[going], step[going]
+    return roots.reshape(len(xi), modes)
+
+
+def root_count(place: ArrayLike, beta: ArrayLike) -> NDArray[np.int64]:
+    """Return how many roots lie below a value: Wittrick and Williams' count.
+
+    Parameters
+    ----------
+    place : array_like
+        Places xi of the block; broadcasts with ``beta``.
+    beta : array_like
+        Values, from 0 to 1e5.
+
+    Returns
+    -------
+    ndarray of int
+        Roots of the two bays held at the block, and one more where the stiffness against a slope
+        at the block is negative.
+
+    Raises
+    ------
+    BadInput
+        If the block is not on the rod, or a value is not from 0 to 1e5.
+    """
+    places, values = numbers("place", place), numbers("beta", beta)
+    if not np.all((values >= 0.0) & (values <= _LARGEST)):
+        raise bad("beta", repr(beta), f"numbers from 0 to {_LARGEST:g}", "correct it")
+    xi, b = np.broadcast_arrays(require_places(places.ravel()).reshape(places.shape), values)
+    most = max(1, int(np.max(b, initial=0.0) / np.pi) + 2)
+    pinned, free = _held_bays(most)
+    below = np.sum(pinned < (b * xi)[..., None], axis=-1)
+    below = below + np.sum(free < (b * (1 - xi))[..., None], axis=-1)
+    residual, _ = _characteristic(b, xi)
+    # Its sign is that of the stiffness times one sign change for each root of a held bay.
+    negative = residual * (1.0 - 2.0 * (below % 2)) < 0
+    return np.asarray(below + negative, dtype=np.int64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverhangFrequencies(Result):
+    """Natural frequencies of the rod with the block held still, over the block's place.
+
+    ``error`` has the shape of ``frequencies``: the absolute error [rad/s] from round-off.
+
+    Attributes
+    ----------
+    place : ndarray, shape (nt,)
+        Places xi = x1/L of the block.
+    roots : ndarray, shape (nt, modes)
+        beta of each mode.
+    frequencies : ndarray, shape (nt, modes)
+        Natural frequencies [rad/s].
+    """
+
+    place: Array
+    roots: Array
+    frequencies: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "place": ("place",),
+        "roots": ("place", "mode"),
+        "frequencies": ("place", "mode"),
+        "error": ("place", "mode"),
+    }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies against the block's place."""
+        from ...core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        order = np.argsort(self.place)
+        for mode in range(self.frequencies.shape[1]):
+            ax.plot(self.place[order], self.frequencies[order, mode], label=f"mode {mode + 1}")
+        ax.set(xlabel="block's place x1/L", ylabel="natural frequency [rad/s]")
+        ax.legend()
+        return ax
+
+
+@dataclass(frozen=True)
+class _CountCheck:
+    """Counts the roots on both sides of each."""
+
+    place: Array
+    roots: Array
+
+    def __call__(self) -> dict[str, Check]:
+        """Return the largest difference from the number that each root should have."""
+        number = np.arange(1, self.roots.shape[1] + 1)
+        margin = 64 * _ROUND
+        above = root_count(self.place[:, None], self.roots * (1 + margin))
+        below = root_count(self.place[:, None], self.roots * (1 - margin))
+        worst = max(np.max(np.abs(above - number)), np.max(np.abs(below - number + 1)))
+        return {"roots counted": Check(float(worst), 0.0)}
 
 
 @dataclass
@@ -89,10 +270,10 @@ class _Modes:
     def _diagonal(self, name: str) -> None:
         """Keep what is diagonal because the modes are orthogonal, and of unit square."""
         nt, n = self.roots.shape
-        found: Array = np.zeros((nt, n, n))
+        matrix: Array = np.zeros((nt, n, n))
         index = np.arange(n)
-        found[:, index, index] = 1.0 if name == "overlap" else self.roots**4
-        self._keep(name, found)
+        matrix[:, index, index] = 1.0 if name == "overlap" else self.roots**4
+        self._keep(name, matrix)
 
     def _integrals(self) -> None:
         """Keep all other integrals, from the emitted closed forms."""
@@ -113,13 +294,13 @@ class _Modes:
             of_pair = dict(zip(emitted.RETURNS["pair_integrals"], values, strict=True))
         index = np.arange(n)
         for name, sign in _PAIRS.items():
-            found: Array = np.zeros((nt, n, n))
+            matrix: Array = np.zeros((nt, n, n))
             if name in own:  # of the others, the modes' unit square leaves nothing
-                found[:, index, index] = own[name]
+                matrix[:, index, index] = own[name]
             if of_pair:
-                found[:, first, second] = of_pair[f"{name}_12"]
-                found[:, second, first] = sign * of_pair[f"{name}_12"]
-            self._keep(name, found)
+                matrix[:, first, second] = of_pair[f"{name}_12"]
+                matrix[:, second, first] = sign * of_pair[f"{name}_12"]
+            self._keep(name, matrix)
 
     def _keep(self, name: str, array: Array) -> None:
         array.setflags(write=False)
@@ -148,7 +329,7 @@ class OverhangBasis:
     """
 
     def __init__(self, size: int) -> None:
-        self.size = require_modes(size, MOST, WHY)
+        self.size = require_modes(size, _MOST, _WHY)
         self._known: OrderedDict[bytes, _Modes] = OrderedDict()
 
     def __repr__(self) -> str:
@@ -163,6 +344,60 @@ class OverhangBasis:
     def roots(self, place: Array) -> Array:
         """Return beta of each mode at places xi of the block, shape ``(nt, n)``."""
         return self._modes(place).roots
+
+    def frequencies(
+        self,
+        place: ArrayLike,
+        *,
+        length: float,
+        bending_stiffness: float,
+        mass_per_length: float,
+    ) -> OverhangFrequencies:
+        """Return the natural frequencies of the rod with the block held still.
+
+        ``omega_k`` of Beale & Scott (7).
+
+        Parameters
+        ----------
+        place : array_like
+            Places xi = x1/L of the block, shape ``(nt,)`` or a number; above 0, to 1.
+        length : float
+            Length L of the rod [m].
+        bending_stiffness : float
+            EI [N m^2].
+        mass_per_length : float
+            Mass per length [kg/m].
+
+        Raises
+        ------
+        BadInput
+            If the block is not on the rod, or a number is not positive and finite.
+        """
+        require_numbers(
+            {
+                "length": length,
+                "bending_stiffness": bending_stiffness,
+                "mass_per_length": mass_per_length,
+            }
+        )
+        xi = require_places(place, alone=True)
+        roots = self.roots(xi)
+        with np.errstate(all="ignore"):
+            unit = np.sqrt(np.float64(bending_stiffness) / mass_per_length)
+            frequencies = np.asarray(roots**2 * (unit / np.float64(length) ** 2))
+        if not np.all((frequencies > _TINY) & (frequencies < np.inf)):
+            expected = "length, stiffness and mass per length of one rod, in SI units"
+            raise bad("length", repr(length), expected, "its frequencies are beyond a double")
+        return OverhangFrequencies(
+            method="Newton's method in brackets of the bays held at the block",
+            error=_FREQUENCY_ERROR * _ROUND * frequencies,
+            error_norm="each natural frequency, absolute [rad/s]",
+            checks=DeferredChecks(_CountCheck(xi, roots)),
+            provenance=provenance({"module": "quick_return_overhang_modes"}),
+            place=xi,
+            roots=roots,
+            frequencies=frequencies,
+        )
 
     def root_rates(self, place: Array) -> Array:
         """Return dbeta/dxi of each mode at places xi of the block, shape ``(nt, n)``."""
@@ -186,8 +421,7 @@ class OverhangBasis:
         BadInput
             If a point or the block is not on the rod, or for a higher derivative.
         """
-        if derivative not in range(4):
-            raise bad("derivative", derivative, "0, 1, 2 or 3", "ask for a derivative by eta")
+        derivative = require_derivative(derivative)
         values = (("left_amplitude",), ("right_amplitude",))
         both = (emitted.modes_before, emitted.modes_beyond)
         return self._on_rod(x, place, both, values, derivative)
@@ -214,8 +448,7 @@ class OverhangBasis:
         BadInput
             If a point or the block is not on the rod, or for a higher derivative.
         """
-        if derivative not in range(3):
-            raise bad("derivative", derivative, "0, 1 or 2", "ask for a derivative by eta")
+        derivative = require_derivative(derivative, most=2)
         values = (
             ("left_amplitude", "left_growth", "rate", "span_rate"),
             ("right_amplitude", "right_growth", "rate", "hang_rate"),
@@ -256,7 +489,7 @@ class OverhangBasis:
         eta = require_points(x)
         xi, beta = modes.place[:, None, None], modes.roots[:, None, :]
         eta = eta[None, :, None]
-        found = []
+        sides = []
         for function, point, wanted in zip(
             both, (np.minimum(eta, xi), np.maximum(eta, xi)), names, strict=True
         ):
@@ -264,8 +497,8 @@ class OverhangBasis:
             # Far from the tip of a high mode the form that holds near it, which is not chosen
             # there, divides by an exponential that has underflowed.
             with np.errstate(divide="ignore", invalid="ignore"):
-                found.append(function(beta, point, xi, *factors)[which])
-        return np.asarray(np.where(eta <= xi, *found))
+                sides.append(function(beta, point, xi, *factors)[which])
+        return np.asarray(np.where(eta <= xi, *sides))
 
     def _modes(self, place: Array) -> _Modes:
         xi = require_places(place)

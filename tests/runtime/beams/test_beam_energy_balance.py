@@ -9,7 +9,7 @@ import pytest
 from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
 from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linkage_system
 from elastolink.runtime.beams.strain_energy import beam_energies
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 VISCOUS = {name: replace(s, retardation=3e-5) for name, s in SECTIONS.items()}
 SPRUNG = {

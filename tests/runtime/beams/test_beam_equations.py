@@ -17,7 +17,7 @@ from elastolink.runtime.beams import (
     linkage_system,
 )
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 from periodic_systems import hamiltonian_gap
 
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)

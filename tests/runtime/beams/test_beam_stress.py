@@ -20,7 +20,7 @@ from elastolink.runtime.beams.stress import stress_operator
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.response import steady_state
 from elastolink.runtime.simulation import simulate
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 
 def four_bar(elements=1, **options):

@@ -28,7 +28,7 @@ from elastolink.runtime.beams import (
 )
 from elastolink.runtime.beams.finer_mesh import finer_structure, finer_system, solved
 from elastolink.runtime.core.families import Term
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 APART = "apart"
 

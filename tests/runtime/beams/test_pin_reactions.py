@@ -10,7 +10,7 @@ from elastolink.runtime.beams.strain_energy import beam_energies
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import SliderCrank
 from elastolink.runtime.rigid import Machine, MassDistribution, rigid_forces
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 SLIDER = SliderCrank(crank=0.1, coupler=0.37, offset=0.06)
 

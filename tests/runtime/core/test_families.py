@@ -19,7 +19,7 @@ from elastolink.runtime.core.families import (
     array_function,
 )
 from elastolink.runtime.core.families.emitted import check_module, parameter_values, stacked
-from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems import assemble
 
 
 def named(*names: str):

@@ -15,7 +15,7 @@ from elastolink.runtime.frequencies import (
     pinned_frequency,
 )
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.systems.modal_damping import with_modal_damping
+from elastolink.runtime.systems import with_modal_damping
 
 LINKS = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
 BAR = Section.rectangle(0.025, 0.003, modulus=210e9, density=7850.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from elastolink.generated import four_bar_coupler_complete, four_bar_kinematics, hill_plain
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.systems.assembly import assemble
+from elastolink.runtime.systems import assemble
 
 GEOMETRY = {"frame": 5.0, "crank": 1.0, "coupler": 5.0, "follower": 2.0, "assembly": 1.0}
 PARAMETERS = {

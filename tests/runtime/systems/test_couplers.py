@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.scenes import load_scene
-from elastolink.runtime.systems.coupler import PinnedModes, coupler_system
+from elastolink.runtime.systems.from_scene import PinnedModes, coupler_system
 
 RIG = "smith_1972_5152_sixteenth_inch"
 INCH, POUND = 0.0254, 4.4482216152605

@@ -6,7 +6,6 @@ import free_free_truth as truth
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.systems.rod import FreeFreeBasis, MovingBasis
 from elastolink.runtime.systems.rod.basis import MATRIX_ARRAYS, VECTOR_ARRAYS
 from elastolink.runtime.systems.rod.free_free import FreeFreeModes, free_free_roots
@@ -54,11 +53,13 @@ def test_modes_are_orthonormal_and_the_naive_formula_is_not():
     # (39) by parts once more: int psi''' psi' = -b^4 for i = j
     mixed = (third / modes.roots**2).T @ (weights[:, None] * slope / modes.roots**2)
     assert np.max(np.abs(mixed + unit)) < 1e-12
-    # The textbook's form loses all digits where exp(b) reaches 1/u, near mode 11.
+    # The textbook's form loses all digits where exp(b) reaches 1/u, near mode 11: there sigma is 1
+    # but for its last bits, and nothing is left of the layer at the right end, of size 1.
     few = naive(modes.roots, modes.parity, eta)
     assert np.max(np.abs(gram(few[:, :4]) - np.eye(4))) < 1e-8
-    assert np.max(np.abs(few[:, 14] - value[:, 14])) > 1.0
-    assert not np.max(np.abs(gram(few) - unit)) < 1.0
+    away = np.max(np.abs(few - value), axis=0)
+    assert np.all(away[:7] < 1e-3)
+    assert np.median(np.nan_to_num(away[12:], nan=np.inf)) > 0.5
 
 
 @pytest.mark.parametrize("number", [1, 2, 13, 60, 200])
@@ -152,18 +153,3 @@ def test_shapes_are_held_at_pin_and_block():
         held = basis.shapes(np.array([0.0, place]), np.array([place]))
         assert np.max(np.abs(held)) < 1e-14
     assert basis.labels[:2] == ("free-free 1", "free-free 2")
-
-
-def test_refusals():
-    for count in (0, True, 2.0, "3"):
-        with pytest.raises(BadInput, match="modes"):
-            free_free_roots(count)
-        with pytest.raises(BadInput, match="modes"):
-            FreeFreeModes(count)
-    basis = FreeFreeBasis(2)
-    with pytest.raises(BadInput, match="place"):
-        basis.array("overlap", np.array([1.2]))
-    with pytest.raises(BadInput, match="array"):
-        basis.array("overlay", PLACES)
-    with pytest.raises(BadInput, match="derivative"):
-        basis.shapes(PLACES, PLACES, 4)

@@ -4,16 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems.rod import FreeFreeBasis, free_free_rod, rod_system
-from elastolink.runtime.systems.rod.constrained import (
-    deflection,
-    energy,
-    place_of_block,
-    rigid_state,
-    tip_deflection,
-)
 
 ROD = {
     "crank_ratio": 0.3,
@@ -33,7 +25,7 @@ def made(modes, drop=(), **changes):
 def bent_state(rod, t, size=0.01, seed=0):
     """Return a state that meets the constraints with given amplitudes and their rates."""
     random = np.random.default_rng(seed)
-    q, qd = rigid_state(rod, rod.speed * t)
+    q, qd = rod.undeformed(t)
     n = np.arange(1, rod.modes.size + 1)
     q[3:] = size * random.normal(size=len(n)) / n**2
     qd[3:] = rod.speed * size * random.normal(size=len(n)) / n**2
@@ -46,14 +38,15 @@ def bent_state(rod, t, size=0.01, seed=0):
     return q, qd
 
 
+@pytest.mark.smoke
 @pytest.mark.parametrize("drop", DROPS)
-@pytest.mark.parametrize("modes", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("modes", [1, 2, 5])
 def test_the_undeformed_rod_meets_the_constraints(modes, drop):
     rod = made(modes, drop)
     assert isinstance(rod, Constrained)
     assert rod.labels == ("R1", "R2", "gamma", *(f"f{i}" for i in range(1, modes + 1)))
     theta = np.linspace(-7.0, 7.0, 40)
-    q, qd = rigid_state(rod, theta)
+    q, qd = rod.undeformed(theta / rod.speed)
     at = rod.dynamics(q, qd, theta / SPEED)
     assert np.max(np.abs(rod.violation(q, theta / SPEED)["constraints"])) < 1e-14
     rates = (at["jacobian"] @ qd[..., None] - at["velocity_rhs"])[..., 0]
@@ -130,7 +123,7 @@ def test_constraints_along_the_motion(modes):
 def test_batches_and_single_states_agree():
     rod = made(2)
     theta = np.linspace(0.0, 6.0, 12).reshape(3, 4)
-    q, qd = rigid_state(rod, theta)
+    q, qd = rod.undeformed(theta / rod.speed)
     q[..., 3:] = 1e-3
     t = theta / SPEED
     together, multipliers = rod.accelerations(q, qd, t)
@@ -217,13 +210,13 @@ def test_the_crank_gives_the_energy(drop):
     rod, t, step = made(4, drop), 0.009, 1e-7
     q, qd = bent_state(rod, t, seed=3)
     qdd, lam = rod.accelerations(q, qd, t)
-    ends = [energy(rod, q + h * qd + h * h / 2 * qdd, qd + h * qdd) for h in (step, -step)]
+    ends = [rod.energy(q + h * qd + h * h / 2 * qdd, qd + h * qdd) for h in (step, -step)]
     power = lam[2] * rod.dynamics(q, qd, t)["velocity_rhs"][2, 0]
     assert abs((ends[0] - ends[1]) / (2 * step) - power) < 1e-6 * abs(power)
     if drop:
         exact = ByQuadrature(rod).energy(q, qd)
-        assert energy(rod, q, qd) == pytest.approx(exact, rel=1e-12)
-    assert energy(rod, np.stack([q, q]), np.stack([qd, 0 * qd]), np.array([t, t])).shape == (2,)
+        assert rod.energy(q, qd) == pytest.approx(exact, rel=1e-12)
+    assert rod.energy(np.stack([q, q]), np.stack([qd, 0 * qd]), np.array([t, t])).shape == (2,)
 
 
 def test_the_tension_is_the_pull_of_the_turning_rod():
@@ -233,7 +226,7 @@ def test_the_tension_is_the_pull_of_the_turning_rod():
     pin's multiplier; by quadrature of N u' psi'.
     """
     rod, t = made(4), 0.0
-    q, qd = rigid_state(rod, 0.0)
+    q, qd = rod.undeformed(0.0)
     turning = 30.0
     length, mass = ROD["length"], ROD["mass_per_length"]
     qd[:] = 0.0
@@ -266,7 +259,7 @@ def derivative(values):
 
 def reduced(rod, theta):
     """Return mass, damping, stiffness and force of the amplitudes about the undeformed rod."""
-    q, qd = rigid_state(rod, theta)
+    q, qd = rod.undeformed(theta / rod.speed)
     motion = rod.linkage.motion(theta, SPEED)
     sin, cos, half = np.sin(motion.theta4), np.cos(motion.theta4), rod.linkage.rod / 2
     qdd = np.zeros_like(q)
@@ -333,9 +326,9 @@ def test_terms_that_differ_are_seen():
 def test_the_block_stays_where_the_linkage_puts_it():
     rod = made(1)
     theta = np.linspace(0.0, 6.0, 20)
-    q, _ = rigid_state(rod, theta)
+    q, _ = rod.undeformed(theta / rod.speed)
     slide = rod.linkage.motion(theta).slide
-    found = place_of_block(rod, q, theta / SPEED)
+    found = rod.place_of_block(q, theta / SPEED)
     np.testing.assert_allclose(found * ROD["length"], slide, rtol=1e-14)
 
 
@@ -346,34 +339,11 @@ def test_deflection_is_measured_from_the_line_of_the_block():
         place = float(rod.linkage.motion(SPEED * t).slide) / ROD["length"]
         shapes = FreeFreeBasis(3).shapes(np.array([0.4, 1.0]), np.array([place]))[0]
         linear = ROD["length"] * shapes @ q[3:]
-        found = deflection(rod, q, t, [0.0, place, 0.4, 1.0])
+        found = rod.deflection(q, t, [0.0, place, 0.4, 1.0])
         # The pin exactly, all else to the order of what the linear formulation leaves out.
         assert abs(found[0]) < 1e-14
         assert abs(found[1]) < 100 * size**2
         np.testing.assert_allclose(found[2:], linear, atol=100 * size**2)
-        assert tip_deflection(rod, q, t) == found[3]
-    q, _ = rigid_state(rod, np.array([0.1, 0.2]))
-    assert np.max(np.abs(tip_deflection(rod, q, np.array([0.1, 0.2]) / SPEED))) < 1e-15
-    with pytest.raises(BadInput, match="places"):
-        deflection(rod, q, t, [1.1])
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"crank_ratio": -0.1}, "crank_ratio"),
-        ({"crank_ratio": 1.0}, "crank"),
-        ({"length": 0.7}, "rod"),
-        ({"bending_stiffness": float("nan")}, "bending_stiffness"),
-        ({"speed": 0.0}, "speed"),
-        ({"speed": "fast"}, "speed"),
-        ({"drop": ("frame",)}, "drop"),
-        ({"drop": "tension"}, "drop"),
-        ({"modes": 0}, "modes"),
-        ({"modes": 9}, "regenerate-equations"),
-    ],
-)
-def test_refusals(changes, words):
-    given = {"modes": 2, "speed": SPEED, **ROD, **changes}
-    with pytest.raises(BadInput, match=words):
-        free_free_rod(given.pop("modes"), **given)
+        assert rod.deflection(q, t, 1.0)[0] == found[3]
+    q, _ = rod.undeformed(np.array([0.1, 0.2]) / SPEED)
+    assert np.max(np.abs(rod.deflection(q, np.array([0.1, 0.2]) / SPEED, 1.0))) < 1e-15

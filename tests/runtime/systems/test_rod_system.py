@@ -12,7 +12,7 @@ from elastolink.runtime.core.families import DAMPING, Term
 from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.hill.form import is_hill
 from elastolink.runtime.simulation.energy import energy_balance
-from elastolink.runtime.systems.rod import OverhangBasis, TwoSegmentBasis, rod_system
+from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss
 from rod_newton import PlainBasis, Rod, linear_forces, second_order
 from scipy.integrate import solve_ivp
@@ -39,16 +39,33 @@ FLEXIBLE = {
 # ---------------------------------------------------------------- against Newton's law
 
 
-@pytest.mark.parametrize("drop", [(), PRINTED])
-@pytest.mark.parametrize("rates", [(7.0, 0.0), (5.0, 11.0)], ids=["steady", "accelerating"])
-def test_equations_are_newtons_law(drop, rates):
+LONG_CRANK = {**NUMBERS, "crank_ratio": 1.5, "frame": 0.4}  # the rod turns round
+
+
+@pytest.mark.parametrize(
+    ("numbers", "theta", "rates", "drop"),
+    [
+        (NUMBERS, 0.9, (5.0, 11.0), ()),
+        (LONG_CRANK, 2.8, (5.0, 11.0), PRINTED),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in (
+                (NUMBERS, 0.9, (7.0, 0.0), ()),
+                (NUMBERS, 0.9, (5.0, 11.0), PRINTED),
+                (LONG_CRANK, 0.9, (5.0, 11.0), ()),
+                (LONG_CRANK, 2.8, (5.0, 11.0), ()),
+            )
+        ),
+    ],
+)
+def test_equations_are_newtons_law(numbers, theta, rates, drop):
     """Every matrix, for motions in coordinates, rates and accelerations one by one."""
-    theta = 0.9
-    found = second_order(rod_system(PlainBasis(2), **NUMBERS, drop=drop), theta, *rates)
-    numbers = {k: v for k, v in NUMBERS.items() if k != "crank_ratio"}
-    rod = Rod(**numbers, crank=NUMBERS["crank_ratio"] * NUMBERS["frame"], taut=not drop)
-    unit = NUMBERS["mass_per_length"] * NUMBERS["length"] ** 3
-    for matrix, expected in zip(found, linear_forces(rod, 2, theta, *rates), strict=True):
+    found = second_order(rod_system(PlainBasis(2), **numbers, drop=drop), theta, *rates)
+    crank = numbers["crank_ratio"] * numbers["frame"]
+    rest = {k: v for k, v in numbers.items() if k != "crank_ratio"}
+    exact = linear_forces(Rod(**rest, crank=crank, taut=not drop), 2, theta, *rates)
+    unit = numbers["mass_per_length"] * numbers["length"] ** 3
+    for matrix, expected in zip(found, exact, strict=True):
         size = np.max(np.abs(expected / unit))
         np.testing.assert_allclose(matrix, expected / unit, rtol=0, atol=1e-11 * size)
 
@@ -65,29 +82,13 @@ def test_terms_of_damping_and_drift_matter_in_that_comparison():
         assert change > 1e-4, name
 
 
-# ---------------------------------------------------------------- a crank longer than the base
-
-LONG_CRANK = {**NUMBERS, "crank_ratio": 1.5, "frame": 0.4}
-
-
-@pytest.mark.parametrize("drop", [(), PRINTED])
-@pytest.mark.parametrize("theta", [0.9, 2.8])
-def test_equations_are_newtons_law_where_the_rod_turns_round(drop, theta):
-    found = second_order(rod_system(PlainBasis(2), **LONG_CRANK, drop=drop), theta, 5.0, 11.0)
-    numbers = {k: v for k, v in LONG_CRANK.items() if k != "crank_ratio"}
-    rod = Rod(**numbers, crank=0.6, taut=not drop)
-    unit = NUMBERS["mass_per_length"] * NUMBERS["length"] ** 3
-    for matrix, expected in zip(found, linear_forces(rod, 2, theta, 5.0, 11.0), strict=True):
-        size = np.max(np.abs(expected / unit))
-        np.testing.assert_allclose(matrix, expected / unit, rtol=0, atol=1e-11 * size)
-
-
+@pytest.mark.slow
 def test_steady_motion_where_the_rod_turns_round_does_not_depend_on_the_basis():
     """The tip's motion on two bases; their truncations there are 5e-4 and 8e-4 of its size."""
     numbers = {**FLEXIBLE, "crank_ratio": 4.0, "frame": 0.15, "damping": 300.0}
     tips = []
-    for basis in (OverhangBasis(4), TwoSegmentBasis(7)):
-        found = el.steady_state(rod_system(basis, **numbers), 120.0, rtol=1e-7, samples=64)
+    for basis, modes in (("overhang", 4), ("two_segment", 7)):
+        found = el.steady_state(rod_system(basis, modes, **numbers), 120.0, rtol=1e-7, samples=64)
         tip = found.deflection(1.0).ravel()
         tips.append(tip[:: len(tip) // 64])
     assert np.max(np.abs(tips[0] - tips[1])) < 2e-3 * np.max(np.abs(tips[0]))
@@ -158,7 +159,11 @@ def test_a_rigid_turn_sees_the_frame_alone(drop):
 # ---------------------------------------------------------------- damping through D
 
 
-@pytest.mark.parametrize("name, value", [("damping", 500.0), ("internal_damping", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("damping", 500.0), ("internal_damping", 1.0)],
+)
+@pytest.mark.slow
 def test_canonical_form_with_d_is_the_second_order_form(name, value):
     numbers = {**NUMBERS, "damping": 0.0, "internal_damping": 0.0, name: value}
     system, speed = rod_system(PlainBasis(2), **numbers), 100.0
@@ -194,6 +199,7 @@ def test_canonical_form_with_d_is_the_second_order_form(name, value):
     assert np.max(np.abs(other.y[:2, -1] * scale[:2] - truth)) > 1e-4 * np.max(np.abs(truth))
 
 
+@pytest.mark.slow
 def test_energy_of_a_damped_motion_is_balanced():
     """The balance holds with D, and fails where the motion had D and the balance has not."""
     system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 400.0})
@@ -227,6 +233,7 @@ def test_multipliers_with_d_multiply_to_liouvilles_determinant():
     assert found.passed
 
 
+@pytest.mark.slow
 def test_speed_boundaries_and_series_see_d():
     """The Fourier matrix and the monodromy matrix agree on an end of a damped region."""
     system = rod_system(PlainBasis(1), **{**FLEXIBLE, "damping": 20.0})
@@ -262,38 +269,12 @@ def test_another_geometry_is_another_system_with_the_same_rest():
     assert not system.without("C").with_geometry(crank_ratio=0.1).has("C")
 
 
-@pytest.mark.parametrize(
-    "change, words",
-    [
-        ({"crank_ratio": 1.0}, "eps = 1"),
-        ({"crank_ratio": 0.9, "length": 1.1}, "the block leaves the rod"),
-        ({"crank_ratio": -0.1}, "crank_ratio"),
-        ({"length": float("nan")}, "length"),
-        ({"damping": -1.0}, "damping"),
-        ({"mass_per_length": 0.0}, "mass_per_length"),
-        ({"bending_stiffness": "soft"}, "bending_stiffness"),
-    ],
-)
-def test_numbers_that_cannot_be(change, words):
-    with pytest.raises(BadInput, match=words):
-        rod_system(PlainBasis(1), **{**FLEXIBLE, **change})
-
-
-@pytest.mark.parametrize("drop", ["tension", ("tension", "spin"), ("axial",)])
-def test_terms_that_cannot_be_dropped(drop):
-    with pytest.raises(BadInput, match="drop"):
-        rod_system(PlainBasis(1), **FLEXIBLE, drop=drop)
-
-
 def test_geometry_that_cannot_be_changed():
     system = rod_system(PlainBasis(1), **FLEXIBLE)
     with pytest.raises(BadInput, match="crank_ratio"):
         system.with_geometry(crank=0.1)
     with pytest.raises(BadInput, match="eps = 1"):
         system.with_geometry(crank_ratio=1.0)
-    coupler = el.load_scene("smith_1972_5152_sixteenth_inch").system()
-    with pytest.raises(BadInput, match="with_geometry"):
-        coupler.with_geometry(crank=0.1)
 
 
 def test_integrals_are_found_once_for_all_terms():
@@ -316,17 +297,18 @@ def test_a_rod_that_just_reaches_the_block():
     """0.1 + 0.2 is more than 0.3 in doubles, which is no reason to refuse the rod."""
     numbers = {**FLEXIBLE, "frame": 0.2, "crank_ratio": 0.5, "length": 0.3}
     assert 0.5 * 0.2 + 0.2 > 0.3
-    system = rod_system(OverhangBasis(2), **numbers)
+    system = rod_system("overhang", 2, **numbers)
     assert np.all(np.isfinite(system.array("K", np.zeros(1))))
 
 
 # ---------------------------------------------------------------- other ways to the exponents
 
 
+@pytest.mark.slow
 def test_series_of_a_tongue_and_exponents_see_d():
     """Internal damping on a mode that changes with the block: ends to order 6, and exponents."""
     numbers = {**FLEXIBLE, "crank_ratio": 0.05, "internal_damping": 1.0}
-    system, span = rod_system(OverhangBasis(1), **numbers), (1500.0, 1900.0)
+    system, span = rod_system("overhang", 1, **numbers), (1500.0, 1900.0)
     (resonance,) = el.resonances(system, span)
     exact = el.stability_edges(system, span)
     found = el.tongue(system, resonance, order=6)

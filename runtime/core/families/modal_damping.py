@@ -10,12 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import bad
-from ..core.families import Array, LinearPeriodic, Term
-from ..floquet.second_order import keep
-
-# Angles up to which the matrices are kept for the next solver.
-_KEPT = 128
+from ..errors import bad
+from .linear_periodic import Array, LinearPeriodic, Term
 
 
 def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
@@ -59,12 +55,12 @@ def with_modal_damping(system: LinearPeriodic, ratio: float) -> LinearPeriodic:
         raise bad("ratio", repr(ratio), "a finite number, 0 or more", "correct it")
     if "damping_ratio" in system.parameters:
         raise bad("system", "modal damping already", "none", "set its damping_ratio instead")
-    matrices = partial(_damping, system)
+    matrices = _DampedModes(system)
     fixed = all(system.is_constant(name) for name in ("M", "K"))
     function = matrices(np.zeros(1))[0] if fixed else matrices
     terms = [Term("C", "damping_ratio", function)]
     if system.moving_shape is not None and system.has("A"):
-        terms.append(Term("D", "damping_ratio", partial(_carried, system)))
+        terms.append(Term("D", "damping_ratio", partial(_carried, system, matrices)))
     damped = system.with_terms(*terms, scales={"damping_ratio": float(ratio)})
     more: dict[str, Any] = {}
     if system.rebuild is not None:
@@ -84,33 +80,31 @@ def _damped_anew(
     return with_modal_damping(replace(make(changed), parameters=dict(parameters)), ratio)
 
 
-def _carried(system: LinearPeriodic, theta: Array) -> Array:
+def _carried(system: LinearPeriodic, matrices: _DampedModes, theta: Array) -> Array:
     """Return ``C M^-1 A`` at crank angles, ``(nt, n, n)``."""
     drift = np.linalg.solve(system.array("M", theta), system.array("A", theta))
-    return np.asarray(_damping(system, theta) @ drift)
+    return np.asarray(matrices(theta) @ drift)
 
 
-def _damping(system: LinearPeriodic, theta: Array) -> Array:
-    """Return ``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at crank angles, ``(nt, n, n)``.
+class _DampedModes:
+    """``sum_k 2 omega_k (M phi_k)(M phi_k)^T`` at angles, once for all terms that ask at them."""
 
-    At the few angles that every solver begins with it is kept with the system.
-    """
-    if len(theta) > _KEPT:
-        return _damped_modes(system, theta)
-    key = ("modal damping", np.asarray(theta, dtype=float).tobytes())
-    known = system.kept.get(key)
-    if known is None:
-        known = (_damped_modes(system, theta),)
-        keep(system, key, known)
-    return known[0].copy()
+    def __init__(self, system: LinearPeriodic) -> None:
+        self._system = system
+        self._last: tuple[Array, Array] | None = None
 
+    def __call__(self, theta: Array) -> Array:
+        last = self._last
+        if last is None or not np.array_equal(last[0], theta):
+            last = self._last = (np.array(theta), self._matrices(theta))
+        return last[1].copy()
 
-def _damped_modes(system: LinearPeriodic, theta: Array) -> Array:
-    mass, stiffness = system.array("M", theta), system.array("K", theta)
-    factor = np.linalg.cholesky(mass)
-    inverse = np.linalg.inv(factor)
-    plain = inverse @ stiffness @ np.swapaxes(inverse, -1, -2)
-    squares, modes = np.linalg.eigh(0.5 * (plain + np.swapaxes(plain, -1, -2)))
-    carried = factor @ modes
-    weights = 2.0 * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
-    return np.asarray((carried * weights) @ np.swapaxes(carried, -1, -2))
+    def _matrices(self, theta: Array) -> Array:
+        mass, stiffness = self._system.array("M", theta), self._system.array("K", theta)
+        factor = np.linalg.cholesky(mass)
+        inverse = np.linalg.inv(factor)
+        plain = inverse @ stiffness @ np.swapaxes(inverse, -1, -2)
+        squares, modes = np.linalg.eigh(0.5 * (plain + np.swapaxes(plain, -1, -2)))
+        carried = factor @ modes
+        weights = 2.0 * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
+        return np.asarray((carried * weights) @ np.swapaxes(carried, -1, -2))

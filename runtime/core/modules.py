@@ -16,7 +16,7 @@ from types import ModuleType
 
 from ... import generated
 from ...derive.spec import Entry, ModelSpec, cache_folder, read_manifest
-from ..core.errors import bad
+from .errors import bad
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,187 @@
+"""From scenes to systems: the coupler of a four-bar, Hill's equation, the rod of a quick-return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..core.errors import bad
+from ..core.families import Array, Constrained, LinearPeriodic
+from ..core.families.modal_damping import with_modal_damping
+from ..core.modules import find_module
+from ..core.periodic_function import PeriodicFunction
+from .assembly import assemble
+
+if TYPE_CHECKING:
+    from ..scenes import Scene
+
+
+def coupler_system(scene: Scene) -> LinearPeriodic:
+    """Return the transverse vibration of the coupler (Smith 6.6, corrected; 6.17; 6.18).
+
+    The coordinates are ``Y_m / l3``; the parameters are those of the emitted module.
+
+    Parameters
+    ----------
+    scene : Scene
+        With mechanism ``four_bar`` and flexible ``coupler``.
+
+    Raises
+    ------
+    BadInput
+        If the crank cannot turn fully, or no module was emitted for the scene's model.
+    """
+    linkage = scene.mechanism()
+    linkage.require_full_turn()
+    emitted = find_module(scene.model_spec())
+    coupler = scene["coupler"]
+    parameters = {
+        "bending_stiffness": coupler["bending_stiffness"],
+        "mass_per_length": coupler["mass_per_length"],
+        "damping": coupler["damping"],
+        "coupler_inertia": coupler["inertia"],
+        "coupler_first_moment": coupler["first_moment"],
+        "follower_inertia": scene["follower"]["inertia"],
+    }
+    modes = int(scene.model["modes"])
+    return assemble(
+        emitted.module,
+        geometry={**linkage.lengths, "assembly": linkage.branch},
+        parameters=parameters,
+        modes=modes,
+        labels=tuple(f"Y{m}/l3" for m in range(1, modes + 1)),
+        reference_length=linkage.lengths["coupler"],
+        shape=PinnedModes(modes),
+        provenance={**_origin(scene), **emitted.provenance},
+    )
+
+
+@dataclass(frozen=True)
+class PinnedModes:
+    """Mode shapes ``sin(m pi x / l)`` of a pinned beam, as a function of x over length.
+
+    Attributes
+    ----------
+    modes : int
+        How many.
+    """
+
+    modes: int
+
+    def __call__(self, x: Array) -> Array:
+        """Return the shapes at ``x`` of shape ``(nx,)`` as an array ``(nx, modes)``."""
+        m = np.arange(1, self.modes + 1)
+        return np.asarray(np.sin(np.pi * np.multiply.outer(np.asarray(x, dtype=float), m)))
+
+
+def hill_system(scene: Scene) -> LinearPeriodic:
+    """Return ``y'' + 2 K y' + (lam2 + mu f) y = 0`` (Smith 7.38); the speed that suits it is 1.
+
+    Raises
+    ------
+    BadInput
+        If no module was emitted for the scene's model.
+    """
+    table, emitted = scene["function"], find_module(scene.model_spec())
+    return assemble(
+        emitted.module,
+        geometry={},
+        parameters=dict(scene["parameters"]),
+        external={"f": PeriodicFunction(a=table["a"], b=table["b"])},
+        labels=("y",),
+        provenance={**_origin(scene), **emitted.provenance},
+    )
+
+
+def rod_of_scene(scene: Scene) -> LinearPeriodic | Constrained:
+    """Return the rod of a scene in the formulation that it names.
+
+    Parameters
+    ----------
+    scene : Scene
+        With mechanism ``quick_return`` and flexible ``rod``.  ``model.formulation`` is
+        ``overhang``, ``polynomial``, ``two_segment`` or ``free_free_linear``, linear on a moving
+        basis, or ``free_free``, nonlinear with constraints.
+
+    Raises
+    ------
+    BadInput
+        If the crank cannot turn fully, a module was not emitted, or ``free_free`` is asked for
+        with damping or without a speed.
+    """
+    scene.mechanism().require_full_turn()
+    links, rod = scene["links"], scene["rod"]
+    numbers = {
+        "crank_ratio": links["crank"] / links["frame"],
+        "frame": links["frame"],
+        "length": links["rod"],
+        "bending_stiffness": rod["bending_stiffness"],
+        "mass_per_length": rod["mass_per_length"],
+    }
+    free_free = scene.model["formulation"] == "free_free"
+    return _floating_rod(scene, numbers) if free_free else _linear_rod(scene, numbers)
+
+
+def _linear_rod(scene: Scene, numbers: dict[str, float]) -> LinearPeriodic:
+    from .rod.linear import rod_system
+
+    rod = scene["rod"]
+    damping = rod["damping"]
+    internal = rod["relaxation_time"] * rod["bending_stiffness"]
+    ratio, law = rod["damping_ratio"], rod["damping_law"]
+    if ratio and law != "modal":
+        first = _first_frequency(numbers)
+        if law == "viscous":
+            damping = 2.0 * ratio * first * rod["mass_per_length"]
+        else:
+            internal = 2.0 * ratio / first * rod["bending_stiffness"]
+    system = rod_system(
+        scene.model["formulation"].removesuffix("_linear"),
+        int(scene.model["modes"]),
+        **numbers,
+        damping=damping,
+        internal_damping=internal,
+        drop=tuple(scene.model["drop"]),
+        provenance=_origin(scene),
+    )
+    return with_modal_damping(system, ratio) if ratio and law == "modal" else system
+
+
+def _first_frequency(numbers: dict[str, float]) -> float:
+    """Return the first natural frequency [rad/s] of the rod held still at the base length."""
+    from .rod.overhang import OverhangBasis
+
+    rod = {name: numbers[name] for name in ("length", "bending_stiffness", "mass_per_length")}
+    first = OverhangBasis(1).frequencies(numbers["frame"] / numbers["length"], **rod)
+    return float(first.frequencies[0, 0])
+
+
+def _floating_rod(scene: Scene, numbers: dict[str, float]) -> Constrained:
+    from .rod.floating import free_free_rod
+
+    rod = scene["rod"]
+    damped = [key for key in ("damping", "relaxation_time", "damping_ratio") if rod[key]]
+    if damped:
+        raise bad(
+            f"rod.{damped[0]}",
+            f"{rod[damped[0]]:g}",
+            "0 with formulation 'free_free', which has no damping",
+            "leave it out, or use formulation 'free_free_linear'",
+        )
+    speed = scene.get("operation.speed", None)
+    if speed is None:
+        fix = "add it: the constrained equations hold at one crank speed"
+        raise bad("operation.speed", "nothing", "the crank speed, such as '100 rad/s'", fix)
+    return free_free_rod(
+        int(scene.model["modes"]),
+        **numbers,
+        speed=speed,
+        drop=tuple(scene.model["drop"]),
+        provenance=_origin(scene),
+    )
+
+
+def _origin(scene: Scene) -> dict[str, str]:
+    return {"scene": scene.name, "scene_digest": scene.digest()}

@@ -1,0 +1,300 @@
+"""The rod in Buckens' frame: nonlinear equations of motion with constraints, on free-free modes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ....derive.spec import ModelSpec
+from ...core.errors import bad
+from ...core.families import Array, Constrained, Guard
+from ...core.modules import find_module
+from ...linkages import QuickReturn
+from .basis import require_drop, require_numbers, require_points
+from .free_free import FreeFreeModes
+
+DROPPED = ("tension",)
+_DERIVATIVES = ("", "_d1", "_d2", "_d3")
+# Deflections over the length beyond which the equations mean nothing any more.
+_BENT = 0.5
+_STATIONS = np.linspace(0.0, 1.0, 21)
+
+
+@dataclass(frozen=True)
+class FreeFreeRod(Constrained):
+    """The quick-return mechanism with a flexible rod, as a constrained system.
+
+    Coordinates ``R1, R2`` [m] and ``gamma`` [rad], mean position and direction of the rod, and
+    ``f1, ..., fN``: the displacement across the mean direction is ``L sum f_i psi_i(eta)`` with
+    modes of unit square over unit length.  The crank angle is ``speed t``.
+
+    Its reference motion is that of the undeformed rod, Beale & Scott's initial conditions; the
+    largest deflection is watched; guards stop where the block leaves the rod's end or the
+    deflection passes half of the rod's length.
+
+    Attributes
+    ----------
+    linkage : QuickReturn
+        The mechanism with the rod undeformed.
+    modes : FreeFreeModes
+        The modes of the rod.
+    speed : float
+        Crank speed [rad/s].
+    bending_stiffness : float
+        EI [N m^2].
+    """
+
+    linkage: QuickReturn = field(kw_only=True)
+    modes: FreeFreeModes = field(kw_only=True)
+    speed: float = field(kw_only=True)
+    bending_stiffness: float = field(kw_only=True)
+
+    def undeformed(self, t: ArrayLike) -> tuple[Array, Array]:
+        """Return coordinates and velocities of the undeformed rod, ``(*batch, n)`` each.
+
+        They meet the constraints and their rates.
+        """
+        motion = self.linkage.motion(self.speed * np.asarray(t, dtype=float), self.speed)
+        half = self.linkage.rod / 2.0
+        sin, cos = np.sin(motion.theta4), np.cos(motion.theta4)
+        q = np.zeros((*motion.theta4.shape, self.size))
+        qd = np.zeros_like(q)
+        q[..., 0], q[..., 1], q[..., 2] = half * cos, half * sin, motion.theta4
+        qd[..., 0] = -half * sin * motion.omega4
+        qd[..., 1] = half * cos * motion.omega4
+        qd[..., 2] = motion.omega4
+        return q, qd
+
+    def energy(self, q: Array, qd: Array, t: ArrayLike = 0.0) -> Array:
+        """Return kinetic and strain energy [J], Beale & Scott (37) and (40); shape batch.
+
+        Its rate is the power of the crank, the block's multiplier times the third entry of
+        ``velocity_rhs``.  With the tension kept it is right to the second order in the amplitudes.
+
+        Parameters
+        ----------
+        q, qd : ndarray, shape (*batch, n)
+            Coordinates and velocities.
+        t : array_like, shape batch
+            Times [s].
+        """
+        moved = (self.dynamics(q, qd, t)["mass"] @ qd[..., None])[..., 0]
+        bent = self.modes.roots**2 * q[..., 3:]
+        elastic = self.bending_stiffness / self.linkage.rod * np.sum(bent**2, axis=-1)
+        return np.asarray((np.sum(qd * moved, axis=-1) + elastic) / 2.0)
+
+    def place_of_block(self, q: Array, t: ArrayLike) -> Array:
+        """Return the distance of the block from the pin over the length; shape batch.
+
+        Along the mean direction, ``x1/L`` with ``x1 = G cos(gamma - theta) + a_x cos(gamma)``,
+        Beale & Scott (44).  Above 1 the block has left the rod, and the modes mean nothing there.
+        """
+        gamma, theta = q[..., 2], self.speed * np.asarray(t, dtype=float)
+        linkage = self.linkage
+        reached = linkage.crank * np.cos(gamma - theta) + linkage.frame * np.cos(gamma)
+        return np.asarray(reached / linkage.rod)
+
+    def deflection(self, q: Array, t: ArrayLike, places: ArrayLike) -> Array:
+        """Return the deflection of the rod from the line through pin and block.
+
+        That is v of the linear formulations: the distance from the line of the material point,
+        which the foreshortening moves along the rod, to the second order.  At the tip it is that
+        of Beale & Scott's Figs. 7-10 but for its sign.
+
+        Parameters
+        ----------
+        q : ndarray, shape (*batch, n)
+            Coordinates that meet the constraints.
+        t : array_like, shape batch
+            Times [s].
+        places : array_like, shape (nx,)
+            Places x/L on the rod, from 0 at the pin to 1 at the tip.
+
+        Returns
+        -------
+        ndarray, shape (*batch, nx)
+            Deflection [m], positive as the angle of the rod.
+
+        Raises
+        ------
+        BadInput
+            If a place is not on the rod, or the coordinates are not those of the system.
+        """
+        eta = require_points(places, "places", alone=True)
+        if np.shape(q)[-1:] != (self.size,):
+            raise bad("q", f"shape {np.shape(q)}", f"(..., {self.size})", "give all coordinates")
+        length = self.linkage.rod
+        line = np.asarray(self.linkage.motion(self.speed * np.asarray(t, dtype=float)).theta4)
+        lean = q[..., 2] - line
+        centre = q[..., 1] * np.cos(line) - q[..., 0] * np.sin(line)
+        bent = length * q[..., 3:] @ self.modes(eta)[0].T
+        along = length * (eta - 0.5) * np.sin(lean)[..., None]
+        return np.asarray(centre[..., None] + along + bent * np.cos(lean)[..., None])
+
+    def largest_deflection(self, q: Array, t: ArrayLike) -> Array:
+        """Return the largest deflection at 21 places, over the length of the rod; shape batch."""
+        bent = np.abs(self.deflection(q, t, _STATIONS))
+        return np.asarray(np.max(bent, axis=-1) / self.linkage.rod, dtype=np.float64)
+
+    def _overhang(self, t: float, q: Array, qd: Array) -> float:
+        return float(1.0 - self.place_of_block(q, t))
+
+    def _unbent(self, t: float, q: Array, qd: Array) -> float:
+        return _BENT - float(self.largest_deflection(q, t))
+
+
+def free_free_rod(
+    modes: int,
+    *,
+    crank_ratio: float,
+    frame: float,
+    length: float,
+    bending_stiffness: float,
+    mass_per_length: float,
+    speed: float,
+    drop: Collection[str] = (),
+    provenance: Mapping[str, str] | None = None,
+) -> FreeFreeRod:
+    """Return the constrained equations of the flexible rod (Beale & Scott (29)-(49)).
+
+    Parameters
+    ----------
+    modes : int
+        Number N of elastic free-free modes; modules for 1 to 5 are packaged.
+    crank_ratio : float
+        Crank length over base length G/a_x, positive; not 1.
+    frame : float
+        Base length a_x [m].
+    length : float
+        Length L of the rod from pin to tip [m].
+    bending_stiffness : float
+        EI [N m^2].
+    mass_per_length : float
+        m [kg/m].
+    speed : float
+        Crank speed [rad/s], not zero; the crank angle is ``speed t``.
+    drop : collection of str
+        ``("tension",)`` leaves out the second-order foreshortening and with it the centrifugal
+        tension, as printed; ``()`` keeps it.
+    provenance : mapping, optional
+        Scene and options to record.
+
+    Returns
+    -------
+    FreeFreeRod
+        With N + 3 coordinates and three constraints.
+
+    Raises
+    ------
+    BadInput
+        If a number is not usable, a term to drop is unknown, the crank cannot turn fully with the
+        block on the rod, or no module was emitted for so many modes.
+
+    Notes
+    -----
+    Linearised about the undeformed rod this is :func:`rod_system` on :class:`FreeFreeBasis` with
+    the same ``drop``.
+    """
+    positive = {
+        "crank_ratio": crank_ratio,
+        "frame": frame,
+        "length": length,
+        "bending_stiffness": bending_stiffness,
+        "mass_per_length": mass_per_length,
+    }
+    require_numbers({**positive, "speed": speed}, signed=("speed",))
+    dropped = require_drop(drop, DROPPED)
+    shapes = FreeFreeModes(modes)
+    linkage = QuickReturn(frame=frame, crank=crank_ratio * frame, rod=length)
+    linkage.require_full_turn()
+    parameters = {
+        "frame": frame,
+        "crank": linkage.crank,
+        "length": length,
+        "bending_stiffness": bending_stiffness,
+        "mass_per_length": mass_per_length,
+        "speed": speed,
+    }
+    system = _equations(shapes, linkage, parameters, dropped, provenance or {})
+    rod = FreeFreeRod(
+        **{f.name: getattr(system, f.name) for f in fields(Constrained)},
+        linkage=linkage,
+        modes=shapes,
+        speed=float(speed),
+        bending_stiffness=float(bending_stiffness),
+    )
+    return replace(
+        rod,
+        period=2.0 * np.pi / abs(rod.speed),
+        # A crank longer than the base takes the rod round with it.
+        advance=2.0 * np.pi * np.sign(speed) * (linkage.crank > frame) * np.eye(rod.size)[2],
+        reference=rod.undeformed,
+        watch=rod.largest_deflection,
+        guards=(
+            Guard(rod._overhang, "the block left the end of the rod"),
+            Guard(rod._unbent, f"the deflection passed {_BENT:g} of the rod's length"),
+        ),
+    )
+
+
+def _equations(
+    modes: FreeFreeModes,
+    linkage: QuickReturn,
+    parameters: Mapping[str, float],
+    dropped: tuple[str, ...],
+    origin: Mapping[str, str],
+) -> Constrained:
+    """Return the equations of the emitted module for so many modes."""
+    emitted = find_module(ModelSpec("quick_return", "free_free", ("rod",), modes.size, dropped))
+    at_block = _AtBlock(modes, linkage, float(parameters["speed"]))
+    external = {
+        f"psi_{i + 1}{derivative}": at_block.mode(order, i)
+        for order, derivative in enumerate(_DERIVATIVES)
+        for i in range(modes.size)
+    }
+    origin = {**origin, **emitted.provenance}
+    return Constrained.from_module(emitted.module, parameters, external=external, provenance=origin)
+
+
+class _AtBlock:
+    """The modes at the place of the block, evaluated once for all that one state needs."""
+
+    def __init__(self, modes: FreeFreeModes, linkage: QuickReturn, speed: float) -> None:
+        self._modes, self._speed = modes, speed
+        self._crank, self._frame = linkage.crank / linkage.rod, linkage.frame / linkage.rod
+        self._last: tuple[float, float, tuple[list[float], ...]] | None = None
+        self._last_batch: tuple[object, tuple[Array, ...]] | None = None
+
+    def mode(self, order: int, index: int) -> Callable[[Array, Array], ArrayLike]:
+        """Return a derivative of one mode as a function of coordinates and time."""
+
+        def value(q: Array, t: Array) -> ArrayLike:
+            if q.ndim == 1 and (isinstance(t, float) or t.ndim == 0):
+                return self._single(float(q[2]), float(t))[order][index]
+            return self._batch(q[..., 2], t)[order][..., index]
+
+        return value
+
+    def _single(self, gamma: float, t: float) -> tuple[list[float], ...]:
+        last = self._last
+        if last is None or last[0] != gamma or last[1] != t:
+            # Plain floats are several times faster than arrays of no dimension.
+            turned = math.cos(gamma - t * self._speed)
+            rows = self._modes.at(self._crank * turned + self._frame * math.cos(gamma))
+            self._last = last = (gamma, t, tuple(row.tolist() for row in rows))
+        return last[2]
+
+    def _batch(self, gamma: Array, t: Array) -> tuple[Array, ...]:
+        last = self._last_batch
+        # Bytes are compared several times faster than small arrays.
+        key = (gamma.shape, gamma.tobytes(), np.shape(t), np.asarray(t).tobytes())
+        if last is None or last[0] != key:
+            # The first part of the loop (44): the distance of the block from the pin.
+            turned = np.cos(gamma - t * self._speed)
+            rows = self._modes(self._crank * turned + self._frame * np.cos(gamma))
+            self._last_batch = last = (key, rows)
+        return last[1]

@@ -10,16 +10,12 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .buckling import Buckling, buckling_speed
     from .campbell_diagram import Campbell, campbell
     from .comparison import CriticalComparison, compare_critical_speeds
-    from .critical import critical_speeds
-    from .critical_result import CriticalSpeeds
-    from .determinant import log_determinant
-    from .elements import element_matrices
-    from .encounters import Encounter
-    from .frames import DynamicStiffness, dynamic_stiffness
-    from .frequency_count import wittrick_williams
+    from .counting import FrameFrequencies, MemberShape, Mode, wittrick_williams
+    from .critical import CriticalSpeeds, critical_speeds
+    from .frames import DynamicStiffness, dynamic_stiffness, element_matrices, log_determinant
+    from .held import Buckling, buckling_speed
     from .hybrid import HybridMatrices, hybrid_matrices
     from .link_study import (
         FrequencyExponents,
@@ -32,26 +28,24 @@ if TYPE_CHECKING:
     from .mode_pictures import draw_mode, draw_modes
     from .models import ModelComparison, compare_models, exact_frequencies
     from .natural import NaturalFrequencies, natural_frequencies
-    from .result import FrameFrequencies
-    from .shapes import MemberShape
-    from .solutions import Mode
+    from .tracking import Encounter
 
 _PUBLIC = {
-    "Buckling": "buckling",
+    "Buckling": "held",
     "Campbell": "campbell_diagram",
     "CriticalComparison": "comparison",
-    "CriticalSpeeds": "critical_result",
+    "CriticalSpeeds": "critical",
     "DynamicStiffness": "frames",
-    "Encounter": "encounters",
-    "FrameFrequencies": "result",
+    "Encounter": "tracking",
+    "FrameFrequencies": "counting",
     "FrequencyExponents": "link_study",
     "HybridMatrices": "hybrid",
     "LinkFrequencies": "link_study",
-    "MemberShape": "shapes",
-    "Mode": "solutions",
+    "MemberShape": "counting",
+    "Mode": "counting",
     "ModelComparison": "models",
     "NaturalFrequencies": "natural",
-    "buckling_speed": "buckling",
+    "buckling_speed": "held",
     "campbell": "campbell_diagram",
     "compare_critical_speeds": "comparison",
     "compare_models": "models",
@@ -59,16 +53,16 @@ _PUBLIC = {
     "draw_mode": "mode_pictures",
     "draw_modes": "mode_pictures",
     "dynamic_stiffness": "frames",
-    "element_matrices": "elements",
+    "element_matrices": "frames",
     "exact_frequencies": "models",
     "frequency_exponents": "link_study",
     "hybrid_matrices": "hybrid",
     "link_frequencies": "link_study",
-    "log_determinant": "determinant",
+    "log_determinant": "frames",
     "member_matrices": "members",
     "natural_frequencies": "natural",
     "pinned_frequency": "link_study",
-    "wittrick_williams": "frequency_count",
+    "wittrick_williams": "counting",
 }
 
 __all__ = [

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Result, provenance
-from .critical import METHODS, critical_speeds
-from .critical_result import CriticalSpeeds
-from .eigenproblem import require_system
+from .critical import METHODS, CriticalSpeeds, critical_speeds
+from .held import require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

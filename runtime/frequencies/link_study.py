@@ -19,8 +19,7 @@ from ..core.inputs import require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..floquet.first_order import numbers
-from .eigenproblem import held_frequencies, require_system
-from .means import cycle_mean
+from .held import cycle_mean, held_frequencies, require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,7 +14,7 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import require_whole
-from .eigenproblem import crank_angles, require_system
+from .held import crank_angles, require_system
 from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:

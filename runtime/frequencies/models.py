@@ -17,7 +17,7 @@ from ..core.inputs import require_whole
 from ..core.progress import bar
 from ..core.results import Result, provenance
 from ..floquet.first_order import even_angles
-from .eigenproblem import crank_angles, held_frequencies, require_system
+from .held import crank_angles, held_frequencies, require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

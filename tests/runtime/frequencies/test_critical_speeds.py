@@ -8,7 +8,7 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import compare_critical_speeds, critical_speeds
-from elastolink.runtime.frequencies.labels import label_speeds
+from elastolink.runtime.frequencies.critical import label_speeds
 
 FREQUENCY = np.array([30.0, 71.0])
 

@@ -38,7 +38,6 @@ COVERED = {
     "harmonics": "test_curve_errors.py",
     "hill_boundaries": "test_hill_errors.py",
     "hill_exponents": "test_hill_exact_errors.py",
-    "hybrid_matrices": "test_hybrid_errors.py",
     "krein_signatures": "test_band_errors.py",
     "least_parameter": "test_threshold_errors.py",
     "length_effect": "test_design_errors.py",
@@ -90,8 +89,6 @@ COVERED = {
 THROUGH = {"balance": "with_crank_counterweight"}
 # The figure is that of another solver, which is called: the second name.
 DELEGATED = {
-    "compare_critical_speeds": "critical_speeds",
-    "compare_models": "natural_frequencies",
     "driving_torque": "rigid_forces",
     "link_frequencies": "natural_frequencies",
     "pin_forces": "rigid_forces",

@@ -11,11 +11,11 @@ from elastolink.runtime.core.families import Transcendental
 from elastolink.runtime.frequencies import (
     dynamic_stiffness,
     element_matrices,
-    hybrid_matrices,
     log_determinant,
     member_matrices,
     wittrick_williams,
 )
+from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import quad_vec
 from scipy.linalg import eigvalsh

@@ -14,8 +14,8 @@ from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
-from .counting import modal, quadratic_forms, rigid_motions, rounding
-from .frames import DynamicStiffness, dynamic_stiffness
+from ..frequencies.counting import modal, quadratic_forms, rigid_motions, rounding
+from ..frequencies.frames import DynamicStiffness, dynamic_stiffness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -18,12 +18,11 @@ from .elements import (
     section_rotation,
     shape_functions,
 )
-from .frames import frame
-from .inextensible import without_stretching
+from .frames import frame, without_stretching
 from .linear import FORMS, linear_system
 from .linkages import beam_linkage, linkage_system
 from .pin_reactions import PinReactions, pin_reactions
-from .recovered import BeamForces, recover
+from .recovery import BeamForces, recover
 from .recovery_forms import LinearForm
 from .section import Section
 from .stress import StressPeak, StressResult, stress, stress_operator

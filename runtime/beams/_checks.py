@@ -98,7 +98,7 @@ def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np
     BadInput
         If they are anything else.
     """
-    from ..floquet.first_order import numbers
+    from ..core.inputs import numbers
 
     row = np.atleast_1d(numbers(where, value))
     if row.ndim != 1 or not row.size or not np.all(np.isfinite(row)):

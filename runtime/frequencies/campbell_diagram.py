@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import require_whole
+from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
+from ..core.trigonometric import even_angles
 from ..floquet.decoupled.exponents import SlowModes, SlowMonodromy
-from ..floquet.first_order import even_angles, numbers
 from .held import (
     HeldModes,
     buckling_speed,

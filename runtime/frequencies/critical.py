@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from ..core.errors import LinearRangeWarning, bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..core.inputs import require_whole
+from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
+from ..core.trigonometric import even_angles
 from ..floquet import MarkedSpeeds, meissner_speeds, multiplier_maxima
-from ..floquet.first_order import even_angles, numbers
 from .critical_scan import scanned_deflections
 from .held import buckling_speed, held_frequencies, require_system
 from .natural import natural_frequencies

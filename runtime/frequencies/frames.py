@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..beams._checks import is_finite, names_problems, require_kind, require_mapping
 from ..beams.assembly import AngleArrays
-from ..beams.freedoms import Freedoms, PlacedElement, number_freedoms
 from ..beams.linear import lumped_values
-from ..beams.structure import Structure
+from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedoms
 from ..core.errors import bad
 from ..core.families import Transcendental
-from ..floquet.first_order import numbers
+from ..core.inputs import numbers
 from .members import member_inertias, member_matrices, phases, poles_below
 
 Array = NDArray[np.float64]

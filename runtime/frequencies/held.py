@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..floquet.first_order import even_angles, numbers
+from ..core.inputs import numbers
+from ..core.trigonometric import even_angles
 
 Array = NDArray[np.float64]
 

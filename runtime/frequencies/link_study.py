@@ -15,10 +15,9 @@ from ..beams.section import Section
 from ..beams.structure import Beam, Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import require_whole
+from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from ..floquet.first_order import numbers
 from .held import cycle_mean, held_frequencies, require_system
 
 if TYPE_CHECKING:

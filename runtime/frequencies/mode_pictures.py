@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..beams._checks import is_finite
-from ..beams.placed_shapes import placed_shapes
+from ..beams.elements import placed_shapes
 from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..beams.recovery import Recovery, recovery
 from ..beams.recovery_forms import RIGID, LinearForm
-from ..beams.stress_errors import fibre_factors
+from ..beams.stress import fibre_factors
 from ..core.families import LinearPeriodic
 from .balance import Balance, samples_table
 from .condensed import Condensed

@@ -45,7 +45,6 @@ COVERED = {
     "mechanical_advantage": "test_machine_errors.py",
     "meissner_boundaries": "test_hill_case_errors.py",
     "monodromy": "test_floquet_errors.py",
-    "monodromy_matrices": "test_exponential_errors.py",
     "multiplier_surfaces": "test_hill_case_errors.py",
     "natural_frequencies": "test_frequency_errors.py",
     "orbit_multipliers": "test_orbit_errors.py",

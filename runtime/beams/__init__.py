@@ -33,10 +33,8 @@ if TYPE_CHECKING:
     from .layered import (
         ElasticLayer,
         SandwichSection,
-        SandwichStudy,
         ViscoelasticLayer,
         sandwich_section,
-        sandwich_study,
     )
     from .strain_energy import BeamEnergies, beam_energies
 
@@ -45,12 +43,10 @@ _PUBLIC = {
     "ElasticCurve": "elastic_curve",
     "ElasticLayer": "layered",
     "SandwichSection": "layered",
-    "SandwichStudy": "layered",
     "ViscoelasticLayer": "layered",
     "beam_energies": "strain_energy",
     "elastic_coupler_curve": "elastic_curve",
     "sandwich_section": "layered",
-    "sandwich_study": "layered",
 }
 
 __all__ = [
@@ -68,7 +64,6 @@ __all__ = [
     "Node",
     "PinReactions",
     "SandwichSection",
-    "SandwichStudy",
     "Section",
     "StressPeak",
     "StressResult",
@@ -85,7 +80,6 @@ __all__ = [
     "recover",
     "rigid_field",
     "sandwich_section",
-    "sandwich_study",
     "section_rotation",
     "shape_functions",
     "stress",

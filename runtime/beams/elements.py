@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families.emitted import array_function
-from ._checks import is_finite, numbers_in_a_row
+from ..core.inputs import is_finite, numbers_in_a_row
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

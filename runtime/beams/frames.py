@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import MATRICES, LinearPeriodic, Term
+from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
-from ._checks import are_finite, names_problems, require_mapping
 from .assembly import Array
 from .section import Section
 from .structure import Beam, Node, Structure, node_value_problems

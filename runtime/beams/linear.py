@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic, Term
-from ._checks import are_finite
+from ..core.inputs import are_finite
 from .assembly import AngleArrays, Array, in_own_axes, rotation, turned
 from .elements import placed_shapes
 from .sliding import Slide, slid_terms

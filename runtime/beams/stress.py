@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
-from ._checks import is_finite
+from ..core.inputs import is_finite
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import StationResult, in_motion, stations_on

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import are_finite, is_finite, names_problems
 from ..linkages.linkage import LinkMotion
-from ._checks import are_finite, is_finite, names_problems
 from .section import Section
 
 Indices = NDArray[np.int64]

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import is_finite, numbers_in_a_row
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import Transcendental
-from ..core.inputs import is_whole
+from ..core.inputs import is_finite, is_whole, numbers_in_a_row
 from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import is_finite, names_problems, require_kind, require_mapping
 from ..beams.assembly import AngleArrays
 from ..beams.linear import lumped_values
 from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedoms
 from ..core.errors import bad
 from ..core.families import Transcendental
-from ..core.inputs import numbers
+from ..core.inputs import is_finite, names_problems, numbers, require_kind, require_mapping
 from .members import member_inertias, member_matrices, phases, poles_below
 
 Array = NDArray[np.float64]

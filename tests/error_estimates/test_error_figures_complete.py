@@ -15,7 +15,6 @@ HERE = Path(__file__).parent
 COVERED = {
     "balance": "test_balancing_errors.py",
     "base_plane": "test_base_plane_errors.py",
-    "beam_energies": "test_beam_recovery_errors.py",
     "bloch_bands": "test_hill_exact_errors.py",
     "boundary_derivatives": "test_hill_exact_errors.py",
     "boundary_series": "test_threshold_errors.py",
@@ -30,7 +29,6 @@ COVERED = {
     "critical_speeds": "test_speed_errors.py",
     "damping_effect": "test_design_errors.py",
     "discriminant": "test_hill_errors.py",
-    "elastic_coupler_curve": "test_beam_recovery_errors.py",
     "fatigue": "test_design_errors.py",
     "floquet_multipliers": "test_floquet_errors.py",
     "flywheel_inertia": "test_machine_errors.py",

@@ -121,18 +121,6 @@ CALLS = (
         beams.sandwich_section,
         {"base": OUTER, "core": CORE, "cover": OUTER, "width": 0.02, "frequency": 100.0},
     ),
-    (
-        beams.sandwich_study,
-        {
-            "base": OUTER,
-            "core": CORE,
-            "cover": OUTER,
-            "width": 0.02,
-            "wave_number": 10.0,
-            "core_thickness": [1e-3],
-            "cover_thickness": [1e-3],
-        },
-    ),
 )
 BAD = {
     "nothing": None,

@@ -430,8 +430,8 @@ def recover(
         If an argument is unusable.
     """
     require_method(method)
-    moving = beam_motion(system, motion)
     chosen = stations_of(required_structure(system), stations)
+    moving = beam_motion(system, motion)
     own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
     doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own, finer_mesh))
     return BeamForces(

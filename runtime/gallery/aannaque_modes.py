@@ -49,7 +49,9 @@ def _exact(angle: int) -> Array:
     from .model_comparison import exact_frequencies
 
     structure = rig().structure
-    return exact_frequencies(structure, np.array([radians(angle)]), _MODES)[0]
+    assert structure is not None
+    found = exact_frequencies(structure, np.array([radians(angle)]), _MODES)
+    return np.asarray(found[0])
 
 
 def mode_figure(place: int) -> Callable[[Sequence[Axes]], Drawn]:

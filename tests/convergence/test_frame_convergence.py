@@ -92,7 +92,7 @@ def test_element_columns_of_table_5_1(column, exact):
 def test_finite_elements_converge_with_their_order(kind, order, counts, exact):
     """The first six frequencies from above, with slopes 4 and 8, as far as rounding lets it show.
 
-    Rounding of the matrices of 7 quintic elements moves the first frequency by up to 2e-11, far more
+    Rounding of the matrices of 7 quintic elements moves the first frequency by up to 2e-11, more
     than their discretisation does: Rayleigh's principle holds to that.
     """
     truth, bound = exact.frequencies[:6], exact.error[:6]

@@ -147,6 +147,7 @@ def test_free_waves_at_any_frequency(frequency):
     assert found.slack <= found.bending_stiffness <= found.bonded
 
 
+@pytest.mark.smoke
 def test_equivalent_section_keeps_stiffness_mass_and_loss():
     found = section(frequency=100.0)
     same = found.section()

@@ -93,6 +93,7 @@ def test_the_place_of_a_maximum_to_its_error():
     assert abs(found.speed[0] - np.sqrt(900.0 - c**2 / 2)) <= found.error[0] < 1e-2
 
 
+@pytest.mark.smoke
 def test_all_methods_agree_on_a_constant_system():
     """Each of the three labels once by each method."""
     system, methods = _system(0.2), ("running_mean", "response", "multipliers", "meissner")

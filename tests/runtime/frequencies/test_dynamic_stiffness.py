@@ -129,6 +129,7 @@ def mass_products(found, section=BAR):
     return total
 
 
+@pytest.mark.slow
 def test_shapes_are_orthogonal_and_of_unit_mass():
     """By quadrature of the shapes between the nodes, modes with q = 0 and pairs among them."""
     found = wittrick_williams(dynamic_stiffness(cross()), count=5)

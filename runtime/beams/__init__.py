@@ -18,12 +18,11 @@ from .elements import (
     section_rotation,
     shape_functions,
 )
-from .frames import frame
-from .inextensible import without_stretching
+from .frames import frame, without_stretching
 from .linear import FORMS, linear_system
 from .linkages import beam_linkage, linkage_system
 from .pin_reactions import PinReactions, pin_reactions
-from .recovered import BeamForces, recover
+from .recovery import BeamForces, recover
 from .recovery_forms import LinearForm
 from .section import Section
 from .stress import StressPeak, StressResult, stress, stress_operator
@@ -34,10 +33,8 @@ if TYPE_CHECKING:
     from .layered import (
         ElasticLayer,
         SandwichSection,
-        SandwichStudy,
         ViscoelasticLayer,
         sandwich_section,
-        sandwich_study,
     )
     from .strain_energy import BeamEnergies, beam_energies
 
@@ -46,12 +43,10 @@ _PUBLIC = {
     "ElasticCurve": "elastic_curve",
     "ElasticLayer": "layered",
     "SandwichSection": "layered",
-    "SandwichStudy": "layered",
     "ViscoelasticLayer": "layered",
     "beam_energies": "strain_energy",
     "elastic_coupler_curve": "elastic_curve",
     "sandwich_section": "layered",
-    "sandwich_study": "layered",
 }
 
 __all__ = [
@@ -69,7 +64,6 @@ __all__ = [
     "Node",
     "PinReactions",
     "SandwichSection",
-    "SandwichStudy",
     "Section",
     "StressPeak",
     "StressResult",
@@ -86,7 +80,6 @@ __all__ = [
     "recover",
     "rigid_field",
     "sandwich_section",
-    "sandwich_study",
     "section_rotation",
     "shape_functions",
     "stress",

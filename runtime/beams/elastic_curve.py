@@ -11,8 +11,8 @@ import numpy as np
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import is_finite
 from ..core.results import Result
-from ._checks import is_finite
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import in_motion

@@ -13,14 +13,11 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic, Term
-from .assembly import AngleArrays, Array
-from .axial_forces import AxialForces
+from .assembly import AngleArrays, Array, rotation, rotation_slope
 from .elements import ElementArrays
-from .freedoms import PlacedElement
-from .linear import lumped_values
+from .linear import AxialForces, lumped_values
 from .recovery_forms import LinearForm
-from .structure import Structure
-from .turning import rotation, rotation_slope
+from .structure import PlacedElement, Structure
 
 # The terms that the structure itself gives; all others are taken for forces from outside.
 _OWN = {

@@ -11,14 +11,19 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType, ModuleType
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families.emitted import array_function
-from ._checks import is_finite, numbers_in_a_row
+from ..core.inputs import is_finite, numbers_in_a_row
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from .structure import PlacedElement
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -321,7 +326,7 @@ def _not_negative(name: str, value: float) -> float:
 
 
 def _finite(name: str, value: ArrayLike) -> Array:
-    from ..floquet.first_order import numbers
+    from ..core.inputs import numbers
 
     array = numbers(name, value)
     if not array.size or not np.all(np.isfinite(array)):
@@ -332,3 +337,67 @@ def _finite(name: str, value: ArrayLike) -> Array:
 def _fixed(array: Array) -> Array:
     array.flags.writeable = False
     return array
+
+
+def placed_shapes(placed: PlacedElement, xi: ArrayLike, derivative: int = 0) -> tuple[Array, Array]:
+    """Return the shape functions along and across an element of a beam.
+
+    Parameters
+    ----------
+    placed : PlacedElement
+        The element.
+    xi : array_like, shape (nx,)
+        Places over the element's length, 0 to 1.
+    derivative : int
+        0 to 3 derivatives by x.
+
+    Returns
+    -------
+    u_shapes, v_shapes : ndarray, shape (nx, n)
+        As :func:`~elastolink.runtime.beams.elements.shape_functions` returns them.
+
+    Raises
+    ------
+    BadInput
+        As that function.
+    """
+    section = placed.beam.section
+    return shape_functions(
+        placed.beam.kind,
+        xi,
+        placed.length,
+        derivative,
+        bending_stiffness=section.bending_stiffness,
+        shear_stiffness=section.shear_stiffness,
+    )
+
+
+def placed_rotation(placed: PlacedElement, xi: ArrayLike, derivative: int = 0) -> Array:
+    """Return the shape functions of the rotation of the cross-section of an element of a beam.
+
+    Parameters
+    ----------
+    placed, xi
+        As :func:`placed_shapes`.
+    derivative : int
+        0 to 2 derivatives by x.
+
+    Returns
+    -------
+    ndarray, shape (nx, n)
+        As :func:`~elastolink.runtime.beams.elements.section_rotation` returns it.
+
+    Raises
+    ------
+    BadInput
+        As that function.
+    """
+    section = placed.beam.section
+    return section_rotation(
+        placed.beam.kind,
+        xi,
+        placed.length,
+        derivative,
+        bending_stiffness=section.bending_stiffness,
+        shear_stiffness=section.shear_stiffness,
+    )

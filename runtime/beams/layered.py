@@ -8,24 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import beam_section_sandwich
 from ..core.errors import BadInput, Problem, bad
-from ..core.results import Result, provenance
-from ._checks import is_finite, numbers_in_a_row, require_kind, sign_problems
+from ..core.inputs import is_finite, require_kind, sign_problems
 from .section import Section
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
-# Sums of positive products throughout, some forty operations, each with half a unit: a bound.
-_ROUNDING = 64 * 2.0**-53
 # Sizes beyond which products of them could leave the range of doubles.
 _LARGEST = 1e18
 
@@ -223,127 +217,6 @@ def sandwich_section(
     return found
 
 
-@dataclass(frozen=True, kw_only=True)
-class SandwichStudy(Result):
-    """Loss factor and stiffness of a sandwich against the thicknesses of core and cover.
-
-    Attributes
-    ----------
-    core_thickness : ndarray
-        [m], shape ``(nc,)``.
-    cover_thickness : ndarray
-        [m], shape ``(nv,)``.
-    loss_factor : ndarray
-        Of the bending stiffness, shape ``(nc, nv)``.
-    bending_stiffness : ndarray
-        Real part of EI [N m^2], shape ``(nc, nv)``.
-    mass_per_length : ndarray
-        [kg/m], shape ``(nc, nv)``.
-    wave_number : float
-        [rad/m].
-    """
-
-    core_thickness: Array
-    cover_thickness: Array
-    loss_factor: Array
-    bending_stiffness: Array
-    mass_per_length: Array
-    wave_number: float
-
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "core_thickness": ("core_thickness",),
-        "cover_thickness": ("cover_thickness",),
-        **dict.fromkeys(
-            ("loss_factor", "bending_stiffness", "mass_per_length"),
-            ("core_thickness", "cover_thickness"),
-        ),
-    }
-
-    def best(self) -> tuple[float, float, float]:
-        """Return the core and cover thickness [m] with the largest loss factor, and that factor."""
-        row, column = np.unravel_index(np.argmax(self.loss_factor), self.loss_factor.shape)
-        return (
-            float(self.core_thickness[row]),
-            float(self.cover_thickness[column]),
-            float(self.loss_factor[row, column]),
-        )
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw lines of equal loss factor over both thicknesses [mm]."""
-        from ..core.plotting import axes_or_new
-
-        axes = axes_or_new(ax)
-        lines = axes.contour(
-            1e3 * self.cover_thickness, 1e3 * self.core_thickness, self.loss_factor, 12
-        )
-        axes.clabel(lines, fmt="%.2g")
-        axes.set_xlabel("thickness of the cover [mm]")
-        axes.set_ylabel("thickness of the core [mm]")
-        axes.set_title(f"loss factor at a wave length of {2 * np.pi / self.wave_number:.3g} m")
-        return axes
-
-
-def sandwich_study(
-    base: ElasticLayer,
-    core: ViscoelasticLayer,
-    cover: ElasticLayer,
-    *,
-    width: float,
-    wave_number: float,
-    core_thickness: ArrayLike,
-    cover_thickness: ArrayLike,
-) -> SandwichStudy:
-    """Return the loss factor of a sandwich against the thicknesses of its core and its cover.
-
-    Parameters
-    ----------
-    base, core, cover, width
-        As :func:`sandwich_section`; the thicknesses of core and cover are those below.
-    wave_number : float
-        Of the deflection [rad/m].
-    core_thickness, cover_thickness : array_like, shape (nc,), (nv,)
-        Thicknesses to try [m].
-
-    Returns
-    -------
-    SandwichStudy
-        Loss factor, stiffness and mass at every pair; the error figure is that of the arithmetic.
-
-    Raises
-    ------
-    BadInput
-        If a number is not positive or a list of thicknesses is empty.
-    """
-    _require_layers(base, core, cover)
-    cores, covers = _thicknesses("core", core_thickness), _thicknesses("cover", cover_thickness)
-    for name, value in (("width", width), ("wave_number", wave_number)):
-        if not (is_finite(value) and value > 0):
-            raise bad(name, repr(value), "a positive number", _SI)
-    stiffness, loss, _, _ = _evaluated(
-        np.full((len(cores), len(covers)), float(wave_number)),
-        _arguments(base, core, cover, width)
-        | {"core_thickness": cores[:, None], "cover_thickness": covers[None, :]},
-    )
-    mass = width * (
-        base.density * base.thickness
-        + core.density * cores[:, None]
-        + cover.density * covers[None, :]
-    )
-    return SandwichStudy(
-        core_thickness=cores,
-        cover_thickness=covers,
-        loss_factor=loss,
-        bending_stiffness=stiffness,
-        mass_per_length=mass,
-        wave_number=float(wave_number),
-        method="closed form",
-        error=_ROUNDING,
-        error_norm="relative, of each loss factor and stiffness; rounding alone, not the model",
-        error_kind="bound",
-        provenance=provenance({"module": beam_section_sandwich.CONTENT}),
-    )
-
-
 _SI = "give SI units"
 
 
@@ -354,13 +227,6 @@ def _names(record: ElasticLayer | ViscoelasticLayer) -> list[str]:
 def _refuse(problems: list[Problem]) -> None:
     if problems:
         raise BadInput(*problems)
-
-
-def _thicknesses(name: str, values: ArrayLike) -> Array:
-    found = numbers_in_a_row(f"{name}_thickness", values, " [m]")
-    if not np.all(found > 0):
-        raise bad(f"{name}_thickness", values, "positive numbers in a list", "give it in metres")
-    return found
 
 
 def _require_layers(base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer) -> None:

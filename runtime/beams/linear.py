@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -11,14 +11,310 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic, Term
-from ._checks import are_finite
-from .assembly import AngleArrays, Array
-from .axial_forces import AxialForces
-from .deflections import relative_deflection
-from .freedoms import Freedoms
-from .held import require_held
+from ..core.inputs import are_finite
+from .assembly import AngleArrays, Array, in_own_axes, rotation, turned
+from .elements import placed_shapes
 from .sliding import Slide, slid_terms
-from .structure import Structure
+from .structure import Freedoms, Structure
+
+
+def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
+    """Return what turns coordinates into deflections across the beams over their lengths.
+
+    Parameters
+    ----------
+    arrays : AngleArrays
+        Of the structure.
+    theta : ndarray
+        Crank angles ``(nt,)`` [rad].
+
+    Returns
+    -------
+    ndarray
+        Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
+        its middle and its end, over the beam's length.
+    """
+    motion = arrays.motion(theta)
+    found = []
+    for placed, own in arrays.local:
+        _, across = placed_shapes(placed, np.array([0.5, 1.0]))
+        c, s = motion.products[placed.beam.name][:, 1:3].T
+        local = np.zeros((len(theta), 2, len(own.mass)))
+        for x, y in ((0, 1), (3, 4)):
+            local[:, :, x] = -s[:, None] * across[:, y]
+            local[:, :, y] = c[:, None] * across[:, y]
+        others = [i for i in range(len(own.mass)) if i not in (0, 1, 3, 4)]
+        local[:, :, others] = across[:, others]
+        full = np.zeros((len(theta), 2, arrays.count))
+        full[:, :, placed.indices] = local / placed.beam.length
+        found.append(full[:, :, arrays.free])
+    return np.concatenate(found, axis=1)
+
+
+# Masses that load the beams, each by itself: the beams' own, and the lumped ones.
+SOURCES = ("distributed", "lumped", "static")
+
+
+class AxialForces:
+    """Axial forces along every element, and the geometric stiffness that they give.
+
+    Parameters
+    ----------
+    arrays : AngleArrays
+        Of the structure.
+    constant_stiffness : ndarray, shape (n, n)
+        Of springs.
+    lumped_mass : ndarray, shape (N,)
+        Lumped mass of every coordinate, held ones included.
+    gravity : pair of float
+        Acceleration of gravity [m/s^2] in the fixed axes.
+    slide : Slide, optional
+        Of a structure with a sliding pin.
+    """
+
+    def __init__(
+        self,
+        arrays: AngleArrays,
+        constant_stiffness: Array,
+        lumped_mass: Array,
+        gravity: tuple[float, float],
+        slide: Slide | None = None,
+    ) -> None:
+        self.arrays = arrays
+        self.springs = constant_stiffness
+        self.lumped = lumped_mass
+        self.gravity = gravity
+        self.slide = slide
+        self.node_forces = _node_forces(arrays)
+
+    def force(self, source: str, theta: Array) -> Array:
+        """Return the generalised forces of a source at unit crank speed, ``(nt, n)``."""
+        if source == "distributed":
+            return self.arrays.inertia_force(theta)
+        free = self.arrays.free
+        if source == "lumped":
+            return np.asarray(-(self.arrays.motion(theta).second * self.lumped)[:, free])
+        field = self.weight_field(theta)
+        weight = self.arrays.distributed(field, theta) + (self.lumped * field)[:, free]
+        return np.asarray(weight + self.node_forces[free])
+
+    def weight_field(self, theta: Array) -> Array:
+        """Return gravity as values of all coordinates, ``(nt, N)`` [m/s^2]."""
+        x, y = self.gravity
+        parts = {"x": x, "y": y}
+        found = np.zeros((len(theta), self.arrays.count))
+        for i, freedom in enumerate(self.arrays.structure.freedoms.all):
+            found[:, i] = parts.get(freedom.part, 0.0)
+            if freedom.part == "across":
+                c, s = self.arrays.motion(theta).products[freedom.beam][:, 1:3].T
+                found[:, i] = c * y - s * x
+        return found
+
+    def along(self, source: str, theta: Array) -> Array:
+        """Return the axial forces of one source, tension positive.
+
+        Parameters
+        ----------
+        source : str
+            ``distributed`` or ``lumped``: at unit crank speed [N s^2]; ``static``: of weight and
+            constant loads [N].
+        theta : ndarray
+            Crank angles ``(nt,)`` [rad].
+
+        Returns
+        -------
+        ndarray
+            Shape ``(nt, elements, 3)``: factors of 1, xi and xi^2 along each element.
+        """
+        arrays = self.arrays
+        q = np.zeros((len(theta), arrays.count))
+        q[:, arrays.free] = self._at_rest(source, theta)[0]
+        field = self._body_field(source, theta)
+        motion = arrays.motion(theta)
+        found = np.zeros((len(theta), len(arrays.local), 3))
+        for e, (placed, own) in enumerate(arrays.local):
+            c, s = motion.products[placed.beam.name][:, 1:3].T
+            mass = placed.beam.section.mass_per_length * placed.length
+            ends = []
+            for x, y in ((0, 1), (3, 4)):
+                pair = field[:, placed.indices[[x, y]]]
+                ends.append(mass * (c * pair[:, 0] + s * pair[:, 1]))
+            local = in_own_axes(q[:, placed.indices], c, s)
+            # The element is held at its first end by minus its axial force there.
+            consistent = ends[0] / 3.0 + ends[1] / 6.0
+            found[:, e, 0] = -(local @ own.stiffness[0] + consistent)
+            found[:, e, 1] = ends[0]
+            found[:, e, 2] = (ends[1] - ends[0]) / 2.0
+        return found
+
+    def _at_rest(self, source: str, theta: Array) -> tuple[Array, Array]:
+        """Return displacements under the loads, and what is left of elastic forces less loads."""
+        stiffness = self.arrays.stiffness(theta) + self.springs
+        loads = self.force(source, theta)[..., None]
+        if self.slide is None:
+            solved: Array = np.asarray(np.linalg.solve(stiffness, loads), dtype=float)
+            return solved[..., 0], np.zeros(loads.shape[:2])
+        basis = self.slide.basis(theta)
+        turned = np.swapaxes(basis, -1, -2)
+        q: Array = basis @ np.linalg.solve(turned @ stiffness @ basis, turned @ loads)
+        rest: Array = stiffness @ q - loads
+        return q[..., 0], rest[..., 0]
+
+    def _body_field(self, source: str, theta: Array) -> Array:
+        """Return the acceleration that the beams' own mass resists, all coordinates."""
+        if source == "distributed":
+            return self.arrays.motion(theta).second
+        if source == "lumped":
+            return np.zeros((len(theta), self.arrays.count))
+        return -self.weight_field(theta)
+
+    def geometric(self, source: str, theta: Array) -> Array:
+        """Return ``int P v'^2`` of the axial forces of one source, ``(nt, n, n)`` (4.38)."""
+        arrays = self.arrays
+        forces = self.along(source, theta)
+        motion = arrays.motion(theta)
+        total = np.zeros((len(theta), arrays.count, arrays.count))
+        for e, (placed, _) in enumerate(arrays.local):
+            kernel = self._kernels[e]
+            weights = forces[:, e, :, None] * motion.products[placed.beam.name][:, None, :]
+            rows, columns = np.ix_(placed.indices, placed.indices)
+            total[:, rows, columns] += np.tensordot(weights, kernel, axes=2)
+        rows, columns = np.ix_(arrays.free, arrays.free)
+        found = np.ascontiguousarray(total[:, rows, columns])
+        if self.slide is not None:
+            found += self.slide.contact(self._at_rest(source, theta)[1], theta)
+        return found
+
+    @cached_property
+    def _kernels(self) -> list[Array]:
+        """Of each element, the geometric arrays turned: ``(3, 6, n, n)``."""
+        found = []
+        for _, own in self.arrays.local:
+            r = rotation(len(own.mass))
+            found.append(np.stack([turned(r, part, r) for part in own.geometric]))
+        return found
+
+
+def _node_forces(arrays: AngleArrays) -> Array:
+    found = np.zeros(arrays.count)
+    for node in arrays.structure.nodes:
+        for part, value in zip(("x", "y"), node.force, strict=True):
+            found[arrays.structure.freedoms.at(node.name, part)] += value
+    return found
+
+
+# A mode softer than this, over the stiffest, is taken for one that nothing resists.
+_SOFTEST = 1e-14
+# Deformation of the elements, over the largest there can be, below which a motion has none.
+_RIGID = 1e-9
+# Share of a motion from which a coordinate is named.
+_NAMED = 0.1
+
+
+def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> None:
+    """Refuse a structure that can move without resistance, at a few angles of the crank.
+
+    Parameters
+    ----------
+    arrays : AngleArrays
+        Of the structure.
+    springs : ndarray, shape (n,)
+        Stiffness of the springs on the free coordinates.
+    slide : Slide or None
+        What a sliding pin lets move.
+
+    Raises
+    ------
+    BadInput
+        If a motion meets no stiffness, or one so much smaller than another's that their sum in
+        doubles has no digit of it.
+    """
+    structure = arrays.structure
+    theta = structure.period * np.array([0.0, 0.37, 0.61]) if structure.moving else np.zeros(1)
+    matrices = arrays.stiffness(theta) + np.diag(springs)
+    strains = _strains(arrays, springs, theta)
+    if slide is not None:
+        basis = slide.basis(theta)
+        matrices = np.swapaxes(basis, -1, -2) @ matrices @ basis
+        strains = strains @ basis
+    for angle, stiffness, strain in zip(theta, matrices, strains, strict=True):
+        sizes = np.sqrt(np.diag(stiffness))
+        loose: Iterable[int] = np.flatnonzero(sizes == 0.0)
+        if not np.any(sizes == 0.0):
+            values = np.linalg.eigvalsh(stiffness / np.outer(sizes, sizes))
+            if values[0] > _SOFTEST * len(values) * values[-1]:
+                continue
+            motion = _rigid_motion(strain)
+            if motion is None:
+                raise _lost_in_rounding(arrays)
+            loose = np.flatnonzero(motion > _NAMED * np.max(motion))
+        names = ", ".join([structure.labels[i] for i in loose][:6])
+        raise bad(
+            "structure",
+            f"a motion of {names} that nothing resists at crank angle {angle:.4g}",
+            "a structure whose every motion is held or sprung",
+            "hold a node, join beams, or add a spring",
+        )
+
+
+def _strains(arrays: AngleArrays, springs: Array, theta: Array) -> Array:
+    """Return what each element and spring feels of the free coordinates, ``(nt, rows, n)``.
+
+    Of an element: its stretch, the difference of its ends' rotations, and the rotation of its chord
+    against their mean, all times lengths.  Stiffnesses are not in it, so that a short element
+    is as good as a long one.
+    """
+    elements = arrays.structure.elements
+    longest = max(placed.length for placed in elements)
+    motion = arrays.motion(theta)
+    parts = rotation(6)
+    rows = []
+    for placed in elements:
+        half = placed.length / 2.0
+        own = np.zeros((3, 6))
+        own[0, [0, 3]] = -1.0, 1.0
+        own[1, [2, 5]] = -longest, longest
+        own[2, [1, 4, 2, 5]] = -1.0, 1.0, -half, -half
+        c, s = motion.products[placed.beam.name][:, 1:3].T
+        turned = parts["1"] + c[:, None, None] * parts["c"] + s[:, None, None] * parts["s"]
+        placed_rows = np.zeros((len(theta), 3, arrays.count))
+        placed_rows[:, :, placed.indices[:6]] = own @ turned
+        rows.append(placed_rows[:, :, arrays.free])
+    sprung = np.eye(len(springs))[springs > 0.0]
+    rows.append(np.broadcast_to(sprung, (len(theta), *sprung.shape)))
+    return np.concatenate(rows, axis=1)
+
+
+def _rigid_motion(strain: Array) -> Array | None:
+    """Return sizes of the coordinates in a motion that strains nothing; None where all do.
+
+    What an element holds beside its ends moves with them or strains it: it is left out.
+    """
+    felt = np.flatnonzero(np.any(strain != 0.0, axis=0))
+    sizes = np.linalg.norm(strain[:, felt], axis=0)
+    _, values, across = np.linalg.svd(strain[:, felt] / sizes)
+    if len(values) == len(felt) and values[-1] > _RIGID * values[0]:
+        return None
+    motion = np.zeros(strain.shape[1])
+    motion[felt] = np.abs(across[-1] / sizes)
+    return motion
+
+
+def _lost_in_rounding(arrays: AngleArrays) -> BadInput:
+    """Return the refusal that names the stiffest and the softest element."""
+    stiff = [max(own.stiffness[0, 0], own.stiffness[1, 1]) for _, own in arrays.local]
+    soft = [min(own.stiffness[0, 0], own.stiffness[1, 1]) for _, own in arrays.local]
+    most, least = int(np.argmax(stiff)), int(np.argmin(soft))
+    one, other = arrays.local[most][0], arrays.local[least][0]
+    return bad(
+        f"beam {one.beam.name}",
+        f"an element of {one.length:.3g} m, {stiff[most] / soft[least]:.2g} times as stiff as one "
+        f"of {other.length:.3g} m of beam {other.beam.name}: rounding of their sum leaves few "
+        "digits, if any, of what resists the softest motion",
+        "elements of like length and stiffness",
+        "leave the short element out and join its ends, or make it longer",
+    )
+
 
 FORMS = ("full", "instantaneous")
 # Factors of the structure's own numbers: of every modulus, density and lumped mass.

@@ -10,9 +10,9 @@ from typing import Any
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import require_kind, require_mapping
 from ..linkages import FourBar, Linkage, QuickReturn, SliderCrank
 from ..linkages.linkage import LinkMotion
-from ._checks import require_kind, require_mapping
 from .assembly import Array
 from .linear import linear_system
 from .section import Section

@@ -15,11 +15,10 @@ from ..core.families import LinearPeriodic
 from ..core.results import Check
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion
-from .beam_result import BeamResult, in_motion
+from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .element_forms import ElementForms, required_structure
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-from .motion_forms import MotionValues, over_motion
-from .recovered import propagated
+from .recovery import propagated
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..core.errors import BadInput, Problem, bad
-from ._checks import is_finite, positive, sign_problems
+from ..core.inputs import is_finite, require_positive, sign_problems
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,13 +96,13 @@ class Section:
         BadInput
             If a number is not usable.
         """
-        positive("Section.rectangle", width=width, thickness=thickness)
+        require_positive("Section.rectangle", width=width, thickness=thickness)
         shear = None
         if poisson is not None:
             if not (is_finite(poisson) and 0.0 <= poisson <= 0.5):
                 where = "Section.rectangle: poisson"
                 raise bad(where, repr(poisson), "a number from 0 to 0.5", "0.3 for steel")
-            positive("Section.rectangle", modulus=modulus)
+            require_positive("Section.rectangle", modulus=modulus)
             factor = 10.0 * (1.0 + poisson) / (12.0 + 11.0 * poisson)
             shear = factor * modulus / (2.0 * (1.0 + poisson)) * width * thickness
         return cls(

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Term
-from .placed_shapes import placed_shapes
+from .elements import placed_shapes
 
 if TYPE_CHECKING:
     from .assembly import AngleArrays, Array

@@ -1,7 +1,8 @@
-"""Energies of a structure of beams over the cycle, and their balance (Aannaque Fig. 7.6)."""
+"""Energies and powers of a structure of beams in a motion, by virtual work."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -9,20 +10,238 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..core.deferred import DeferredGroup
+from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
 from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
-from .beam_result import BeamResult, in_motion
-from .element_forms import required_structure
-from .energy_terms import Energies, force_slopes
+from .beam_result import BeamResult, MotionValues, in_motion, over_motion
+from .element_forms import ElementForms, required_structure
 from .finer_mesh import CAUTION, on_finer_mesh
-from .motion_forms import over_motion
+from .recovery_forms import LinearForm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .beam_motion import Motion
+
+# Least amplitude that counts, over the largest: that of round-off in solving for the forces.
+_RESOLVED = 1e-10
+_MOST = 4096
+
+Slopes = Mapping[int, Callable[[Array], Array]]
+
+
+def force_slopes(system: LinearPeriodic) -> Slopes:
+    """Return how the axial forces of the geometric stiffness change with the crank angle.
+
+    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``.
+    """
+    powers = ElementForms(system, np.zeros(1)).stiffening
+    if not (system.structure and system.structure.moving):
+        return {power: _none(value.shape[1]) for power, value in powers.items()}
+
+    return {power: _slope(system, power) for power in powers}
+
+
+def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
+    """Return the derivative of the axial forces of one power by their Fourier series.
+
+    Raises
+    ------
+    BadInput
+        If 4096 samples do not resolve them.
+    """
+    count = 256
+    while True:
+        theta = system.period * np.arange(count) / count
+        forms = ElementForms(system, theta)
+        amplitudes = np.fft.rfft(forms.stiffening[power], axis=0) / count
+        tail = float(np.max(np.abs(amplitudes[count // 3 :])))
+        largest = float(np.max(np.abs(amplitudes)))
+        if power == 0:
+            # Supports may take all of a constant load: what is left is round-off of it.
+            largest += float(np.max(np.abs(forms.axial.force("static", theta))))
+            largest += float(np.max(np.abs(forms.axial.node_forces)))
+        if tail <= _RESOLVED * largest:
+            break
+        count *= 2
+        if count > _MOST:
+            found = f"axial forces that {_MOST} samples do not resolve"
+            raise bad("structure", found, "a smooth motion", "keep off dead points")
+    rates = 2j * np.pi / system.period * np.arange(count // 3)
+    weights = 2.0 * rates[:, None, None] * amplitudes[: count // 3]
+
+    def slope(angles: Array) -> Array:
+        waves = np.exp(angles[:, None] * rates)
+        return np.asarray(np.real(np.einsum("tk,kep->tep", waves, weights)))
+
+    return slope
+
+
+def _none(elements: int) -> Callable[[Array], Array]:
+    return lambda theta: np.zeros((len(theta), elements, 3))
+
+
+class Energies:
+    """Energies and powers of a motion at some of its angles.
+
+    Parameters
+    ----------
+    forms : ElementForms
+        At these angles.
+    values : MotionValues
+        The motion there.
+    slopes : mapping
+        As :func:`force_slopes` returns them.
+    """
+
+    def __init__(self, forms: ElementForms, values: MotionValues, slopes: Slopes) -> None:
+        self.forms, self.values = forms, values
+        self.speed, self.q, self.slope = values.speed, values.q, values.slope
+        self.rigid = forms.arrays.motion(forms.theta)
+        self.still = not forms.structure.moving
+        self.changing = {power: slope(forms.theta) for power, slope in slopes.items()}
+
+    def _spread(self, form: LinearForm, like: Array) -> Array:
+        return np.broadcast_to(self.values(form), like.shape)
+
+    def found(self) -> dict[str, Array]:
+        """Return the arrays by name, as :class:`BeamEnergies` has them."""
+        forms, count = self.forms, len(self.forms.theta)
+        links = [beam.name for beam in forms.structure.beams]
+        strain = np.zeros((count, len(links)))
+        sums = {
+            name: np.zeros(count)
+            for name in ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive")
+        }
+        for e, (placed, _) in enumerate(forms.elements):
+            strain[:, links.index(placed.beam.name)] += self._element(e, sums)
+        self._nodes(sums)
+        outside = self._outside_power()
+        sums["dissipated"] += outside
+        return {"strain": strain, **sums}
+
+    def _element(self, e: int, sums: dict[str, Array]) -> Array:
+        """Add what an element has to the sums; return its strain energy."""
+        forms, at = self.forms, self.forms.turning[e]
+        placed, own = forms.elements[e]
+        share, stiff = forms.factor["distributed_mass"], forms.factor["elasticity"]
+        mass, across, centre = (share * m for m in (own.mass, own.coupling, own.centripetal))
+        local = _times(at.own, self.q)
+        turned = at.rate[:, None] * _times(at.slope, self.q)
+        rate = _times(at.own, self.slope) + turned
+        first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, placed.indices])
+        first = np.zeros_like(first) if self.still else first
+        spun = at.rate[:, None] * local
+        w = self.speed
+        sums["kinetic"] += 0.5 * w**2 * _square(first + rate, mass, spun, across, centre)
+        # Accelerations, with gravity but without what acts from outside.
+        direct = self._spread(forms.direct(e) - forms.outside.turned(at.own), local)
+        sideways = self._spread(forms.across(e), local)
+        towards = self._spread(forms.centripetal(e), local)
+        virtual = first + turned
+        work = _dot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
+        work += _dot(spun, direct @ across + sideways @ centre - towards @ across)
+        forces = self._spread(forms.strain(e), local) @ own.stiffness
+        # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
+        passive = self._rayleigh(e) @ own.stiffness
+        work += _dot(turned, forces - passive)
+        work += self._stiffening(e, local, turned, rate, sums)
+        weight = self._weight(e)
+        carried = weight @ mass
+        power = w * _dot(first + rate, carried) + w * _dot(spun, weight @ across)
+        sums["loads"] += power
+        # The direct part holds the weight; the drive's own share is what is left without it.
+        sums["drive"] += w * work
+        elastic = stiff * (local @ own.stiffness)
+        lost = _dot(w * rate, forces - elastic - passive)
+        lost += w * _dot(_times(at.own, self.slope), passive)
+        sums["dissipated"] += lost
+        return 0.5 * _dot(local, elastic)
+
+    def _rayleigh(self, e: int) -> Array:
+        forms, at = self.forms, self.forms.turning[e]
+        if not forms.has_damping("rayleigh elastic"):
+            return np.zeros((len(forms.theta), at.own.shape[1]))
+        share = forms.factor["rayleigh_stiffness"] * forms.factor["elasticity"]
+        return np.asarray(share * self.speed * _times(at.own, self.slope))
+
+    def _weight(self, e: int) -> Array:
+        forms, at = self.forms, self.forms.turning[e]
+        field = forms.axial.weight_field(forms.theta)[:, forms.elements[e][0].indices]
+        return np.asarray(np.einsum("tij,tj->ti", at.back, field))
+
+    def _stiffening(
+        self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
+    ) -> Array:
+        """Add the energy of the axial forces; return the work that their change asks for."""
+        geometric = self.forms.elements[e][1].geometric
+        total = np.zeros(len(local))
+        for power, forces in self.forms.stiffening.items():
+            weights = forces[:, e] * self.speed**power
+            kernel = np.tensordot(weights, geometric, axes=1)
+            pull = np.einsum("tij,tj->ti", kernel, local)
+            slope = np.tensordot(self.changing[power][:, e] * self.speed**power, geometric, axes=1)
+            change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + _dot(turned, pull)
+            energy = 0.5 * _dot(local, pull)
+            if power == 0:
+                sums["stiffening"] += energy
+                total += change
+            else:
+                # Of inertia: the energy is kinetic, -1/2 td^2 q Kg q, and so is its momentum.
+                sums["stiffening"] -= energy
+                total -= change + 2.0 * _dot(rate - turned, pull)
+        return total
+
+    def _nodes(self, sums: dict[str, Array]) -> None:
+        """Add lumped masses, springs, dampers and loads."""
+        forms, free = self.forms, self.forms.arrays.free
+        lumped = forms.factor["lumped_mass"] * forms.lumped
+        count = (len(forms.theta), forms.arrays.count)
+        first = np.zeros(count) if self.still else self.rigid.first
+        speeds = first.copy()
+        speeds[:, free] += self.slope
+        speeds = self.speed * speeds
+        sums["kinetic"] += 0.5 * speeds**2 @ lumped
+        drag = forms.outside.values(self.speed, self.q, self.slope)
+        inertia = np.array(np.broadcast_to(self.values(forms.node_inertia()), count))
+        inertia[:, free] -= np.broadcast_to(drag, (count[0], len(free))) * lumped[free]
+        loads = np.zeros(count)
+        loads += np.broadcast_to(self.values(forms.node_loads()), count)
+        weight = forms.axial.weight_field(forms.theta) * lumped
+        sums["drive"] += self.speed * _dot(first, inertia - loads)
+        sums["loads"] += _dot(speeds, weight + loads)
+        q = np.zeros(count)
+        q[:, free] = self.q
+        sums["springs"] += 0.5 * q**2 @ forms.springs
+        holds = np.broadcast_to(self.values(forms.node_holds()), count)
+        rates = np.zeros(count)
+        rates[:, free] = self.speed * self.slope
+        sums["dissipated"] += _dot(rates, holds - q * forms.springs)
+
+    def _outside_power(self) -> Array:
+        """Return the power that drag from outside takes."""
+        forms = self.forms
+        if not forms.outside.parts:
+            return np.zeros(len(forms.theta))
+        force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
+        return _dot(self.speed * self.slope, np.broadcast_to(force, self.slope.shape))
+
+
+def _times(matrices: Array, vectors: Array) -> Array:
+    return np.asarray(np.matmul(matrices, vectors[..., None])[..., 0])
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return np.asarray(np.sum(left * right, axis=-1))
+
+
+def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Array) -> Array:
+    """Return the square of ``N direct + J N spun`` over the mass."""
+    plain = _dot(direct @ mass, direct) + _dot(spun @ centre, spun)
+    return plain + 2.0 * _dot(direct, spun @ across.T)
+
 
 # Round-off of energies that are sums of large parts, over the largest power.
 _ROUNDING = 1e-9

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from numbers import Integral
+import math
+from collections.abc import Iterable, Mapping
+from numbers import Integral, Real
 from typing import TypeGuard
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from .errors import bad
+from .errors import BadInput, Problem, bad
 from .namespaces import in_numpy_if_foreign
 
 
@@ -72,3 +74,95 @@ def numbers(name: str, value: object) -> NDArray[np.float64]:
     if given.size and given.dtype.kind not in "iuf":
         raise bad(name, repr(value), "real numbers", "give numbers")
     return given.astype(np.float64)
+
+
+def is_finite(value: object) -> bool:
+    """Return True for a finite real number."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer too large for a float
+        return False
+
+
+def are_finite(value: object, count: int) -> bool:
+    """Return True for so many finite real numbers in a row."""
+    if not isinstance(value, (tuple, list, np.ndarray)):
+        return False
+    return len(value) == count and all(is_finite(part) for part in value)
+
+
+def sign_problems(
+    where: str, record: object, names: Iterable[str], *, positive: bool, fix: str
+) -> list[Problem]:
+    """Return what is wrong with attributes that are to be positive, or not negative."""
+    expected = "a positive number" if positive else "a number, 0 or more"
+    found = []
+    for name in names:
+        value = getattr(record, name)
+        if not (is_finite(value) and (value > 0 or (not positive and value == 0))):
+            found.append(Problem(f"{where}.{name}", repr(value), expected, fix))
+    return found
+
+
+def names_problems(where: str, value: object) -> list[Problem]:
+    """Return what is wrong with a row of names."""
+    if isinstance(value, (tuple, list)) and all(isinstance(name, str) for name in value):
+        return []
+    return [Problem(where, repr(value), "names in a row", 'write ("x", "y"), for example')]
+
+
+def require_positive(where: str, **values: float) -> None:
+    """Refuse values that are not positive numbers.
+
+    Raises
+    ------
+    BadInput
+        With every problem.
+    """
+    problems = [
+        Problem(f"{where}: {name}", repr(value), "a positive number", "give it in SI units")
+        for name, value in values.items()
+        if not (is_finite(value) and value > 0)
+    ]
+    if problems:
+        raise BadInput(*problems)
+
+
+def require_kind(where: str, value: object, kind: type, fix: str) -> None:
+    """Refuse what is not an instance of a class.
+
+    Raises
+    ------
+    BadInput
+        If it is not.
+    """
+    if not isinstance(value, kind):
+        raise bad(where, type(value).__name__, f"a {kind.__name__}", fix)
+
+
+def require_mapping(where: str, value: object, fix: str) -> None:
+    """Refuse what is no mapping from names.
+
+    Raises
+    ------
+    BadInput
+        If it is none.
+    """
+    if not (isinstance(value, Mapping) and all(isinstance(name, str) for name in value)):
+        raise bad(where, repr(value), "a mapping from names", fix)
+
+
+def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np.float64]:
+    """Return finite numbers as a row that is not empty; one alone stands for a row of one.
+
+    Raises
+    ------
+    BadInput
+        If they are anything else.
+    """
+    row = np.atleast_1d(numbers(where, value))
+    if row.ndim != 1 or not row.size or not np.all(np.isfinite(row)):
+        raise bad(where, repr(value), f"finite numbers in a row{unit}", "correct them")
+    return row

@@ -12,8 +12,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ..beams.assembly import products
 from ..beams.element_forms import required_structure
-from ..beams.turning import products
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from .speed_profile import Array, SpeedProfile

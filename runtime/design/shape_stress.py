@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
-from ..beams.placed_shapes import placed_rotation, placed_shapes
-from ..beams.turning import in_own_axes, products
+from ..beams.elements import placed_rotation, placed_shapes
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from .speed_profile import Array

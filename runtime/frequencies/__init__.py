@@ -10,17 +10,11 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .buckling import Buckling, buckling_speed
     from .campbell_diagram import Campbell, campbell
-    from .comparison import CriticalComparison, compare_critical_speeds
-    from .critical import critical_speeds
-    from .critical_result import CriticalSpeeds
-    from .determinant import log_determinant
-    from .elements import element_matrices
-    from .encounters import Encounter
-    from .frames import DynamicStiffness, dynamic_stiffness
-    from .frequency_count import wittrick_williams
-    from .hybrid import HybridMatrices, hybrid_matrices
+    from .counting import FrameFrequencies, MemberShape, Mode, wittrick_williams
+    from .critical import CriticalSpeeds, critical_speeds
+    from .frames import DynamicStiffness, dynamic_stiffness, element_matrices, log_determinant
+    from .held import Buckling, buckling_speed
     from .link_study import (
         FrequencyExponents,
         LinkFrequencies,
@@ -30,74 +24,57 @@ if TYPE_CHECKING:
     )
     from .members import member_matrices
     from .mode_pictures import draw_mode, draw_modes
-    from .models import ModelComparison, compare_models, exact_frequencies
     from .natural import NaturalFrequencies, natural_frequencies
-    from .result import FrameFrequencies
-    from .shapes import MemberShape
-    from .solutions import Mode
+    from .tracking import Encounter
 
 _PUBLIC = {
-    "Buckling": "buckling",
+    "Buckling": "held",
     "Campbell": "campbell_diagram",
-    "CriticalComparison": "comparison",
-    "CriticalSpeeds": "critical_result",
+    "CriticalSpeeds": "critical",
     "DynamicStiffness": "frames",
-    "Encounter": "encounters",
-    "FrameFrequencies": "result",
+    "Encounter": "tracking",
+    "FrameFrequencies": "counting",
     "FrequencyExponents": "link_study",
-    "HybridMatrices": "hybrid",
     "LinkFrequencies": "link_study",
-    "MemberShape": "shapes",
-    "Mode": "solutions",
-    "ModelComparison": "models",
+    "MemberShape": "counting",
+    "Mode": "counting",
     "NaturalFrequencies": "natural",
-    "buckling_speed": "buckling",
+    "buckling_speed": "held",
     "campbell": "campbell_diagram",
-    "compare_critical_speeds": "comparison",
-    "compare_models": "models",
     "critical_speeds": "critical",
     "draw_mode": "mode_pictures",
     "draw_modes": "mode_pictures",
     "dynamic_stiffness": "frames",
-    "element_matrices": "elements",
-    "exact_frequencies": "models",
+    "element_matrices": "frames",
     "frequency_exponents": "link_study",
-    "hybrid_matrices": "hybrid",
     "link_frequencies": "link_study",
-    "log_determinant": "determinant",
+    "log_determinant": "frames",
     "member_matrices": "members",
     "natural_frequencies": "natural",
     "pinned_frequency": "link_study",
-    "wittrick_williams": "frequency_count",
+    "wittrick_williams": "counting",
 }
 
 __all__ = [
     "Buckling",
     "Campbell",
-    "CriticalComparison",
     "CriticalSpeeds",
     "DynamicStiffness",
     "Encounter",
     "FrameFrequencies",
     "FrequencyExponents",
-    "HybridMatrices",
     "LinkFrequencies",
     "MemberShape",
     "Mode",
-    "ModelComparison",
     "NaturalFrequencies",
     "buckling_speed",
     "campbell",
-    "compare_critical_speeds",
-    "compare_models",
     "critical_speeds",
     "draw_mode",
     "draw_modes",
     "dynamic_stiffness",
     "element_matrices",
-    "exact_frequencies",
     "frequency_exponents",
-    "hybrid_matrices",
     "link_frequencies",
     "log_determinant",
     "member_matrices",

@@ -1,24 +1,458 @@
-"""Critical speeds of a linear periodic system, found in several ways (Aannaque chapter 7)."""
+"""Critical speeds of a linear periodic system by five methods (Aannaque chapter 7)."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import bad
-from ..core.families import LinearPeriodic
-from ..core.inputs import require_whole
-from ..floquet.first_order import numbers
-from .critical_floquet import by_meissner, by_multipliers
-from .critical_means import by_mean_frequency, by_running_mean
-from .critical_response import by_response
-from .critical_result import CriticalSpeeds, Measure, Request
-from .eigenproblem import require_system
+from ..core.errors import LinearRangeWarning, bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.inputs import numbers, require_whole
+from ..core.progress import bar
+from ..core.results import Check, Result, provenance
+from ..core.trigonometric import even_angles
+from ..floquet import MarkedSpeeds, meissner_speeds, multiplier_maxima
+from .critical_scan import scanned_deflections
+from .held import buckling_speed, held_frequencies, require_system
+from .natural import natural_frequencies
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..periodic import SteadyState
 
 Array = NDArray[np.float64]
+Measure = Callable[["SteadyState"], Array]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalSpeeds(Result):
+    """Critical speeds of one method, by rising speed.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Critical speeds [rad/s], shape ``(ns,)``.
+    mode, order : ndarray of int
+        Labels m (from 1) and n, ``(ns,)``: the speed belongs to the mean frequency of mode m over
+        n.  Of ``mean_frequency`` by construction; of the others the nearest, a guess where two are
+        near.
+    ratio : ndarray
+        The mean frequency of mode m over n times the speed, ``(ns,)``.
+    height : ndarray
+        What the method measures at the speed, ``(ns,)``: see ``quantity``; inf where a response
+        has no bound: a multiplier is 1 there, at an end of an unstable band.
+    error : ndarray
+        Error of each speed [rad/s], ``(ns,)``, as the place of what the method looks for.
+    mean_frequency : ndarray
+        Mean natural frequencies over the period, crank held [rad/s], ``(modes,)``.
+    scan_speed, scan : ndarray
+        Speeds [rad/s] at which the quantity was looked at first, and it, for the picture; empty
+        where no curve is scanned.
+    quantity : str
+        What ``height`` and ``scan`` are.
+    """
+
+    speed: Array
+    mode: NDArray[np.int64]
+    order: NDArray[np.int64]
+    ratio: Array
+    height: Array
+    mean_frequency: Array
+    scan_speed: Array
+    scan: Array
+    quantity: str
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("speed", "mode", "order", "ratio", "height", "error"), ("speed",)),
+        "mean_frequency": ("frequency",),
+        **dict.fromkeys(("scan_speed", "scan"), ("scan",)),
+    }
+
+    @property
+    def labels(self) -> tuple[tuple[int, int], ...]:
+        """Mode and order of each speed."""
+        return tuple((int(m), int(n)) for m, n in zip(self.mode, self.order, strict=True))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the scanned quantity with the critical speeds labelled, and return the axes.
+
+        Where nothing was scanned, the order n of each speed, mode by mode.
+        """
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        ax.set_xlabel("crank speed [rad/s]")
+        if not len(self.scan):
+            return self._plot_orders(ax)
+        top = np.isfinite(self.height)
+        joined = np.concatenate([self.scan_speed, self.speed])
+        order = np.argsort(joined, kind="stable")
+        values = np.concatenate([self.scan, np.where(top, self.height, np.nan)])
+        ax.plot(joined[order], values[order], lw=0.9)
+        ax.set_ylabel(self.quantity)
+        for speed, (mode, order_of), height in zip(
+            self.speed, self.labels, self.height, strict=True
+        ):
+            ax.annotate(
+                rf"$\bar\omega_{mode}/{order_of}$",
+                (speed, min(height, 1.2 * np.max(self.scan))),
+                xytext=(0, 3),
+                textcoords="offset points",
+                ha="center",
+                fontsize=7,
+                rotation=90,
+            )
+        return ax
+
+    def _plot_orders(self, ax: Axes) -> Axes:
+        """Draw the order of each speed, a row of points for each mode."""
+        for mode in np.unique(self.mode):
+            own = self.mode == mode
+            points = (self.speed[own], self.order[own])
+            colour = f"C{(mode - 1) % 10}"
+            ax.plot(*points, "o", ms=4, color=colour, label=f"mode {mode}")
+            ax.vlines(self.speed[own], 0, self.order[own], color=colour, lw=0.4)
+        ax.set_ylabel("order n")
+        ax.set_ylim(bottom=0.0)
+        if len(self.mode):
+            ax.legend(fontsize=8)
+        return ax
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked for: range, number of modes and speeds, measure."""
+
+    system: LinearPeriodic
+    low: float
+    high: float
+    count: int
+    speeds: int
+    measure: Measure | None
+    progress: bool
+
+
+def listed(
+    request: Request, mean: Array, rows: Sequence[tuple[float, int, int, float]], method: str
+) -> CriticalSpeeds:
+    """Return the result of a method that names mode and order itself."""
+    kept = sorted(row for row in rows if request.low <= row[0] <= request.high)
+    speed, error = (np.array([row[k] for row in kept], dtype=float) for k in (0, 3))
+    mode, order = (np.array([row[k] for row in kept], dtype=np.int64) for k in (1, 2))
+    return CriticalSpeeds(
+        method=method,
+        error=error,
+        error_norm="absolute, of each speed [rad/s], as this method defines it",
+        provenance=provenance(request.system.provenance),
+        speed=speed,
+        mode=mode,
+        order=order,
+        ratio=mean[mode - 1] / (order * speed),
+        height=np.ones(len(speed)),
+        mean_frequency=mean,
+        scan_speed=np.zeros(0),
+        scan=np.zeros(0),
+        quantity="none",
+    )
+
+
+Indices = NDArray[np.int64]
+
+
+def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
+    """Return mode (from 1) and order of each speed: whose mean frequency over n is nearest.
+
+    The pairs that fit best choose first, and no label is given twice where another is left.
+
+    Parameters
+    ----------
+    mean : ndarray
+        Mean frequencies [rad/s], ``(modes,)``.
+    speed : ndarray
+        Speeds [rad/s], ``(ns,)``.
+    """
+    ratio = mean / speed[:, None]
+    orders = np.maximum(1, np.round(ratio)).astype(np.int64)
+    # How far the speed is from the fraction, over itself: of high orders all are near.
+    misfit = np.abs(ratio - orders) / orders
+    mode, order = np.zeros((2, len(speed)), dtype=np.int64)
+    taken: set[tuple[int, int]] = set()
+    for place, column in zip(
+        *np.unravel_index(np.argsort(misfit, axis=None, kind="stable"), misfit.shape), strict=True
+    ):
+        label = int(column) + 1, int(orders[place, column])
+        if not mode[place] and label not in taken:
+            taken.add(label)
+            mode[place], order[place] = label
+    rest = mode == 0
+    nearest = np.argmin(misfit, axis=1)
+    mode[rest], order[rest] = nearest[rest] + 1, orders[rest, nearest[rest]]
+    return mode, order
+
+
+# Speeds at which the means are taken; between them they are interpolated.
+_NODES = 12
+# The means end this far before the held mechanism buckles: there they lose their smoothness.
+_SHORT = 0.98
+
+
+def by_mean_frequency(request: Request) -> CriticalSpeeds:
+    """Return the means of the natural frequencies over n = 1, 2, ..., crank held."""
+    found = natural_frequencies(request.system, 0.0, request.count)
+    rows = [
+        (float(mean / n), mode, n, float(error / n))
+        for mode, (mean, error) in enumerate(zip(found.mean, found.mean_error, strict=True), 1)
+        for n in range(1, int(np.floor(mean / request.low)) + 1)
+    ]
+    return listed(request, found.mean, rows, "mean natural frequencies over n")
+
+
+def by_running_mean(request: Request) -> CriticalSpeeds:
+    """Return the speeds w = mean(w)/n, the means with the axial forces of the speed itself.
+
+    They end where those forces buckle the held mechanism at some angle.
+    """
+    found = natural_frequencies(request.system, 0.0, request.count)
+    limit = _SHORT * buckling_speed(request.system).speed
+    if limit <= request.low:
+        raise bad(
+            "speed_range",
+            f"a lowest speed of {request.low:.6g} rad/s, buckled at {limit / _SHORT:.6g} rad/s",
+            "speeds below that",
+            "use another method: beyond it there are no natural frequencies",
+        )
+    low, high = request.low, min(request.high, limit)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+    runs = [
+        natural_frequencies(request.system, 0.0, request.count, speed=float(middle + half * x))
+        for x in place
+    ]
+    rows = []
+    for mode in range(1, request.count + 1):
+        values = np.array([run.mean[mode - 1] for run in runs])
+        curve = np.polynomial.Chebyshev.fit(place, values, _NODES - 1, domain=[-1, 1])
+        # The mean is smooth in the square of the speed: its last terms tell what is left out.
+        doubt = float(np.sum(np.abs(curve.coef[-2:])))
+        doubt += max(float(run.mean_error[mode - 1]) for run in runs)
+        for n in range(1, int(np.floor(np.max(values) / low)) + 1):
+            line = np.polynomial.Chebyshev([n * middle, n * half], domain=[-1, 1])
+            roots = (curve - line).roots()
+            real = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
+            rows += [(float(middle + half * x), mode, n, doubt / n) for x in real]
+    return listed(request, found.mean, rows, "mean natural frequencies at the speed over n")
+
+
+# Intervals of Meissner's functions.
+_INTERVALS = 64
+
+
+def by_multipliers(request: Request) -> CriticalSpeeds:
+    """Return the local maxima of the real part of each mode's multiplier (Aannaque 7.2.3)."""
+    found = multiplier_maxima(request.system, (request.low, request.high), request.count)
+    mean = natural_frequencies(request.system, 0.0, request.count).mean
+    return _marked(request, found, mean, "real part of the multiplier")
+
+
+def by_meissner(request: Request) -> CriticalSpeeds:
+    """Return the local maxima of J_N of each mode by itself, N = 64 (Aannaque 7.11)."""
+    theta = even_angles(request.system.period, _INTERVALS)
+    frequency = held_frequencies(request.system, theta, {})[0][:, : request.count]
+    found = meissner_speeds(frequency, (request.low, request.high))
+    mean = natural_frequencies(request.system, 0.0, request.count).mean
+    return _marked(request, found, mean, "J_N")
+
+
+def _marked(request: Request, found: MarkedSpeeds, mean: Array, quantity: str) -> CriticalSpeeds:
+    """Return marked speeds as critical ones."""
+    order = np.argsort(found.speed, kind="stable")
+    speed, mode = found.speed[order], found.mode[order]
+    # A multiplier tells the frequency of its mode but for multiples of the speed.
+    n = np.maximum(1, np.round(mean[mode - 1] / speed)).astype(np.int64)
+    return CriticalSpeeds(
+        method=found.method,
+        error=np.asarray(found.error)[order],
+        error_norm="absolute, of each speed [rad/s], as this method defines it",
+        checks=found.checks,
+        provenance=provenance(request.system.provenance),
+        speed=speed,
+        mode=mode,
+        order=n,
+        ratio=mean[mode - 1] / (n * speed),
+        height=found.value[order],
+        mean_frequency=mean,
+        scan_speed=np.zeros(0),
+        scan=np.zeros(0),
+        quantity=quantity,
+    )
+
+
+_RTOL, _FINE = 1e-6, 1e-9
+# Speeds solved together, and speeds within the bracket of a maximum.
+_TOGETHER = 16
+_WITHIN = 7
+# The second look spans this part of the first bracket.
+_CLOSER = 0.25
+
+
+def by_response(request: Request) -> CriticalSpeeds:
+    """Return the speeds of the local maxima of a measure of the periodic motion.
+
+    About a maximum one over the square of the measure is nearly a parabola of the speed; a
+    polynomial through seven speeds gives its least value, and one through seven closer speeds
+    gives it again.
+    """
+    system = request.system
+    if not any(system.has(name) for name in DAMPING) or not system.is_damped():
+        raise bad(
+            "system",
+            "no damping",
+            "a damped system: without damping the maxima are infinite",
+            "add some with with_modal_damping",
+        )
+    measure = request.measure or _deflection_measure(system)
+    speeds = np.linspace(request.low, request.high, request.speeds)
+    mean = natural_frequencies(system, 0.0, request.count).mean
+    values = scanned_deflections(system, speeds) if request.measure is None else None
+    if values is None:
+        values, _ = _measured(system, speeds, measure, request.progress)
+    top = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    if not len(top):
+        found = height = error = np.zeros(0)
+    else:
+        found, height, error = _maxima(system, measure, speeds[top - 1], speeds[top + 1])
+    mode, order = label_speeds(mean, found)
+    return CriticalSpeeds(
+        method=f"local maxima of the steady state, {len(speeds)} speeds scanned",
+        error=error,
+        error_norm="absolute, of the place of each maximum [rad/s]",
+        checks={"placed": Check(float(np.max(error / found, initial=0.0)), 1e-3)},
+        provenance=provenance(system.provenance),
+        speed=found,
+        mode=mode,
+        order=order,
+        ratio=mean[mode - 1] / (order * found),
+        height=height,
+        mean_frequency=mean,
+        scan_speed=speeds,
+        scan=values,
+        quantity="response" if request.measure else "r.m.s. deflection over length",
+    )
+
+
+def _deflection_measure(system: LinearPeriodic) -> Measure:
+    """Return the largest root of the mean square of the deflections over the length."""
+    relative = system.relative_deflection
+    if relative is None and system.shape is None and system.moving_shape is None:
+        raise bad(
+            "measure",
+            "a system whose deflections are not known",
+            "mode shapes or relative_deflection",
+            "give a measure",
+        )
+
+    def measure(state: object) -> Array:
+        theta, q = state.theta, state.q  # type: ignore[attr-defined]
+        if relative is not None:
+            rows = relative(theta)
+        else:
+            found = system.shapes(np.linspace(0.0, 1.0, 21), theta)
+            rows = np.zeros((len(theta), 1, system.size)) if found is None else found
+        # One speed at a time: deflections of all would fill the memory.
+        squares = [np.mean(np.einsum("tkn,tn->tk", rows, one) ** 2, axis=0) for one in q]
+        return np.asarray(np.sqrt(np.max(squares, axis=1)))
+
+    return measure
+
+
+def _measured(
+    system: LinearPeriodic, speeds: Array, measure: Measure, progress: bool = False
+) -> tuple[Array, Array]:
+    """Return the measure at speeds and the relative error of the motions, part by part."""
+    from ..periodic import steady_state
+
+    rtol = _FINE if system.structure is None else _RTOL
+    out, error = np.empty((2, len(speeds)))
+    with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
+        # At a critical speed the linear range is left as a matter of course.
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        for begin in range(0, len(speeds), _TOGETHER):
+            part = slice(begin, min(begin + _TOGETHER, len(speeds)))
+            state = steady_state(system, speeds[part], rtol=rtol)
+            out[part] = measure(state)
+            error[part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
+            if tick is not None:
+                tick(part.stop)
+    if not np.all(np.isfinite(out)):
+        worst = float(speeds[int(np.argmin(np.isfinite(out)))])
+        raise bad(
+            "speed_range",
+            f"no single periodic motion at {worst:.6g} rad/s",
+            "speeds with one each",
+            "move the range or add damping",
+        )
+    return out, error
+
+
+def _maxima(
+    system: LinearPeriodic, measure: Measure, low: Array, high: Array
+) -> tuple[Array, Array, Array]:
+    """Return place, height and error of the place of the maxima within brackets."""
+    node = np.cos(np.pi * (np.arange(_WITHIN) + 0.5) / _WITHIN)
+    found = []
+    for _ in range(2):
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        inside = middle[:, None] + half[:, None] * node
+        values, error = (
+            part.reshape(inside.shape) for part in _measured(system, inside.ravel(), measure)
+        )
+        fitted = [_least(node, 1.0 / row**2, own) for row, own in zip(values, error, strict=True)]
+        found.append(
+            (
+                middle + half * np.array([place for place, _, _ in fitted]),
+                np.array([_height(value) for _, value, _ in fitted]),
+                half * np.array([doubt for _, _, doubt in fitted]),
+            )
+        )
+        place = found[-1][0]
+        low, high = place - _CLOSER * half, place + _CLOSER * half
+    (first, _, _), (place, height, doubt) = found
+    # The first place is off by the fifth power of its bracket and more.
+    return place, height, np.abs(place - first) * _CLOSER**3 + doubt
+
+
+def _least(node: Array, values: Array, error: Array) -> tuple[float, float, float]:
+    """Return place in [-1, 1], value and doubt of the place of the least value of a polynomial.
+
+    ``error`` is the relative error of the motions that the values come from.
+    """
+    curve = np.polynomial.Chebyshev.fit(node, values, len(node) - 1, domain=[-1, 1])
+    slope = curve.deriv()
+    roots = slope.roots()
+    inner = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
+    places = np.concatenate([inner, [-1.0, 1.0]])
+    best = float(places[int(np.argmin(curve(places)))])
+    bend = abs(float(slope.deriv()(best)))
+    # What the next terms, as they fall, and the error of the motions tilt the curve by.
+    sizes = [float(np.sum(np.abs(curve.coef[k : k + 2]))) for k in (-4, -2)]
+    fall = min(1.0, (sizes[1] / sizes[0]) ** 0.5) if sizes[0] > 0.0 else 1.0
+    tilt = sizes[1] * fall * len(node)
+    tilt += 2.0 * float(np.max(error * np.abs(values))) * len(node)
+    doubt = min(tilt / bend, 1.0) if bend > 0.0 else 1.0
+    return best, float(curve(best)), doubt
+
+
+def _height(square: float) -> float:
+    """Return the height of a maximum from one over its square; none has a bound at 0 and below."""
+    return square**-0.5 if square > 0.0 else np.inf
+
 
 _MODES = 4
 _SPEEDS = 240

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import is_finite, names_problems, require_kind, require_mapping
-from ..beams.freedoms import Freedoms, PlacedElement, number_freedoms
+from ..beams.assembly import AngleArrays
 from ..beams.linear import lumped_values
-from ..beams.structure import Structure
+from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedoms
 from ..core.errors import bad
 from ..core.families import Transcendental
+from ..core.inputs import is_finite, names_problems, numbers, require_kind, require_mapping
 from .members import member_inertias, member_matrices, phases, poles_below
 
 Array = NDArray[np.float64]
@@ -303,3 +303,142 @@ def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
     basis[bound, :moving] = turned[rank:].T
     basis[~bound, moving:] = np.eye(count - rank - moving)
     return basis
+
+
+def element_matrices(
+    structure: Structure,
+    theta: float = 0.0,
+    *,
+    inextensible: bool | tuple[str, ...] = False,
+) -> tuple[Array, Array, Array]:
+    """Return mass and stiffness of the structure's own elements at one position.
+
+    Parameters
+    ----------
+    structure : Structure
+        With the elements that its beams name.
+    theta : float
+        Crank angle [rad].
+    inextensible : bool or tuple of str
+        Beams that cannot stretch: True for all.
+
+    Returns
+    -------
+    mass, stiffness : ndarray, shape (size, size)
+        On the coordinates that are left.
+    reduction : ndarray, shape (structure.size, size)
+        The free coordinates by those that are left.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or nothing is left that moves.
+    """
+    rigid = rigid_beams("element_matrices", structure, theta, inextensible)
+    arrays, angle = AngleArrays(structure), np.array([float(theta)])
+    lumped, springs, _ = lumped_values(structure)
+    free = structure.freedoms.free
+    mass = arrays.mass(angle)[0] + np.diag(lumped[free])
+    stiffness = arrays.stiffness(angle)[0] + np.diag(springs[free])
+    place = np.full(len(structure.freedoms.all), -1)
+    place[free] = np.arange(len(free))
+    motion = structure.configuration(angle)
+    local = np.zeros((len(structure.elements), 6, len(free)))
+    for k, element in enumerate(structure.elements):
+        turn = turning_matrix(float(motion[element.beam.name].angle[0]))
+        for column, index in enumerate(element.indices[:6]):
+            if place[index] >= 0:
+                local[k, :, place[index]] += turn[:, column]
+    stiff = np.array([element.beam.name in rigid for element in structure.elements])
+    reduction = without_stretch(local, stiff)
+    return reduction.T @ mass @ reduction, reduction.T @ stiffness @ reduction, reduction
+
+
+def log_determinant(problem: Transcendental, omega: ArrayLike) -> tuple[Array, Array]:
+    """Return the determinant of D without overflow.
+
+    Zeros are frequencies at which the nodes move, poles those of the members with held ends; a
+    frequency at which all nodes stand still is a pole for whole members and a zero for divided
+    ones.
+
+    Parameters
+    ----------
+    problem : Transcendental
+        Any.
+    omega : array_like, shape (...)
+        Frequencies [rad/s].
+
+    Returns
+    -------
+    logarithm : ndarray, shape (...)
+        ``log10 |det D|``.
+    sign : ndarray, shape (...)
+        Sign of the determinant.
+
+    Raises
+    ------
+    BadInput
+        If a frequency is not positive, or there is none.
+    """
+    require_kind("problem", problem, Transcendental, "make one with dynamic_stiffness")
+    rates = numbers("omega", omega)
+    if not rates.size or not np.all((rates > 0.0) & np.isfinite(rates)):
+        raise bad("omega", repr(omega), "positive frequencies [rad/s]", "leave out the others")
+    sign, logarithm = np.linalg.slogdet(problem.stiffness(rates))
+    return np.asarray(logarithm / np.log(10.0)), np.asarray(sign)
+
+
+# Shares of the length, fewer pieces first.
+_SHARES: tuple[tuple[float, ...], ...] = (
+    (1.0,),
+    *((share, 1.0 - share) for share in (0.5, 0.546, 0.578, 0.607, 0.523, 0.637, 0.664)),
+    (0.371, 0.335, 0.294),
+    (0.412, 0.327, 0.261),
+    (0.345, 0.345, 0.31),
+    (0.283, 0.262, 0.239, 0.216),
+)
+_FAR_ENOUGH = 0.6
+_WIDEST, _CHANGE = 0.02, 0.3
+
+
+def divided_for(
+    problem: DynamicStiffness, low: float, high: float | None = None
+) -> DynamicStiffness:
+    """Return a structure whose pieces have no pole near some frequencies [rad/s].
+
+    One piece for a member wherever that will do; otherwise unequal ones (the fictitious joint of
+    Aannaque 5.4.1).
+    """
+    ends = np.array([low, low if high is None else high])
+    chosen: dict[str, tuple[float, ...]] = {}
+    length, *_ = problem.assembly.data
+    z, b = phases(ends, *problem.assembly.data)
+    for beam in problem.structure.beams:
+        own = [k for k, p in enumerate(problem.assembly.pieces) if p.beam.name == beam.name]
+        whole_z = z[:, own[0]] * beam.length / length[own[0]]
+        whole_b = b[:, own[0]] * beam.length / length[own[0]]
+        scores = []
+        offered = [shares for shares in _SHARES if len(shares) >= len(own)]
+        for shares in offered:
+            scores.append(_distance(np.outer(whole_z, shares), np.outer(whole_b, shares)))
+            if scores[-1] > _FAR_ENOUGH:
+                break
+        best = offered[int(np.argmax(scores))]
+        if len(best) > 1:
+            chosen[beam.name] = best
+    whole = len(problem.assembly.pieces) == len(problem.structure.beams)
+    return problem if whole and not chosen else problem.divided(chosen)
+
+
+def narrow_enough(problem: DynamicStiffness, omega: float) -> float:
+    """Return the relative width within which no phase of a whole member changes much."""
+    z, b = phases(omega, *problem.assembly.data)
+    return float(min(_WIDEST, _CHANGE / max(np.max(z) / 2.0, np.max(b))))
+
+
+def _distance(z: Array, b: Array) -> float:
+    """Return how far the nearest pole is, over a quarter of the distance between poles."""
+    bending = np.abs(np.cos(z) - 1.0 / np.cosh(np.minimum(z, 700.0)))
+    bending = np.where(z < 3.0, 1.0, bending)
+    axial = np.where(b < 1.5, 1.0, np.abs(np.sin(b)))
+    return float(min(bending.min(), axial.min()))

@@ -10,17 +10,14 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import positive, require_kind
 from ..beams.section import Section
 from ..beams.structure import Beam, Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import require_whole
+from ..core.inputs import numbers, require_kind, require_positive, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from ..floquet.first_order import numbers
-from .eigenproblem import held_frequencies, require_system
-from .means import cycle_mean
+from .held import cycle_mean, held_frequencies, require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -148,7 +145,7 @@ def pinned_frequency(section: Section, length: float) -> float:
         If the section is none, or the length not positive.
     """
     require_kind("section", section, Section, "make one with Section or Section.rectangle")
-    positive("pinned_frequency", length=length)
+    require_positive("pinned_frequency", length=length)
     return float(
         (np.pi / length) ** 2 * np.sqrt(section.bending_stiffness / section.mass_per_length)
     )

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..beams._checks import is_finite
-from ..beams.placed_shapes import placed_shapes
+from ..beams.elements import placed_shapes
 from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import require_whole
-from .eigenproblem import crank_angles, require_system
+from ..core.inputs import is_finite, require_whole
+from .held import crank_angles, require_system
 from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:

@@ -14,18 +14,16 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import require_whole
 from ..core.results import Check, Result, provenance
-from .curves import Curves, followed_shapes
-from .eigenproblem import (
+from .held import (
     assurance,
     crank_angles,
+    cycle_mean,
     held_arrays,
     held_frequencies,
     held_modes,
     require_system,
 )
-from .encounters import Arrays, Encounter, Modes
-from .means import cycle_mean
-from .tracking import CLEAR, Walk, walk
+from .tracking import CLEAR, Arrays, Curves, Encounter, Modes, Walk, followed_shapes, walk
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

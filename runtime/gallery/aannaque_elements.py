@@ -15,7 +15,7 @@ from .style import COLOURS, crank_axis, legend_below
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..frequencies import ModelComparison
+    from .model_comparison import ModelComparison
 
 ONE, TWO, THREE = "1 element", "2 elements", "3 elements"
 INTERNAL, CURVATURE = "p-version 1", "p-version 2"
@@ -26,7 +26,7 @@ _STYLES = ("-", "-", "-", "--", "-.")
 @lru_cache(maxsize=1)
 def comparison() -> ModelComparison:
     """Return four frequencies of the five models at 120 crank angles."""
-    from ..frequencies import compare_models
+    from .model_comparison import compare_models
 
     models = {name: beams(count, FULL) for count, name in enumerate((ONE, TWO, THREE), start=1)}
     models[INTERNAL] = beams(1, FULL, kind="internal_node_beams")
@@ -115,7 +115,7 @@ def _rows(mode: int) -> tuple[Quoted, ...]:
 
 def _one_element(mode: int) -> Quoted:
     found = comparison()
-    mean = 100.0 * float(found.mean_difference(ONE, THREE)[mode - 1])
+    mean = 100.0 * float(np.mean(found.difference(ONE, THREE)[:, mode - 1]))
     return Quoted(
         f"mean difference of the {_ORDINALS[mode - 1]} frequency, one element to three",
         10.0 if mode == 1 else 26.0,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..beams import Structure
-    from ..frequencies import ModelComparison
+    from .model_comparison import ModelComparison
 
 
 def _numbers(text: str) -> tuple[float, ...]:
@@ -324,7 +324,7 @@ def _table() -> Table:
 @lru_cache(maxsize=1)
 def _linkage() -> ModelComparison:
     """Return three elements and the exact frequencies of the four-bar at 48 angles."""
-    from ..frequencies import compare_models
+    from .model_comparison import compare_models
 
     angles = np.radians(np.arange(0.0, 360.0, 7.5))
     return compare_models({"3 elements": beams(3, FULL)}, angles, 4)

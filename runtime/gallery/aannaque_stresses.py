@@ -29,7 +29,7 @@ from .style import COLOURS, crank_axis, legend_below
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..frequencies import HybridMatrices
+    from .aannaque_hybrid import HybridMatrices
 
 _SPEEDS = np.linspace(5.0, 70.0, 326)
 _FEWER = np.linspace(10.0, 70.0, 121)
@@ -42,7 +42,7 @@ _ANGLES = 128
 
 @lru_cache(maxsize=2)
 def _hybrid(rtol: float) -> HybridMatrices:
-    from ..frequencies import hybrid_matrices
+    from .aannaque_hybrid import hybrid_matrices
 
     structure = beams(1).structure
     assert structure is not None

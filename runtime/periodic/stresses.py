@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..beams.element_forms import required_structure
 from ..beams.recovery import METHODS, Recovery, recovery
 from ..beams.recovery_forms import RIGID, LinearForm
-from ..beams.stress_errors import fibre_factors
+from ..beams.stress import fibre_factors
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, require_whole

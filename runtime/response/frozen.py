@@ -92,8 +92,7 @@ def frozen_frequencies(
         or a mass is not at some angle.
     """
     # The package of frequencies holds beams, too, which no other response needs.
-    from ..frequencies.eigenproblem import crank_angles, held_frequencies
-    from ..frequencies.means import cycle_mean
+    from ..frequencies.held import crank_angles, cycle_mean, held_frequencies
 
     angles = crank_angles(system, theta)
     frequency, error = held_frequencies(system, angles, parameters)

@@ -26,7 +26,7 @@ _BUILDERS = {
     "hill": ("..systems.from_scene", "hill_system"),
     "quick_return": ("..systems.from_scene", "rod_of_scene"),
 }
-_BEAM_BUILDER = ("..beams.from_scene", "beams_of_scene")
+_BEAM_BUILDER = ("..systems.beam_scenes", "beams_of_scene")
 _OWN_BUILDER = (".own", "own_system")
 LINKAGES = {"four_bar": "FourBar", "slider_crank": "SliderCrank", "quick_return": "QuickReturn"}
 # Keys that no file gives and that follow from the others.

@@ -16,7 +16,7 @@ from elastolink.runtime.beams import BeamMotion, Section, linkage_system, pin_re
 from elastolink.runtime.beams.beam_motion import quiet_steady_state
 from elastolink.runtime.beams.finer_mesh import intervals_for, solved
 from elastolink.runtime.beams.recovery import stations_of
-from elastolink.runtime.beams.stress_errors import fibre_factors, largest_difference, stresses
+from elastolink.runtime.beams.stress import fibre_factors, largest_difference, stresses
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.linkages import FourBar, SliderCrank
 from elastolink.runtime.systems import with_modal_damping

@@ -14,7 +14,6 @@ HERE = Path(__file__).parent
 # Two hundred random scenes and more against references of more digits, in this folder.
 COVERED = {
     "balance": "test_balancing_errors.py",
-    "beam_energies": "test_beam_recovery_errors.py",
     "bloch_bands": "test_hill_exact_errors.py",
     "boundary_derivatives": "test_hill_exact_errors.py",
     "boundary_series": "test_threshold_errors.py",
@@ -29,7 +28,6 @@ COVERED = {
     "critical_speeds": "test_speed_errors.py",
     "damping_effect": "test_design_errors.py",
     "discriminant": "test_hill_errors.py",
-    "elastic_coupler_curve": "test_beam_recovery_errors.py",
     "fatigue": "test_design_errors.py",
     "floquet_multipliers": "test_periodic_errors.py",
     "flywheel_inertia": "test_machine_errors.py",
@@ -37,7 +35,6 @@ COVERED = {
     "harmonics": "test_curve_errors.py",
     "hill_boundaries": "test_hill_errors.py",
     "hill_exponents": "test_hill_exact_errors.py",
-    "hybrid_matrices": "test_hybrid_errors.py",
     "krein_signatures": "test_band_errors.py",
     "least_parameter": "test_threshold_errors.py",
     "length_effect": "test_design_errors.py",
@@ -83,8 +80,6 @@ COVERED = {
 THROUGH = {"balance": "with_crank_counterweight"}
 # The figure is that of another solver, which is called: the second name.
 DELEGATED = {
-    "compare_critical_speeds": "critical_speeds",
-    "compare_models": "natural_frequencies",
     "driving_torque": "rigid_forces",
     "link_frequencies": "natural_frequencies",
     "pin_forces": "rigid_forces",

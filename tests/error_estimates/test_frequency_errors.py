@@ -6,8 +6,7 @@ import mpmath
 import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import natural_frequencies
-from elastolink.runtime.frequencies.eigenproblem import held_frequencies
-from elastolink.runtime.frequencies.means import cycle_mean
+from elastolink.runtime.frequencies.held import cycle_mean, held_frequencies
 
 
 def _exact(mass, stiffness):

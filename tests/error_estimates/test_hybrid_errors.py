@@ -15,9 +15,9 @@ from elastolink.runtime.beams import Section, frame
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.frequencies import (
     dynamic_stiffness,
-    hybrid_matrices,
     wittrick_williams,
 )
+from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from honesty import verdict
 
 SOME = [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]

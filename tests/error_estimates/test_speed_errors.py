@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.frequencies import campbell, compare_critical_speeds, critical_speeds
+from elastolink.runtime.frequencies import campbell, critical_speeds
 from elastolink.runtime.response import frozen_frequencies, resonance_curve, steady_peaks
 from honesty import verdict
 from manufactured import manufactured
@@ -191,13 +191,3 @@ def test_peaks_of_steady_motions():
             curves.append(above(curve.error[1], actual, 1.0))
     verdict(ratios, SCENES)
     verdict(curves, SCENES)
-
-
-def test_a_comparison_repeats_the_figures_of_its_methods():
-    scene = Forced(np.random.default_rng(75))
-    both = compare_critical_speeds(scene.system, (6.0, 30.0))
-    for column, method in enumerate(both.methods):
-        alone = critical_speeds(scene.system, (6.0, 30.0), method=method)
-        known = np.isfinite(both.speed[:, column])
-        assert set(both.error[known, column]) <= set(alone.error)
-        assert known.any()

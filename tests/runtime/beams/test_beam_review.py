@@ -20,10 +20,10 @@ from elastolink.runtime.frequencies import (
     critical_speeds,
     dynamic_stiffness,
     frequency_exponents,
-    hybrid_matrices,
     log_determinant,
     wittrick_williams,
 )
+from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.linkages import FourBar
 
 STEEL = {"modulus": 210e9, "density": 7850.0}

@@ -90,6 +90,7 @@ def test_the_contact_force_stiffens_like_a_lever_on_a_pin():
     assert abs(along @ kept @ along - 6.0 / 5.0 * 20.0 / 0.3) < 1e-7
 
 
+@pytest.mark.slow
 def test_the_full_form_is_hamiltonian():
     plain = linear_system(made(LINKAGE, "cubic"))
     assert hamiltonian_gap(plain.without("C", "D"), 1e4, np.array(ANGLES)) < 1e-13

@@ -18,8 +18,7 @@ from beam_motions import (
 from elastolink.runtime.beams import Section, frame, linear_system, linkage_system, stress
 from elastolink.runtime.beams.stress import stress_operator
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
-from elastolink.runtime.response import steady_state
-from elastolink.runtime.simulation import simulate
+from elastolink.runtime.periodic import simulate, steady_state
 from elastolink.runtime.systems import with_modal_damping
 
 
@@ -117,7 +116,7 @@ def test_form_of_the_stresses_gives_the_stresses(at_20):
 def test_steady_state_and_march_agree_with_collocation():
     system = turning_bar(rocking, elements=1)
     expected = stress(system, periodic_motion(system, 8.0, 32))
-    steady = steady_state(system, 8.0, method="harmonic_balance", stability=False)
+    steady = steady_state(system, 8.0)
     found = stress(system, steady)
     assert found.maximum.value == pytest.approx(expected.maximum.value, rel=1e-6)
     assert found.mesh_error > 0.0
@@ -157,7 +156,7 @@ def test_unusable_arguments_are_refused(at_20):
         lambda: found.fibre("positive", "half"),
         lambda: found.at("rod", 0.5),
         lambda: stress(system, motion, method="guess"),
-        lambda: stress(bar, steady_state(bar, [7.0, 8.0], method="harmonic_balance")),
+        lambda: stress(bar, steady_state(bar, [7.0, 8.0])),
     ):
         with pytest.raises(BadInput):
             call()

@@ -97,6 +97,7 @@ def test_terms_of_one_mesh_have_no_other_mesh():
     assert APART in stress(own, 8.0).error_norm
 
 
+@pytest.mark.slow
 def test_every_result_counts_the_mesh_where_it_can():
     system = turning_bar(rocking, elements=1, drag=2.0)
     given = periodic_motion(system, 8.0, 32)

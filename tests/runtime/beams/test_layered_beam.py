@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.beams.layered import (
     ElasticLayer,
-    SandwichStudy,
     ViscoelasticLayer,
     sandwich_section,
-    sandwich_study,
 )
 from elastolink.runtime.core.errors import BadInput
 
@@ -149,6 +147,7 @@ def test_free_waves_at_any_frequency(frequency):
     assert found.slack <= found.bending_stiffness <= found.bonded
 
 
+@pytest.mark.smoke
 def test_equivalent_section_keeps_stiffness_mass_and_loss():
     found = section(frequency=100.0)
     same = found.section()
@@ -158,57 +157,25 @@ def test_equivalent_section_keeps_stiffness_mass_and_loss():
     assert same.retardation * 100.0 == pytest.approx(found.loss_factor, rel=1e-14)
 
 
-# ---------------------------------------------------------------- study
+def test_loss_factor_is_exact_but_for_rounding():
+    """Sums of positive products, some forty operations of half a unit each: 64 u is a bound.
 
-
-def study(**changes):
-    numbers = {
-        "width": WIDTH,
-        "wave_number": WAVE,
-        "core_thickness": np.linspace(1e-4, 3e-3, 6),
-        "cover_thickness": np.linspace(1e-4, 3e-3, 5),
-        **changes,
-    }
-    return sandwich_study(BASE, core(), COVER, **numbers)
-
-
-def test_study_against_single_sections():
-    found = study()
-    assert isinstance(found, SandwichStudy) and found.loss_factor.shape == (6, 5)
-    for i, j in ((0, 0), (3, 1), (5, 4)):
-        single = section(
-            core(thickness=found.core_thickness[i]),
-            cover=ElasticLayer(found.cover_thickness[j], 70e9, 2700.0),
-        )
-        assert found.loss_factor[i, j] == pytest.approx(single.loss_factor, rel=1e-14)
-        assert found.bending_stiffness[i, j] == pytest.approx(single.bending_stiffness, rel=1e-14)
-        assert found.mass_per_length[i, j] == pytest.approx(single.mass_per_length, rel=1e-14)
-    thick, cover, best = found.best()
-    assert best == found.loss_factor.max()
-    assert thick in found.core_thickness and cover in found.cover_thickness
-
-
-def test_error_figure_of_the_study_is_a_bound_and_not_idle():
-    found, actual = study(), []
-    for (i, j), value in np.ndenumerate(found.loss_factor):
-        with mpmath.workdps(40):
-            h = [mpmath.mpf(v) for v in (3e-3, found.core_thickness[i], found.cover_thickness[j])]
-            young, k = mpmath.mpf(70e9), mpmath.mpf(WAVE)
-            ends = young * h[0], young * h[2]
-            alone = young * (h[0] ** 3 + h[2] ** 3) / 12
-            coupling = (h[1] + (h[0] + h[2]) / 2) ** 2 * ends[0] * ends[1] / sum(ends) / alone
-            x = mpmath.mpc(1, 1) * mpmath.mpf(2e6) / h[1] * (1 / ends[0] + 1 / ends[1]) / k**2
-            whole = (1 + x * (1 + coupling)) / (1 + x)
-            exact = whole.imag / whole.real
-            actual.append(abs(float((mpmath.mpf(value) - exact) / exact)))
-    assert max(actual) <= found.error
-    assert found.error <= 1e3 * np.median(actual)
-    assert found.error_kind == "bound" and found.passed
-
-
-def test_plot_of_the_study():
-    axes = study().plot()
-    assert "mm" in axes.get_xlabel() and "loss factor" in axes.get_title()
+    Against 40 digits over thicknesses of core and cover.
+    """
+    for middle in np.linspace(1e-4, 3e-3, 6):
+        for outer in np.linspace(1e-4, 3e-3, 5):
+            computed = section(core(thickness=middle), cover=ElasticLayer(outer, 70e9, 2700.0))
+            with mpmath.workdps(40):
+                h = [mpmath.mpf(v) for v in (3e-3, middle, outer)]
+                young, k = mpmath.mpf(70e9), mpmath.mpf(WAVE)
+                ends = young * h[0], young * h[2]
+                alone = young * (h[0] ** 3 + h[2] ** 3) / 12
+                coupling = (h[1] + (h[0] + h[2]) / 2) ** 2 * ends[0] * ends[1] / sum(ends) / alone
+                x = mpmath.mpc(1, 1) * mpmath.mpf(2e6) / h[1] * (1 / ends[0] + 1 / ends[1]) / k**2
+                whole = (1 + x * (1 + coupling)) / (1 + x)
+                exact = whole.imag / whole.real
+                error = abs(float((mpmath.mpf(computed.loss_factor) - exact) / exact))
+            assert error <= 64 * 2.0**-53
 
 
 # ---------------------------------------------------------------- refusals
@@ -225,9 +192,6 @@ def test_plot_of_the_study():
         (lambda: section(wave_number=-1.0), "wave_number"),
         (lambda: section(frequency=float("inf")), "frequency"),
         (lambda: section(core(1e19)), "core_shear_modulus"),
-        (lambda: study(core_thickness=[]), "core_thickness"),
-        (lambda: study(cover_thickness=[1e-3, -1e-3]), "cover_thickness"),
-        (lambda: study(wave_number=0.0), "wave_number"),
     ],
 )
 def test_unusable_numbers_are_refused(make, word):

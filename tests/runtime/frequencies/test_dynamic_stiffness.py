@@ -11,11 +11,11 @@ from elastolink.runtime.core.families import Transcendental
 from elastolink.runtime.frequencies import (
     dynamic_stiffness,
     element_matrices,
-    hybrid_matrices,
     log_determinant,
     member_matrices,
     wittrick_williams,
 )
+from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import quad_vec
 from scipy.linalg import eigvalsh
@@ -129,6 +129,7 @@ def mass_products(found, section=BAR):
     return total
 
 
+@pytest.mark.slow
 def test_shapes_are_orthogonal_and_of_unit_mass():
     """By quadrature of the shapes between the nodes, modes with q = 0 and pairs among them."""
     found = wittrick_williams(dynamic_stiffness(cross()), count=5)

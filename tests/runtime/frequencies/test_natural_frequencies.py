@@ -10,7 +10,6 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import (
     buckling_speed,
-    compare_models,
     draw_mode,
     draw_modes,
     frequency_exponents,
@@ -132,21 +131,6 @@ def test_buckling_by_hand():
     assert buckling_speed(still).speed == np.inf
 
 
-def test_percentages_of_the_thesis():
-    # Aannaque 4.3: 10 % (first) and 26 % (fourth), one element against three; 5.4.2: 1.18 %.
-    models = {"1": _linkage(1), "3": _linkage(3), "p 2": _linkage(1, "curvature_beams")}
-    theta = 2 * np.pi * np.arange(10) / 10
-    found = compare_models(models, theta)
-    mean = 100 * found.mean_difference("1", "3")
-    assert round(mean[0]) == 10 and round(mean[3]) == 26
-    assert np.max(found.largest_difference("3")) == pytest.approx(0.0118, abs=5e-5)
-    assert list(found.size[:3]) == [9, 27, 10]
-    # Finite elements are above the exact frequencies at every angle.
-    for name in models:
-        assert np.all(found.difference(name) > 0)
-    assert found.plot_mode(4).get_ylabel() == "natural frequency 4 [rad/s]"
-
-
 def test_the_first_mean_follows_the_softer_of_two_links():
     system = _linkage(2)
     found = link_frequencies(system, "coupler", "length", [0.328, 0.636])
@@ -203,8 +187,6 @@ def test_bad_input_to_the_studies_is_refused(linkage):
     ):
         with pytest.raises(BadInput, match=message):
             link_frequencies(linkage, *arguments)
-    with pytest.raises(BadInput, match="at least one"):
-        compare_models({})
     with pytest.raises(BadInput, match="mode"):
         draw_mode(linkage, 0.0, 10)
     plain = LinearPeriodic(

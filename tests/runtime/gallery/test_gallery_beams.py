@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from elastolink.runtime.beams import recover, stress_operator
 from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.frequencies import hybrid_matrices
 from elastolink.runtime.gallery import (
     aannaque_critical,
     aannaque_exact,
@@ -18,6 +17,8 @@ from elastolink.runtime.gallery import (
     figures,
     reproduce,
 )
+from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
+from elastolink.runtime.gallery.model_comparison import compare_models
 
 # Figure, and how many of its numbers are known to differ.
 FAST = (
@@ -155,3 +156,14 @@ def test_the_stress_of_the_midpoint_needs_several_elements():
     base = aannaque_lengths.midpoint_stress(aannaque_models.FRAME)[1]
     fine = aannaque_lengths.bending_at_midpoint(aannaque_models.beams(4))[1]
     assert np.max(np.abs(fine)) == pytest.approx(np.max(np.abs(base)), rel=0.1)
+
+
+def test_finite_elements_lie_above_the_exact_frequencies():
+    """Aannaque 4.3: 10 % (first) and 26 % (fourth), one element against three; 5.4.2: 1.18 %."""
+    models = {count: aannaque_models.beams(int(count), aannaque_models.FULL) for count in "13"}
+    found = compare_models(models, 2 * np.pi * np.arange(10) / 10)
+    mean = 100 * np.mean(found.difference("1", "3"), axis=0)
+    assert round(mean[0]) == 10 and round(mean[3]) == 26
+    assert np.max(found.difference("3")) == pytest.approx(0.0118, abs=5e-5)
+    assert all(np.all(found.difference(name) > 0) for name in models)
+    assert list(found.size) == [9, 27, 0]

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..beams._checks import is_finite, numbers_in_a_row, require_kind
 from ..beams.structure import Structure
 from ..core.errors import bad
+from ..core.inputs import is_finite, numbers_in_a_row, require_kind
 from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
-from .frames import DynamicStiffness, dynamic_stiffness
-from .frequency_count import rigid_motions
-from .inertia import modal, quadratic_forms, rounding
+from ..frequencies.counting import modal, quadratic_forms, rigid_motions, rounding
+from ..frequencies.frames import DynamicStiffness, dynamic_stiffness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
+from ..beams.frames import frame, without_stretching
+from ..beams.linear import linear_system
+from ..beams.linkages import linkage_system
+from ..beams.section import Section
+from ..beams.structure import DIRECTIONS
 from ..core.families import LinearPeriodic
 from ..core.families.modal_damping import with_modal_damping
-from .frames import frame
-from .inextensible import without_stretching
-from .linear import linear_system
-from .linkages import linkage_system
-from .section import Section
-from .structure import DIRECTIONS
 
 if TYPE_CHECKING:
     from ..scenes import Scene

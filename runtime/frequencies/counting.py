@@ -1,0 +1,756 @@
+"""Wittrick and Williams' algorithm: every natural frequency of a frame, none missed.
+
+Axial stiffness exceeds bending stiffness a millionfold, and a plain eigenvalue solver leaves
+errors of the largest eigenvalue's size times the machine's precision.  Its eigenvectors are good
+enough: quadratic forms in them, summed member by member in the member's own axes, are exact but
+for rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import Transcendental
+from ..core.inputs import is_finite, is_whole, numbers_in_a_row
+from ..core.plotting import axes_or_new
+from ..core.results import Check, Result, provenance
+from .frames import Assembly, DynamicStiffness, divided_for, narrow_enough
+from .members import functions, phases
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+UNIT = 2.0**-53
+# Scaled eigenvalues below this, over the largest, may have the wrong sign.
+_DOUBTFUL = 1e-11
+# Modes whose eigenvalue is within this, over omega^2, are brought in order by quadratic forms.
+_NEAR = 30.0
+# Rounding of an entry of a local matrix, over u times its allowed size: functions, products, turn.
+_ENTRY = 32.0
+
+
+def quadratic_forms(
+    assembly: Assembly, omega: float, vectors: Array, mass: Array | None = None
+) -> tuple[Array, Array, Array]:
+    """Return ``X^T D X``, ``X^T M X`` and the sizes of the terms of the first one's diagonal.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The members.
+    omega : float
+        Frequency [rad/s].
+    vectors : ndarray, shape (size, k)
+        Columns.
+    mass : ndarray, optional
+        Local mass matrices where they are known.
+
+    Returns
+    -------
+    stiffness, mass : ndarray, shape (k, k)
+    sizes : ndarray, shape (k,)
+        Sum of the sizes of everything that is added, mass included: u times it is what rounding
+        does.
+    """
+    if mass is None:
+        _, mass = assembly.local_matrices(omega)
+    inertia = assembly.local_inertias(omega)
+    ends = assembly.local @ vectors
+    felt = np.abs(assembly.local) @ np.abs(vectors)  # what rounding sees
+    nodes = assembly.reduction @ vectors
+    strained, strained_sizes = _strain_forms(assembly, ends, felt)
+    lumps = assembly.springs - omega**2 * assembly.lumped_mass
+    moved = nodes.T @ (lumps[:, None] * nodes)
+    plain = strained - omega**2 * _forms(inertia, ends) + moved
+    heavy = _forms(mass, ends) + nodes.T @ (assembly.lumped_mass[:, None] * nodes)
+    # omega dH/d(omega) is of the size of M: what a rounded length or section does.
+    entries = omega**2 * (np.abs(inertia) + 4.0 * np.abs(mass))
+    sizes = strained_sizes + np.einsum("nak,nab,nbk->k", felt, entries, felt, optimize=True)
+    weights = assembly.springs + omega**2 * assembly.lumped_mass
+    sizes = sizes + np.sum(weights[:, None] * nodes**2, axis=0)
+    return _symmetric(plain), _symmetric(heavy), sizes
+
+
+def _strain_forms(assembly: Assembly, ends: Array, felt: Array) -> tuple[Array, Array]:
+    """Return the static strain energy, twice, by stretch and turning against the chord."""
+    length, bending, axial, _ = assembly.data
+    stiff = np.where(np.isinf(axial), 0.0, axial) / length
+    span = length[:, None]
+    stretch = ends[:, 3] - ends[:, 0]
+    chord = (ends[:, 4] - ends[:, 1]) / span
+    first, second = ends[:, 2] - chord, ends[:, 5] - chord
+    turn = (bending / length)[:, None]
+    moments = turn * (4.0 * first + 2.0 * second), turn * (2.0 * first + 4.0 * second)
+    forms = stretch.T @ (stiff[:, None] * stretch) + first.T @ moments[0] + second.T @ moments[1]
+    seen = felt[:, 2] + felt[:, 5] + 2.0 * (felt[:, 1] + felt[:, 4]) / span
+    sizes = stiff[:, None] * np.abs(stretch) * (felt[:, 0] + felt[:, 3])
+    sizes = sizes + (np.abs(moments[0]) + np.abs(moments[1])) * seen
+    return np.asarray(forms), np.asarray(np.sum(sizes, axis=0))
+
+
+def _forms(matrices: Array, ends: Array) -> Array:
+    count = ends.shape[-1]
+    return np.asarray(ends.reshape(-1, count).T @ (matrices @ ends).reshape(-1, count))
+
+
+def _symmetric(matrix: Array) -> Array:
+    return np.asarray((matrix + matrix.T) / 2.0)
+
+
+def rounding(sizes: Array) -> Array:
+    """Return a bound, to first order, of what rounding does to quadratic forms of those sizes."""
+    return np.asarray(_ENTRY * UNIT * sizes)
+
+
+def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
+    """Return the number of negative eigenvalues of D at a frequency, and whether it is certain."""
+    local, _ = assembly.local_matrices(omega)
+    lumps = assembly.springs - omega**2 * assembly.lumped_mass
+    matrix = assembly.assembled(local, lumps)
+    if not np.all(np.isfinite(matrix)):
+        return 0, False  # on a pole
+    sizes = np.einsum(
+        "nai,nab,nbi->i", np.abs(assembly.local), np.abs(local), np.abs(assembly.local)
+    )
+    sizes = sizes + (np.abs(lumps)[:, None] * assembly.reduction**2).sum(axis=0)
+    scale = 1.0 / np.sqrt(sizes)
+    values = np.linalg.eigvalsh(matrix * np.outer(scale, scale))
+    certain = bool(np.min(np.abs(values)) > _DOUBTFUL * np.max(np.abs(values)))
+    return int(np.sum(values < 0.0)), certain
+
+
+@dataclass(frozen=True)
+class Modal:
+    """``D x = mu M x`` at one frequency: mu is what is missing to the squares of frequencies.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,)
+        mu, ascending.
+    vectors : ndarray, shape (size, n)
+        x, of unit generalised mass.
+    """
+
+    values: Array
+    vectors: Array
+
+    @property
+    def negative(self) -> int:
+        """How many of the values are negative."""
+        return int(np.sum(self.values < 0.0))
+
+
+def modal(assembly: Assembly, omega: float) -> Modal:
+    """Solve ``D x = mu M x`` at a frequency [rad/s] away from the poles."""
+    from scipy.linalg import eigh
+
+    local, local_mass = assembly.local_matrices(omega)
+    lumps = assembly.springs - omega**2 * assembly.lumped_mass
+    stiffness = assembly.assembled(local, lumps)
+    mass = assembly.assembled(local_mass, assembly.lumped_mass)
+    scale = 1.0 / np.sqrt(np.diagonal(mass))
+    both = np.outer(scale, scale)
+    values, turned = eigh(stiffness * both, mass * both)
+    vectors = scale[:, None] * turned
+    near = np.abs(values) <= _NEAR * omega**2
+    if near.any():
+        values[near], vectors[:, near] = projected(assembly, omega, vectors[:, near], local_mass)
+    return Modal(values, vectors)
+
+
+def projected(
+    assembly: Assembly, omega: float, vectors: Array, mass: Array | None = None
+) -> tuple[Array, Array]:
+    """Return the values and vectors of :class:`Modal` within the span of some columns."""
+    from scipy.linalg import eigh
+
+    stiffness, heavy, _ = quadratic_forms(assembly, omega, vectors, mass)
+    values, inner = eigh(stiffness, heavy)
+    return values, np.asarray(vectors @ inner)
+
+
+Count = Callable[[float], int]
+
+# Frequencies nearer than this, relatively, are found together, in the span of their vectors.
+_TOGETHER = 1e-7
+_STEPS = 100
+_CLOSE = 1e-8
+_NUDGE = 1.0 + 1e-7
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One natural frequency of a structure.
+
+    Attributes
+    ----------
+    omega : float
+        Frequency [rad/s].
+    error : float
+        Bound of its error [rad/s].
+    problem : DynamicStiffness
+        The structure, divided so that the frequency is no pole.
+    vector : ndarray, shape (problem.size,)
+        Coordinates of that, of unit generalised mass.
+    certified : bool
+        Whether the counts on both sides confirm the bound.
+    """
+
+    omega: float
+    error: float
+    problem: DynamicStiffness
+    vector: Array
+    certified: bool
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Frequencies number ``first + 1`` to ``last`` lie between two frequencies."""
+
+    low: float
+    high: float
+    first: int
+    last: int
+
+
+def certain_count(problem: DynamicStiffness, omega: float) -> tuple[float, int]:
+    """Return how many frequencies lie below one close to ``omega``, and that one."""
+    for _ in range(3):
+        negative, certain = signs(problem.assembly, omega)
+        if certain:
+            return omega, round(float(problem.poles(omega))) + negative
+        omega *= _NUDGE
+    finer = divided_for(problem, omega)
+    return omega, round(float(finer.poles(omega))) + modal(finer.assembly, omega).negative
+
+
+def isolate(problem: DynamicStiffness, whole: Interval) -> list[Interval]:
+    """Return narrow intervals with all frequencies of one, in ascending order."""
+    found, pending = [], [whole]
+    while pending:
+        item = pending.pop()
+        if item.first == item.last:
+            continue
+        width = (item.high - item.low) / item.high
+        narrow = narrow_enough(problem, item.high)
+        if width <= narrow and (item.last == item.first + 1 or width <= narrow**2):
+            found.append(item)
+            continue
+        middle = ((np.sqrt(item.low) + np.sqrt(item.high)) / 2.0) ** 2
+        place, count = certain_count(problem, float(middle))
+        count = min(max(count, item.first), item.last)
+        pending.append(Interval(place, item.high, count, item.last))
+        pending.append(Interval(item.low, place, item.first, count))
+    return found
+
+
+def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
+    """Return the modes of an interval to full precision."""
+    finer = divided_for(problem, item.low, item.high)
+    numbers = range(item.first + 1, item.last + 1)
+    rough = sorted(_newton(finer, item, number) for number in numbers)
+    modes: list[Mode] = []
+    done = 0
+    while done < len(rough):
+        end = done + 1
+        while end < len(rough) and rough[end] - rough[end - 1] < _TOGETHER * rough[end]:
+            end += 1
+        modes += _together(finer, rough[done:end], item.first + done)
+        done = end
+    return modes
+
+
+def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
+    """Return a frequency by its number, counted from 1.
+
+    The eigenvalue of that number of ``D x = mu M x`` falls steadily through zero, and mu is
+    Newton's step of the squared frequency.
+    """
+    low, high = item.low, item.high
+    omega = (low + high) / 2.0
+    for _ in range(_STEPS):
+        found = modal(finer.assembly, omega)
+        index = number - round(float(finer.poles(omega))) - 1
+        step = float(found.values[min(max(index, 0), finer.size - 1)])
+        low, high = (omega, high) if step > 0.0 else (low, omega)
+        square = omega**2 + step
+        if abs(step) <= _CLOSE * omega**2:  # Newton's error is the square of this
+            return float(np.sqrt(square))
+        new = float(np.sqrt(square)) if square > 0.0 else low
+        omega = new if low < new < high else (low + high) / 2.0
+    return omega
+
+
+def _together(finer: DynamicStiffness, rough: list[float], before: int) -> list[Mode]:
+    """Return modes that are close, or a single one, with error bounds that counts confirm."""
+    omega = float(np.mean(rough))
+    found = modal(finer.assembly, omega)
+    index = before - round(float(finer.poles(omega)))
+    index = min(max(index, 0), finer.size - len(rough))
+    chosen = found.vectors[:, index : index + len(rough)]
+    values, vectors = projected(finer.assembly, omega, chosen)
+    places = np.sqrt(np.maximum(omega**2 + values, 0.0))
+    _, mass, sizes = quadratic_forms(finer.assembly, omega, vectors)
+    spread = rounding(sizes) / (2.0 * omega * np.diagonal(mass))
+    width, certified = _confirmed(finer, places, before, np.max(spread))
+    return [
+        Mode(float(place), float(width + own), finer, _signed(vector), certified)
+        for place, own, vector in zip(places, spread, vectors.T, strict=True)
+    ]
+
+
+def _confirmed(
+    finer: DynamicStiffness, places: Array, before: int, least: float
+) -> tuple[float, bool]:
+    """Return the smallest distance on either side of frequencies that counts confirm."""
+    width = max(4.0 * UNIT * places[-1], least / 8.0)
+    for _ in range(12):
+        low, high = places[0] - width, places[-1] + width
+        below, above = (
+            round(float(finer.poles(place))) + modal(finer.assembly, float(place)).negative
+            for place in (low, high)
+        )
+        if below == before and above == before + len(places):
+            return float(width), True
+        width *= 4.0
+    return float(width), False
+
+
+def _signed(vector: Array) -> Array:
+    """Return a vector with its largest component positive."""
+    return np.asarray(vector * np.sign(vector[np.argmax(np.abs(vector))]))
+
+
+@dataclass(frozen=True)
+class MemberShape:
+    """Displacement of a beam along its length.
+
+    Attributes
+    ----------
+    eta : ndarray, shape (m,)
+        Places, in lengths.
+    along, across : ndarray, shape (m,)
+        Displacement in the beam's own axes [m].
+    slope, curvature, third : ndarray, shape (m,)
+        Derivatives of ``across`` by the place [rad, 1/m, 1/m^2].
+    strain : ndarray, shape (m,)
+        Derivative of ``along`` by the place.
+    displacement : ndarray, shape (m, 2)
+        In the fixed axes [m].
+    """
+
+    eta: Array
+    along: Array
+    across: Array
+    slope: Array
+    curvature: Array
+    third: Array
+    strain: Array
+    displacement: Array
+
+
+def member_shape(
+    assembly: Assembly, omega: float, vector: Array, beam: str, eta: ArrayLike
+) -> MemberShape:
+    """Return the shape of a beam in a harmonic motion.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The members.
+    omega : float
+        Frequency [rad/s].
+    vector : ndarray, shape (size,)
+        Coordinates.
+    beam : str
+        Name of the beam.
+    eta : array_like, shape (m,)
+        Places along the beam, in lengths, 0 to 1.
+
+    Raises
+    ------
+    BadInput
+        If there is no such beam, or a place lies outside.
+    """
+    places = numbers_in_a_row("eta", eta)
+    if not np.all((places >= 0.0) & (places <= 1.0)):
+        raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
+    own = [k for k, piece in enumerate(assembly.pieces) if piece.beam.name == beam]
+    if not own:
+        known = ", ".join(dict.fromkeys(piece.beam.name for piece in assembly.pieces))
+        raise bad("beam", repr(beam), f"one of {known}", "correct the name")
+    z, b = phases(omega, *assembly.data)
+    whole = assembly.pieces[own[0]].beam.length
+    starts = np.array([assembly.pieces[k].start for k in own]) / whole
+    which = np.clip(np.searchsorted(starts, places, side="right") - 1, 0, len(own) - 1)
+    rows = np.zeros((6, len(places)))
+    for number, k in enumerate(own):
+        here = which == number
+        length = assembly.pieces[k].length
+        inner = np.clip((places[here] - starts[number]) * whole / length, 0.0, 1.0)
+        ends = assembly.local[k] @ vector
+        rows[:4, here] = _across(inner, float(z[k]), length, ends)
+        rows[4:, here] = _along(inner, float(b[k]), length, ends)
+    angle = assembly.angles[own[0]]
+    turned = (rows[4] + 1j * rows[0]) * np.exp(1j * angle)
+    return MemberShape(
+        eta=places,
+        along=rows[4],
+        across=rows[0],
+        slope=rows[1],
+        curvature=rows[2],
+        third=rows[3],
+        strain=rows[5],
+        displacement=np.stack([turned.real, turned.imag], axis=-1),
+    )
+
+
+def _across(xi: Array, z: float, length: float, ends: Array) -> Array:
+    """Return deflection and three derivatives: the left end's shapes are mirrored ones."""
+    phase = np.full_like(xi, z)
+    right = np.array(functions.bending_shapes(phase, xi))
+    left = np.array(functions.bending_shapes(phase, 1.0 - xi))
+    mirror = np.array([1.0, -1.0, 1.0, -1.0])[:, None]
+    total = right[:4] * ends[4] + right[4:] * (length * ends[5])
+    total += mirror * (left[:4] * ends[1] - left[4:] * (length * ends[2]))
+    return np.asarray(total / length ** np.arange(4.0)[:, None])
+
+
+def _along(xi: Array, b: float, length: float, ends: Array) -> Array:
+    phase = np.full_like(xi, b)
+    right = np.array(functions.axial_shapes(phase, xi))
+    left = np.array(functions.axial_shapes(phase, 1.0 - xi))
+    total = right * ends[3] + np.array([[1.0], [-1.0]]) * left * ends[0]
+    return np.asarray(total / length ** np.arange(2.0)[:, None])
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameFrequencies(Result):
+    """Natural frequencies of a structure of beams.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n,)
+        Ascending [rad/s], each as often as its multiplicity.
+    multiplicity : ndarray, shape (n,)
+        How many cannot be told apart within their errors.
+    modes : tuple of Mode
+        Their shapes; empty where the problem has no members.
+    problem : Transcendental
+        What they are frequencies of.
+    error : ndarray, shape (n,)
+        Bound of the error of each [rad/s].
+    """
+
+    frequencies: Array
+    multiplicity: NDArray[np.int64]
+    modes: tuple[Mode, ...]
+    problem: Transcendental
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "frequencies": ("mode",),
+        "multiplicity": ("mode",),
+        "error": ("mode",),
+        "hertz": ("mode",),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("hertz",)
+
+    @property
+    def hertz(self) -> Array:
+        """The frequencies in Hz."""
+        return self.frequencies / (2.0 * np.pi)
+
+    def vectors(self) -> Array:
+        """Return the displacements of the nodes in each mode, ``(n, free)``.
+
+        In the order of ``problem.labels`` [m, rad], of unit generalised mass; all zero where the
+        nodes stand still.
+
+        Raises
+        ------
+        BadInput
+            If there are no shapes.
+        """
+        problem = self._members()
+        places = {label: i for i, label in enumerate(problem.labels)}
+        found = np.zeros((len(self.modes), len(places)))
+        for row, mode in zip(found, self.modes, strict=True):
+            inner = mode.problem.assembly.reduction @ mode.vector
+            for label, value in zip(mode.problem.labels, inner, strict=True):
+                if label in places:
+                    row[places[label]] = value
+        return found
+
+    def shape(self, mode: int, beam: str, eta: ArrayLike) -> MemberShape:
+        """Return the exact shape of a beam in a mode.
+
+        Parameters
+        ----------
+        mode : int
+            Which of the modes, from 0.
+        beam : str
+            Its name.
+        eta : array_like, shape (m,)
+            Places along it, in lengths, 0 to 1.
+
+        Raises
+        ------
+        BadInput
+            If there are no shapes, no such mode or beam, or a place lies outside.
+        """
+        self._members()
+        known = isinstance(mode, (int, np.integer)) and not isinstance(mode, bool)
+        if not known or not 0 <= mode < len(self.modes):
+            raise bad("mode", repr(mode), f"0 to {len(self.modes) - 1}", "ask for more frequencies")
+        chosen = self.modes[mode]
+        return member_shape(chosen.problem.assembly, chosen.omega, chosen.vector, beam, eta)
+
+    def _members(self) -> DynamicStiffness:
+        if not isinstance(self.problem, DynamicStiffness):
+            fix = "build it with dynamic_stiffness()"
+            raise bad("problem", "one without members", "a structure of beams", fix)
+        return self.problem
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies [Hz] over their number, those of several modes marked."""
+        axes = axes_or_new(ax)
+        number = np.arange(1, len(self.frequencies) + 1)
+        axes.plot(number, self.hertz, "o", ms=4)
+        several = self.multiplicity > 1
+        axes.plot(number[several], self.hertz[several], "s", ms=9, mfc="none", label="multiple")
+        if several.any():
+            axes.legend()
+        axes.set_xlabel("mode")
+        axes.set_ylabel("natural frequency [Hz]")
+        return axes
+
+
+_START = 1e-3
+_MOST_BRACKETS = 400
+
+
+def bisected(
+    problem: Transcendental, upto: float | None, count: int | None, rtol: float
+) -> FrameFrequencies:
+    """Return the frequencies of a problem by bisection on their number.
+
+    Parameters
+    ----------
+    problem : Transcendental
+        What counts.
+    upto, count, rtol
+        As :func:`wittrick_williams` takes them.
+
+    Raises
+    ------
+    BadInput
+        If there are not as many frequencies as asked for.
+    """
+    high = upto if upto is not None else _bracketed(problem, count or 1)
+    total = int(problem.count(high))
+    pending = [(0.0, high, 0, total)]
+    found: list[tuple[float, float]] = []
+    while pending:
+        low, high, first, last = pending.pop()
+        if first == last:
+            continue
+        middle = (low + high) / 2.0
+        if high - low <= rtol * high or not low < middle < high:
+            found += [(middle, (high - low) / 2.0)] * (last - first)
+            continue
+        between = min(max(int(problem.count(middle)), first), last)
+        pending.append((middle, high, between, last))
+        pending.append((low, middle, first, between))
+    places = np.array([place for place, _ in found])
+    widths = np.array([width for _, width in found])
+    chosen = slice(None) if count is None else slice(count)
+    _, group, size = np.unique(places, return_inverse=True, return_counts=True)
+    return FrameFrequencies(
+        frequencies=places[chosen],
+        multiplicity=size[group][chosen].astype(np.int64),
+        modes=(),
+        problem=problem,
+        method="Wittrick-Williams count, bisection",
+        error=widths[chosen],
+        error_norm="each frequency, absolute [rad/s]",
+        error_kind="bound",
+        checks={"frequencies not found": Check(float(abs(len(found) - total)), 0.0)},
+        provenance=provenance(problem.provenance),
+    )
+
+
+def _bracketed(problem: Transcendental, count: int) -> float:
+    high = _START
+    for _ in range(_MOST_BRACKETS):
+        if int(problem.count(high)) >= count:
+            return high
+        high *= 2.0
+    raise bad("count", str(count), "fewer frequencies", "ask for fewer")
+
+
+_MOST_DOUBLINGS = 200
+# Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
+_RIGID = 1e-11
+
+
+def wittrick_williams(
+    problem: Transcendental,
+    *,
+    upto: float | None = None,
+    count: int | None = None,
+    rtol: float = 1e-12,
+) -> FrameFrequencies:
+    """Return the natural frequencies of a transcendental eigenproblem, all of them.
+
+    The number of frequencies below any trial frequency is that of the clamped members plus the
+    number of negative eigenvalues of the dynamic stiffness (Aannaque (5.21)).  Bisection on that
+    number isolates each frequency; Newton's method on the eigenvalue that goes through zero brings
+    it to the last digits, with members divided where the nodes would stand still; counts on both
+    sides confirm it.
+
+    Parameters
+    ----------
+    problem : Transcendental
+        From :func:`dynamic_stiffness`; of another one, an emitted one say, frequencies are found
+        by bisection alone and there are no shapes.
+    upto : float, optional
+        All frequencies below this one [rad/s].
+    count : int, optional
+        That many frequencies, the lowest ones; give one of the two.
+    rtol : float
+        Relative width that is asked for where there is bisection alone.
+
+    Returns
+    -------
+    FrameFrequencies
+        A frequency stands as often as its multiplicity; motions that meet no stiffness stand as
+        frequencies 0 in front.
+
+    Raises
+    ------
+    BadInput
+        If not exactly one of ``upto`` and ``count`` is given, or one is not usable.
+    """
+    _check(upto, count, rtol)
+    if not isinstance(problem, Transcendental):
+        found = type(problem).__name__
+        raise bad("problem", found, "a Transcendental", "make one with dynamic_stiffness")
+    if not isinstance(problem, DynamicStiffness):
+        return bisected(problem, upto, count, rtol)
+    rigid = rigid_motions(problem)
+    low = _below_all(problem, len(rigid))
+    high = upto if upto is not None else _above(problem, low, count or 1)
+    modes = list(rigid)
+    total = len(rigid)
+    if high > low:
+        high, total = certain_count(problem, high)
+        for item in isolate(problem, Interval(low, high, len(rigid), total)):
+            modes += solve(problem, item)
+    kept = [mode for mode in modes if upto is None or mode.omega < upto]
+    kept = kept if count is None else kept[:count]
+    return _result(problem, kept, len(modes), total)
+
+
+def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
+    """Return the motions that meet no stiffness, as modes of frequency 0."""
+    from scipy.linalg import eigh
+
+    still = 0.0
+    stiffness, mass = problem.assembly.stiffness(still), problem.mass(still)
+    scale = 1.0 / np.sqrt(np.diagonal(mass))
+    both = np.outer(scale, scale)
+    _, turned = eigh(stiffness * both, mass * both)
+    vectors = scale[:, None] * turned
+    forms, _, sizes = quadratic_forms(problem.assembly, still, vectors)
+    soft = np.abs(np.diagonal(forms)) <= _RIGID * sizes
+    return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
+
+
+def _scale(problem: DynamicStiffness) -> float:
+    """Return a frequency of the size of the members' own."""
+    length, bending, _, mass = problem.assembly.data
+    return float(np.min(np.sqrt(bending / mass) / length**2))
+
+
+def _below_all(problem: DynamicStiffness, rigid: int) -> float:
+    """Return a frequency below all that are not 0."""
+    low = _scale(problem)
+    for _ in range(_MOST_DOUBLINGS):
+        low, found = certain_count(problem, low)
+        if found <= rigid:
+            return low
+        low /= 4.0
+    raise bad(
+        "structure",
+        "a motion that meets next to no stiffness",
+        "frequencies well above 0",
+        "hold the structure, or stiffen the soft spring",
+    )
+
+
+def _above(problem: DynamicStiffness, low: float, count: int) -> float:
+    """Return a frequency with at least so many below."""
+    high = low
+    for _ in range(_MOST_DOUBLINGS):
+        high, found = certain_count(problem, 1.7 * high)
+        if found >= count:
+            return high
+    raise bad("count", str(count), "fewer frequencies", "ask for fewer")
+
+
+def _result(
+    problem: DynamicStiffness, modes: list[Mode], found: int, total: int
+) -> FrameFrequencies:
+    omega = np.array([mode.omega for mode in modes])
+    error = np.array([mode.error for mode in modes])
+    uncertain = sum(not mode.certified for mode in modes)
+    return FrameFrequencies(
+        frequencies=omega,
+        multiplicity=multiplicities(omega, error),
+        modes=tuple(modes),
+        problem=problem,
+        method="Wittrick-Williams count, Newton's method on the eigenvalue of D",
+        error=error,
+        error_norm="each frequency, absolute [rad/s]",
+        error_kind="bound",
+        checks={
+            "frequencies not found": Check(float(abs(found - total)), 0.0),
+            "frequencies that counts do not confirm": Check(float(uncertain), 0.0),
+        },
+        provenance=provenance(problem.provenance),
+    )
+
+
+def multiplicities(omega: Array, error: Array) -> NDArray[np.int64]:
+    """Return for each frequency how many are no farther from each other than their errors."""
+    found = np.ones(len(omega), dtype=np.int64)
+    start = 0
+    for i in range(1, len(omega) + 1):
+        ends = i == len(omega) or omega[i] - omega[i - 1] > error[i] + error[i - 1]
+        if ends:
+            found[start:i] = i - start
+            start = i
+    return found
+
+
+def _check(upto: float | None, count: int | None, rtol: float) -> None:
+    problems = []
+    if (upto is None) == (count is None):
+        found = "neither" if upto is None else "both"
+        problems.append(Problem("upto, count", found, "one of the two", "choose"))
+    if upto is not None and not (is_finite(upto) and upto > 0):
+        problems.append(Problem("upto", repr(upto), "a positive frequency [rad/s]", "correct it"))
+    if count is not None and not is_whole(count, 1):
+        problems.append(Problem("count", repr(count), "a whole number from 1", "correct it"))
+    if not (is_finite(rtol) and 1e-15 <= rtol < 1.0):
+        problems.append(Problem("rtol", repr(rtol), "between 1e-15 and 1", "choose 1e-12"))
+    if problems:
+        raise BadInput(*problems)

@@ -1,0 +1,341 @@
+"""A mechanism with its crank held: natural frequencies, their means over a turn, buckling."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
+from ..core.trigonometric import even_angles
+
+Array = NDArray[np.float64]
+
+_EPS = float(np.finfo(float).eps)
+# Round-offs of a sum's terms that its error is told as.
+_ROUNDED = 2.0
+
+
+@dataclass(frozen=True)
+class HeldModes:
+    """Natural frequencies and shapes at crank angles.
+
+    Attributes
+    ----------
+    frequency : ndarray
+        Natural frequencies [rad/s], rising, shape ``(nt, n)``.
+    shape : ndarray
+        Shapes, columns of unit modal mass, ``(nt, n, n)``.
+    mass : ndarray
+        M, ``(nt, n, n)``.
+    error : ndarray
+        Round-off of the frequencies [rad/s], ``(nt, n)``.
+    """
+
+    frequency: Array
+    shape: Array
+    mass: Array
+    error: Array
+
+
+def held_arrays(
+    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float
+) -> tuple[Array, Array]:
+    """Return M and K + Kg at crank angles, Kg with the axial forces of a crank speed."""
+    mass = system.array("M", theta, **parameters)
+    stiffness = system.array("K", theta, **parameters)
+    if system.has("Kg"):
+        stiffness = stiffness + system.array("Kg", theta, speed, **parameters)
+    return mass, stiffness
+
+
+def held_frequencies(
+    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
+) -> tuple[Array, Array]:
+    """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each.
+
+    Raises
+    ------
+    BadInput
+        As :func:`held_modes`.
+    """
+    held = held_modes(system, theta, parameters, speed)
+    return held.frequency, held.error
+
+
+def held_modes(
+    system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
+) -> HeldModes:
+    """Return natural frequencies and shapes at crank angles ``(nt,)`` [rad].
+
+    Raises
+    ------
+    BadInput
+        If mass or stiffness is not positive definite at some angle.
+    """
+    mass, stiffness = held_arrays(system, theta, parameters, speed)
+    half = _inverse_factor(mass, stiffness, theta)
+    flexibility = half @ mass @ np.swapaxes(half, -1, -2)
+    # Of the inverse problem the lowest frequencies are the largest eigenvalues, the accurate ones.
+    _, vectors = np.linalg.eigh((flexibility + np.swapaxes(flexibility, -1, -2)) / 2)
+    shape = np.swapaxes(half, -1, -2) @ vectors[:, :, ::-1]
+    square, error = _quotients(mass, stiffness, shape)
+    shape = shape / np.sqrt(np.einsum("tik,tij,tjk->tk", shape, mass, shape))[:, None, :]
+    order = np.argsort(square, axis=1, kind="stable")
+    frequency, error = np.sqrt(square), 0.5 * error / np.sqrt(square)
+    return HeldModes(
+        np.take_along_axis(frequency, order, axis=1),
+        np.take_along_axis(shape, order[:, None, :], axis=2),
+        mass,
+        np.take_along_axis(error, order, axis=1),
+    )
+
+
+def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Array]:
+    """Return the squares of the frequencies as Rayleigh's quotients, and their round-off.
+
+    What the shapes are wrong by enters squared; what is left is the round-off of the sums.
+    """
+    size = np.abs(shape)
+    kinetic = np.sum(shape * (mass @ shape), axis=1)
+    square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
+    summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
+    summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
+    return square, _ROUNDED * _EPS * summed / kinetic
+
+
+def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
+    """Return the inverse of Cholesky's factor of K; both matrices must have one."""
+    factor: NDArray[np.floating[Any]] = mass
+    for name, matrix in (("mass M", mass), ("stiffness K + Kg", stiffness)):
+        try:
+            factor = np.linalg.cholesky(matrix)
+        except np.linalg.LinAlgError:
+            symmetric = (matrix + np.swapaxes(matrix, -1, -2)) / 2
+            lowest = np.min(np.linalg.eigvalsh(symmetric), axis=-1)
+            where = float(theta[int(np.argmin(lowest))])
+            raise bad(
+                name,
+                f"smallest eigenvalue {float(np.min(lowest)):.3g} at crank angle {where:.6g}",
+                "a positive definite matrix at every angle",
+                "check the parameters; a rigid or buckled motion has no natural frequency",
+            ) from None
+    return np.asarray(np.linalg.inv(factor))
+
+
+def require_system(system: object) -> None:
+    """Refuse what is no linear periodic system.
+
+    Raises
+    ------
+    BadInput
+        If it is none.
+    """
+    if not isinstance(system, LinearPeriodic):
+        found, fix = type(system).__name__, "take one from linkage_system or a scene"
+        raise bad("system", found, "a LinearPeriodic", fix)
+
+
+def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
+    """Return checked crank angles; 361 over a period by default.
+
+    Raises
+    ------
+    BadInput
+        If they are no row of finite numbers.
+    """
+    if theta is None:
+        return np.linspace(0.0, system.period, 361)
+    angles = np.atleast_1d(numbers("theta", theta))
+    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
+        raise bad("theta", theta, "finite crank angles [rad], one row", "correct them")
+    return angles
+
+
+def assurance(first: Array, second: Array, mass: Array, *, squared: bool = True) -> Array:
+    """Return the mass-weighted assurance of shapes (columns), or its root with a sign.
+
+    ``(u^T M v)^2 / (u^T M u  v^T M v)``: 1 of the same shape, 0 of shapes without a common part.
+    """
+    product = np.swapaxes(first, -1, -2) @ mass @ second
+    one = np.einsum("...ik,...ij,...jk->...k", first, mass, first)
+    other = np.einsum("...ik,...ij,...jk->...k", second, mass, second)
+    root: Array = product / np.sqrt(one[..., :, None] * other[..., None, :])
+    return root**2 if squared else root
+
+
+# Crank angles to values and their round-off, both (nt, k).
+Values = Callable[[Array], tuple[Array, Array]]
+
+_ENOUGH = 1e-12
+_FEWEST, _MOST = 64, 1024
+# Nodes of a panel, and panels a period, to begin with.
+_NODES = (10, 16)
+_PANELS = 12
+_HALVINGS = 24
+# Panels open at once, beyond which their error is told instead.
+_MOST_PANELS = 48
+
+
+def cycle_mean(
+    values: Values,
+    period: float,
+    breaks: Sequence[float] = (),
+    *,
+    most: int = _MOST,
+    enough: float = _ENOUGH,
+) -> tuple[Array, Array]:
+    """Return means over the period and their errors, ``(k,)`` each.
+
+    By the trapezoidal rule, which converges geometrically where the values are analytic.  Where
+    that is slow, by Gauss-Legendre panels that end at the given angles and are halved where their
+    error is: near a veering the values are analytic in a narrow strip, at a crossing their order
+    changes.
+
+    Parameters
+    ----------
+    values : callable
+        Crank angles to values and their round-off.
+    period : float
+        Period [rad].
+    breaks : sequence of float
+        Angles at which the values are not smooth, or nearly not.
+    most : int
+        Most angles of the trapezoidal rule.
+    enough : float
+        Relative error that is small enough.
+    """
+    count = _FEWEST
+    found, rounding = _even(values, period, count)
+    while True:
+        before, count = found, 2 * count
+        found, rounding = _even(values, period, count)
+        change = np.abs(found - before)
+        if np.all(change <= enough * np.abs(found) + rounding):
+            return found, change + rounding
+        slow = count >= 256 and len(breaks) > 0
+        if slow or 2 * count > most:
+            return _by_panels(values, period, breaks, enough)
+
+
+def _even(values: Values, period: float, count: int) -> tuple[Array, Array]:
+    value, error = values(even_angles(period, count))
+    # Row by row a plain sum would add a round-off for every angle.
+    found = np.array([math.fsum(column) for column in value.T]) / count
+    return found, error.mean(axis=0) + 4 * _EPS * np.abs(found)
+
+
+def _by_panels(
+    values: Values, period: float, breaks: Sequence[float], enough: float
+) -> tuple[Array, Array]:
+    """Return means by panels, each halved until two rules agree."""
+    inner = np.unique(np.asarray(breaks, dtype=float) % period)
+    start = float(inner[0]) if len(inner) else 0.0
+    ends = np.concatenate([inner, start + period * np.arange(_PANELS + 1) / _PANELS])
+    ends = np.unique(np.clip(ends, start, start + period))
+    panels = np.stack([ends[:-1], ends[1:]], axis=1)
+    total: Array | float = 0.0
+    error: Array | float = 0.0
+    for step in range(_HALVINGS + 1):
+        coarse, _ = _panel_integrals(values, panels, _NODES[0])
+        fine, rounding = _panel_integrals(values, panels, _NODES[1])
+        gap = np.abs(fine - coarse)
+        share = (panels[:, 1] - panels[:, 0])[:, None] / period
+        allowed = enough * np.abs(fine) + rounding + 0.1 * enough * share * np.max(np.abs(fine))
+        last = step == _HALVINGS or len(panels) > _MOST_PANELS
+        good = np.all(gap <= allowed, axis=1) | last
+        total = total + np.sum(fine[good], axis=0)
+        error = error + np.sum(gap[good] + rounding[good], axis=0)
+        if np.all(good):
+            break
+        rest = panels[~good]
+        middle = rest.mean(axis=1)
+        panels = np.concatenate(
+            [np.stack([rest[:, 0], middle], axis=1), np.stack([middle, rest[:, 1]], axis=1)]
+        )
+    return np.asarray(total / period), np.asarray(error / period)
+
+
+def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, Array]:
+    """Return the integral over each panel and its round-off, ``(panels, k)``."""
+    place, weight = np.polynomial.legendre.leggauss(nodes)
+    half = 0.5 * (panels[:, 1] - panels[:, 0])[:, None]
+    theta = panels.mean(axis=1)[:, None] + half * place
+    value, error = values(theta.ravel())
+    shape = (*theta.shape, -1)
+    scaled = half * weight
+    found = np.einsum("pn,pnk->pk", scaled, value.reshape(shape))
+    rounding = np.einsum("pn,pnk->pk", scaled, error.reshape(shape))
+    return found, rounding + 4 * _EPS * np.abs(found)
+
+
+_ANGLES = 256
+_WITHIN, _PASSES = 9, 16
+
+
+@dataclass(frozen=True)
+class Buckling:
+    """Least crank speed at which ``K + Kg`` is singular at some crank angle.
+
+    Attributes
+    ----------
+    speed : float
+        Crank speed [rad/s]; inf where no speed buckles the mechanism.
+    angle : float
+        Crank angle [rad].
+    """
+
+    speed: float
+    angle: float
+
+
+def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
+    """Return the least crank speed at which the axial forces buckle the held mechanism.
+
+    Beyond it a link that is pressed has, over a part of the turn, no natural frequency: frozen
+    analyses end there.  The moving mechanism need not be unstable, as it passes that part quickly.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Its geometric stiffness is to grow with the square of the speed, constant loads aside.
+    **parameters : float
+        Parameter values that replace the system's own.
+
+    Returns
+    -------
+    Buckling
+        The speed is exact to round-off at its angle, which is the worst one to 1e-6 of the period.
+
+    Raises
+    ------
+    BadInput
+        If a parameter is unknown, or mass or stiffness is not positive definite at rest.
+    """
+    require_system(system)
+    if not system.has("Kg"):
+        return Buckling(np.inf, 0.0)
+    theta = even_angles(system.period, _ANGLES)
+    for _ in range(_PASSES):
+        softening = _softening(system, theta, parameters)
+        best = int(np.argmax(softening))
+        step = float(theta[1] - theta[0])
+        theta = theta[best] + step * np.linspace(-1.0, 1.0, _WITHIN)
+    worst = float(softening[best])
+    found = float(theta[_WITHIN // 2]) % system.period
+    return Buckling(1.0 / np.sqrt(worst) if worst > 0.0 else np.inf, found)
+
+
+def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float]) -> Array:
+    """Return, at each angle, the largest eigenvalue of -(what a unit speed adds) over K."""
+    _, resting = held_arrays(system, theta, parameters, 0.0)
+    added = held_arrays(system, theta, parameters, 1.0)[1] - resting
+    half = np.linalg.inv(np.linalg.cholesky(resting))
+    reduced = -half @ added @ np.swapaxes(half, -1, -2)
+    return np.asarray(np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, -1])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.periodic_function import PeriodicFunction
-from ..hill.exact.matrix import hill_boundaries
+from ..hill import hill_boundaries
 from .chart import batched_heyoka, one_half_trace
 from .records import Contender, Row, missing
 

@@ -13,7 +13,7 @@ from ..core import chebyshev
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check
-from ..hill.half_trace import discriminant_grid
+from ..hill import discriminant
 from .records import Benchmark, Contender, Row, compare, functions, missing, one_thread
 from .reference import half_traces
 
@@ -126,7 +126,7 @@ class _Chart:
         self.truth = half_traces(f, self.lam2[self.i], self.mu[self.j])
 
     def ours(self) -> Any:
-        return discriminant_grid(self.f, self.lam2, self.mu)
+        return discriminant(self.f, self.lam2[:, None], self.mu)
 
     def grid_error(self, found: Any) -> float:
         grid = getattr(found, "value", found)
@@ -179,7 +179,7 @@ def _node_counts(f: PeriodicFunction) -> tuple[int, int]:
     """
     n, m = 64, 40
     u, v = chebyshev.nodes(n), chebyshev.nodes(m)
-    grid = discriminant_grid(f, 0.5 * _LAM2 * (1.0 + u), 0.5 * _MU * (1.0 + v)).value
+    grid = discriminant(f, 0.5 * _LAM2 * (1.0 + u[:, None]), 0.5 * _MU * (1.0 + v)).value
     size = np.abs(chebyshev.coefficients2(grid))
     floor = _TOLERANCE * max(1.0, float(size.max()))
     return (

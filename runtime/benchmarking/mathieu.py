@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check
-from ..hill.exact.matrix import hill_boundaries
+from ..hill import hill_boundaries
 from .records import Benchmark, Contender, Row, compare, one_thread
 
 Array = NDArray[np.float64]

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check
-from ..hill.exact.matrix import Boundaries, hill_boundaries
-from ..hill.perturbation.boundaries import perturbation_boundaries
+from ..hill import Boundaries, hill_boundaries, perturbation_boundaries
 from .records import Benchmark, Contender, Row, compare, functions, one_thread
 from .slices import reference_ends
 

@@ -12,8 +12,8 @@ from scipy.linalg import eig_banded
 from ..core.errors import bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check
-from ..hill.exact.certified import certified_boundaries
-from ..hill.exact.matrix import Boundaries, hill_boundaries
+from ..hill import Boundaries, hill_boundaries
+from ..hill.certified import certified_boundaries
 from .bisection import bisections
 from .records import Benchmark, Contender, Row, compare, functions, one_thread
 

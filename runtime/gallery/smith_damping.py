@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill.perturbation.effective import effective_operator
-from ..hill.perturbation.thresholds import critical_damping
+from ..hill import critical_damping
+from ..hill.bloch import effective_operator
 from ..scenes import load_scene
 from .records import Drawn, Quoted, Table
 from .smith_linkages import LBF_IN_S2, RIG, Array, Rig, region_name

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..floquet.edges.tracing import StabilityEdges, stability_edges
 from ..floquet.monodromy_matrix import floquet_multipliers
-from ..hill.exact.matrix import hill_boundaries
+from ..hill import hill_boundaries
 from ..scenes import load_scene
 from .records import Drawn, Quoted, Table
 from .smith_linkages import LBF_IN_S2, RIG, RPM, Array, Rig

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.errors import LinearRangeWarning
 from ..core.families import LinearPeriodic
-from ..hill.half_trace import discriminant
+from ..hill import discriminant
 from ..scenes import load_scene
 from ..simulation.trajectory import simulate
 from .records import Drawn, Quoted

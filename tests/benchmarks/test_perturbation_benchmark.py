@@ -8,8 +8,8 @@ from elastolink.runtime.benchmarking import benchmark_perturbation
 from elastolink.runtime.benchmarking.perturbation import matrix_ends
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
-from elastolink.runtime.hill.perturbation.effective import effective_operator
+from elastolink.runtime.hill import hill_boundaries
+from elastolink.runtime.hill.bloch import effective_operator
 
 REGIONS = (1, 2, 3, 4, 5, 6)
 

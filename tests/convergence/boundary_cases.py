@@ -12,7 +12,7 @@ import pytest
 from elastolink.derive.perturbation.surd import ExactHarmonics, combine
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill import hill_boundaries
 from omitted_orders import Curve
 
 ORDERS = (1, 2, 3, 4, 5, 6)

@@ -8,8 +8,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.floquet import floquet_multipliers, resonances, tongue
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.floquet import floquet_multipliers
+from elastolink.runtime.stability import resonances, tongue
+from elastolink.runtime.hill.boundaries import hill_boundaries
 from periodic_systems import is_growing, named, wave
 
 matplotlib.use("Agg")

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import resonances, tongue
+from elastolink.runtime.stability import resonances, tongue
 from periodic_systems import is_growing
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink import load_scene
-from elastolink.runtime.floquet import resonances, speed_boundaries, tongue
+from elastolink.runtime.floquet import speed_boundaries
+from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.floquet.edges.tracing import stability_edges
 
 SPAN = (38.0, 95.0)

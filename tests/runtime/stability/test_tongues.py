@@ -1,17 +1,24 @@
-"""Perturbation series of principal and combination tongues against exact multipliers."""
+"""Tongues of coupled modes as series: orders, damping, checks, random systems, Smith's rig."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import matplotlib
 import numpy as np
 import pytest
+from elastolink import load_scene
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.stability import resonances, tongue
+from elastolink.runtime.floquet import (
+    floquet_multipliers,
+    speed_boundaries,
+)
 from elastolink.runtime.hill.boundaries import hill_boundaries
+from elastolink.runtime.stability import resonances, tongue
 from periodic_systems import is_growing, named, wave
+from scipy.integrate import solve_ivp
 
 matplotlib.use("Agg")
 
@@ -76,6 +83,7 @@ def _exact(system, found, **parameters):
 
 
 EPS = np.array([0.1, 0.05, 0.025])
+
 CASES = {
     "principal": (FULL, "2 w1 = w", {}),
     "second mode": (FULL, "2 w2 = w", {}),
@@ -99,6 +107,13 @@ CASES = {
 }
 
 
+REST = sorted({*CASES} - {"principal", "periodic mass, sum, damped"})
+
+
+def slow(*cases):
+    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
+
+
 def _series(system, label, order, damping, eps=EPS):
     """Return the tongue at values of eps, damping in proportion to it."""
     unit = {name: value * EPS[0] for name, value in damping.items()}
@@ -112,7 +127,7 @@ def _series(system, label, order, damping, eps=EPS):
     )
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", ["principal", "periodic mass, sum, damped", *slow(*REST)])
 def test_the_error_falls_with_the_first_power_left_out(name):
     system, label, damping = CASES[name]
     changed = {key: value * EPS for key, value in damping.items()}
@@ -158,6 +173,7 @@ def test_a_wrong_end_fails_the_checks():
     assert not replace(checks, tongue=narrow)()["unstable outside"].passed
 
 
+@pytest.mark.smoke
 def test_first_order_is_the_textbook_s():
     # Averaging by hand: |w - w1 - w2| < (d1 + d2)/(2 sqrt(d1 d2)) sqrt(eps^2/(4 w1 w2) - d1 d2).
     system = _pair()
@@ -172,30 +188,6 @@ def test_first_order_is_the_textbook_s():
         found = tongue(system, resonance, parameter=("eps", eps), order=1, d1=d1, d2=d2)
         # The formula's own error is of the next order in eps.
         assert found.width == pytest.approx(2 * half, rel=10 * widening * eps)
-
-
-def test_unequal_damping_widens_a_combination_tongue():
-    system, eps = _pair(), 0.1
-    resonance = _resonance(system, "w1 + w2 = w")
-    plain = tongue(system, resonance, parameter=("eps", eps))
-    equal = tongue(system, resonance, parameter=("eps", eps), d1=0.01, d2=0.01)
-    unequal = tongue(system, resonance, parameter=("eps", eps), d1=0.002, d2=0.02)
-    assert equal.width < plain.width < unequal.width
-    assert unequal.width == pytest.approx(1.739 * plain.width, rel=0.03)
-    # The multipliers say the same: speeds that are stable without damping are not with it.
-    between = np.array([(plain.lower + unequal.lower) / 2, (plain.upper + unequal.upper) / 2])
-    assert not np.any(is_growing(system, between, 1e-9, eps=eps))
-    assert np.all(is_growing(system, between, 1e-4, eps=eps, d1=0.002, d2=0.02))
-    assert not np.any(is_growing(system, between, 0.0, eps=eps, d1=0.02, d2=0.02))
-
-
-def test_damping_of_one_mode_alone_leaves_no_end():
-    system = _pair()
-    resonance = _resonance(system, "w1 + w2 = w")
-    found = tongue(system, resonance, parameter=("eps", 0.1), order=1, d1=0.01)
-    assert found.open
-    assert (found.lower, found.upper, found.error) == (0.0, np.inf, np.inf)
-    assert not found.passed
 
 
 def test_damping_closes_a_tongue():
@@ -225,6 +217,7 @@ def test_equal_signatures_do_not_open():
         assert not np.any(is_growing(FULL, near, 1e-9, eps=eps))
 
 
+@pytest.mark.slow
 def test_opposite_signatures_open_a_difference_tongue():
     # A gyroscopically stabilised pair: its slow mode has negative energy.
     terms = (
@@ -253,7 +246,7 @@ def test_neither_conservative_nor_reversible_without_damping_has_no_end():
     assert np.all(is_growing(system, np.linspace(1.2, 1.4, 21), 1e-6, eps=0.08))
 
 
-@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("n", [1, *slow(2, 3)])
 @pytest.mark.parametrize("damping", [0.0, 0.05])
 def test_a_single_mode_gives_the_boundaries_of_hill_s_equation(n, damping):
     f = PeriodicFunction(a=[0.2, 1.0, 0.3], b=[0.0, 0.4, -0.2])
@@ -400,6 +393,7 @@ def test_a_resonance_that_does_not_fit_is_refused():
         tongue(FULL, replace(resonance, harmonic=30), parameter=("eps", 0.1))
 
 
+@pytest.mark.slow
 def test_four_exponents_that_meet_exactly():
     # Two like oscillators, coupled: y1 + y2 and y1 - y2 are Mathieu's equation with +-eps.
     terms = (
@@ -431,7 +425,7 @@ def test_four_exponents_that_meet_exactly():
             assert found.passed
 
 
-@pytest.mark.parametrize("units", [(1e-6, 1e-6), (1e5, 1e-4)])
+@pytest.mark.parametrize("units", [(1e5, 1e-4)])
 def test_units_of_mass_and_coordinates_do_not_matter(units):
     turn = np.diag(units)
     terms = []
@@ -449,3 +443,313 @@ def test_units_of_mass_and_coordinates_do_not_matter(units):
     found = tongue(other, _resonance(other, "w1 + w2 = w"), **given)
     np.testing.assert_allclose(found.lower, expected.lower, rtol=1e-11)
     np.testing.assert_allclose(found.upper, expected.upper, rtol=1e-11)
+
+
+def _system(squares, wave, damping):
+    """Return y'' + C y' + (diag(squares) + eps wave cos theta) y = 0."""
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag(squares)),
+        Term("K", "eps", lambda theta: np.cos(theta)[:, None, None] * np.array(wave)),
+        Term("C", "c", np.diag(damping)),
+    )
+    return LinearPeriodic(
+        2,
+        terms,
+        {"eps": 0.0, "c": 1.0},
+        lambda values: {name: np.asarray(values[name], dtype=float) for name in ("eps", "c")},
+    )
+
+
+def _near(second, damping):
+    return _system((3.11**2, second**2), ((0.5, 0.4), (0.4, 0.5)), damping)
+
+
+@pytest.mark.parametrize("damping", [(0.003, 0.013), *slow((0.013, 0.003), (0.001, 0.03))])
+def test_unequal_damping_does_not_hide_a_tongue_beside_others(damping):
+    # 2 w1, w1 + w2 and 2 w2 lie side by side; the motion is nearly all of the lightly damped mode.
+    system = _near(3.551, damping)
+    given = {"parameter": ("eps", 0.12), "order": 3}
+    resonance = _resonance(system, "w1 + w2 = w")
+    found = tongue(system, resonance, **given)
+    alone = tongue(system, resonance, merge=0.0, **given)
+    assert (found.dimension, alone.dimension) == (4, 2)
+    assert found.open
+    assert alone.open
+    assert abs(found.lower - alone.lower) <= found.error + alone.error
+    assert abs(found.upper - alone.upper) <= found.error + alone.error
+    assert found.passed, dict(found.checks)
+    ends = np.array([found.lower, found.upper]) + 3 * found.error * np.array([[-1.0], [1.0]])
+    assert is_growing(system, ends, 0.0, eps=0.12).tolist() == [[False, True], [True, False]]
+
+
+def test_damping_of_one_mode_alone_leaves_no_end_beside_others_either():
+    system = _near(3.551, (0.01, 0.0))
+    resonance = _resonance(system, "w1 + w2 = w")
+    found = tongue(system, resonance, parameter=("eps", 0.12), order=3)
+    assert found.dimension == 4
+    assert (found.open, found.lower, found.upper) == (True, 0.0, np.inf)
+    assert not found.passed
+
+
+@pytest.mark.slow
+def test_a_range_wrongly_said_to_be_closed_fails_the_checks():
+    for system, merge in ((_near(3.551, (0.003, 0.013)), 0.04), (_near(4.4, (0.003, 0.006)), 0.0)):
+        resonance = _resonance(system, "w1 + w2 = w")
+        values, factors = np.array([0.02, 0.12]), np.array([3.0, 1.0])
+        given = {"parameter": ("eps", values), "damping_factor": factors}
+        found = tongue(system, resonance, order=3, merge=merge, **given)
+        assert found.open.tolist() == [False, True]
+        assert found.checks["told apart"].value == 0.0
+        nothing = np.full(2, np.nan)
+        closed = replace(
+            found, lower=nothing, upper=nothing, error=nothing, open=np.zeros(2, dtype=bool)
+        )
+        assert replace(found.checks._make, tongue=closed)()["told apart"].value == 1.0
+
+
+def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
+    # The ends are beyond the detunings that a series of order 2 can tell of.
+    system = _system((1.0, 5.3), ((0.0, 1.0), (1.0, 0.0)), (0.01, 0.03))
+    resonance = _resonance(system, "w1 + w2 = w")
+    found = tongue(system, resonance, parameter=("eps", 5.0), order=2)
+    assert np.isnan(found.lower)
+    assert is_growing(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
+    assert not found.passed
+
+
+def _waves(rng, size, symmetric=True):
+    """Return two harmonics with random matrices as a function of angle."""
+    parts = []
+    for harmonic in (1, 2):
+        for phase in (0.0, np.pi / 2):
+            matrix = rng.normal(size=(size, size)) / (2 * harmonic)
+            parts.append((harmonic, phase, (matrix + matrix.T) / 2 if symmetric else matrix))
+    return lambda theta: sum(
+        np.cos(harmonic * theta - phase)[:, None, None] * matrix
+        for harmonic, phase, matrix in parts
+    )
+
+
+def _definite(rng, size):
+    root = np.eye(size) + 0.2 * rng.normal(size=(size, size))
+    return root @ root.T
+
+
+def _random(seed: int, size: int = 2) -> LinearPeriodic:
+    """Every array of the family periodic in proportion to eps, with damping."""
+    rng = np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.normal(size=(size, size)))[0]
+    stiffness = turn @ np.diag(np.sort(rng.uniform(1.0, 12.0, size))) @ turn.T
+    terms = (
+        Term("M", None, _definite(rng, size)),
+        Term("M", "eps", _waves(rng, size)),
+        Term("A", None, 0.1 * rng.normal(size=(size, size))),
+        Term("A", "eps", _waves(rng, size, symmetric=False)),
+        Term("B", None, 0.05 * np.diag(rng.normal(size=size))),
+        Term("B", "eps", _waves(rng, size)),
+        Term("K", None, stiffness),
+        Term("K", "eps", _waves(rng, size)),
+        Term("C", "c", _definite(rng, size)),
+    )
+    return LinearPeriodic(size, terms, {"eps": 0.0, "c": 0.0}, named(["eps", "c"]))
+
+
+def _count(system, speed, limit, **parameters):
+    """Return how many multipliers are outside the unit circle, so that tongues may overlap."""
+    values = floquet_multipliers(system, speed, rtol=1e-13, **parameters).multipliers
+    return np.sum(np.abs(values) > 1 + limit, axis=-1)
+
+
+# Small enough that neighbouring tongues do not touch.
+SMALL = np.array([0.02, 0.01, 0.005])
+
+
+def _ratios(system, resonance, order, drag):
+    """Return actual errors over the figures, at all ends that are known to half a width."""
+    found = tongue(
+        system,
+        resonance,
+        parameter=("eps", SMALL),
+        order=order,
+        c=drag,
+        damping_factor=SMALL / SMALL[0],
+    )
+    kept = np.flatnonzero(found.open & (2 * found.error < found.width))
+    if not len(kept):
+        return []
+    eps, error = SMALL[kept], found.error[kept]
+    given = {"eps": eps, "c": drag * eps / SMALL[0]}
+    # Undamped, round-off of a double multiplier is magnified by the square root.
+    limit = 0.0 if drag else 1e-8
+    ratios = []
+    for end, side in ((found.lower[kept], -1.0), (found.upper[kept], 1.0)):
+        inner, outer = end - 2 * side * error, end + 2 * side * error
+        beyond = _count(system, outer, limit, **given)
+        covered = _count(system, inner, limit, **given) > beyond
+        for _ in range(14):
+            trial = (inner + outer) / 2
+            grows = _count(system, trial, limit, **given) > beyond
+            inner, outer = np.where(grows, trial, inner), np.where(grows, outer, trial)
+        actual = np.abs((inner + outer) / 2 - end)
+        ratios += np.where(covered, actual / error, np.inf)[error > 1e-10].tolist()
+    return ratios
+
+
+def _sample(seeds):
+    ratios = []
+    for seed in seeds:
+        system = _random(seed)
+        for place, resonance in enumerate(resonances(system, (0.9, 9.0), highest=2)):
+            if resonance.opens:
+                drag = 0.0 if (seed + place) % 2 else 0.0015
+                ratios += _ratios(system, resonance, 1 + (seed + place) % 3, drag)
+    return np.array(ratios)
+
+
+@pytest.mark.slow
+def test_error_estimates_of_random_systems():
+    ratios = _sample(range(100, 109))
+    assert len(ratios) >= 200
+    assert np.mean(ratios <= 1) >= 0.99
+    assert np.median(ratios) > 1e-3
+
+
+@pytest.mark.slow
+def test_three_modes_against_an_integration_of_the_second_order_equation():
+    system, eps = _random(7, size=3), 0.02
+    compared = 0
+    for resonance in resonances(system, (1.5, 9.0), kinds=("principal", "sum"), highest=1):
+        found = tongue(system, resonance, parameter=("eps", eps), order=4)
+        if not found.open or 40 * found.error > found.width:
+            continue
+        for end, side in ((found.lower, -1), (found.upper, 1)):
+            counts = [
+                int(np.sum(np.abs(np.linalg.eigvals(_by_hand(system, speed, eps))) > 1 + 1e-6))
+                for speed in end + 0.05 * found.width * np.array([-side, side])
+            ]
+            assert counts[0] == counts[1] + (1 if resonance.kind == "principal" else 2)
+            compared += 1
+    assert compared >= 6
+
+
+def _by_hand(system, speed, eps):
+    """Return the monodromy matrix of (q, dq/dtheta) from M q'' + ... = 0, M' by differences."""
+    n, h = system.size, 1e-5
+
+    def arrays(theta):
+        at = np.array([theta - h, theta, theta + h])
+        found = {name: system.array(name, at, speed, eps=eps) for name in "MABK"}
+        mass_slope = (found["M"][2] - found["M"][0]) / (2 * h)
+        gyro_slope = (found["A"][2] - found["A"][0]) / (2 * h)
+        return {name: value[1] for name, value in found.items()}, mass_slope, gyro_slope
+
+    def slope(theta, state):
+        now, mass_slope, gyro_slope = arrays(theta)
+        q, rate = state.reshape(2, n, 2 * n)
+        force = -(mass_slope + now["A"] - now["A"].T) @ rate
+        force -= (now["K"] / speed**2 + gyro_slope - now["B"]) @ q
+        return np.concatenate([rate, np.linalg.solve(now["M"], force)]).ravel()
+
+    start = np.eye(2 * n).ravel()
+    solution = solve_ivp(slope, (0.0, system.period), start, "DOP853", rtol=1e-10, atol=1e-12)
+    return solution.y[:, -1].reshape(2 * n, 2 * n)
+
+
+# ---------------------------------------------------------------- Smith's 1/16 inch rig
+
+
+@pytest.fixture(scope="module")
+def rig():
+    """Smith, chapter 9, suggestion 1: what his theory of a single mode leaves out."""
+    overrides = {"model.modes": 2}
+    return load_scene("smith_1972_5152_sixteenth_inch", overrides=overrides).system()
+
+
+def _of_rig(rig, label):
+    return next(r for r in resonances(rig, (38.0, 95.0), highest=16) if r.label == label)
+
+
+# Lower and upper ends [rad/s] from tracing the multipliers (``stability_edges`` over 38 to 95
+# rad/s), another route; known to 1e-10.
+ENDS_OF_RIG = {
+    "2 w1 = 8 w": (40.891123489060, 40.892797076534),
+    "2 w1 = 6 w": (54.348335957327, 54.394296845030),
+    "w1 + w2 = 12 w": (68.036981760352, 68.036997799096),
+    "w1 + w2 = 10 w": (81.399396817947, 81.400714630995),
+    "2 w2 = 16 w": (81.849855944670, 81.849860337154),
+    "w1 + w2 = 9 w": (89.959733389095, 89.961082056150),
+}
+
+
+def test_which_resonances_of_the_rig_there_are(rig):
+    found = resonances(rig, (38.0, 95.0), highest=10)
+    labels = [item.label for item in found]
+    assert [label for label in labels if "+" in label] == ["w1 + w2 = 9 w", "w1 + w2 = 10 w"]
+    assert all(item.opens == (item.kind != "difference") for item in found)
+    assert all(np.ptp(item.signatures) == 0 for item in found if item.kind == "difference")
+    assert {"2 w1 = 4 w", "w2 - w1 = 6 w"} < set(labels)
+
+
+@pytest.mark.parametrize(
+    ("label", "most"),
+    [
+        # The largest errors at order 4 [rad/s].
+        ("2 w1 = 8 w", 0.003),
+        ("2 w1 = 6 w", 0.08),
+        ("w1 + w2 = 12 w", 0.04),
+        ("2 w2 = 16 w", 0.002),
+        ("w1 + w2 = 9 w", 0.3),
+    ],
+)
+def test_tongues_of_the_rig(rig, label, most):
+    resonance, errors, exact = _of_rig(rig, label), [], np.array(ENDS_OF_RIG[label])
+    for order in (2, 4):
+        found = tongue(rig, resonance, order=order)
+        actual = np.max(np.abs(np.array([found.lower, found.upper]) - exact))
+        assert actual <= found.error
+        errors.append(actual)
+    assert found.expansion == "periodic" and found.error <= most
+    assert errors[1] < errors[0]
+    # The mean equation alone is much farther off.
+    assert errors[1] < 0.6 * abs(resonance.speed - exact.mean())
+
+
+@pytest.mark.slow
+def test_four_exponents_of_the_rig_that_nearly_meet_are_treated_together(rig):
+    # 2 w1 = 4 w lies beside w1 + w2 = 10 w: alone the pair's series diverges.
+    resonance = _of_rig(rig, "w1 + w2 = 10 w")
+    together = tongue(rig, resonance, order=6)
+    alone = tongue(rig, resonance, order=6, merge=0.0)
+    assert (together.dimension, alone.dimension) == (4, 2)
+    lower = ENDS_OF_RIG[resonance.label][0]
+    assert abs(together.lower - lower) < 0.03 < abs(alone.lower - lower)
+    assert together.open
+    # Below order 4 the wide tongue of the first mode hides the other, and that is said.
+    hidden = tongue(rig, resonance, order=2)
+    assert np.isnan(hidden.lower)
+    assert not hidden.checks["told apart"].passed
+
+
+@pytest.mark.slow
+def test_tongues_over_the_follower_inertia_of_the_rig(rig):
+    resonance = _of_rig(rig, "2 w1 = 8 w")
+    inertia = rig.parameters["follower_inertia"] * np.array([1.0, 2.0])
+    found = tongue(rig, resonance, parameter=("follower_inertia", inertia), order=5)
+    for k, value in enumerate(inertia):
+        edges = speed_boundaries(rig, 1, speed_range=(40.6, 41.2), follower_inertia=value).speed
+        # The only region here that has a width to speak of.
+        widest = int(np.argmax(np.diff(edges)[::2])) * 2
+        assert abs(found.lower[k] - edges[widest]) <= found.error[k] < 0.02
+        assert abs(found.upper[k] - edges[widest + 1]) <= found.error[k]
+    assert np.all(np.diff(found.width) > 0)
+
+
+@pytest.mark.slow
+def test_damping_of_the_rig_closes_the_combination_tongues(rig):
+    # A decrement of 0.05, the lowest that Smith observed (section 9.5.5), of the first mode.
+    first = _of_rig(rig, "2 w1 = 6 w").frequencies[0]
+    drag = 2 * (0.05 / (2 * np.pi)) * first * rig.parameters["mass_per_length"]
+    for label in ("w1 + w2 = 12 w", "2 w2 = 14 w"):
+        found = tongue(rig, _of_rig(rig, label), order=3, damping_factor=[0.0, 1.0], damping=drag)
+        assert found.open.tolist() == [True, False]

@@ -374,7 +374,7 @@ def _formulas(options: argparse.Namespace) -> int:
     """Print the formulas of the boundaries, of any region or of those that are given."""
     opt.refuse_unused(options, ("plot",), "without --latex")
     from ..hill import hill_form
-    from ..hill.formulas import boundary_latex
+    from ..hill.series import boundary_latex
 
     damped = hill_form(opt.load(options).linear_system()).damping() > 0.0
     regions = (None,) if options.regions is None else _regions(options.regions)

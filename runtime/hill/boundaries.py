@@ -1,25 +1,37 @@
-"""Exact boundaries of the unstable regions of Hill's equation, from the eigenvalues of its matrix.
+"""Exact boundaries of the unstable regions of Hill's equation, with damping or without.
 
 On a boundary of the n-th region the equation has a solution of period 2 pi (n even) or one that
 changes sign after 2 pi (n odd): the boundaries lam2 are the real eigenvalues of
 ``k^2 - 2 K d/d theta - mu f`` in the basis cos k theta, sin k theta, k whole or half-whole.
+
+With y = exp(-K theta) u the equation becomes u'' + (lam2 - K^2 + mu f) u = 0, and the multipliers
++-1 of y belong to the half traces +-cosh(2 pi K) of u.  Within an undamped region the half trace
+of u has one extremum, so that a damped region has two ends inside it, or none; region 0 always has
+its one.  ``arccosh(max |D|) / (2 pi)`` at the extremum is the largest Floquet exponent of the
+region, and so the damping that closes it.
+
+Damping makes the matrix unsymmetric, and its eigenvalues ill-conditioned: the solutions and those
+of the adjoint equation grow and fall like exp(K theta) over a turn.  The half trace has no such
+weakness, and serves where damping is strong, or where a region that the matrix takes for closed
+may be open within its rounding.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev as series
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.chebyshev import analysis, nodes
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .checks import arguments, axes_over, check_function, check_regions
-from .damped import Ends, damped
 from .fourier_matrix import CHUNK, banded, stacked, truncation
 from .half_trace import discriminant, growth_rate
 from .meissner import Meissner, meissner_ends
@@ -28,7 +40,10 @@ from .transfer import EPS
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 # Matrices larger than this, and so many times larger than their band, are reduced as bands.
 _BANDED, _SPARSE = 160, 4
@@ -37,6 +52,49 @@ _BANDED, _SPARSE = 160, 4
 _SAMPLE, _STEP, LIMIT = 24, 1e-4, 4.0
 # exp(2 pi 80) leaves room for the rest of the arithmetic in doubles.
 _GROWTH = 80.0
+# Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
+_STRONG = 0.5
+# The square of K is added to lam2.
+_LARGEST = 1e100
+# A complex pair whose imaginary part is below so much of its round-off is sent to the half trace.
+_NEARLY = 4.0
+# Logarithms of ratios beyond this are all alike.
+_FAR = 700.0
+# Proposals of the error of a crossing, each so many times the one before.
+_STEPS, _RATIO = 40, 3.0
+# Half the length over which a narrow region is resolved, and what narrow means: far enough from
+# all nodes that the half trace less its level keeps its digits there.
+_RESOLVED, _NARROW = 0.25, 0.01
+_NODES, _MOST_NODES = 16, 256
+# Half traces at a time: beyond some thousand scattered points they would be interpolated.
+_POINTS = 4096
+_TAIL = 1e-13
+# Beyond this excess of the half trace over its level the exponent is a mere logarithm.
+_LOGARITHMIC = 1e12
+
+
+class Ends(NamedTuple):
+    """Ends of regions, ``(len(regions), n)``; NaN where a region is closed, or undecided."""
+
+    lower: Array
+    upper: Array
+    error: Array
+    undecided: Mask
+
+    @classmethod
+    def nothing(cls, shape: tuple[int, ...]) -> Ends:
+        """Return NaN everywhere."""
+        lower, upper, error = np.full((3, *shape), np.nan)
+        return cls(lower, upper, error, np.zeros(shape, dtype=bool))
+
+    def put(self, where: Any, other: Ends) -> None:
+        """Fill some entries with others'."""
+        for mine, given in zip(self, other, strict=True):
+            mine[where] = given
+
+    def take(self, where: Any) -> Ends:
+        """Return some of the entries."""
+        return Ends(*(item[where] for item in self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,7 +243,7 @@ def _ends(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[in
             ends.put(i, Ends(*meissner_ends(f, mu, n), ends.undecided[i]))
     else:
         ends = _undamped(f, mu, regions)
-    return damped(f, mu, k, regions, ends) if k.any() else ends
+    return _damped(f, mu, k, regions, ends) if k.any() else ends
 
 
 def _undamped(f: PeriodicFunction, mu: Array, regions: tuple[int, ...]) -> Ends:
@@ -294,3 +352,326 @@ def half_trace_check(
         )
         share = np.abs(at - level) / explained
     return Check(float(share.max()), LIMIT)
+
+
+# ---------------------------------------------------------------- with damping
+
+
+def _damped(
+    f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
+) -> Ends:
+    """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0.
+
+    Raises
+    ------
+    BadInput
+        If K is beyond 1e100.
+    """
+    if float(k.max()) > _LARGEST:
+        raise bad("damping", f"{k.max():.3g}", f"K up to {_LARGEST:g}", "scale the equation")
+    ends = Ends(*(item.copy() for item in sharp))
+    strong = (k > 0.0) if isinstance(f, Meissner) else (k > _STRONG)
+    weak = (k > 0.0) & ~strong
+    if weak.any() and not isinstance(f, Meissner):
+        near = sharp.take(np.s_[:, weak])
+        ends.put(np.s_[:, weak], _from_matrix(f, mu[weak], k[weak], regions, near))
+    for i, n in enumerate(regions):
+        unsure = strong | ends.undecided[i]
+        if unsure.any():
+            near = sharp.take(np.s_[i, unsure])
+            ends.put(np.s_[i, unsure], _from_half_trace(f, mu[unsure], k[unsure], n, near))
+    return ends
+
+
+def _from_matrix(
+    f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
+) -> Ends:
+    """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real.
+
+    With y = exp(-K theta) u the multipliers +-1 of y belong to the half traces +-cosh(2 pi K) of
+    u at lam2 - K^2.  Within an undamped region the half trace of u has one extremum, so that a
+    damped region has two ends inside it, or none; region 0 always has its one.
+    """
+    low, high = sharp.lower, sharp.upper
+    shift = k * k
+    cut = truncation(f, float(np.abs(mu).max()), max(regions), float(shift.max()))
+    # The damping term is part of the norm.
+    rounding = cut.rounding * (1.0 + 2.0 * float(k.max()) * (cut.harmonic + 1) / cut.norm)
+    local = cut.left_out + rounding + f.error * np.abs(mu)
+    slack = 4.0 * local
+    ends = Ends.nothing(low.shape)
+    for odd in (0, 1):
+        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
+        if not rows:
+            continue
+        values = _complex_spectra(f, odd, cut.harmonic + odd, mu, k)
+        place = values.real - shift[:, None]
+        real = np.where(values.imag == 0.0, place, np.nan)
+        for i in rows:
+            # NaN compares false: complex eigenvalues drop out here.
+            inside = (real >= (low[i] - slack)[:, None]) & (real <= (high[i] + slack)[:, None])
+            first = np.where(inside, real, np.inf).min(axis=1)
+            last = np.where(inside, real, -np.inf).max(axis=1)
+            whole = inside.sum(axis=1) >= (1 if regions[i] == 0 else 2)
+            # Two ends that met are as far from being real as the root of what moves them.
+            blur = _NEARLY * np.sqrt(np.maximum(high[i] - low[i], slack) * slack)
+            near = (place >= (low[i] - blur)[:, None]) & (place <= (high[i] + blur)[:, None])
+            near &= np.abs(values.imag) <= blur[:, None]
+            ends.undecided[i] = ~whole & (near.any(axis=1) if regions[i] else True)
+            first, last = first[whole], last[whole]
+            ends.upper[i, whole] = last + shift[whole]
+            if regions[i] == 0:
+                ends.lower[i, whole], ends.error[i, whole] = -np.inf, local[whole]
+                continue
+            ends.lower[i, whole] = first + shift[whole]
+            ends.error[i, whole] = _near_tip(
+                local[whole], 0.5 * (last - first), 0.5 * (high[i] - low[i])[whole]
+            )
+    return ends
+
+
+def _near_tip(local: Array, half: Array, sharp_half: Array) -> Array:
+    """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
+
+    The ends follow ``sqrt(sharp_half^2 - const)``: an error of the data is magnified by
+    ``sharp_half / half``, and at the tip by the square root.
+    """
+    square = 2.0 * np.maximum(half, sharp_half) * local
+    inner = np.maximum(half * half - square, 0.0)
+    moved = np.where(inner > 0.0, half - np.sqrt(inner), np.sqrt(half * half + square))
+    return np.asarray(moved + local)
+
+
+def _complex_spectra(
+    f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array
+) -> NDArray[np.complex128]:
+    """Return all eigenvalues of ``k^2 - 2 K d/d theta - mu f``, shape ``(n, size)``."""
+    size = 2 * harmonic + 1 - odd
+    out = np.empty((mu.size, size), dtype=complex)
+    step = max(1, CHUNK // (size * size))
+    for start in range(0, mu.size, step):
+        part = slice(start, start + step)
+        stack = stacked(f, odd, harmonic, mu[part], k[part])
+        out[part] = np.linalg.eigvals(stack) - (f.a[0] * mu[part])[:, None]
+    return out
+
+
+# ---------------------------------------------------------------- strong damping
+
+
+@dataclass(frozen=True)
+class _Level:
+    """How far the half trace is above the level of region n, at its points ``(n,)``."""
+
+    f: PeriodicFunction | Meissner
+    sign: float
+    mu: Array
+    k: Array
+
+    def share(self, lam2: Array, which: Index) -> Array:
+        """Return the logarithm of half trace over level, clipped."""
+        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
+        share = self.sign * half.value / half.level
+        return np.asarray(np.log(np.clip(share, np.exp(-_FAR), np.exp(_FAR))))
+
+    def sure(self, lam2: Array, which: Index, above: bool) -> Mask:
+        """Return True where the half trace is above, or below, by more than its error."""
+        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
+        gap = self.sign * half.value - half.level
+        error = np.where(np.isfinite(half.value), half.error, 0.0) + 2.0 * EPS * half.level
+        return np.asarray(gap > error if above else gap < -error)
+
+    def end(self, outer: Array, inner: Array) -> tuple[Array, Array]:
+        """Return the crossing between a place below the level and one above, and its error."""
+        turned = np.where(inner < outer, -1.0, 1.0)
+        place = turned * crossing(
+            lambda t, which: self.share(turned[which] * t, which), turned * outer, turned * inner
+        )
+        size = np.maximum(np.abs(place), self.k * self.k) + 1.0
+        error, left = 2.0 * EPS * size, np.arange(place.size)
+        for _ in range(_STEPS):
+            step = turned[left] * error[left]
+            within, beyond = place[left] + step, place[left] - step
+            # Between the undamped end and the extremum there is a crossing in any case.
+            past = turned[left] * (within - inner[left]) >= 0.0
+            before = turned[left] * (outer[left] - beyond) >= 0.0
+            good = past | self.sure(np.where(past, inner[left], within), left, above=True)
+            good &= before | self.sure(np.where(before, outer[left], beyond), left, above=False)
+            left = left[~good]
+            if not left.size:
+                break
+            error[left] *= _RATIO
+        return place, error
+
+
+def _from_half_trace(
+    f: PeriodicFunction | Meissner, mu: Array, k: Array, n: int, sharp: Ends
+) -> Ends:
+    """Return the ends of region n for mu and K ``(n,)``; undecided where K may be critical."""
+    ends = Ends.nothing(mu.shape)
+    sign, shift, slack = 1.0 if n % 2 == 0 else -1.0, k * k, sharp.error
+    if n == 0:
+        # With z = y'/y the equation says that the mean of lam2 + mu f is that of -z^2 on the end;
+        # where it is below zero all the way round, the solutions grow faster than K.
+        reach = np.abs(mu) * f.bound() * (1.0 + 4.0 * EPS)
+        most = np.minimum(sharp.upper + shift + slack, EPS * reach + slack - mu * f.mean)
+        upper, error = _Level(f, sign, mu, k).end(most, -reach - 1.0)
+        return Ends(np.full(mu.shape, -np.inf), upper, error, ends.undecided)
+    critical, peak, doubt = largest_exponent(f, n, mu, sharp)
+    ends.undecided[:] = ~(np.abs(k - critical) > doubt)
+    there = np.flatnonzero((k < critical) & ~ends.undecided)
+    if there.size:
+        level = _Level(f, sign, mu[there], k[there])
+        top = (peak + shift)[there]
+        lower, first = level.end((sharp.lower + shift - slack)[there], top)
+        upper, last = level.end((sharp.upper + shift + slack)[there], top)
+        open_ = np.zeros(there.shape, dtype=bool)
+        ends.put(there, Ends(lower, upper, np.maximum(first, last), open_))
+    return ends
+
+
+def crossing(
+    function: Callable[[Array, NDArray[np.intp]], Array], low: Array, high: Array
+) -> Array:
+    """Return the roots of functions negative at ``low`` and not at ``high``, Illinois' rule.
+
+    All points advance at once; ``function`` gets their numbers as well.
+    """
+    every = np.arange(low.size)
+    a, b = low.copy(), high.copy()
+    fa, fb = function(a, every), function(b, every)
+    side = np.zeros(low.size, dtype=np.int64)
+    x, before = b.copy(), a.copy()
+    for _ in range(100):
+        resolution = 2.0 * EPS * np.abs(x)
+        left = np.flatnonzero((np.abs(x - before) > resolution) & (np.abs(b - a) > resolution))
+        if not left.size:
+            break
+        before[left] = x[left]
+        rise = fb[left] - fa[left]
+        new = b[left] - fb[left] * (b[left] - a[left]) / np.where(rise == 0.0, 1.0, rise)
+        inside = (new >= a[left]) & (new <= b[left])
+        x[left] = np.where(inside, new, 0.5 * (a[left] + b[left]))
+        value = function(x[left], left)
+        below = value < 0.0
+        lower, upper = left[below], left[~below]
+        # An end that stays twice counts half.
+        fb[lower[side[lower] == -1]] *= 0.5
+        fa[upper[side[upper] == 1]] *= 0.5
+        a[lower], fa[lower], side[lower] = x[lower], value[below], -1
+        b[upper], fb[upper], side[upper] = x[upper], value[~below], 1
+    return x
+
+
+# ---------------------------------------------------------------- the largest exponent
+
+
+def largest_exponent(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
+    """Return the largest exponent in region n >= 1, the lam2 where it stands and its error.
+
+    For mu ``(n,)`` from the undamped ends there; shape ``(3, n)``.
+    """
+    out = np.zeros((3, mu.size))
+    narrow = sharp.upper - sharp.lower < _NARROW
+    for these, solve in ((narrow, _narrow), (~narrow, _wide)):
+        if these.any():
+            out[:, these] = solve(f, n, mu[these], sharp.take(these))
+    return out
+
+
+def _excess(
+    f: PeriodicFunction | Meissner, n: int, lam2: Array, mu: Array, drag: Array | float = 0.0
+) -> tuple[Array, Array]:
+    """Return ``(|D| - 1) exp(-2 pi drag)`` inside the region (negative beyond it) and its error."""
+    shape = lam2.shape
+    x, y, k = (np.broadcast_to(item, shape).ravel() for item in (lam2, mu, drag))
+    value, error = np.empty(x.size), np.empty(x.size)
+    for start in range(0, x.size, _POINTS):
+        part = slice(start, start + _POINTS)
+        half = discriminant(f, x[part] + np.square(k[part]), y[part], k[part])
+        value[part], error[part] = half.value, half.error
+    sign = 1.0 if n % 2 == 0 else -1.0
+    return (sign * value - np.exp(-2.0 * np.pi * k)).reshape(shape), error.reshape(shape)
+
+
+def _exponent(excess: Array) -> Array:
+    """Return ``arccosh(1 + x) / (2 pi)`` without cancellation, and without overflow."""
+    few = np.minimum(excess, _LOGARITHMIC)
+    near = np.log1p(few + np.sqrt(few * (2.0 + few)))
+    # log(2 + 2 x) from here on; the next term is 1 / (4 x^2).
+    far = np.log(np.maximum(excess, 1.0)) + np.log(2.0) + 1.0 / np.maximum(excess, 1.0)
+    return np.asarray(np.where(excess > _LOGARITHMIC, far, near) / (2.0 * np.pi))
+
+
+def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
+    """Return K, the lam2 of the largest half trace and the error of K for narrow regions.
+
+    ``|D| - 1 = (lam2 - low)(high - lam2) g`` with g smooth across the region: g comes from points
+    well outside, where nothing cancels, and the width from the two ends.
+    """
+    low, high = sharp.lower, sharp.upper
+    centre, half = 0.5 * (low + high), 0.5 * (high - low)
+    lam2 = centre + _RESOLVED * nodes(_NODES)[:, None]
+    value, error = _excess(f, n, lam2, mu)
+    product = (lam2 - low) * (high - lam2)
+    c = analysis(_NODES) @ (value / product)
+    tail = np.abs(c[-2:]).sum(axis=0) + np.max(np.abs(error / product), axis=0)
+    slope = series.chebder(c)
+    place = np.zeros_like(centre)
+    for _ in range(6):
+        x = place * half / _RESOLVED
+        g, rise = _at(c, x), _at(slope, x) / _RESOLVED
+        place = 0.5 * (1.0 - place * place) * half * rise / g
+    g = np.maximum(_at(c, place * half / _RESOLVED), 0.0)
+    k = _exponent(half * half * (1.0 - place * place) * g)
+    rate = np.sqrt(2.0 * g) / (2.0 * np.pi)
+    doubt = rate * sharp.error + 0.5 * k * tail / np.maximum(g, EPS) + 4.0 * EPS * k
+    return np.stack([k, centre + place * half, doubt])
+
+
+def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
+    """Do the same for wide regions: the half trace is interpolated across the region itself."""
+    centre, half = 0.5 * (sharp.lower + sharp.upper), 0.5 * (sharp.upper - sharp.lower)
+    count, out = _NODES, np.empty((3, mu.size))
+    growth = growth_rate(f, centre, mu)
+    drag = np.where(growth > _GROWTH, growth, 0.0)
+    left = np.arange(mu.size)
+    while left.size:
+        m, h = centre[left], half[left]
+        value, error = _excess(f, n, m + h * nodes(count)[:, None], mu[left], drag[left])
+        c = analysis(count) @ value
+        tail, most = np.abs(c[-2:]).sum(axis=0), np.abs(value).max(axis=0)
+        done = (tail <= _TAIL * most + error.max(axis=0)) | (count >= _MOST_NODES)
+        if done.any():
+            place = _peak(c[:, done])
+            x = np.maximum(_at(c[:, done], place), 0.0)
+            doubt = tail[done] + error[:, done].max(axis=0) + 4.0 * EPS * most[done]
+            k, steep = _exponent(x), np.sqrt(x) * np.sqrt(2.0 + x)
+            scaled = drag[left[done]] > 0.0
+            # arccosh of a large x of which a factor was taken out.
+            far = np.log(2.0 * np.maximum(x, np.finfo(float).tiny)) / (2.0 * np.pi)
+            k = np.where(scaled, drag[left[done]] + far, k)
+            steep = np.where(scaled, x, steep)
+            reply = doubt / np.maximum(2.0 * np.pi * steep, np.where(scaled, 0.0, EPS))
+            out[:, left[done]] = k, m[done] + h[done] * place, reply + 4.0 * EPS * k
+        left, count = left[~done], 2 * count
+    return out
+
+
+def _at(c: NDArray[Any], x: Array) -> Array:
+    """Evaluate one Chebyshev series per point."""
+    return np.asarray(series.chebval(x, c, tensor=False))
+
+
+def _peak(c: Array) -> Array:
+    """Return the place of the largest value of each series on [-1, 1]."""
+    grid = np.linspace(-1.0, 1.0, 8 * len(c) + 1)
+    values = np.asarray(series.chebval(grid, c))
+    place: Array = grid[np.argmax(values, axis=1)]
+    first, second = series.chebder(c), series.chebder(c, 2)
+    step = 2.0 / (8 * len(c))
+    for _ in range(4):
+        bend = _at(second, place)
+        move = np.where(bend < 0.0, -_at(first, place) / np.where(bend < 0.0, bend, 1.0), 0.0)
+        place = np.asarray(np.clip(place + np.clip(move, -step, step), -1.0, 1.0))
+    return place

@@ -121,7 +121,7 @@ class BoundarySolution(Result):
         return np.asarray((total * first).real)
 
     def latex(self, any_region: bool = False) -> str:
-        """Return the solution to its order as a formula; see :func:`.formulas.solution_latex`.
+        """Return the solution to its order as a formula; see :func:`.series.solution_latex`.
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class BoundarySolution(Result):
         BadInput
             If the solution is the exact one, or the order above 5.
         """
-        from .formulas import solution_latex
+        from .series import solution_latex
 
         region = None if any_region else self.n
         return solution_latex(self.order or 0, region, self.damping > 0.0)

@@ -2,7 +2,7 @@
 
 Smith (7.50), (7.51): damping closes a region below a least parameter, and at a given parameter
 above a critical damping.  Exactly, where the largest Floquet exponent of the undamped region is K
-(:mod:`.damped`), and to any order up to 8, where ``|B| = |Im A|`` of the effective operator.
+(:mod:`.boundaries`), and to any order up to 8, where ``|B| = |Im A|`` of the effective operator.
 """
 
 from __future__ import annotations
@@ -19,9 +19,8 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
-from .boundaries import hill_boundaries, sample_of
+from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
 from .checks import arguments, axes_over, check_function, check_regions
-from .damped import Ends, crossing, largest_exponent
 from .perturbation import CONTRACTION, Components, Sums, check_order
 from .transfer import EPS
 

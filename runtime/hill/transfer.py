@@ -140,7 +140,7 @@ class Transfer:
     def half_trace_with_error(
         self, lam2: Array, mu: Array
     ) -> tuple[Array, Array, Exponents, Array]:
-        """Return half trace and error figure at points ``(n,)``, scaled against overflow.
+        """Return half trace and error at points ``(n,)``, scaled against overflow.
 
         Returns
         -------

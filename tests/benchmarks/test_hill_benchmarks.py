@@ -15,8 +15,7 @@ from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.benchmarking.slices import banded_boundaries
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import hill_boundaries
-from elastolink.runtime.hill import discriminant
+from elastolink.runtime.hill import discriminant, hill_boundaries
 
 PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 

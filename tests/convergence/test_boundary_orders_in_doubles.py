@@ -27,8 +27,7 @@ from boundary_cases import (
 from boundary_truth import MP
 from elastolink.derive.perturbation.exact import exact_operator
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.hill import perturbation_boundaries
-from elastolink.runtime.hill import boundary_series
+from elastolink.runtime.hill import boundary_series, perturbation_boundaries
 from elastolink.runtime.hill.bloch import effective_operator
 from omitted_orders import FORMS, real
 

@@ -16,7 +16,7 @@ from elastolink.runtime.hill import (
     characteristic_exponents,
     hill_boundaries,
 )
-from elastolink.runtime.hill.enclosures import (
+from elastolink.runtime.hill.certified import (
     _FUNCTION_BITS,
     _VECTOR_BITS,
     HillOperator,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -305,8 +306,11 @@ class Several:
             for low in _lows(gap):
                 # Exponents that coincide all along differ by round-off alone.
                 if gap[low] > _SAME * np.max(gap):
-                    parts += self._zoomed(sigma, low, lambda x, c=column: self._distances(x)[:, c])
+                    parts += self._zoomed(sigma, low, partial(self._distance, column))
         return np.unique(np.concatenate(parts))
+
+    def _distance(self, column: int, sigma: Array) -> Array:
+        return self._distances(sigma)[:, column]
 
     def _zoomed(self, sigma: Array, place: int, function: Callable[[Array], Array]) -> list[Array]:
         """Return points that close in on a low of a function, until the growth there is seen."""

@@ -67,24 +67,29 @@ def test_phase_symmetries():
         assert np.all(np.abs(other.lam2 - base.lam2) <= base.error + other.error)
 
 
+def eigenvalues(f, mu, nu, size):
+    """Return the eigenvalues lam2 of Hill's matrix at nu, in mpmath's working precision."""
+    from mpmath import mp, mpf
+
+    matrix = mp.zeros(2 * size + 1)
+    for i in range(2 * size + 1):
+        for j in range(2 * size + 1):
+            m = abs(i - j)
+            c = mp.mpc(f.a[m], -f.b[m] if i > j else f.b[m]) / 2 if 0 < m <= f.harmonics else mpf(0)
+            matrix[i, j] = -mpf(mu) * c
+        matrix[i, i] = (i - size + mpf(nu)) ** 2 - mpf(mu) * mpf(f.a[0])
+    return sorted(mp.eighe(matrix, eigvals_only=True))
+
+
 def test_against_mpmath_at_30_digits():
     from mpmath import mp, mpf
 
     f, mu, nu = GENERAL, 0.9, 0.3
     found = bands_of(f, mu, nu, (0, 1, 2, 3, 4))
     with mp.workdps(30):
-        size = 20
-        matrix = mp.zeros(2 * size + 1)
-        for i in range(2 * size + 1):
-            for j in range(2 * size + 1):
-                m = abs(i - j)
-                c = mp.mpc(f.a[m], -f.b[m] if i > j else f.b[m]) / 2 if 0 < m <= 3 else mpf(0)
-                matrix[i, j] = -mpf(mu) * c
-            matrix[i, i] = (i - size + mpf(nu)) ** 2 - mpf(mu) * mpf(f.a[0])
-        truth = sorted(mp.eighe(matrix, eigvals_only=True))[:5]
+        truth = eigenvalues(f, mu, nu, 20)[:5]
     gaps = [abs(float(mpf(float(x)) - y)) for x, y in zip(found.lam2, truth, strict=True)]
     assert np.all(np.array(gaps) <= found.error)
-    # Median figure over error below 1000: errors are a few roundings.
     assert found.error.max() < 3e-12
 
 
@@ -93,12 +98,32 @@ def test_exponents_invert_the_bands(k):
     nu = np.linspace(0.02, 0.48, 9)
     bands = bands_of(GENERAL, 1.1, nu, (0, 1, 2), k)
     found = characteristic_exponents(GENERAL, bands.lam2, 1.1, k)
-    # The error of lam2 enters by d nu / d lam2, which grows without bound towards the ends.
+    # The rounding of lam2 enters by d nu / d lam2 (202 in the narrow lowest band at nu = 0.02).
     lam2 = [bands_of(GENERAL, 1.1, nu + step, (0, 1, 2), k).lam2 for step in (1e-4, -1e-4)]
     slope = 2e-4 / np.abs(lam2[0] - lam2[1])
     assert np.all(np.abs(found.nu - nu) <= found.error + slope * bands.error)
     np.testing.assert_array_equal(found.growth, np.full(bands.lam2.shape, -k))
     assert found.stable.all()
+
+
+@pytest.mark.parametrize("band", [0, 1, 2])
+def test_exponents_close_to_the_end_of_a_band_against_mpmath(band):
+    """The lowest band is 2e-3 wide: 202 units of nu to one of lam2 at nu = 0.02.
+
+    The error is that of nu at the very lam2 given, here the nu of which the 30-digit eigenvalue is
+    that double, one Newton step from 0.02.
+    """
+    from mpmath import mp, mpf
+
+    lam2 = float(bands_of(GENERAL, 1.1, 0.02).lam2[band])
+    found = characteristic_exponents(GENERAL, lam2, 1.1)
+    with mp.workdps(30):
+        start, step = mpf("0.02"), mpf("1e-12")
+        at, ahead = (eigenvalues(GENERAL, 1.1, nu, 16)[band] for nu in (start, start + step))
+        truth = start + (mpf(lam2) - at) * step / (ahead - at)
+        off = float(abs(mpf(float(found.nu)) - truth))
+    assert off <= found.error
+    assert found.error < 2e-12
 
 
 def test_exponents_of_a_constant_coefficient():

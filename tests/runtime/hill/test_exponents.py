@@ -108,7 +108,7 @@ def test_exponents_invert_the_bands(k):
 
 @pytest.mark.parametrize("band", [0, 1, 2])
 def test_exponents_close_to_the_end_of_a_band_against_mpmath(band):
-    """The lowest band is 2e-3 wide: 202 units of nu to one of lam2 at nu = 0.02.
+    """The lowest band is narrow: 202 units of nu to one of lam2 at nu = 0.02.
 
     The error is that of nu at the very lam2 given, here the nu of which the 30-digit eigenvalue is
     that double, one Newton step from 0.02.

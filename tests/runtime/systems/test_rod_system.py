@@ -324,7 +324,7 @@ def test_a_rod_that_just_reaches_the_block():
 
 
 def test_a_tongue_sees_internal_damping():
-    """Internal damping on a mode that changes with the block: ends to order 6 against exact ones."""
+    """Internal damping on a mode that changes with the block: ends to order 6, exact ends."""
     numbers = {**FLEXIBLE, "crank_ratio": 0.05, "internal_damping": 1.0}
     system, span = rod_system(OverhangBasis(1), **numbers), (1500.0, 1900.0)
     (resonance,) = el.resonances(system, span)

@@ -94,7 +94,8 @@ class Ends(NamedTuple):
 
     def take(self, where: Any) -> Ends:
         """Return some of the entries."""
-        return Ends(*(item[where] for item in self))
+        lower, upper, error = (item[where] for item in self[:3])
+        return Ends(lower, upper, error, self.undecided[where])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -369,7 +370,7 @@ def _damped(
     """
     if float(k.max()) > _LARGEST:
         raise bad("damping", f"{k.max():.3g}", f"K up to {_LARGEST:g}", "scale the equation")
-    ends = Ends(*(item.copy() for item in sharp))
+    ends = Ends(sharp.lower.copy(), sharp.upper.copy(), sharp.error.copy(), sharp.undecided.copy())
     strong = (k > 0.0) if isinstance(f, Meissner) else (k > _STRONG)
     weak = (k > 0.0) & ~strong
     if weak.any() and not isinstance(f, Meissner):

@@ -368,7 +368,7 @@ class HillOperator:
 
     def doubt(self, x: Exact) -> Fraction:
         """Bound what rounding changes in a product with a vector of norm 1 as long as ``x``."""
-        return self.rounding + self._drag_rounding * (x.shape[1] // 2 + 2)
+        return self.rounding + self._drag_rounding * int(x.shape[1] // 2 + 2)
 
 
 def wave(odd: int, column: Array) -> Exact:
@@ -529,7 +529,8 @@ class DampedProblem:
         balls = []
         near = (self.pairs[0] - k * k >= low - slack) & (self.pairs[0] - k * k <= high + slack)
         for i in np.flatnonzero(near):
-            ball = self._eigenvalue(*(item[..., i] for item in self.pairs))
+            value, right, left = (item[..., i] for item in self.pairs)
+            ball = self._eigenvalue(float(value), right, left)
             if ball is None:
                 continue
             place = ball.middle - Fraction(k) ** 2
@@ -582,7 +583,7 @@ class DampedProblem:
 
     def _eigenvalue(self, value: float, right: Array, left: Array) -> Ball | None:
         """Enclose a real eigenvalue from approximations of it and of its vectors, if that works."""
-        norm = self._inverse_norm(float(value), right)
+        norm = self._inverse_norm(value, right)
         if norm == inf:
             return None
         y, z = wave(self.coarse.odd, right), wave(self.coarse.odd, left)

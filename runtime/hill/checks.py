@@ -49,8 +49,8 @@ def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
         ) from reason
 
 
-def check_function(f: object) -> None:
-    """Refuse anything but a :class:`PeriodicFunction`."""
+def check_function(f: object) -> PeriodicFunction:
+    """Return f, or refuse anything but a :class:`PeriodicFunction`."""
     if not isinstance(f, PeriodicFunction):
         raise bad(
             "f",
@@ -58,6 +58,7 @@ def check_function(f: object) -> None:
             "a PeriodicFunction",
             "use PeriodicFunction(a=, b=), .from_samples or .from_callable",
         )
+    return f
 
 
 def check_regions(

@@ -139,8 +139,7 @@ def characteristic_exponents(
         given = "neither" if nu is None else "both"
         raise bad("lam2, nu", given, "one of them", "pass lam2=None to have it from nu")
     if nu is not None:
-        check_function(f)
-        return _bands(f, mu, damping, nu, bands)
+        return _bands(check_function(f), mu, damping, nu, bands)
     half = discriminant(f, lam2 if lam2 is not None else 0.0, mu, damping)
     k = half.damping
     growth, turn = _exponent(half.value, k)

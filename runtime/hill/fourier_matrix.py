@@ -47,7 +47,7 @@ class Truncation(NamedTuple):
     @property
     def rounding(self) -> float:
         """Estimate of the round-off of eigenvalues."""
-        return EPS * max(_ROUNDINGS, 0.5 * (2.0 * self.harmonic) ** 0.5) * self.norm
+        return EPS * max(_ROUNDINGS, 0.5 * sqrt(2.0 * self.harmonic)) * self.norm
 
 
 def truncation(

@@ -212,7 +212,7 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
         effective_operator([_turned(f, phase, 2)], n, k, True).components(point)[1][-1, 0]
         for phase in _PHASES
     ]
-    return _ROUNDED * EPS * max(size, *map(abs, others)) + given
+    return _ROUNDED * EPS * max(size, *(float(abs(other)) for other in others)) + given
 
 
 def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Array, int, Array]:

@@ -217,7 +217,7 @@ def tongue(
         eps = np.ones(len(flat))
     places = _Places(values, factor, which, eps)
     rows = [
-        problem.ends(*operators[k], float(size), float(delta))
+        problem.ends(operators[k][0], operators[k][1], float(size), float(delta))
         for k, size, delta in zip(which, eps, drag, strict=True)
     ]
     columns = (np.array([row[i] for row in rows]) for i in range(4))

@@ -276,7 +276,7 @@ def _tip_rows() -> list[Quoted]:
 def _flat_row(squares: Array) -> Quoted:
     growth = []
     for d in squares:
-        matrix = _interval_matrix(np.float64(d), pi)
+        matrix = _interval_matrix(np.asarray(d), pi)
         growth.append(float(np.linalg.norm(np.linalg.matrix_power(matrix, 1000), 2)))
     return Quoted(
         "growth over 1000 periods at eps = 0, d = i^2, i = 1 to 4",

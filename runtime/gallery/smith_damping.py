@@ -93,7 +93,7 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
     f = estimate.rig.function(equation, inertia * LBF_IN_S2)
     n = estimate.region
     if order is None:
-        return float(critical_damping(f, 1.0, (n,)).critical[0])
+        return float(critical_damping(f, 1.0, (n,)).damping[0])
     points = np.stack([np.ones_like(_SCAN), _SCAN])
     a, b = effective_operator([f], n, order, damped=True).components(points)
     left = np.abs(b.sum(axis=0)) - np.abs(a.sum(axis=0).imag)

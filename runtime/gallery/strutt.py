@@ -108,7 +108,7 @@ def _with_tips(eps: Array, regions: tuple[int, ...], k: float) -> Array:
 
     def opened(values: Array, n: int) -> NDArray[np.bool_]:
         ends = hill_boundaries(COSINE, 0.25 * values, (n,), damping=0.5 * k)
-        return np.isfinite(ends.upper[0])
+        return np.asarray(np.isfinite(ends.upper[0]))
 
     more = [eps]
     for n in regions:

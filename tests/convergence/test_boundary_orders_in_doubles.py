@@ -135,7 +135,10 @@ def test_one_parameter(name, n, share):
 
 
 @pytest.mark.parametrize("share", ["undamped", "damped"])
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow if name == "three" else ()) for name in PARTS],
+)
 def test_several_parameters(name, share):
     n = 1
     for weights in RAYS:

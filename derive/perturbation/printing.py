@@ -1,7 +1,7 @@
 """Bloch's recursion and its words in operator notation, as LaTeX.
 
 The sums over harmonics that the words stand for are set at run time, from the emitted table:
-``elastolink.runtime.hill.formulas``.
+``elastolink.runtime.hill.series``.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def fit(rig, rows):
 def damping(rig, mass):
     """Bracket K: region 3 was stable at the lower inertia and unstable at the higher one."""
     return [
-        float(el.critical_damping(rig.function(inertia, mass), 1.0, (3,)).critical[0])
+        float(el.critical_damping(rig.function(inertia, mass), 1.0, (3,)).damping[0])
         for inertia in (LOW, HIGH)
     ]
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..core.families import Array, LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
-from ..hill.exact.matrix import hill_boundaries
-from ..hill.form import HillForm, hill_form, is_stiffness, leaves_function_alone
+from ..hill import HillForm, hill_boundaries, hill_form
 from .damped_speeds import exact_speeds
+from .hill_axes import is_stiffness, leaves_function_alone
 from .overlay import overlay_ends
 from .structure import is_damped
 

@@ -14,7 +14,7 @@ from ..core.families import Array, LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
 from ..hill.form import is_hill
-from ..hill.perturbation.boundaries import check_order
+from ..hill.perturbation import check_order
 from .boundaries import BoundaryCurves, boundary_curves
 from .edge_rows import EdgeCurves, edge_curves
 from .line_series import series_by_lines

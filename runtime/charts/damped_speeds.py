@@ -10,8 +10,8 @@ import numpy as np
 
 from ..core.families import Array
 from ..core.periodic_function import PeriodicFunction
-from ..hill.exact.layout import layout, stacked, truncation
-from ..hill.exact.matrix import hill_boundaries
+from ..hill import hill_boundaries
+from ..hill.fourier_matrix import layout, stacked, truncation
 
 _EPS = float(np.finfo(float).eps)
 

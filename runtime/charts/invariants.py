@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.families import Array
-from ..hill.form import HillForm, leaves_function_alone
-from ..hill.half_trace import discriminant
+from ..hill import HillForm, discriminant
 from .characteristic import characteristic as characteristic
+from .hill_axes import leaves_function_alone
 from .signs import surely_stable
 
 # Round-off of coefficients and roots, relative to the largest coefficient.

@@ -8,8 +8,7 @@ import numpy as np
 
 from ..core.families import Array
 from ..core.periodic_function import PeriodicFunction
-from ..hill.form import HillForm
-from ..hill.perturbation.boundaries import perturbation_boundaries
+from ..hill import HillForm, perturbation_boundaries
 
 # More functions than this cost more together than row by row.
 _MOST_FUNCTIONS = 2

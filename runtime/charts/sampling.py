@@ -15,9 +15,10 @@ from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.progress import bar
 from ..floquet.first_order import canonical_form
-from ..hill.form import hill_form, is_hill, leaves_function_alone, plain_axes
-from ..hill.half_trace import discriminant_grid
+from ..hill import discriminant, hill_form
+from ..hill.form import is_hill
 from ..sweeps.workers import Workers, check_executor
+from .hill_axes import leaves_function_alone, plain_axes
 from .invariants import half_trace_rows, half_traces
 from .structure import Axes, Names, at_speed, is_damped, is_symplectic
 
@@ -194,7 +195,7 @@ def _plain_hill(sampler: Sampler) -> Series | None:
     which, f, lam2, factor = sampler.plain
     axes = sampler.axes
     order = np.argsort(lam2(axes[which]))
-    found = discriminant_grid(f, lam2(axes[which])[order], factor(axes[1 - which]))
+    found = discriminant(f, lam2(axes[which])[order, None], factor(axes[1 - which]))
     values, error = np.empty_like(found.value), np.empty_like(found.value)
     values[order], error[order] = found.value, found.error
     if which == 0:

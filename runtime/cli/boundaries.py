@@ -18,10 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..core.periodic_function import PeriodicFunction
-    from ..hill.exact.matrix import Boundaries
-    from ..hill.form import HillForm
-    from ..hill.perturbation.boundaries import Form, PerturbationBoundaries
-    from ..hill.perturbation.coefficients import BoundarySeries
+    from ..hill import Boundaries, BoundarySeries, HillForm, PerturbationBoundaries
+    from ..hill.perturbation import Form
     from ..scenes import Scene
 
     Array = NDArray[np.float64]
@@ -150,7 +148,7 @@ def _boundaries(options: argparse.Namespace) -> int:
 def _of_hill(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
     import numpy as np
 
-    from ..hill.form import hill_form
+    from ..hill import hill_form
 
     form = hill_form(scene.linear_system())
     f = form.function(1.0, mu=1.0)
@@ -308,7 +306,7 @@ def _perturb(options: argparse.Namespace) -> int:
     if options.latex:
         return _formulas(options)
     from ..core.errors import BadInput
-    from ..hill.perturbation.coefficients import boundary_series
+    from ..hill import boundary_series
 
     f, ratio, remarks = _function(options, opt.load(options))
     found, rows = [], []
@@ -342,7 +340,7 @@ def _function(
     options: argparse.Namespace, scene: Scene
 ) -> tuple[PeriodicFunction, float, list[str]]:
     """Return what mu multiplies in a scene, beta of K = beta mu, and what is to be said of them."""
-    from ..hill.form import hill_form
+    from ..hill import hill_form
 
     form = hill_form(scene.linear_system())
     if scene.model["mechanism"] == "hill":
@@ -375,8 +373,8 @@ def _series_rows(one: BoundarySeries) -> list[tuple[str, ...]]:
 def _formulas(options: argparse.Namespace) -> int:
     """Print the formulas of the boundaries, of any region or of those that are given."""
     opt.refuse_unused(options, ("plot",), "without --latex")
-    from ..hill.form import hill_form
-    from ..hill.perturbation.formulas import boundary_latex
+    from ..hill import hill_form
+    from ..hill.series import boundary_latex
 
     damped = hill_form(opt.load(options).linear_system()).damping() > 0.0
     regions = (None,) if options.regions is None else _regions(options.regions)

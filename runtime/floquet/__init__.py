@@ -37,9 +37,6 @@ if TYPE_CHECKING:
         relative_multipliers,
     )
     from .namespace_monodromy import MonodromyMatrices, monodromy_matrices
-    from .slow_driving import SlowTongues, slow_tongues
-    from .tongues.resonances import Resonance, resonances
-    from .tongues.series import Tongue, tongue
 
 _PUBLIC = {
     "FloquetMultipliers": "monodromy_matrix",
@@ -47,13 +44,10 @@ _PUBLIC = {
     "MarkedSpeeds": "critical",
     "Monodromy": "monodromy_matrix",
     "MonodromyMatrices": "namespace_monodromy",
-    "Resonance": "tongues.resonances",
     "SlowMultipliers": "decoupled",
     "SlowSystem": "decoupled",
-    "SlowTongues": "slow_driving",
     "SpeedBoundaries": "boundary_speeds",
     "StabilityEdges": "edges.tracing",
-    "Tongue": "tongues.series",
     "TongueCurves": "edges.over_geometry",
     "TongueTrace": "edges.over_parameter",
     "characteristic_exponents": "decoupled",
@@ -66,12 +60,9 @@ _PUBLIC = {
     "monodromy_matrices": "namespace_monodromy",
     "multiplier_maxima": "critical",
     "relative_multipliers": "monodromy_matrix",
-    "resonances": "tongues.resonances",
     "slow_system": "decoupled",
-    "slow_tongues": "slow_driving",
     "speed_boundaries": "boundary_speeds",
     "stability_edges": "edges.tracing",
-    "tongue": "tongues.series",
     "tongue_curves": "edges.over_geometry",
     "trace_tongue": "edges.over_parameter",
     "unstable_bands": "decoupled",
@@ -83,13 +74,10 @@ __all__ = [
     "MarkedSpeeds",
     "Monodromy",
     "MonodromyMatrices",
-    "Resonance",
     "SlowMultipliers",
     "SlowSystem",
-    "SlowTongues",
     "SpeedBoundaries",
     "StabilityEdges",
-    "Tongue",
     "TongueCurves",
     "TongueTrace",
     "characteristic_exponents",
@@ -102,12 +90,9 @@ __all__ = [
     "monodromy_matrices",
     "multiplier_maxima",
     "relative_multipliers",
-    "resonances",
     "slow_system",
-    "slow_tongues",
     "speed_boundaries",
     "stability_edges",
-    "tongue",
     "tongue_curves",
     "trace_tongue",
     "unstable_bands",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..hill.cases.surfaces import Which
 from . import (
     aannaque_forces,
     aannaque_kinematics,
@@ -34,6 +33,7 @@ from .records import FigureEntry
 from .response_entries import RESPONSE_FIGURES
 from .rig_entries import RIG_APPENDICES, RIG_FIGURES
 from .smith_linkages import PROPORTIONS, RIGS
+from .strutt import Which
 
 _END_LOADS = tuple(
     FigureEntry(

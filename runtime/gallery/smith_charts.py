@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.periodic_function import PeriodicFunction
-from ..hill.exact.matrix import Boundaries, hill_boundaries
-from ..hill.half_trace import discriminant
-from ..hill.perturbation.boundaries import perturbation_boundaries
-from ..hill.perturbation.thresholds import least_parameter
+from ..hill import (
+    Boundaries,
+    critical_damping,
+    discriminant,
+    hill_boundaries,
+    perturbation_boundaries,
+)
 from ..linkages import FourBar
 from .records import Drawn, Quoted
 from .smith_linkages import Array, end_load, f3_series
@@ -217,7 +220,7 @@ def figure_37(axes: Sequence[Axes]) -> Drawn:
 
 def _least_mu_rows(f: PeriodicFunction, regions: Sequence[int], damping: float) -> list[Quoted]:
     rows = []
-    exact = least_parameter(f, damping, regions).least
+    exact = critical_damping(f, None, regions, damping=damping).mu
     for n, least in zip(regions, exact, strict=True):
         printed = 2.0 * damping * n / float(f.amplitudes[n])
         rows.append(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..floquet.boundary_speeds import speed_boundaries
-from ..hill.perturbation.boundaries import perturbation_boundaries
+from ..hill import perturbation_boundaries
 from .records import Drawn, Quoted, Table
 from .smith_linkages import (
     EQUATIONS,

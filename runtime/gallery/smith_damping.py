@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill.perturbation.effective import effective_operator
-from ..hill.perturbation.thresholds import critical_damping
+from ..hill import critical_damping
+from ..hill.bloch import effective_operator
 from ..scenes import load_scene
 from .records import Drawn, Quoted, Table
 from .smith_linkages import LBF_IN_S2, RIG, Array, Rig, region_name
@@ -93,7 +93,7 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
     f = estimate.rig.function(equation, inertia * LBF_IN_S2)
     n = estimate.region
     if order is None:
-        return float(critical_damping(f, 1.0, (n,)).critical[0])
+        return float(critical_damping(f, 1.0, (n,)).damping[0])
     points = np.stack([np.ones_like(_SCAN), _SCAN])
     a, b = effective_operator([f], n, order, damped=True).components(points)
     left = np.abs(b.sum(axis=0)) - np.abs(a.sum(axis=0).imag)

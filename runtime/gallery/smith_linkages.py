@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.periodic_function import PeriodicFunction
-from ..hill.exact.matrix import hill_boundaries
-from ..hill.form import HillForm, hill_form
+from ..hill import HillForm, hill_boundaries, hill_form
 from ..linkages import FourBar
 from ..scenes import load_scene
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.periodic_function import PeriodicFunction
-from ..hill.exact.matrix import hill_boundaries
-from ..hill.perturbation.boundaries import perturbation_boundaries
+from ..hill import hill_boundaries, perturbation_boundaries
 from .records import Drawn, Quoted
 from .smith_linkages import Array, end_load, f3_series, linkage_of
 from .style import COLOURS, legend_below

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill.half_trace import discriminant
+from ..hill import discriminant
 from ..scenes import load_scene
 from .records import Drawn, Quoted, Table
 from .smith_linkages import (

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.errors import LinearRangeWarning
 from ..core.families import LinearPeriodic
-from ..hill.half_trace import discriminant
+from ..hill import discriminant
 from ..periodic import simulate
 from ..scenes import load_scene
 from .records import Drawn, Quoted

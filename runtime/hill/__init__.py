@@ -1,4 +1,17 @@
-"""Hill's equation: half traces, exact and perturbation boundaries.
+"""Hill's equation ``y'' + 2 K y' + (lam2 + mu f(theta)) y = 0``, f of period 2 pi.
+
+It is unstable in regions that start at ``lam2 = n^2/4``.  ``docs/hill.md`` says when to use what:
+
+- :func:`discriminant`: the half trace, at a point or a million of them;
+- :func:`characteristic_exponents`: exponents at given lam2, or the lam2 of a given exponent;
+- :func:`hill_boundaries`: exact boundaries of the regions, proved ones with ``certified=True``;
+- :func:`boundary_derivatives`, :func:`boundary_solution`: how they move with a parameter, and the
+  periodic solutions on them, exactly or to an order;
+- :func:`perturbation_boundaries`, :func:`boundary_series`: boundaries to any order in one or more
+  parameters and K; their coefficients and formulas;
+- :func:`critical_damping`: the damping that closes a region, the parameter that opens it;
+- :class:`Mathieu`, :class:`Meissner`: two classical equations;
+- :func:`hill_form`: a single mode of a machine as Hill's equation.
 
 The names load on first use: a half trace needs nothing of the certified boundaries.
 """
@@ -10,131 +23,67 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .cases.meissner import coexistence_points, meissner_boundaries
-    from .cases.named import (
-        Mathieu,
-        MathieuCharacteristic,
-        Meissner,
-        WhittakerHill,
-        mathieu_characteristic,
-    )
-    from .cases.piecewise import (
-        PiecewiseApproximation,
-        PiecewiseMonodromy,
-        piecewise_approximation,
-        piecewise_monodromy,
-    )
-    from .cases.strutt import StruttChart, strutt_chart
-    from .cases.surfaces import MultiplierSurfaces, multiplier_surfaces
-    from .exact.certified import CertifiedBoundaries
-    from .exact.derivatives import BoundaryDerivatives, boundary_derivatives
-    from .exact.matrix import Boundaries, hill_boundaries
-    from .exact.quasi import (
-        BlochBands,
-        CharacteristicExponents,
-        bloch_bands,
-        characteristic_exponents,
-    )
-    from .exact.systems import SystemExponents, hill_exponents
-    from .half_trace import HalfTrace, discriminant, discriminant_grid
-    from .perturbation.boundaries import PerturbationBoundaries, perturbation_boundaries
-    from .perturbation.effective import EffectiveOperator, effective_operator
-    from .perturbation.formulas import boundary_latex, solution_latex
-    from .perturbation.solutions import BoundarySolution, boundary_solution
-    from .perturbation.thresholds import (
-        CriticalDamping,
-        LeastParameter,
-        critical_damping,
-        least_parameter,
-    )
+    from .boundaries import Boundaries, hill_boundaries
+    from .certified import CertifiedBoundaries
+    from .derivatives import BoundaryDerivatives, boundary_derivatives
+    from .exponents import CharacteristicExponents, characteristic_exponents
+    from .form import HillForm, hill_form
+    from .half_trace import HalfTrace, discriminant
+    from .mathieu import Mathieu, MathieuCharacteristic
+    from .meissner import Meissner
+    from .perturbation import PerturbationBoundaries, perturbation_boundaries
+    from .series import BoundarySeries, boundary_series
+    from .solutions import BoundarySolution, boundary_solution
+    from .thresholds import Thresholds, critical_damping
 
 _PUBLIC = {
-    "BlochBands": "exact.quasi",
-    "Boundaries": "exact.matrix",
-    "BoundaryDerivatives": "exact.derivatives",
-    "BoundarySolution": "perturbation.solutions",
-    "CertifiedBoundaries": "exact.certified",
-    "CharacteristicExponents": "exact.quasi",
-    "CriticalDamping": "perturbation.thresholds",
-    "EffectiveOperator": "perturbation.effective",
+    "Boundaries": "boundaries",
+    "BoundaryDerivatives": "derivatives",
+    "BoundarySeries": "series",
+    "BoundarySolution": "solutions",
+    "CertifiedBoundaries": "certified",
+    "CharacteristicExponents": "exponents",
     "HalfTrace": "half_trace",
-    "LeastParameter": "perturbation.thresholds",
-    "Mathieu": "cases.named",
-    "MathieuCharacteristic": "cases.named",
-    "Meissner": "cases.named",
-    "MultiplierSurfaces": "cases.surfaces",
-    "PerturbationBoundaries": "perturbation.boundaries",
-    "PiecewiseApproximation": "cases.piecewise",
-    "PiecewiseMonodromy": "cases.piecewise",
-    "StruttChart": "cases.strutt",
-    "SystemExponents": "exact.systems",
-    "WhittakerHill": "cases.named",
-    "bloch_bands": "exact.quasi",
-    "boundary_derivatives": "exact.derivatives",
-    "boundary_latex": "perturbation.formulas",
-    "boundary_solution": "perturbation.solutions",
-    "characteristic_exponents": "exact.quasi",
-    "coexistence_points": "cases.meissner",
-    "critical_damping": "perturbation.thresholds",
+    "HillForm": "form",
+    "Mathieu": "mathieu",
+    "MathieuCharacteristic": "mathieu",
+    "Meissner": "meissner",
+    "PerturbationBoundaries": "perturbation",
+    "Thresholds": "thresholds",
+    "boundary_derivatives": "derivatives",
+    "boundary_series": "series",
+    "boundary_solution": "solutions",
+    "characteristic_exponents": "exponents",
+    "critical_damping": "thresholds",
     "discriminant": "half_trace",
-    "discriminant_grid": "half_trace",
-    "effective_operator": "perturbation.effective",
-    "hill_boundaries": "exact.matrix",
-    "hill_exponents": "exact.systems",
-    "least_parameter": "perturbation.thresholds",
-    "mathieu_characteristic": "cases.named",
-    "meissner_boundaries": "cases.meissner",
-    "multiplier_surfaces": "cases.surfaces",
-    "perturbation_boundaries": "perturbation.boundaries",
-    "piecewise_approximation": "cases.piecewise",
-    "piecewise_monodromy": "cases.piecewise",
-    "solution_latex": "perturbation.formulas",
-    "strutt_chart": "cases.strutt",
+    "hill_boundaries": "boundaries",
+    "hill_form": "form",
+    "perturbation_boundaries": "perturbation",
 }
 
 __all__ = [
-    "BlochBands",
     "Boundaries",
     "BoundaryDerivatives",
+    "BoundarySeries",
     "BoundarySolution",
     "CertifiedBoundaries",
     "CharacteristicExponents",
-    "CriticalDamping",
-    "EffectiveOperator",
     "HalfTrace",
-    "LeastParameter",
+    "HillForm",
     "Mathieu",
     "MathieuCharacteristic",
     "Meissner",
-    "MultiplierSurfaces",
     "PerturbationBoundaries",
-    "PiecewiseApproximation",
-    "PiecewiseMonodromy",
-    "StruttChart",
-    "SystemExponents",
-    "WhittakerHill",
-    "bloch_bands",
+    "Thresholds",
     "boundary_derivatives",
-    "boundary_latex",
+    "boundary_series",
     "boundary_solution",
     "characteristic_exponents",
-    "coexistence_points",
     "critical_damping",
     "discriminant",
-    "discriminant_grid",
-    "effective_operator",
     "hill_boundaries",
-    "hill_exponents",
-    "least_parameter",
-    "mathieu_characteristic",
-    "meissner_boundaries",
-    "multiplier_surfaces",
+    "hill_form",
     "perturbation_boundaries",
-    "piecewise_approximation",
-    "piecewise_monodromy",
-    "solution_latex",
-    "strutt_chart",
 ]
-
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

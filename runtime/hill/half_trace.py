@@ -10,15 +10,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, log, pi, sqrt
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core import chebyshev
 from ..core.errors import bad
-from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, Result, provenance
+from .checks import arguments, check_function
+from .meissner import Meissner
 from .transfer import EPS, Transfer, transfer
 
 if TYPE_CHECKING:
@@ -26,10 +27,13 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from ..core.periodic_function import PeriodicFunction
+
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 Box = tuple[float, float, float, float]
 
-# Up to so many points direct evaluation is as fast as interpolation, and its figure is entrywise.
+# Up to so many points direct evaluation is as fast as interpolation, and its error is entrywise.
 _DIRECT_GRID, _DIRECT_POINTS = 2048, 8192
 # A box is split where the solutions' growth varies more than this over it, or where it would need
 # more nodes in one direction.
@@ -110,7 +114,7 @@ class HalfTrace(Result):
 
 
 def discriminant(
-    f: PeriodicFunction, lam2: ArrayLike, mu: ArrayLike, damping: ArrayLike = 0.0
+    f: PeriodicFunction | Meissner, lam2: ArrayLike, mu: ArrayLike, damping: ArrayLike = 0.0
 ) -> HalfTrace:
     """Return the half trace of the monodromy matrix of y'' + 2 K y' + (lam2 + mu f) y = 0.
 
@@ -119,7 +123,7 @@ def discriminant(
 
     Parameters
     ----------
-    f : PeriodicFunction
+    f : PeriodicFunction or Meissner
         Coefficient of period 2 pi.
     lam2, mu : array_like
         Parameters; any sign, any shapes that broadcast.  Arrays that vary along different axes,
@@ -140,11 +144,13 @@ def discriminant(
 
     Notes
     -----
-    Smith (7.9), (7.38)-(7.40).  The error figure holds round-off (amplified by the norm of the
+    Smith (7.9), (7.38)-(7.40).  The error estimate holds round-off (amplified by the norm of the
     monodromy matrices round the circle), the truncation of the transfer polynomials, the tail of
     the Chebyshev series and the error of ``f``.
     """
-    check_function(f)
+    exact = isinstance(f, Meissner)
+    if not exact:
+        check_function(f)
     (lam, amp, k), shape = arguments(lam2=lam2, mu=mu, damping=damping)
     x = _collapsed(_padded(lam - k * k, len(shape)))
     y = _collapsed(_padded(amp, len(shape)))
@@ -159,7 +165,9 @@ def discriminant(
         value, error = (item.reshape(shape) for item in work.run())
     beyond = float(value.size - np.count_nonzero(np.isfinite(value)))
     return HalfTrace(
-        method="transfer polynomials"
+        method="exact matrices of intervals"
+        if exact
+        else "transfer polynomials"
         + (" at Chebyshev nodes, interpolated" if work.interpolated else ""),
         error=error,
         error_norm="absolute, entrywise",
@@ -175,27 +183,22 @@ def discriminant(
     )
 
 
-def discriminant_grid(
-    f: PeriodicFunction, lam2_values: ArrayLike, mu_values: ArrayLike, damping: float = 0.0
-) -> HalfTrace:
-    """Return the half trace at all pairs of lam2 ``(n,)`` and mu ``(m,)``, shape ``(n, m)``.
-
-    See :func:`discriminant`; this is ``discriminant(f, lam2[:, None], mu[None, :], damping)``.
-    """
-    lam2, mu = np.ravel(finite("lam2", lam2_values)), np.ravel(finite("mu", mu_values))
-    return discriminant(f, lam2[:, None], mu[None, :], damping)
+def growth_rate(f: PeriodicFunction | Meissner, lam2: Array, mu: Array) -> Array:
+    """Return the mean of ``sqrt(-(lam2 + mu f))`` where that is real: how fast solutions grow."""
+    values = f(2.0 * pi * np.arange(1024) / 1024)
+    negative = np.maximum(-(lam2[..., None] + mu[..., None] * values), 0.0)
+    return np.asarray(np.sqrt(negative).mean(axis=-1))
 
 
 class _Work:
     """One evaluation: points or a grid, cut into boxes that a Chebyshev series can serve."""
 
     def __init__(
-        self, f: PeriodicFunction, x: Array, y: Array, log2_scale: Array, grid: bool
+        self, f: PeriodicFunction | Meissner, x: Array, y: Array, log2_scale: Array, grid: bool
     ) -> None:
         self.f, self.x, self.y, self.log2_scale, self.grid = f, x, y, log2_scale, grid
         self.defect = 0.0
         self.interpolated = False
-        self._axis = 0
 
     def run(self) -> tuple[Array, Array]:
         """Return value and error: shape ``(nx, ny)`` on a grid, ``(n,)`` at points."""
@@ -204,56 +207,53 @@ class _Work:
             return np.zeros(shape), np.zeros(shape)
         whole = np.arange(self.x.size), np.arange(self.y.size)
         first = self._box(*whole)
-        if first is not None:
+        if not isinstance(first, int):
             return first
         value, error = np.empty(shape), np.empty(shape)
-        pending = self._parts(*whole)
+        pending = self._halves(*whole, first)
         while pending:
             ix, iy = pending.pop()
-            found = self._box(ix, iy)
-            if found is None:
-                pending.extend(self._parts(ix, iy))
+            done = self._box(ix, iy)
+            if isinstance(done, int):
+                pending.extend(self._halves(ix, iy, done))
                 continue
             where = np.ix_(ix, iy) if self.grid else ix
-            value[where], error[where] = found
+            value[where], error[where] = done
         return value, error
 
-    def _limits(self, ix: NDArray[np.intp], iy: NDArray[np.intp]) -> Box:
-        x, y = self.x[ix], self.y[iy]
-        return float(x.min()), float(x.max()), float(y.min()), float(y.max())
-
-    def _box(self, ix: NDArray[np.intp], iy: NDArray[np.intp]) -> tuple[Array, Array] | None:
-        """Evaluate one box; None where it should be split first (its axis in ``_axis``)."""
+    def _box(self, ix: Index, iy: Index) -> tuple[Array, Array] | int:
+        """Evaluate one box; the axis along which it should be split where it cannot be."""
         count = ix.size * iy.size if self.grid else ix.size
         x, y, scale = self.x[ix], self.y[iy], self.log2_scale[ix]
-        limits = self._limits(ix, iy)
+        if isinstance(self.f, Meissner):
+            return self._direct(self.f, x, y, scale)
+        limits = float(x.min()), float(x.max()), float(y.min()), float(y.max())
         direct = transfer(self.f, limits[:2], limits[2:])
         if sum(direct.spread) > _WIDEST:
-            self._axis = int(direct.spread[1] > direct.spread[0])
-            return None
+            return int(direct.spread[1] > direct.spread[0])
         few = _DIRECT_GRID if self.grid else _DIRECT_POINTS
         if count <= few or direct.floor < -1e3:
             return self._direct(direct, x, y, scale)
-        found = _series(direct, limits)
-        if isinstance(found, int):
-            self._axis = found
-            return None
+        series = _series(direct, limits)
+        if isinstance(series, int):
+            return series
         self.interpolated = True
-        self.defect = max(self.defect, found.defect)
+        self.defect = max(self.defect, series.defect)
         u, v = chebyshev.unit(x, *limits[:2]), chebyshev.unit(y, *limits[2:])
-        error = found.error(u)
+        rising = chebyshev.nodes(series.profile.size)[::-1]
+        error = np.interp(u, rising, series.profile[::-1]) + series.everywhere
         if self.grid:
-            value = chebyshev.tensor_values(found.coefficients, u, v)
+            value = chebyshev.tensor_values(series.coefficients, u, v)
             error, scale = error[:, None], scale[:, None]
         else:
-            value = chebyshev.point_values(found.coefficients, u, v)
+            value = chebyshev.point_values(series.coefficients, u, v)
         if scale.any():
             factor = np.exp2(scale)
             value, error = value * factor, error * factor
         return value, np.broadcast_to(error, value.shape)
 
     def _direct(
-        self, polynomials: Transfer, x: Array, y: Array, scale: Array
+        self, polynomials: Transfer | Meissner, x: Array, y: Array, scale: Array
     ) -> tuple[Array, Array]:
         shape = (x.size, y.size) if self.grid else x.shape
         if self.grid:
@@ -268,46 +268,27 @@ class _Work:
             error = np.ldexp(error * np.exp2(scale - whole), power)
         return value.reshape(shape), error.reshape(shape)
 
-    def _parts(
-        self, ix: NDArray[np.intp], iy: NDArray[np.intp]
-    ) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
-        """Cut a box in two at the middle of the axis that asked for it."""
-        along = (self.x[ix], self.y[iy])[self._axis]
+    def _halves(self, ix: Index, iy: Index, axis: int) -> list[tuple[Index, Index]]:
+        """Cut a box in two at the middle of an axis."""
+        along = (self.x[ix], self.y[iy])[axis]
         lower = along <= 0.5 * (along.min() + along.max())
         if lower.all():
             lower = np.arange(along.size) < along.size // 2
         if not self.grid:
             return [(ix[part], iy[part]) for part in (lower, ~lower)]
-        if self._axis == 0:
+        if axis == 0:
             return [(ix[lower], iy), (ix[~lower], iy)]
         return [(ix, iy[lower]), (ix, iy[~lower])]
 
 
-@dataclass(frozen=True)
-class _Series:
-    """Double Chebyshev series of the half trace over a box, with its error figure.
+class _Series(NamedTuple):
+    """Double Chebyshev series of the half trace over a box, with its error.
 
-    The figure depends on lam2 alone: ``everywhere`` plus a profile over the nodes.
+    The error depends on lam2 alone: ``everywhere`` plus a profile over the nodes.
     """
 
     coefficients: Array
     everywhere: float
-    profile: Array
-    defect: float
-
-    def error(self, u: Array) -> Array:
-        """Return the figure at lam2 mapped to [-1, 1], any order, shape as ``u``."""
-        rising = chebyshev.nodes(self.profile.size)[::-1]
-        return np.asarray(np.interp(u, rising, self.profile[::-1]) + self.everywhere)
-
-
-@dataclass(frozen=True)
-class _Edges:
-    """What the four edges of a box tell: nodes needed, largest value, errors, Liouville."""
-
-    counts: tuple[int, int]
-    largest: float
-    noise: float
     profile: Array
     defect: float
 
@@ -339,6 +320,16 @@ def _series(polynomials: Transfer, limits: Box) -> _Series | int:
     return 0 if not ok_rows else 1
 
 
+class _Edges(NamedTuple):
+    """The four edges of a box: nodes needed, largest value, errors, determinants."""
+
+    counts: tuple[int, int]
+    largest: float
+    noise: float
+    profile: Array
+    defect: float
+
+
 def _edges(polynomials: Transfer, limits: Box) -> _Edges | int:
     """Sample the four edges of a box; the number of an axis that should be split first."""
     x0, x1, y0, y1 = limits
@@ -366,7 +357,7 @@ def _edges(polynomials: Transfer, limits: Box) -> _Edges | int:
         if not any(short):
             profile = np.pad(error[: 2 * n].reshape(2, n).max(axis=0), 1, mode="edge")
             profile = np.maximum(np.maximum(profile[:-2], profile[2:]), profile[1:-1])
-            # Two more: the last two tell whether the inside needs more than the edges.
+            # Two more: the last two show whether the inside needs more than the edges.
             counts = (min(needed[0] + 2, n), min(needed[1] + 2, m))
             return _Edges(counts, largest, noise, profile, float(defect.max()))
         n, m = (2 * n if short[0] else n), (2 * m if short[1] else m)
@@ -384,48 +375,6 @@ def _guess(span: float, low: float) -> int:
     start = sqrt(max(low, 0.0))
     half_phase = pi * (sqrt(start * start + span) - start)
     return min(16 * ceil((1.4 * half_phase + 14.0) / 16.0), _MOST_NODES)
-
-
-def finite(name: str, values: ArrayLike) -> Array:
-    """Return an array of finite numbers, or refuse by name."""
-    try:
-        out = np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as reason:
-        raise bad(name, repr(values)[:60], "numbers", "correct the input") from reason
-    if not np.all(np.isfinite(out)):
-        raise bad(name, "an entry that is not finite", "finite numbers", "correct the input")
-    return out
-
-
-def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
-    """Return the arguments as arrays and their broadcast shape, or refuse by name.
-
-    ``damping`` must not be negative.
-    """
-    arrays = tuple(finite(name, value) for name, value in given.items())
-    damping = arrays[list(given).index("damping")]
-    if np.any(damping < 0.0):
-        raise bad("damping", float(damping.min()), "K >= 0", "damping takes energy out")
-    try:
-        return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
-    except ValueError as reason:
-        raise bad(
-            ", ".join(given),
-            f"shapes {', '.join(str(item.shape) for item in arrays)}",
-            "shapes that broadcast",
-            "reshape them, for example to (n, 1) and (1, m)",
-        ) from reason
-
-
-def check_function(f: object) -> None:
-    """Refuse anything but a :class:`PeriodicFunction`."""
-    if not isinstance(f, PeriodicFunction):
-        raise bad(
-            "f",
-            type(f).__name__,
-            "a PeriodicFunction",
-            "use PeriodicFunction(a=, b=), .from_samples or .from_callable",
-        )
 
 
 def _padded(values: Array, ndim: int) -> Array:

@@ -13,8 +13,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, lgamma, log, log2, pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..core.errors import bad
@@ -35,63 +37,34 @@ _NODE_TAIL = 1e-9
 _SPREAD, _SIZE = 1.8, 3.6
 
 
-@dataclass(frozen=True)
-class Gauss:
-    """Gauss-Legendre nodes on [-1, 1] with the matrices that integrate twice from -1.
-
-    Attributes
-    ----------
-    x : ndarray, shape (q,)
-        Nodes.
-    inner : ndarray, shape (q, q)
-        Values to the double integral at the nodes.
-    ends : ndarray, shape (2, q)
-        Values to the double and to the single integral at +1.
-    """
+class Gauss(NamedTuple):
+    """Gauss-Legendre nodes on [-1, 1] with the matrices that integrate twice from -1."""
 
     x: Array
+    """Nodes, ``(q,)``."""
     inner: Array
+    """From values to the double integral at the nodes, ``(q, q)``."""
     ends: Array
+    """From values to the double and to the single integral at +1, ``(2, q)``."""
 
 
 @lru_cache(maxsize=32)
 def gauss(q: int) -> Gauss:
-    """Return the nodes and integration matrices of order q, computed in extended precision."""
-    real = np.longdouble
-    k = np.arange(1, q + 1).astype(real)
-    x = -np.cos((k - real(0.25)) / real(q + 0.5) * real(np.pi))
-    for _ in range(8):
-        p = _legendre(x, q + 1)
+    """Return the nodes and integration matrices of order q."""
+    # In extended precision: an error here would be the same on every segment.
+    x = legendre.leggauss(q)[0].astype(np.longdouble)
+    for _ in range(2):
+        p = legendre.legvander(x, q + 1).T
         slope = q * (x * p[q] - p[q - 1]) / (x * x - 1)
         x = x - p[q] / slope
-    p = _legendre(x, q + 3)
-    slope = q * (x * p[q] - p[q - 1]) / (x * x - 1)
+    n = np.arange(q + 1)[:, None]
     weights = 2 / ((1 - x * x) * slope**2)
-    j = np.arange(q).astype(real)[:, None]
-    series = (2 * j + 1) / 2 * p[:q] * weights
+    series = (2 * n[:q] + 1) * p[:q] * weights / 2
     # The integral of P_n from -1 is (P_{n+1} - P_{n-1}) / (2n+1), with P_{-1} = -1 for n = 0.
-    once = np.empty((q + 1, q), dtype=real)
-    once[0] = p[1] + 1
-    for n in range(1, q + 1):
-        once[n] = (p[n + 1] - p[n - 1]) / (2 * n + 1)
-    twice = np.empty((q, q), dtype=real)
-    twice[0] = once[1] + once[0]
-    for n in range(1, q):
-        twice[n] = (once[n + 1] - once[n - 1]) / (2 * n + 1)
-    inner = twice.T @ series
-    ends = np.stack([weights * (1 - x), weights])
-    arrays = [np.asarray(item, dtype=float) for item in (x, inner, ends)]
-    for item in arrays:
-        item.setflags(write=False)
-    return Gauss(*arrays)
-
-
-def _legendre(x: NDArray[np.longdouble], count: int) -> NDArray[np.longdouble]:
-    p = np.empty((count, x.size), dtype=np.longdouble)
-    p[0], p[1] = 1, x
-    for n in range(1, count - 1):
-        p[n + 1] = ((2 * n + 1) * x * p[n] - n * p[n - 1]) / (n + 1)
-    return p
+    once = (p[1:] - np.concatenate([-p[:1], p[:q]])) / (2 * n + 1)
+    twice = np.concatenate([once[1:2] + once[:1], (once[2:] - once[:-2]) / (2 * n[1:q] + 1)])
+    parts = (x, twice.T @ series, np.stack([weights * (1 - x), weights]))
+    return Gauss(*(np.asarray(item, dtype=float) for item in parts))
 
 
 @dataclass(frozen=True)
@@ -167,7 +140,7 @@ class Transfer:
     def half_trace_with_error(
         self, lam2: Array, mu: Array
     ) -> tuple[Array, Array, Exponents, Array]:
-        """Return half trace and error figure at points ``(n,)``, scaled against overflow.
+        """Return half trace and error at points ``(n,)``, scaled against overflow.
 
         Returns
         -------
@@ -197,12 +170,8 @@ class Transfer:
         # The error of a trace is that of each segment times the monodromy matrix that starts at
         # it, so the monodromy is formed from several cuts of the circle, close enough together.
         cuts = min(self.segments, 2 ** max(3, ceil(log2(pi * sqrt(self.swing) + 1.0))))
-        scaled = 2.0 * pi * sqrt(-self.floor) > 230.0
-        if scaled:
-            turns, exponent = _all_cuts_scaled(m, cuts)
-        else:
-            turns = _all_cuts(_halved(m, cuts))
-            exponent = np.zeros(lam2.size, dtype=np.int64)
+        # Beyond exp(230) the squares of the entries would leave the range of doubles.
+        turns, exponent = _all_cuts(m, cuts, scaled=2.0 * pi * sqrt(-self.floor) > 230.0)
         # Entries of a segment are good to units of their largest summands: 1, 1, 2 and the third
         # one's, small as the third entry itself may be.
         third = 2.0 * self.size * (pi / self.segments) ** 2
@@ -219,7 +188,7 @@ class Transfer:
         return value, error, exponent, defect
 
 
-def _product(b: Array, a: Array) -> Array:
+def product(b: Array, a: Array) -> Array:
     """Return the 2 x 2 products ``b a``, both ``(2, 2, ...)``, element by element."""
     out: Array = b[:, 0, None] * a[0]
     out += b[:, 1, None] * a[1]
@@ -234,37 +203,36 @@ def _turned(m: Array, step: int) -> Array:
 def _halved(m: Array, blocks: int) -> Array:
     """Multiply neighbours until ``blocks`` matrices round the circle are left."""
     while m.shape[2] > blocks:
-        m = _product(m[:, :, 1::2], m[:, :, 0::2])
+        m = product(m[:, :, 1::2], m[:, :, 0::2])
     return m
 
 
-def _all_cuts(m: Array) -> Array:
-    """Return the product once round the circle from every cut, shape as ``m``."""
-    step = 1
-    while step < m.shape[2]:
-        m = _product(_turned(m, step), m)
-        step *= 2
-    return m
+def _all_cuts(m: Array, cuts: int, scaled: bool) -> tuple[Array, Exponents]:
+    """Return the products once round the circle from every cut, and powers of two taken out.
 
-
-def _all_cuts_scaled(m: Array, cuts: int) -> tuple[Array, Exponents]:
-    """Do the same with a power of two taken out at every step; one exponent for all cuts."""
-    exponent = np.zeros(m.shape[2:], dtype=np.int64)
+    Where ``scaled``, a power is taken out at every step; one exponent for all cuts.
+    """
+    exponent: Exponents = np.zeros(m.shape[2:], dtype=np.int64)
+    if not scaled:
+        m, exponent = _halved(m, cuts), exponent[0]
     while m.shape[2] > cuts:
-        m = _product(m[:, :, 1::2], m[:, :, 0::2])
-        exponent = exponent[1::2] + exponent[0::2]
-        m, exponent = _normalised(m, exponent)
+        m = product(m[:, :, 1::2], m[:, :, 0::2])
+        m, exponent = normalised(m, exponent[1::2] + exponent[0::2])
     step = 1
     while step < m.shape[2]:
-        m = _product(_turned(m, step), m)
-        exponent = np.concatenate([exponent[step:], exponent[:step]]) + exponent
-        m, exponent = _normalised(m, exponent)
+        m = product(_turned(m, step), m)
+        if scaled:
+            exponent = np.concatenate([exponent[step:], exponent[:step]]) + exponent
+            m, exponent = normalised(m, exponent)
         step *= 2
+    if not scaled:
+        return m, exponent
     common = exponent.max(axis=0)
     return np.ldexp(m, np.maximum(exponent - common, -2000)), common
 
 
-def _normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
+def normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
+    """Take a power of two out of matrices, and count it in their exponents."""
     _, shift = np.frexp(np.abs(m).max(axis=(0, 1)))
     return np.ldexp(m, -shift), exponent + shift
 

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from elastolink.derive.perturbation.surd import ExactHarmonics, combine
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
-from hill_functions import functions
+from elastolink.runtime.hill import hill_boundaries
 from omitted_orders import Curve
 
 ORDERS = (1, 2, 3, 4, 5, 6)

@@ -27,9 +27,8 @@ from boundary_cases import (
 from boundary_truth import MP
 from elastolink.derive.perturbation.exact import exact_operator
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
-from elastolink.runtime.hill.perturbation.coefficients import boundary_series
-from elastolink.runtime.hill.perturbation.effective import effective_operator
+from elastolink.runtime.hill import boundary_series, perturbation_boundaries
+from elastolink.runtime.hill.bloch import effective_operator
 from omitted_orders import FORMS, real
 
 EPS = float(np.finfo(float).eps)
@@ -136,7 +135,10 @@ def test_one_parameter(name, n, share):
 
 
 @pytest.mark.parametrize("share", ["undamped", "damped"])
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow if name == "three" else ()) for name in PARTS],
+)
 def test_several_parameters(name, share):
     n = 1
     for weights in RAYS:

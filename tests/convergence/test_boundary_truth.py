@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 from boundary_cases import curve, doubles, function, trigonometric
 from boundary_truth import MP, boundary, combined, fixed, hill_rows, number, schur
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill import hill_boundaries
 from omitted_orders import real
 
 SMALL = Fraction(1, 2**20)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.floquet.tongues.resonances import resonances
-from elastolink.runtime.floquet.tongues.series import tongue
-from geometry_series import taylor_in_geometry
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.stability import resonances, tongue
+from elastolink.runtime.systems.geometry_series import taylor_in_geometry
 
 # Frequencies [rad/s] of the rod held still on the block at 0.59997 L: roots of the pinned beam
 # with an overhang, six digits.

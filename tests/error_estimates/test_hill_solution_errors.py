@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
-from elastolink.runtime.hill.perturbation.solutions import boundary_solution
+from elastolink.runtime.hill import boundary_solution, hill_boundaries
 from honesty import verdict
 
 pytestmark = pytest.mark.skipif(

@@ -9,10 +9,9 @@ import pytest
 from boundary_truth import MP, boundary
 from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
-from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from elastolink.runtime.hill import hill_boundaries, perturbation_boundaries
 
-SCENES = 400
+SCENES = 60
 POINTS = 6
 
 
@@ -90,7 +89,7 @@ def sweep(scenes):
 
 
 scenes = pytest.mark.parametrize(
-    "count", [pytest.param(SCENES, id="some"), pytest.param(3000, marks=pytest.mark.slow, id="all")]
+    "count", [pytest.param(SCENES, id="some"), pytest.param(400, marks=pytest.mark.slow, id="all")]
 )
 
 
@@ -168,7 +167,7 @@ def exact_scene(seed):
 
 
 @pytest.mark.parametrize(
-    "count", [pytest.param(300, id="some"), pytest.param(2000, marks=pytest.mark.slow, id="all")]
+    "count", [pytest.param(20, id="some"), pytest.param(300, marks=pytest.mark.slow, id="all")]
 )
 def test_down_to_round_off(count):
     """Against 30 digits: there the error of Hill's matrix in doubles hides nothing."""

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from ...core.errors import bad
 from ...core.families import DAMPING, LinearPeriodic
 from ...core.results import Check, Result, provenance
+from ...stability import Resonance, resonances
 from ..first_order import numbers
-from ..tongues.resonances import Resonance, resonances
 from .pair_roots import PairFunction, refined_edges
 from .phase_events import Events
 

@@ -21,7 +21,7 @@ from elastolink.runtime.gallery.smith_linkages import (
 from elastolink.runtime.gallery.smith_observations import OBSERVATIONS
 from elastolink.runtime.gallery.smith_waves import _system, periodic_response
 from elastolink.runtime.gallery.writing import write_together
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill import hill_boundaries
 from elastolink.runtime.scenes import load_scene
 from elastolink.runtime.simulation.trajectory import simulate
 

@@ -10,9 +10,9 @@ from elastolink.runtime.charts.invariants import characteristic, instability_kin
 from elastolink.runtime.cli.application import main
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill.exact.matrix import hill_boundaries
+from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.hill.form import hill_form
-from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from elastolink.runtime.hill.perturbation import perturbation_boundaries
 
 RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))

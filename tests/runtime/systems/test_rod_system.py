@@ -304,9 +304,8 @@ def test_a_rod_that_just_reaches_the_block():
 # ---------------------------------------------------------------- other ways to the exponents
 
 
-@pytest.mark.slow
-def test_series_of_a_tongue_and_exponents_see_d():
-    """Internal damping on a mode that changes with the block: ends to order 6, and exponents."""
+def test_a_tongue_sees_internal_damping():
+    """Internal damping on a mode that changes with the block: ends to order 6, exact ends."""
     numbers = {**FLEXIBLE, "crank_ratio": 0.05, "internal_damping": 1.0}
     system, span = rod_system("overhang", 1, **numbers), (1500.0, 1900.0)
     (resonance,) = el.resonances(system, span)
@@ -317,9 +316,3 @@ def test_series_of_a_tongue_and_exponents_see_d():
         value, truth = getattr(found, end), getattr(exact, end)[0]
         assert abs(value - truth) < found.error
         assert abs(getattr(without, end) - truth) > 30 * found.error
-    both = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 200.0})
-    multipliers = el.floquet_multipliers(both, 700.0).multipliers
-    exponents = el.hill_exponents(both, 700.0).exponents
-    # By their characteristic polynomials, which know no order.
-    found = np.poly(np.exp(2 * np.pi * exponents))
-    np.testing.assert_allclose(found, np.poly(multipliers), rtol=0, atol=1e-10)

@@ -1,1 +1,0 @@
-"""Tongues of coupled systems as series in a parameter and the detuning."""

@@ -1,0 +1,678 @@
+"""Exact boundaries of the unstable regions of Hill's equation, with damping or without.
+
+On a boundary of the n-th region the equation has a solution of period 2 pi (n even) or one that
+changes sign after 2 pi (n odd): the boundaries lam2 are the real eigenvalues of
+``k^2 - 2 K d/d theta - mu f`` in the basis cos k theta, sin k theta, k whole or half-whole.
+
+With y = exp(-K theta) u the equation becomes u'' + (lam2 - K^2 + mu f) u = 0, and the multipliers
++-1 of y belong to the half traces +-cosh(2 pi K) of u.  Within an undamped region the half trace
+of u has one extremum, so that a damped region has two ends inside it, or none; region 0 always has
+its one.  ``arccosh(max |D|) / (2 pi)`` at the extremum is the largest Floquet exponent of the
+region, and so the damping that closes it.
+
+Damping makes the matrix unsymmetric, and its eigenvalues ill-conditioned: the solutions and those
+of the adjoint equation grow and fall like exp(K theta) over a turn.  The half trace has no such
+weakness, and serves where damping is strong, or where a region that the matrix takes for closed
+may be open within its rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev as series
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.chebyshev import analysis, nodes
+from ..core.errors import BadInput, bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check, DeferredChecks, Result, provenance
+from .checks import arguments, axes_over, check_function, check_regions
+from .fourier_matrix import CHUNK, banded, stacked, truncation
+from .half_trace import discriminant, growth_rate
+from .meissner import Meissner, meissner_ends
+from .transfer import EPS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+# Matrices larger than this, and so many times larger than their band, are reduced as bands.
+_BANDED, _SPARSE = 160, 4
+# Ends whose half trace is compared with its level, and the step of the differences there.  The
+# errors are estimates, and slope and curvature come from differences.
+_SAMPLE, _STEP, LIMIT = 24, 1e-4, 4.0
+# exp(2 pi 80) leaves room for the rest of the arithmetic in doubles.
+_GROWTH = 80.0
+# Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
+_STRONG = 0.5
+# The square of K is added to lam2.
+_LARGEST = 1e100
+# A complex pair whose imaginary part is below so much of its round-off is sent to the half trace.
+_NEARLY = 4.0
+# Logarithms of ratios beyond this are all alike.
+_FAR = 700.0
+# Proposals of the error of a crossing, each so many times the one before.
+_STEPS, _RATIO = 40, 3.0
+# Half the length over which a narrow region is resolved, and what narrow means: far enough from
+# all nodes that the half trace less its level keeps its digits there.
+_RESOLVED, _NARROW = 0.25, 0.01
+_NODES, _MOST_NODES = 16, 256
+# Half traces at a time: beyond some thousand scattered points they would be interpolated.
+_POINTS = 4096
+_TAIL = 1e-13
+# Beyond this excess of the half trace over its level the exponent is a mere logarithm.
+_LOGARITHMIC = 1e12
+
+
+class Ends(NamedTuple):
+    """Ends of regions, ``(len(regions), n)``; NaN where a region is closed, or undecided."""
+
+    lower: Array
+    upper: Array
+    error: Array
+    undecided: Mask
+
+    @classmethod
+    def nothing(cls, shape: tuple[int, ...]) -> Ends:
+        """Return NaN everywhere."""
+        lower, upper, error = np.full((3, *shape), np.nan)
+        return cls(lower, upper, error, np.zeros(shape, dtype=bool))
+
+    def put(self, where: Any, other: Ends) -> None:
+        """Fill some entries with others'."""
+        for mine, given in zip(self, other, strict=True):
+            mine[where] = given
+
+    def take(self, where: Any) -> Ends:
+        """Return some of the entries."""
+        lower, upper, error = (item[where] for item in self[:3])
+        return Ends(lower, upper, error, self.undecided[where])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Boundaries(Result):
+    """Boundaries of unstable regions of Hill's equation.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (len(regions), *mu.shape)
+        Ends in lam2 of each unstable region; NaN where damping has closed it, or where that cannot
+        be told (a check fails).
+    error : ndarray, shape (len(regions), *mu.shape)
+        Estimate of the absolute error, valid for both ends; NaN where they are.
+    regions : tuple of int
+        Numbers n; the region starts at lam2 = n^2/4 at mu = 0.
+    mu, damping : ndarray
+        As given, in their broadcast shape.
+    """
+
+    lower: Array
+    upper: Array
+    regions: tuple[int, ...]
+    mu: Array
+    damping: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("lower", "upper", "error"), ("region", "mu")),
+        "regions": ("region",),
+        **dict.fromkeys(("mu", "damping"), ("mu",)),
+    }
+
+    @property
+    def width(self) -> Array:
+        """Width of each region in lam2, same shape as ``lower``."""
+        return self.upper - self.lower
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Shade the regions over (lam2, mu), mu upwards.
+
+        Raises
+        ------
+        BadInput
+            If mu is not one-dimensional.
+        """
+        ax = axes_over(ax, "Boundaries.plot", "mu", self.mu)
+        for low, high in zip(self.lower, self.upper, strict=True):
+            line, other = ax.plot(np.stack([low, high], axis=1), self.mu)
+            other.set_color(line.get_color())
+            ax.fill_betweenx(self.mu, low, high, color=line.get_color(), alpha=0.3)
+        ax.set_xlabel(r"$\lambda^2$")
+        ax.set_ylabel(r"$\mu$")
+        return ax
+
+
+def hill_boundaries(
+    f: PeriodicFunction | Meissner,
+    mu: ArrayLike,
+    regions: Sequence[int] = (1, 2),
+    damping: ArrayLike = 0.0,
+    certified: bool = False,
+) -> Boundaries:
+    """Return the exact boundaries of unstable regions of y'' + 2 K y' + (lam2 + mu f) y = 0.
+
+    Parameters
+    ----------
+    f : PeriodicFunction or Meissner
+        Coefficient of period 2 pi; of two levels the boundaries are in closed form.
+    mu : array_like
+        Any shape, any sign.
+    regions : sequence of int
+        Numbers n >= 0.  Region n >= 1 starts at lam2 = n^2/4 at mu = 0.  Region 0 reaches from
+        minus infinity to the lowest eigenvalue of period 2 pi: ``lower`` is -inf.
+    damping : array_like
+        K of Smith (7.38), at least zero; broadcasts with mu.
+    certified : bool
+        Prove every end: the result is a :class:`CertifiedBoundaries`, whose ``error`` is a bound
+        (of the equation whose f has the coefficients as given: its own ``f.error`` stands apart
+        in ``function_error``), with enclosures narrower than doubles can show.  Exact integer
+        arithmetic; some ten to a hundred times slower.  Touching ends are enclosed as a pair; with
+        damping an open region is proved open and a closed one closed, and where neither succeeds,
+        next to the tip or under strong damping in deep wells, a check fails.
+
+    Returns
+    -------
+    Boundaries
+        ``lower``, ``upper`` and ``error`` of shape ``(len(regions), *mu.shape)`` (the broadcast
+        shape of mu and damping).  NaN where damping has closed a region, and, with a check that
+        fails, where K is so close to the value that closes it that doubles do not decide.  Its
+        other check compares the half trace at up to 24 of the ends with the level of the
+        boundary; it takes several times as long as one slice and is made when ``checks`` (or
+        ``passed``) is first looked at.
+
+    Raises
+    ------
+    BadInput
+        If an argument is not finite, a region is not a whole number >= 0, K is negative or beyond
+        1e100, the truncated matrix would need more than 2048 harmonics, or (certified) double
+        precision does not tell the eigenvalues apart.
+
+    Notes
+    -----
+    Smith 7.1.3 and 7.1.4: the curves that (7.37) and (7.48) approximate.  Without damping, what the
+    truncated matrix leaves out lowers the eigenvalues by a proved amount (about 1e-13 or less, see
+    :func:`.fourier_matrix.truncation`); the error adds an estimate of round-off and the error of
+    ``f``, so that the whole is an estimate.  With damping each region lies within the undamped one
+    moved by K^2 (the half trace has one extremum in each), which is how its real eigenvalues get
+    their number.  Near the tip of a damped region the two ends depend on the data through a square
+    root, and the error grows accordingly.  The eigenvalues lose digits as K grows; beyond K = 0.5
+    the ends are roots of the half trace, a hundred times slower for a single slice.
+    """
+    if certified or not isinstance(f, Meissner):
+        check_function(f)
+    numbers = check_regions(regions)
+    (amp, k), shape = arguments(mu=mu, damping=damping)
+    if not isinstance(certified, bool | np.bool_):
+        raise bad("certified", repr(certified), "True or False", "choose one")
+    if certified and isinstance(f, PeriodicFunction):
+        from .certified import certified_boundaries
+
+        mus, drags = np.broadcast_arrays(amp, k)
+        return certified_boundaries(f, mus, drags, numbers)
+    flat, friction = (np.broadcast_to(item, shape).ravel() for item in (amp, k))
+    ends = _ends(f, flat, friction, numbers)
+    full = (len(numbers), *shape)
+    return Boundaries(
+        method="zeros of Meissner's factors" if isinstance(f, Meissner) else "Hill matrix",
+        error=ends.error.reshape(full),
+        error_norm="absolute, entrywise, for either end",
+        checks=DeferredChecks(partial(_checks, f, flat, friction, numbers, ends)),
+        provenance=provenance(),
+        lower=ends.lower.reshape(full),
+        upper=ends.upper.reshape(full),
+        regions=numbers,
+        mu=flat.reshape(shape),
+        damping=friction.reshape(shape),
+    )
+
+
+def _ends(f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...]) -> Ends:
+    """Return the ends for mu and K ``(n,)``."""
+    if not regions or not mu.size:
+        return Ends.nothing((len(regions), mu.size))
+    if isinstance(f, Meissner):
+        ends = Ends.nothing((len(regions), mu.size))
+        for i, n in enumerate(regions):
+            ends.put(i, Ends(*meissner_ends(f, mu, n), ends.undecided[i]))
+    else:
+        ends = _undamped(f, mu, regions)
+    return _damped(f, mu, k, regions, ends) if k.any() else ends
+
+
+def _undamped(f: PeriodicFunction, mu: Array, regions: tuple[int, ...]) -> Ends:
+    ends = Ends.nothing((len(regions), mu.size))
+    cut = truncation(f, float(np.abs(mu).max()), max(regions))
+    mean = -f.a[0] * mu
+    for odd in (0, 1):
+        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
+        if not rows:
+            continue
+        count = max(regions[i] for i in rows) + 1
+        values = _spectra(f, odd, cut.harmonic + odd, mu, count)
+        values += mean[:, None]
+        for i in rows:
+            n = regions[i]
+            ends.lower[i] = values[:, n - 1] if n else -np.inf
+            ends.upper[i] = values[:, n]
+    ends.error[:] = cut.left_out + cut.rounding + EPS * np.abs(mean) + f.error * np.abs(mu)
+    return ends
+
+
+def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int) -> Array:
+    """Return the lowest eigenvalues of ``k^2 - mu (f - mean)``, shape ``(n, count)``."""
+    size = 2 * harmonic + 1 - odd
+    if size > _BANDED and _SPARSE * (2 * f.harmonics + 1) < size:
+        return np.stack([_banded(f, odd, harmonic, float(m), count) for m in mu])
+    step = max(1, CHUNK // (size * size))
+    out = np.empty((mu.size, count))
+    for start in range(0, mu.size, step):
+        part = slice(start, start + step)
+        out[part] = np.linalg.eigvalsh(stacked(f, odd, harmonic, mu[part]))[:, :count]
+    return out
+
+
+def _banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float, count: int) -> Array:
+    """Return the lowest eigenvalues of a matrix that is large beside its band, shape (count,)."""
+    from scipy.linalg import eig_banded
+
+    whole = banded(f, odd, harmonic, mu)
+    few = 8 * count < whole.shape[1]
+    wanted: dict[str, Any] = {"select": "i", "select_range": (0, count - 1)} if few else {}
+    values = eig_banded(whole, lower=True, eigvals_only=True, check_finite=False, **wanted)
+    return np.asarray(values[:count])
+
+
+# ---------------------------------------------------------------- the half trace as a check
+
+
+def _checks(
+    f: PeriodicFunction | Meissner, mu: Array, damping: Array, regions: tuple[int, ...], ends: Ends
+) -> Mapping[str, Check]:
+    """Count undecided regions, and compare half traces at a sample of ends with their level."""
+    checks: dict[str, Check] = {}
+    if np.any(ends.undecided):
+        undecided = float(np.count_nonzero(ends.undecided))
+        checks["regions neither open nor closed"] = Check(undecided, 0.0)
+    both = np.stack([ends.lower, ends.upper])
+    places = np.argwhere(np.isfinite(both))
+    if len(places):
+        side, row, column = sample_of(places)
+        sign = np.where(np.asarray(regions)[row] % 2 == 0, 1.0, -1.0)
+        k = damping[column]
+        level = sign * 0.5 * (1.0 + np.exp(-4.0 * np.pi * k))
+        checks["half trace at the ends over what the errors explain"] = half_trace_check(
+            f, both[side, row, column], ends.error[row, column], mu[column], k, level
+        )
+    return checks
+
+
+def sample_of(places: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return an even sample of places ``(n, d)``, its ends included, by coordinate."""
+    chosen = np.unique(np.linspace(0, len(places) - 1, min(_SAMPLE, len(places))).round())
+    return np.asarray(places[chosen.astype(int)].T)
+
+
+def half_trace_check(
+    f: PeriodicFunction | Meissner,
+    lam2: Array,
+    error: Array,
+    mu: Array,
+    damping: Array,
+    level: Array,
+) -> Check:
+    """Compare half traces with what they should be, over what the errors explain; all ``(n,)``.
+
+    Explained are slope times error, half the curvature times its square (the slope vanishes where
+    a region is closed), and the error of the half trace.  NaN, which fails, where the half trace
+    cannot be computed.
+    """
+    step = _STEP * (1.0 + np.sqrt(np.abs(lam2)))
+    # Where solutions grow beyond doubles, more damping takes the growth away from all of them.
+    growth = growth_rate(f, lam2 - damping * damping, mu)
+    drag = np.where(growth > _GROWTH, np.maximum(growth, damping), damping)
+    place = lam2 + (drag - damping) * (drag + damping)
+    try:
+        half = discriminant(f, place + step * np.array([[-1.0], [0.0], [1.0]]), mu, drag)
+    except BadInput:
+        return Check(np.nan, LIMIT)
+    level = level * np.exp(2.0 * np.pi * (damping - drag))
+    with np.errstate(invalid="ignore", over="ignore"):
+        before, at, after = half.value
+        slope = np.abs(after - before) / (2.0 * step)
+        bend = np.abs(after - 2.0 * at + before) / step**2
+        explained = (
+            slope * error + 0.5 * bend * error**2 + half.error[1] + 4.0 * EPS * np.abs(level)
+        )
+        share = np.abs(at - level) / explained
+    return Check(float(share.max()), LIMIT)
+
+
+# ---------------------------------------------------------------- with damping
+
+
+def _damped(
+    f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
+) -> Ends:
+    """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0.
+
+    Raises
+    ------
+    BadInput
+        If K is beyond 1e100.
+    """
+    if float(k.max()) > _LARGEST:
+        raise bad("damping", f"{k.max():.3g}", f"K up to {_LARGEST:g}", "scale the equation")
+    ends = Ends(sharp.lower.copy(), sharp.upper.copy(), sharp.error.copy(), sharp.undecided.copy())
+    strong = (k > 0.0) if isinstance(f, Meissner) else (k > _STRONG)
+    weak = (k > 0.0) & ~strong
+    if weak.any() and not isinstance(f, Meissner):
+        near = sharp.take(np.s_[:, weak])
+        ends.put(np.s_[:, weak], _from_matrix(f, mu[weak], k[weak], regions, near))
+    for i, n in enumerate(regions):
+        unsure = strong | ends.undecided[i]
+        if unsure.any():
+            near = sharp.take(np.s_[i, unsure])
+            ends.put(np.s_[i, unsure], _from_half_trace(f, mu[unsure], k[unsure], n, near))
+    return ends
+
+
+def _from_matrix(
+    f: PeriodicFunction, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
+) -> Ends:
+    """Return the ends by the real eigenvalues of the matrix; undecided are pairs almost real.
+
+    With y = exp(-K theta) u the multipliers +-1 of y belong to the half traces +-cosh(2 pi K) of
+    u at lam2 - K^2.  Within an undamped region the half trace of u has one extremum, so that a
+    damped region has two ends inside it, or none; region 0 always has its one.
+    """
+    low, high = sharp.lower, sharp.upper
+    shift = k * k
+    cut = truncation(f, float(np.abs(mu).max()), max(regions), float(shift.max()))
+    # The damping term is part of the norm.
+    rounding = cut.rounding * (1.0 + 2.0 * float(k.max()) * (cut.harmonic + 1) / cut.norm)
+    local = cut.left_out + rounding + f.error * np.abs(mu)
+    slack = 4.0 * local
+    ends = Ends.nothing(low.shape)
+    for odd in (0, 1):
+        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
+        if not rows:
+            continue
+        values = _complex_spectra(f, odd, cut.harmonic + odd, mu, k)
+        place = values.real - shift[:, None]
+        real = np.where(values.imag == 0.0, place, np.nan)
+        for i in rows:
+            # NaN compares false: complex eigenvalues drop out here.
+            inside = (real >= (low[i] - slack)[:, None]) & (real <= (high[i] + slack)[:, None])
+            first = np.where(inside, real, np.inf).min(axis=1)
+            last = np.where(inside, real, -np.inf).max(axis=1)
+            whole = inside.sum(axis=1) >= (1 if regions[i] == 0 else 2)
+            # Two ends that met are as far from being real as the root of what moves them.
+            blur = _NEARLY * np.sqrt(np.maximum(high[i] - low[i], slack) * slack)
+            near = (place >= (low[i] - blur)[:, None]) & (place <= (high[i] + blur)[:, None])
+            near &= np.abs(values.imag) <= blur[:, None]
+            ends.undecided[i] = ~whole & (near.any(axis=1) if regions[i] else True)
+            first, last = first[whole], last[whole]
+            ends.upper[i, whole] = last + shift[whole]
+            if regions[i] == 0:
+                ends.lower[i, whole], ends.error[i, whole] = -np.inf, local[whole]
+                continue
+            ends.lower[i, whole] = first + shift[whole]
+            ends.error[i, whole] = _near_tip(
+                local[whole], 0.5 * (last - first), 0.5 * (high[i] - low[i])[whole]
+            )
+    return ends
+
+
+def _near_tip(local: Array, half: Array, sharp_half: Array) -> Array:
+    """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
+
+    The ends follow ``sqrt(sharp_half^2 - const)``: an error of the data is magnified by
+    ``sharp_half / half``, and at the tip by the square root.
+    """
+    square = 2.0 * np.maximum(half, sharp_half) * local
+    inner = np.maximum(half * half - square, 0.0)
+    moved = np.where(inner > 0.0, half - np.sqrt(inner), np.sqrt(half * half + square))
+    return np.asarray(moved + local)
+
+
+def _complex_spectra(
+    f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array
+) -> NDArray[np.complex128]:
+    """Return all eigenvalues of ``k^2 - 2 K d/d theta - mu f``, shape ``(n, size)``."""
+    size = 2 * harmonic + 1 - odd
+    out = np.empty((mu.size, size), dtype=complex)
+    step = max(1, CHUNK // (size * size))
+    for start in range(0, mu.size, step):
+        part = slice(start, start + step)
+        stack = stacked(f, odd, harmonic, mu[part], k[part])
+        out[part] = np.linalg.eigvals(stack) - (f.a[0] * mu[part])[:, None]
+    return out
+
+
+# ---------------------------------------------------------------- strong damping
+
+
+@dataclass(frozen=True)
+class _Level:
+    """How far the half trace is above the level of region n, at its points ``(n,)``."""
+
+    f: PeriodicFunction | Meissner
+    sign: float
+    mu: Array
+    k: Array
+
+    def share(self, lam2: Array, which: Index) -> Array:
+        """Return the logarithm of half trace over level, clipped."""
+        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
+        share = self.sign * half.value / half.level
+        return np.asarray(np.log(np.clip(share, np.exp(-_FAR), np.exp(_FAR))))
+
+    def sure(self, lam2: Array, which: Index, above: bool) -> Mask:
+        """Return True where the half trace is above, or below, by more than its error."""
+        half = discriminant(self.f, lam2, self.mu[which], self.k[which])
+        gap = self.sign * half.value - half.level
+        error = np.where(np.isfinite(half.value), half.error, 0.0) + 2.0 * EPS * half.level
+        return np.asarray(gap > error if above else gap < -error)
+
+    def end(self, outer: Array, inner: Array) -> tuple[Array, Array]:
+        """Return the crossing between a place below the level and one above, and its error."""
+        turned = np.where(inner < outer, -1.0, 1.0)
+        place = turned * crossing(
+            lambda t, which: self.share(turned[which] * t, which), turned * outer, turned * inner
+        )
+        size = np.maximum(np.abs(place), self.k * self.k) + 1.0
+        error, left = 2.0 * EPS * size, np.arange(place.size)
+        for _ in range(_STEPS):
+            step = turned[left] * error[left]
+            within, beyond = place[left] + step, place[left] - step
+            # Between the undamped end and the extremum there is a crossing in any case.
+            past = turned[left] * (within - inner[left]) >= 0.0
+            before = turned[left] * (outer[left] - beyond) >= 0.0
+            good = past | self.sure(np.where(past, inner[left], within), left, above=True)
+            good &= before | self.sure(np.where(before, outer[left], beyond), left, above=False)
+            left = left[~good]
+            if not left.size:
+                break
+            error[left] *= _RATIO
+        return place, error
+
+
+def _from_half_trace(
+    f: PeriodicFunction | Meissner, mu: Array, k: Array, n: int, sharp: Ends
+) -> Ends:
+    """Return the ends of region n for mu and K ``(n,)``; undecided where K may be critical."""
+    ends = Ends.nothing(mu.shape)
+    sign, shift, slack = 1.0 if n % 2 == 0 else -1.0, k * k, sharp.error
+    if n == 0:
+        # With z = y'/y the equation says that the mean of lam2 + mu f is that of -z^2 on the end;
+        # where it is below zero all the way round, the solutions grow faster than K.
+        reach = np.abs(mu) * f.bound() * (1.0 + 4.0 * EPS)
+        most = np.minimum(sharp.upper + shift + slack, EPS * reach + slack - mu * f.mean)
+        upper, error = _Level(f, sign, mu, k).end(most, -reach - 1.0)
+        return Ends(np.full(mu.shape, -np.inf), upper, error, ends.undecided)
+    critical, peak, doubt = largest_exponent(f, n, mu, sharp)
+    ends.undecided[:] = ~(np.abs(k - critical) > doubt)
+    there = np.flatnonzero((k < critical) & ~ends.undecided)
+    if there.size:
+        level = _Level(f, sign, mu[there], k[there])
+        top = (peak + shift)[there]
+        lower, first = level.end((sharp.lower + shift - slack)[there], top)
+        upper, last = level.end((sharp.upper + shift + slack)[there], top)
+        open_ = np.zeros(there.shape, dtype=bool)
+        ends.put(there, Ends(lower, upper, np.maximum(first, last), open_))
+    return ends
+
+
+def crossing(
+    function: Callable[[Array, NDArray[np.intp]], Array], low: Array, high: Array
+) -> Array:
+    """Return the roots of functions negative at ``low`` and not at ``high``, Illinois' rule.
+
+    All points advance at once; ``function`` gets their numbers as well.
+    """
+    every = np.arange(low.size)
+    a, b = low.copy(), high.copy()
+    fa, fb = function(a, every), function(b, every)
+    side = np.zeros(low.size, dtype=np.int64)
+    x, before = b.copy(), a.copy()
+    for _ in range(100):
+        resolution = 2.0 * EPS * np.abs(x)
+        left = np.flatnonzero((np.abs(x - before) > resolution) & (np.abs(b - a) > resolution))
+        if not left.size:
+            break
+        before[left] = x[left]
+        rise = fb[left] - fa[left]
+        new = b[left] - fb[left] * (b[left] - a[left]) / np.where(rise == 0.0, 1.0, rise)
+        inside = (new >= a[left]) & (new <= b[left])
+        x[left] = np.where(inside, new, 0.5 * (a[left] + b[left]))
+        value = function(x[left], left)
+        below = value < 0.0
+        lower, upper = left[below], left[~below]
+        # An end that stays twice counts half.
+        fb[lower[side[lower] == -1]] *= 0.5
+        fa[upper[side[upper] == 1]] *= 0.5
+        a[lower], fa[lower], side[lower] = x[lower], value[below], -1
+        b[upper], fb[upper], side[upper] = x[upper], value[~below], 1
+    return x
+
+
+# ---------------------------------------------------------------- the largest exponent
+
+
+def largest_exponent(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
+    """Return the largest exponent in region n >= 1, the lam2 where it stands and its error.
+
+    For mu ``(n,)`` from the undamped ends there; shape ``(3, n)``.
+    """
+    out = np.zeros((3, mu.size))
+    narrow = sharp.upper - sharp.lower < _NARROW
+    for these, solve in ((narrow, _narrow), (~narrow, _wide)):
+        if these.any():
+            out[:, these] = solve(f, n, mu[these], sharp.take(these))
+    return out
+
+
+def _excess(
+    f: PeriodicFunction | Meissner, n: int, lam2: Array, mu: Array, drag: Array | float = 0.0
+) -> tuple[Array, Array]:
+    """Return ``(|D| - 1) exp(-2 pi drag)`` inside the region (negative beyond it) and its error."""
+    shape = lam2.shape
+    x, y, k = (np.broadcast_to(item, shape).ravel() for item in (lam2, mu, drag))
+    value, error = np.empty(x.size), np.empty(x.size)
+    for start in range(0, x.size, _POINTS):
+        part = slice(start, start + _POINTS)
+        half = discriminant(f, x[part] + np.square(k[part]), y[part], k[part])
+        value[part], error[part] = half.value, half.error
+    sign = 1.0 if n % 2 == 0 else -1.0
+    return (sign * value - np.exp(-2.0 * np.pi * k)).reshape(shape), error.reshape(shape)
+
+
+def _exponent(excess: Array) -> Array:
+    """Return ``arccosh(1 + x) / (2 pi)`` without cancellation, and without overflow."""
+    few = np.minimum(excess, _LOGARITHMIC)
+    near = np.log1p(few + np.sqrt(few * (2.0 + few)))
+    # log(2 + 2 x) from here on; the next term is 1 / (4 x^2).
+    far = np.log(np.maximum(excess, 1.0)) + np.log(2.0) + 1.0 / np.maximum(excess, 1.0)
+    return np.asarray(np.where(excess > _LOGARITHMIC, far, near) / (2.0 * np.pi))
+
+
+def _narrow(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
+    """Return K, the lam2 of the largest half trace and the error of K for narrow regions.
+
+    ``|D| - 1 = (lam2 - low)(high - lam2) g`` with g smooth across the region: g comes from points
+    well outside, where nothing cancels, and the width from the two ends.
+    """
+    low, high = sharp.lower, sharp.upper
+    centre, half = 0.5 * (low + high), 0.5 * (high - low)
+    lam2 = centre + _RESOLVED * nodes(_NODES)[:, None]
+    value, error = _excess(f, n, lam2, mu)
+    product = (lam2 - low) * (high - lam2)
+    c = analysis(_NODES) @ (value / product)
+    tail = np.abs(c[-2:]).sum(axis=0) + np.max(np.abs(error / product), axis=0)
+    slope = series.chebder(c)
+    place = np.zeros_like(centre)
+    for _ in range(6):
+        x = place * half / _RESOLVED
+        g, rise = _at(c, x), _at(slope, x) / _RESOLVED
+        place = 0.5 * (1.0 - place * place) * half * rise / g
+    g = np.maximum(_at(c, place * half / _RESOLVED), 0.0)
+    k = _exponent(half * half * (1.0 - place * place) * g)
+    rate = np.sqrt(2.0 * g) / (2.0 * np.pi)
+    doubt = rate * sharp.error + 0.5 * k * tail / np.maximum(g, EPS) + 4.0 * EPS * k
+    return np.stack([k, centre + place * half, doubt])
+
+
+def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Array:
+    """Do the same for wide regions: the half trace is interpolated across the region itself."""
+    centre, half = 0.5 * (sharp.lower + sharp.upper), 0.5 * (sharp.upper - sharp.lower)
+    count, out = _NODES, np.empty((3, mu.size))
+    growth = growth_rate(f, centre, mu)
+    drag = np.where(growth > _GROWTH, growth, 0.0)
+    left = np.arange(mu.size)
+    while left.size:
+        m, h = centre[left], half[left]
+        value, error = _excess(f, n, m + h * nodes(count)[:, None], mu[left], drag[left])
+        c = analysis(count) @ value
+        tail, most = np.abs(c[-2:]).sum(axis=0), np.abs(value).max(axis=0)
+        done = (tail <= _TAIL * most + error.max(axis=0)) | (count >= _MOST_NODES)
+        if done.any():
+            place = _peak(c[:, done])
+            x = np.maximum(_at(c[:, done], place), 0.0)
+            doubt = tail[done] + error[:, done].max(axis=0) + 4.0 * EPS * most[done]
+            k, steep = _exponent(x), np.sqrt(x) * np.sqrt(2.0 + x)
+            scaled = drag[left[done]] > 0.0
+            # arccosh of a large x of which a factor was taken out.
+            far = np.log(2.0 * np.maximum(x, np.finfo(float).tiny)) / (2.0 * np.pi)
+            k = np.where(scaled, drag[left[done]] + far, k)
+            steep = np.where(scaled, x, steep)
+            reply = doubt / np.maximum(2.0 * np.pi * steep, np.where(scaled, 0.0, EPS))
+            out[:, left[done]] = k, m[done] + h[done] * place, reply + 4.0 * EPS * k
+        left, count = left[~done], 2 * count
+    return out
+
+
+def _at(c: NDArray[Any], x: Array) -> Array:
+    """Evaluate one Chebyshev series per point."""
+    return np.asarray(series.chebval(x, c, tensor=False))
+
+
+def _peak(c: Array) -> Array:
+    """Return the place of the largest value of each series on [-1, 1]."""
+    grid = np.linspace(-1.0, 1.0, 8 * len(c) + 1)
+    values = np.asarray(series.chebval(grid, c))
+    place: Array = grid[np.argmax(values, axis=1)]
+    first, second = series.chebder(c), series.chebder(c, 2)
+    step = 2.0 / (8 * len(c))
+    for _ in range(4):
+        bend = _at(second, place)
+        move = np.where(bend < 0.0, -_at(first, place) / np.where(bend < 0.0, bend, 1.0), 0.0)
+        place = np.asarray(np.clip(place + np.clip(move, -step, step), -1.0, 1.0))
+    return place

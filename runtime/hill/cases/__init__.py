@@ -1,1 +1,0 @@
-"""Named cases: Mathieu, Whittaker and Hill, Meissner; piecewise constant coefficients."""

@@ -1,0 +1,86 @@
+"""What the functions of this room are given, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.inputs import numbers as in_doubles
+from ..core.periodic_function import PeriodicFunction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+# Harmonics of the largest Hill matrix: of some 4000 rows, seconds of work.
+LARGEST = 2048
+
+
+def finite(name: str, values: ArrayLike) -> Array:
+    """Return an array of finite numbers, or refuse by name."""
+    out = in_doubles(name, values)
+    if not np.all(np.isfinite(out)):
+        raise bad(name, "an entry that is not finite", "finite numbers", "correct the input")
+    return out
+
+
+def arguments(**given: ArrayLike) -> tuple[tuple[Array, ...], tuple[int, ...]]:
+    """Return the arguments as arrays and their broadcast shape, or refuse by name.
+
+    ``damping`` must not be negative.
+    """
+    arrays = tuple(finite(name, value) for name, value in given.items())
+    damping = arrays[list(given).index("damping")]
+    if np.any(damping < 0.0):
+        raise bad("damping", float(damping.min()), "K >= 0", "damping takes energy out")
+    try:
+        return arrays, np.broadcast_shapes(*(item.shape for item in arrays))
+    except ValueError as reason:
+        raise bad(
+            ", ".join(given),
+            f"shapes {', '.join(str(item.shape) for item in arrays)}",
+            "shapes that broadcast",
+            "reshape them, for example to (n, 1) and (1, m)",
+        ) from reason
+
+
+def check_function(f: object) -> PeriodicFunction:
+    """Return f, or refuse anything but a :class:`PeriodicFunction`."""
+    if not isinstance(f, PeriodicFunction):
+        raise bad(
+            "f",
+            type(f).__name__,
+            "a PeriodicFunction",
+            "use PeriodicFunction(a=, b=), .from_samples or .from_callable",
+        )
+    return f
+
+
+def check_regions(
+    regions: Sequence[int], least: int = 0, most: int = LARGEST, name: str = "regions"
+) -> tuple[int, ...]:
+    """Return the numbers of regions (or bands), or refuse."""
+    try:
+        numbers = tuple(int(n) for n in regions)
+        good = all(n == given and n >= least for n, given in zip(numbers, regions, strict=True))
+    except (TypeError, ValueError, OverflowError):
+        good = False
+    if not good:
+        raise bad(name, repr(regions), f"whole numbers >= {least}", "for example (1, 2)")
+    if numbers and max(numbers) > most:
+        raise bad(name, max(numbers), f"at most {most}", f"choose lower {name}")
+    return numbers
+
+
+def axes_over(ax: Axes | None, where: str, name: str, values: Array) -> Axes:
+    """Return axes, new ones by default, to draw over a line of values; refuse any other shape."""
+    from ..core.plotting import axes_or_new
+
+    if values.ndim != 1:
+        raise bad(where, f"{name} of shape {values.shape}", f"a line of {name}", "slice it")
+    return axes_or_new(ax)

@@ -1,1 +1,0 @@
-"""Exact boundaries: eigenvalues of Hill's matrix, certified enclosures, exponents, derivatives."""

@@ -1,0 +1,299 @@
+"""Meissner's equation: Hill's equation whose coefficient takes constant values in turn.
+
+On an interval of length t and constant q, ``u'' + q u = 0`` is solved in closed form; the matrix
+of a turn is the product over the intervals.  Where there are two of them, the coefficient is even
+about the middle of either; over half a turn, from one middle to the other, ``J - 1 = 2 y1' y2``
+and ``J + 1 = 2 y1 y2'`` with J the half trace: each boundary is a simple zero of one of four
+functions, and the two ends of a region come from different ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import hill_meissner
+from ..core.errors import bad
+from ..core.inputs import is_whole
+from ..core.periodic_function import PeriodicFunction
+from .checks import finite
+from .transfer import EPS, Exponents, normalised, product
+
+Array = NDArray[np.float64]
+
+_interval: Callable[..., tuple[Array, Array]] = hill_meissner.interval
+
+# Entries of all matrices of a chunk of points, so that they stay in the cache.
+_CHUNK = 2**19
+# cosh of more leaves the range of doubles; longer intervals are cut.
+_STEEPEST = 300.0
+_MOST_INTERVALS = 2**16
+_MOST_HARMONICS = 100_000
+# Halvings of an interval of a few to the resolution of doubles.
+_BISECTIONS = 40
+
+
+@dataclass(frozen=True)
+class Meissner:
+    """A coefficient f of piecewise constant values, for ``discriminant`` and its like.
+
+    ``discriminant`` and ``characteristic_exponents`` take any number of levels, and
+    ``hill_boundaries`` two (Aannaque (7.9)-(7.11), after Meissner).  A smooth f in N steps, the
+    method of Pipes and of Hsu (Aannaque 7.2.2), is
+    ``Meissner(f(2 pi (arange(N) + 0.5) / N), full(N, 2 pi / N))``.
+
+    Attributes
+    ----------
+    levels : tuple of float
+        Value of f on each interval; the first begins at theta = 0.
+    lengths : tuple of float
+        Their lengths [rad], together 2 pi.
+    """
+
+    levels: tuple[float, ...] = (1.0, -1.0)
+    lengths: tuple[float, ...] = (pi, pi)
+
+    # Of f itself, which is exact.
+    error = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse levels that are not numbers and lengths that do not make a turn."""
+        levels, lengths = finite("levels", self.levels), finite("lengths", self.lengths)
+        if levels.ndim != 1 or not levels.size or levels.shape != lengths.shape:
+            shapes = f"{levels.shape}, {lengths.shape}"
+            raise bad("Meissner", shapes, "as many lengths as levels", "give a pair of lists")
+        if lengths.min() <= 0.0 or abs(float(lengths.sum()) - 2.0 * pi) > 1e-12 * lengths.size:
+            expected = "positive lengths, together 2 pi"
+            raise bad("lengths", str(self.lengths)[:60], expected, "scale the angle")
+        if lengths.size > _MOST_INTERVALS:
+            raise bad("levels", lengths.size, f"at most {_MOST_INTERVALS}", "take fewer")
+        object.__setattr__(self, "levels", tuple(levels.tolist()))
+        object.__setattr__(self, "lengths", tuple(lengths.tolist()))
+
+    @property
+    def mean(self) -> float:
+        """Mean of f over a turn."""
+        return float(np.dot(self.levels, self.lengths)) / (2.0 * pi)
+
+    def bound(self) -> float:
+        """Return the largest size of f."""
+        return float(np.abs(self.levels).max())
+
+    def __call__(self, theta: ArrayLike) -> Array:
+        """Evaluate f at angles [rad] of any shape."""
+        place = np.mod(finite("theta", theta), 2.0 * pi)
+        ends = np.cumsum(self.lengths)[:-1]
+        return np.asarray(np.take(self.levels, np.searchsorted(ends, place, side="right")))
+
+    def function(self, harmonics: int = 64) -> PeriodicFunction:
+        """Return the Fourier series cut after a harmonic, for solvers that want one.
+
+        The coefficients fall like 1/m.  Beside a jump the sum stays half the jump away from f
+        whatever the number of harmonics, and so ``error`` is half the largest jump: for half
+        traces and boundaries far too much.
+
+        Raises
+        ------
+        BadInput
+            If ``harmonics`` is not a whole number from 1 to 100000.
+        """
+        if not is_whole(harmonics, 1, _MOST_HARMONICS):
+            expected = f"a whole number from 1 to {_MOST_HARMONICS}"
+            raise bad("harmonics", repr(harmonics), expected, "correct it")
+        m = np.arange(1, harmonics + 1)
+        a, b = np.zeros((2, harmonics + 1))
+        a[0] = self.mean
+        jumps = np.array(self.levels) - np.roll(self.levels, -1)
+        for jump, end in zip(jumps[:-1], np.cumsum(self.lengths)[:-1], strict=True):
+            # Whole turns are taken off before the multiplication by pi: exact zeros stay zeros.
+            turn = np.mod(m * (end / pi), 2.0)
+            size = jump / (pi * m)
+            a[1:] += size * np.where(turn % 1.0 == 0.0, 0.0, np.sin(turn * pi))
+            b[1:] += size * (2.0 * np.sin(0.5 * turn * pi) ** 2)
+        noise = 4.0 * EPS * (abs(self.mean) + float(np.abs(jumps).sum()) * harmonics)
+        return PeriodicFunction(a, b, error=0.5 * float(np.abs(jumps).max()) + noise)
+
+    def two(self) -> tuple[Array, Array]:
+        """Return levels and lengths where they are two, or refuse."""
+        if len(self.levels) != 2:
+            fix = "discriminant and characteristic_exponents take any number"
+            raise bad("Meissner", f"{len(self.levels)} levels", "two", fix)
+        return np.array(self.levels), np.array(self.lengths)
+
+    def half_trace_with_error(
+        self, lam2: Array, mu: Array
+    ) -> tuple[Array, Array, Exponents, Array]:
+        """Return half traces and errors at points ``(n,)``; see :class:`.transfer.Transfer`."""
+        n = lam2.size
+        value, error, defect = np.empty(n), np.empty(n), np.empty(n)
+        exponent: Exponents = np.zeros(n, dtype=np.int64)
+        step = max(1, _CHUNK // (8 * len(self.levels)))
+        for start in range(0, n, step):
+            part = slice(start, start + step)
+            value[part], error[part], exponent[part], defect[part] = self._product(
+                lam2[part], mu[part]
+            )
+        return value, error, exponent, defect
+
+    def _product(self, lam2: Array, mu: Array) -> tuple[Array, Array, Exponents, Array]:
+        q, t, noise = self._cut(lam2, mu)
+        m, error = _matrices(q, t[:, None], noise)
+        # Once for the product of matrices, of two terms each.
+        error += 2.0 * EPS * np.abs(m)
+        power: Exponents = np.zeros(lam2.shape, dtype=np.int64)
+        one = np.eye(2)[:, :, None] * np.ones(lam2.size)
+        before = [(one, power)]
+        for i in range(len(t)):
+            before.append(normalised(product(m[:, :, i], before[-1][0]), before[-1][1]))
+        whole, exponent = before[-1]
+        # What the error of each matrix does to the trace: |after| error |before|.
+        after, total = one, np.zeros(lam2.size)
+        for i in range(len(t) - 1, -1, -1):
+            first, scale = before[i]
+            lost = product(product(np.abs(after), error[:, :, i]), np.abs(first))
+            total += np.ldexp(lost[0, 0] + lost[1, 1], np.minimum(scale + power - exponent, 1000))
+            after, power = normalised(product(after, m[:, :, i]), power)
+        # The determinant of the whole is 1.
+        ahead, aside = whole[0, 0] * whole[1, 1], whole[0, 1] * whole[1, 0]
+        unit = np.ldexp(1.0, np.maximum(-2 * exponent, -1074))
+        defect = np.abs(ahead - aside - unit) / (np.abs(ahead) + np.abs(aside) + unit)
+        return 0.5 * (whole[0, 0] + whole[1, 1]), 0.5 * total, exponent, defect
+
+    def _cut(self, lam2: Array, mu: Array) -> tuple[Array, Array, Array]:
+        """Return levels ``(N, n)``, lengths and rounding of the levels, long intervals cut."""
+        f, t = np.array(self.levels), np.array(self.lengths)
+        moved = np.outer(f, mu)
+        q = lam2 + moved
+        noise = EPS * (np.abs(lam2) + np.abs(moved) + np.abs(q))
+        growth = np.sqrt(np.maximum(-q.min(axis=1, initial=0.0), 0.0)) * t
+        parts = np.maximum(np.ceil(growth / _STEEPEST), 1.0)
+        if not parts.sum() <= _MOST_INTERVALS:
+            expected = f"at most {_MOST_INTERVALS}"
+            raise bad("levels", f"{parts.sum():.3g} intervals", expected, "take smaller ones")
+        times = parts.astype(int)
+        return np.repeat(q, times, axis=0), np.repeat(t / parts, times), np.repeat(noise, times, 0)
+
+
+def _matrices(q: Array, t: Array, noise: Array) -> tuple[Array, Array]:
+    """Return the matrices ``(2, 2, ...)`` of intervals and the errors of their entries."""
+    c, s = _interval(q, t)
+    turned, stretched = np.abs(q * t * s), np.abs(t * c)
+    cosine = EPS * (2.0 * np.abs(c) + turned) + noise * np.abs(t * s)
+    # ds/dq is (t c - s) / (2 q), and of the order t^2 s where q is small.
+    slope = np.minimum(t * t, 0.5 / np.maximum(np.abs(q), 1e-300)) * (np.abs(s) + stretched)
+    sine = EPS * (2.0 * np.abs(s) + stretched) + noise * slope
+    lower = np.abs(q) * sine + (EPS * np.abs(q) + noise) * np.abs(s)
+    return np.array([[c, s], [-q * s, c]]), np.array([[cosine, sine], [lower, cosine]])
+
+
+# ---------------------------------------------------------------- boundaries of two levels
+
+
+class _Kind(NamedTuple):
+    """One of the four functions whose zeros are boundaries."""
+
+    row: int
+    column: int
+    """Which of ``y1, y2`` (columns) or of their slopes at half a turn vanishes."""
+    start: float
+    """Phase of the solution at the start: pi/2 for y1, 0 for y2."""
+    end: float
+    """Phase at the end for the lowest boundary of its kind."""
+
+
+_Y1, _Y2 = _Kind(0, 0, 0.5 * pi, pi), _Kind(0, 1, 0.0, pi)
+_Y1_SLOPE, _Y2_SLOPE = _Kind(1, 0, 0.5 * pi, 0.5 * pi), _Kind(1, 1, 0.0, 0.5 * pi)
+
+
+def meissner_ends(f: Meissner, mu: Array, n: int) -> tuple[Array, Array, Array]:
+    """Return lower and upper end of region n and their error, each ``(m,)``, without damping.
+
+    By bisection on the phase of the solution, which rises with lam2, so that no boundary is missed
+    or taken for another.
+
+    Raises
+    ------
+    BadInput
+        If there are not two levels, or mu is so large that a solution grows by more than exp(600).
+    """
+    levels, lengths = f.two()
+    most = float(np.abs(mu).max(initial=0.0))
+    if np.sqrt(most * np.ptp(levels)) * pi > 2.0 * _STEEPEST:
+        raise bad("mu", most, f"sqrt(mu * jump) * pi <= {2.0 * _STEEPEST:g}", "take less")
+    if n == 0:
+        root, error = _root(levels, lengths, mu, n, _Y1_SLOPE)
+        return np.full(mu.shape, -np.inf), root, error
+    kinds = (_Y1, _Y2_SLOPE) if n % 2 else (_Y1_SLOPE, _Y2)
+    roots, errors = zip(*(_root(levels, lengths, mu, n, kind) for kind in kinds), strict=True)
+    return np.minimum(*roots), np.maximum(*roots), np.maximum(*errors)
+
+
+def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Array]:
+    """Return the boundary of region n that belongs to one kind, with its error, each ``(m,)``."""
+    # y2 has its first zero where y1' has its second.
+    order = n // 2 - 1 if kind is _Y2 else n // 2
+    target, count = kind.end + order * pi, order + (kind.end == pi)
+    reach = np.sort(-np.outer(f, mu), axis=0)
+    size = np.abs(reach).max(axis=0)
+    low, high = (
+        0.25 * n * n + reach[i] + side * (1e-3 + EPS * size) for i, side in ((0, -1), (1, 1))
+    )
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = _phase(middle, mu, kind.start, f, t) >= target
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    # Alone between the ends now, but for the round-off of the phase: the sign of the factor knows
+    # the zero to the last digit.  Beyond it y is (-1)^j at j pi, y' of the other sign a quarter on.
+    wide = (high - low) + 64.0 * EPS * (1.0 + n) * (1.0 + np.abs(high) + size)
+    low, high = low - wide, high + wide
+    sign = (-1.0) ** (count + kind.row)
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = sign * _factor(middle, mu, kind, f, t)[0] > 0.0
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    root = 0.5 * (low + high)
+    step = 1e-6 * (1.0 + np.abs(root))
+    noise = _factor(root, mu, kind, f, t)[1]
+    ends = [_factor(root + side * step, mu, kind, f, t)[0] for side in (1.0, -1.0)]
+    slope = np.abs(ends[0] - ends[1]) / (2.0 * step)
+    return root, noise / np.maximum(slope, 1e-300) + EPS * np.abs(root) + (high - low)
+
+
+def _factor(lam2: Array, mu: Array, kind: _Kind, f: Array, t: Array) -> tuple[Array, Array]:
+    """Return the value of a factor and its round-off, each ``(m,)``."""
+    moved = np.outer(f, mu)
+    q = lam2 + moved
+    m, error = _matrices(q, 0.5 * t[:, None], EPS * (np.abs(lam2) + np.abs(moved) + np.abs(q)))
+    after, before = m[kind.row, :, 1], m[:, kind.column, 0]
+    lost = np.abs(after) * error[:, kind.column, 0] + error[kind.row, :, 1] * np.abs(before)
+    return np.asarray((after * before).sum(axis=0)), np.asarray(lost.sum(axis=0))
+
+
+def _phase(lam2: Array, mu: Array, start: float, f: Array, t: Array) -> Array:
+    """Return the phase of (y', y) after half a turn, ``(m,)``; it rises with lam2."""
+    phase = np.full(lam2.shape, start)
+    for level, length in zip(f, 0.5 * t, strict=True):
+        q = lam2 + mu * level
+        # Where the solution oscillates it turns evenly in (y'/v, y).
+        v = np.sqrt(np.maximum(q, 1e-300))
+        turned = _stretched(_stretched(phase, v) + v * length, 1.0 / v)
+        # Where it does not, it turns by less than half a turn.
+        flat = np.minimum(q, 0.0)
+        c, s = _interval(flat, length)
+        y, slope = np.sin(phase), np.cos(phase)
+        moved = np.arctan2(c * y + s * slope, c * slope - flat * s * y)
+        moved = moved + 2.0 * pi * np.rint((phase - moved) / (2.0 * pi))
+        phase = np.where(q > 0.0, turned, moved)
+    return phase
+
+
+def _stretched(phase: Array, by: Array) -> Array:
+    """Return the phase after y is multiplied by a positive factor: its quarter turn stays."""
+    turns = np.rint(phase / pi)
+    rest = phase - turns * pi
+    return np.asarray(turns * pi + np.arctan2(by * np.sin(rest), np.cos(rest)))

@@ -1,0 +1,528 @@
+"""Perturbation boundaries of Hill's equation to any order up to 8, with error estimates.
+
+Smith 7.1.3, 7.1.4 and chapter 8.  With A and B of the effective operator (:mod:`.bloch`) summed up
+to the order N, ``lam2 = n^2/4 + Re A -+ sqrt(S)`` and ``S = |B|^2 - (Im A)^2``: order 1 is (7.46),
+(7.49), order 2 the uniform form of (7.37).  The two orders beyond are known as well; they, and the
+ratio at which the components fall, show what is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import comb
+from typing import ClassVar, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.inputs import is_whole
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check, provenance
+from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
+from .boundaries import Boundaries
+from .checks import arguments, check_function, check_regions
+from .transfer import EPS
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Mask = NDArray[np.bool_]
+Form = Literal["uniform", "series"]
+
+# The series is taken to converge while its components fall at least so fast from one to the next,
+# and while what is left out stays below this share of the distance to the next level.
+CONTRACTION, _SHARE = 0.9, 0.5
+# The observed ratio is that of few orders: the ratio of those to come may be larger.
+_CAUTION = 1.25
+# Factor on the two orders beyond: their sum is the larger part of what is left out.
+_DOUBT = 2.0
+# A coupling below so much of the largest that it could be is taken for round-off of zero.
+_CANCELLED = 1e-14
+# Points at a time, so that the components stay in the cache.
+_CHUNK = 2**13
+# Largest number of coefficients of the highest order: about a second of work.
+_MOST_COEFFICIENTS = 2_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerturbationBoundaries(Boundaries):
+    """Boundaries of unstable regions to some order in the parameters.
+
+    Attributes
+    ----------
+    order : int
+        Highest total degree kept; K counts as a parameter of the first order.
+    form : str
+        ``"uniform"`` or ``"series"``.
+    parameters : ndarray, shape (p, *mu.shape)
+        Values of the parameters; ``mu`` is the first of them.
+    outside : ndarray of bool, shape (len(regions), *mu.shape)
+        True where the entry is flagged: the orders do not visibly converge there.
+    closed : ndarray of bool, shape (len(regions), *mu.shape)
+        True where the ends are NaN because damping closes the region.
+    undecided : ndarray of bool, shape (len(regions), *mu.shape)
+        True where open and closed are both within the error.
+    """
+
+    order: int
+    form: str
+    parameters: Array
+    outside: Mask
+    closed: Mask
+    undecided: Mask
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **Boundaries.dimensions,
+        "parameters": ("parameter", "mu"),
+        **dict.fromkeys(("outside", "closed", "undecided"), ("region", "mu")),
+    }
+
+
+def perturbation_boundaries(
+    f: PeriodicFunction | Sequence[PeriodicFunction],
+    mu: ArrayLike | Sequence[ArrayLike],
+    regions: Sequence[int] = (1, 2),
+    order: int = 1,
+    damping: ArrayLike = 0.0,
+    form: Form = "uniform",
+    outside: Literal["nan", "value"] = "nan",
+) -> PerturbationBoundaries:
+    """Return the boundaries of unstable regions to an order in the parameters (and K).
+
+    The equation is ``y'' + 2 K y' + (lam2 + mu f) y = 0``, or with several parameters
+    ``y'' + 2 K y' + (lam2 + sum_k mu[k] f[k]) y = 0``.
+
+    Parameters
+    ----------
+    f : PeriodicFunction or sequence of PeriodicFunction
+        Coefficient of period 2 pi, or one for each parameter.
+    mu : array_like or sequence of array_like
+        Any shape, any sign; with several functions one entry for each, which broadcast.
+    regions : sequence of int
+        Numbers n >= 0; region 0 has ``lower`` = -inf.
+    order : int
+        1 to 8: highest total degree in the parameters and K that is kept.
+    damping : array_like
+        K of Smith (7.38), at least zero; broadcasts with mu.
+    form : {"uniform", "series"}
+        ``"uniform"``: ``lam2 = n^2/4 + Re A -+ sqrt(|B|^2 - (Im A)^2)`` with A and B to the
+        order, which holds right through the tip of a damped tongue and where c_n vanishes.
+        ``"series"``: the root is expanded as well, ``n^2/4 + alpha_1 mu + alpha_2 mu^2 ...``.
+    outside : {"nan", "value"}
+        What stands where the orders do not visibly converge: NaN, or the number all the same,
+        with an infinite error.
+
+    Returns
+    -------
+    PerturbationBoundaries
+        ``lower``, ``upper`` and ``error`` of shape ``(len(regions), *shape)``, where shape is
+        the broadcast shape of the parameters and damping.  NaN where damping closes the region
+        (``closed``) and where the entry is flagged (``outside``); ``undecided`` where the error
+        covers both open and closed.  Checks: the largest error over half the width that the
+        region has without drag, and the number of flagged entries.
+
+    Raises
+    ------
+    BadInput
+        If an argument is not finite, a region is not a whole number >= 0, K is negative, the
+        order is not 1 to 8, functions and parameters do not match, or the coefficients to the
+        order would be too many to hold.
+
+    Notes
+    -----
+    Smith (7.23)-(7.25), (7.35), (7.37), (7.46)-(7.50), (8.39)-(8.43), to any order by Bloch's
+    recursion (:mod:`.bloch`).  The error is made of the two orders that follow, of a geometric
+    remainder at the ratio at which the orders are seen to fall, of round-off and of the error of
+    f, all carried through the square root.  An entry is flagged where that ratio, with a margin of
+    a quarter, reaches 0.9, or the error half the distance to the neighbouring level of the same
+    period.
+    """
+    functions, values = parameters_of(f, mu)
+    numbers = check_regions(regions)
+    check_order(order)
+    if form not in ("uniform", "series"):
+        raise bad("form", repr(form), "'uniform' or 'series'", "choose one")
+    if outside not in ("nan", "value"):
+        raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
+    amps, k, shape = amplitudes_of(values, damping)
+    flat = np.stack([np.broadcast_to(item, shape).ravel() for item in (*amps, k)])
+    count = flat.shape[1]
+    lower, upper, error = np.empty((3, len(numbers), count))
+    flagged, closed, undecided = np.empty((3, len(numbers), count), dtype=bool)
+    share = 0.0
+    with np.errstate(all="ignore"):
+        points = _Points(functions, flat, int(order))
+        for i, n in enumerate(numbers):
+            operator = points.operator(n)
+            for start in range(0, count, _CHUNK):
+                part = slice(start, start + _CHUNK)
+                ends, split = points.ends(operator, part, uniform if form == "uniform" else series)
+                share = max(share, split)
+                half = ends.half
+                if outside == "nan" and ends.outside.any():
+                    half = np.where(ends.outside, np.nan, half)
+                np.add(ends.centre, half, out=upper[i, part])
+                gone = np.isnan(upper[i, part])
+                lower[i, part] = ends.centre - half if n else np.where(gone, np.nan, -np.inf)
+                error[i, part] = np.where(ends.outside, np.inf, ends.error)
+                error[i, part][gone] = np.nan
+                flagged[i, part], undecided[i, part] = ends.outside, ends.undecided
+                closed[i, part] = gone & ~ends.outside
+    full = (len(numbers), *shape)
+    checks = {"entries outside the estimated range": Check(float(np.count_nonzero(flagged)), 0.0)}
+    if share > 0.0:
+        checks["error over half the width"] = Check(share, 1.0)
+    at = flat.reshape(len(flat), *shape)
+    return PerturbationBoundaries(
+        method=f"perturbation, order {order}, {form}",
+        error=error.reshape(full),
+        error_norm="absolute, entrywise, for either end",
+        checks=checks,
+        provenance=provenance(),
+        lower=lower.reshape(full),
+        upper=upper.reshape(full),
+        regions=numbers,
+        mu=np.asarray(at[0]),
+        damping=np.asarray(at[-1]),
+        order=int(order),
+        form=form,
+        parameters=at[:-1],
+        outside=flagged.reshape(full),
+        closed=closed.reshape(full),
+        undecided=undecided.reshape(full),
+    )
+
+
+def check_order(order: object) -> None:
+    """Refuse an order that is not a whole number from 1 to 8."""
+    if not is_whole(order, 1, HIGHEST):
+        expected = f"a whole number from 1 to {HIGHEST}"
+        raise bad("order", repr(order), expected, "use hill_boundaries for the exact boundaries")
+
+
+def parameters_of(
+    f: PeriodicFunction | Sequence[PeriodicFunction], mu: ArrayLike | Sequence[ArrayLike]
+) -> tuple[tuple[PeriodicFunction, ...], tuple[ArrayLike, ...]]:
+    """Return functions and the values of their parameters, one each."""
+    if isinstance(f, PeriodicFunction):
+        return (f,), (mu,)  # type: ignore[return-value]
+    if not isinstance(f, Sequence) or not f:
+        check_function(f)
+    functions = tuple(f)
+    for item in functions:
+        check_function(item)
+    if not isinstance(mu, Sequence | np.ndarray) or len(mu) != len(functions):
+        raise bad(
+            "mu",
+            f"{len(mu)} entries" if isinstance(mu, Sequence | np.ndarray) else "one number",
+            f"one entry for each of the {len(functions)} functions",
+            "pass mu=[eps_1, eps_2, ...]",
+        )
+    return functions, tuple(mu)
+
+
+def amplitudes_of(
+    values: tuple[ArrayLike, ...], damping: ArrayLike
+) -> tuple[list[Array], Array, tuple[int, ...]]:
+    """Return the parameters as arrays, the damping, and the shape that they broadcast to."""
+    named = {f"mu[{i}]" if len(values) > 1 else "mu": v for i, v in enumerate(values)}
+    (*amps, k), shape = arguments(**named, damping=damping)
+    return amps, k, shape
+
+
+def combined(functions: tuple[PeriodicFunction, ...], values: Array) -> PeriodicFunction:
+    """Return the sum of functions times their parameters, with the rounding in its error."""
+    parts = [item * float(v) for item, v in zip(functions, values, strict=True)]
+    if len(parts) == 1:
+        return parts[0]
+    whole = sum(parts[1:], parts[0])
+    # The parts may cancel: their rounding is an error of what is left.
+    rounding = EPS * sum(item.bound() for item in parts)
+    return PeriodicFunction(whole.a, whole.b, whole.error + rounding)
+
+
+class _Points:
+    """The points of one call, ``(p + 1, n)`` with K last, and what all regions share."""
+
+    def __init__(self, functions: tuple[PeriodicFunction, ...], points: Array, order: int) -> None:
+        self.order = order
+        self.damped = bool(np.any(points[-1] > 0.0))
+        if len(functions) > 1 and points.shape[1] == 1:
+            # Several parameters at a single point are one.
+            sizes = [
+                item.bound() * abs(v) for item, v in zip(functions, points[:-1, 0], strict=True)
+            ]
+            if max(sizes) < 1e100:
+                functions = (combined(functions, points[:-1, 0]),)
+                points = np.stack([np.ones(1), points[-1]])
+        size = np.abs(points[:-1])
+        bounds, errors, means = (
+            np.array(row)[:, None]
+            for row in zip(*((g.bound(), g.error, abs(g.mean)) for g in functions), strict=True)
+        )
+        self.reach = (bounds * size).sum(axis=0)
+        self.strength = ((bounds - means) * size).sum(axis=0)
+        self.data = (errors * size).sum(axis=0)
+        self.functions, self.points = functions, points
+
+    def operator(self, n: int) -> EffectiveOperator:
+        """Return the effective operator of region n, or refuse where it would be too large."""
+        order, count = self.order + BEYOND, len(self.functions) + self.damped
+        harmonics = max(item.harmonics for item in self.functions)
+        size = comb(order + count - 1, count - 1) * (order * harmonics + n + 1)
+        if size > _MOST_COEFFICIENTS:
+            raise bad(
+                "perturbation_boundaries",
+                f"order {self.order}, {harmonics} harmonics, {count} parameters",
+                f"at most {_MOST_COEFFICIENTS} coefficients ({size} would be needed)",
+                "truncate the functions, lower the order or combine the parameters",
+            )
+        return effective_operator(self.functions, n, order, self.damped)
+
+    def ends(
+        self,
+        operator: EffectiveOperator,
+        part: slice,
+        form: Callable[[Components], SeriesEnds],
+    ) -> tuple[SeriesEnds, float]:
+        """Return the ends at some points, and the largest share of the error in half the width."""
+        points = self.points[:, part] if self.damped else self.points[:-1, part]
+        k, n = self.points[-1, part], operator.n
+        if not np.all(np.isfinite(points)):
+            raise bad("mu", "an entry that is not finite", "finite numbers", "correct the input")
+        a, b = operator.components(points)
+        noise = 4.0 * EPS * (0.25 * n * n + self.reach[part] + n * k) + self.data[part]
+        strength = self.strength[part] + 2.0 * k * (n + 1)
+        ends = form(Components(n, self.order, a, b, noise, strength, k > 0.0))
+        split = np.abs(b[: self.order].sum(axis=0))
+        wide = (split > noise) & ~ends.outside & np.isfinite(ends.half)
+        shares = np.where(wide, ends.error / split, 0.0)
+        return ends, float(shares.max(initial=0.0)) if n else 0.0
+
+
+# ---------------------------------------------------------------- from components to ends
+
+
+class SeriesEnds(NamedTuple):
+    """Ends of one region at points ``(n,)``."""
+
+    centre: Array
+    """Real part of the diagonal, n^2/4 included."""
+    half: Array
+    """Half the width; NaN where damping closes the region."""
+    error: Array
+    """Estimate of the absolute error of ``centre - half`` and ``centre + half``."""
+    outside: Mask
+    """True where the series does not converge visibly, so that ``error`` means nothing."""
+    undecided: Mask
+    """True where open and closed are both within what is left out."""
+
+
+class Components(NamedTuple):
+    """Components of A and B at points, and what is known about their errors."""
+
+    region: int
+    order: int
+    diagonal: Complex
+    """``A_k``, shape (N + 2, n); the real part of ``A_1`` is the shift ``-mean``, exact."""
+    coupling: Complex
+    """``B_k``, likewise."""
+    noise: Array
+    """Error of A and B from round-off and from the data."""
+    strength: Array
+    """Majorant of the periodic part and the drag."""
+    damped: Mask
+    """Where K > 0: there alone may a region be closed."""
+
+    @property
+    def distance(self) -> float:
+        """Distance of the resonant level from the nearest one of the same period."""
+        return float({0: 1, 1: 2}.get(self.region, self.region - 1))
+
+
+class Sums(NamedTuple):
+    """Sums of the components to the order, and estimates of what is left out of them."""
+
+    centre: Array
+    """``n^2/4 + Re A``."""
+    drag: Array
+    """``|Im A|``."""
+    split: Array
+    """``|B|``."""
+    moved: Array
+    """Error of Re A."""
+    turned: Array
+    """Error of Im A."""
+    spread: Array
+    """Error of B."""
+    ratio: Array
+    """Ratio at which the components fall, with its margin."""
+
+    @property
+    def square(self) -> Array:
+        """``S = |B|^2 - (Im A)^2``; as a product, so that nothing cancels beyond the data."""
+        return (self.split - self.drag) * (self.split + self.drag)
+
+    @property
+    def fewest(self) -> Array:
+        """The least that S may be."""
+        low, high = np.maximum(self.split - self.spread, 0.0), self.drag + self.turned
+        return np.asarray((low - high) * (low + high))
+
+    @property
+    def most(self) -> Array:
+        """The most that S may be."""
+        high, low = self.split + self.spread, np.maximum(self.drag - self.turned, 0.0)
+        return np.asarray((high - low) * (high + low))
+
+    def root(self) -> tuple[Array, Array]:
+        """Return the root of S, 0 where that is negative, and its error."""
+        half = np.sqrt(np.maximum(self.square, 0.0))
+        outer = np.sqrt(np.maximum(self.most, 0.0)) - half
+        inner = half - np.sqrt(np.maximum(self.fewest, 0.0))
+        return half, np.maximum(outer, inner)
+
+    @classmethod
+    def of(cls, parts: Components) -> Sums:
+        """Sum up."""
+        order, a, b = parts.order, parts.diagonal, parts.coupling
+        sizes = np.abs(a) + np.abs(b)
+        sizes[0] = np.abs(a[0].imag) + np.abs(b[0])
+        ratio = _CAUTION * contraction(sizes, parts.distance)
+        # Orders of one parity say nothing of the other: a step of V and R at its largest does.
+        step = np.minimum(2.0 * parts.strength / parts.distance, 0.2)
+        rest = _geometric(sizes, np.maximum(ratio, step)) + parts.noise
+        moved = _DOUBT * np.abs(a[order:].real).sum(axis=0) + rest
+        turned = _DOUBT * np.abs(a[order:].imag).sum(axis=0) + rest
+        spread = _DOUBT * np.abs(b[order:]).sum(axis=0) + rest
+        centre = 0.25 * parts.region**2 + a[:order].real.sum(axis=0)
+        drag, split = np.abs(a[:order].imag.sum(axis=0)), np.abs(b[:order].sum(axis=0))
+        return cls(centre, drag, split, moved, turned, spread, ratio)
+
+
+def uniform(parts: Components) -> SeriesEnds:
+    """Return the ends from the sums of A and B themselves, right through the tip of a tongue."""
+    sums = Sums.of(parts)
+    if parts.region == 0:
+        return _judged(parts, sums, np.zeros_like(sums.centre), sums.moved, sums.ratio)
+    half, error = sums.root()
+    half[parts.damped & (sums.square < 0.0)] = np.nan
+    return _judged(parts, sums, half, sums.moved + error, sums.ratio)
+
+
+def series(parts: Components) -> SeriesEnds:
+    """Return the ends from the root of S expanded along the ray of the parameters.
+
+    Smith's alpha_1, alpha_2, ...; S begins with the degree 2 s, and the expansion fails where that
+    first component is not the dominant one: near the tip of a damped tongue, and where c_n almost
+    vanishes.
+    """
+    order, count = parts.order, len(parts.diagonal)
+    sums = Sums.of(parts)
+    left, ratio = np.zeros_like(sums.centre), sums.ratio.copy()
+    half = np.zeros_like(sums.centre)
+    leading = _leading(parts) if parts.region else np.full(half.shape, count + 1)
+    for s in range(1, count + 1):
+        here = leading == s
+        if not here.any():
+            continue
+        # A slice costs no copy.
+        these = slice(None) if here.all() else here
+        roots, sign, ripple = root_components(
+            parts.diagonal[:, these].imag, parts.coupling[:, these], s
+        )
+        kept = max(order - s + 1, 0)
+        terms = np.abs(roots)
+        fall = _CAUTION * _root_ratio(terms)
+        beyond = _DOUBT * terms[kept:].sum(axis=0) + _geometric(terms, fall)
+        left[these] = beyond + ripple * parts.noise[these]
+        total = np.asarray(roots[:kept].sum(axis=0))
+        half[these] = np.where((sign < 0.0) & (kept > 0), np.nan, total)
+        ratio[these] = np.maximum(ratio[these], fall)
+    # The first component decides by its sign; where the sums are sure of the opposite it misleads.
+    misled = parts.damped & np.where(np.isnan(half), sums.fewest > 0.0, sums.most < 0.0)
+    ratio[misled] = np.inf
+    if parts.region:
+        # The uniform form is at hand: what lies between the two, and its own error.
+        other, error = sums.root()
+        left = np.maximum(left, np.abs(np.nan_to_num(half) - other) + error)
+    return _judged(parts, sums, half, sums.moved + left, ratio)
+
+
+def _judged(parts: Components, sums: Sums, half: Array, error: Array, ratio: Array) -> SeriesEnds:
+    inside = (ratio < CONTRACTION) & (error < _SHARE * parts.distance)
+    inside &= np.isfinite(sums.centre)
+    undecided = inside & parts.damped & (sums.fewest < 0.0) & (sums.most >= 0.0)
+    return SeriesEnds(sums.centre, half, error, ~inside, undecided & (parts.region > 0))
+
+
+def contraction(sizes: Array, reference: Array | float) -> Array:
+    """Return the ratio at which components fall, from their sizes ``(M, n)``.
+
+    The larger of two measures, each of which takes the last two components together since every
+    other one may vanish: the roots of their ratios to a ``reference`` of order zero, and the root
+    of their ratio to the two before.
+    """
+    count = len(sizes)
+    ratio: Array = np.zeros(sizes.shape[1:])
+    for k in (count - 1, count):
+        ratio = np.maximum(ratio, (sizes[k - 1] / reference) ** (1.0 / k))
+    last = np.maximum(sizes[-1], sizes[-2])
+    before = np.maximum(sizes[-3], sizes[-4] if count > 3 else reference)
+    return np.asarray(np.maximum(ratio, np.sqrt(last / np.maximum(before, np.finfo(float).tiny))))
+
+
+def _leading(parts: Components) -> NDArray[np.intp]:
+    """Return the degree s at which S begins, one more than there are where it vanishes."""
+    b, drag = np.abs(parts.coupling), np.abs(parts.diagonal.imag)
+    degree = np.arange(len(b))[:, None]
+    floor = _CANCELLED * parts.strength * (parts.strength / parts.distance) ** degree
+    floor[0] = 0.0
+    # Without damping Im A is of higher order than B.
+    there = (b > floor) | ((drag > floor) & parts.damped)
+    return np.where(there.any(axis=0), there.argmax(axis=0) + 1, len(b) + 1)
+
+
+def root_components(drag: Array, coupling: Complex, s: int) -> tuple[Array, Array, Array]:
+    """Return the components s ... M of the root of +-S, that sign, and what magnifies errors."""
+    count, first = len(drag) - s + 1, s - 1
+    scale = np.abs(coupling[first]) + np.abs(drag[first])
+    # A power of two, so that squares stay within the range of doubles and no digit changes.
+    unit = np.ldexp(1.0, np.frexp(scale)[1])
+    real, imaginary, drag = coupling.real / unit, coupling.imag / unit, drag / unit
+    squares = np.zeros((count, drag.shape[1]))
+    for j in range(count):
+        for i in range(first, first + j // 2 + 1):
+            other = 2 * first + j - i
+            product = real[i] * real[other] + imaginary[i] * imaginary[other]
+            product -= drag[i] * drag[other]
+            squares[j] += product if i == other else 2.0 * product
+    # The root of a negative first component is imaginary, and with it all the others.
+    sign = np.sign(squares[0])
+    out = np.zeros(squares.shape)
+    out[0] = np.sqrt(np.abs(squares[0]))
+    for j in range(1, count):
+        inner = sum((out[i] * out[j - i] for i in range(1, j)), np.zeros(drag.shape[1]))
+        out[j] = (sign * squares[j] - inner) / (2.0 * out[0])
+    return out * unit, sign, np.asarray(scale / unit / out[0])
+
+
+def _root_ratio(terms: Array) -> Array:
+    """Return the ratio at which the components of the root fall, relative to its first one."""
+    first = np.maximum(terms[0], np.finfo(float).tiny)
+    ratio: Array = np.zeros(terms.shape[1:])
+    for k in {1, len(terms) - 2, len(terms) - 1} & set(range(1, len(terms))):
+        ratio = np.maximum(ratio, (terms[k] / first) ** (1.0 / k))
+    return ratio
+
+
+def _geometric(sizes: Array, ratio: Array) -> Array:
+    """Return the sum of what follows the last component at a ratio, infinite from 1 on."""
+    # The last two may both be small by chance: those before them count as well.
+    last = np.maximum(sizes[-1], sizes[-min(2, len(sizes))])
+    for k in range(3, min(len(sizes), 4) + 1):
+        last = np.maximum(last, sizes[-k] * ratio ** (k - 1))
+    below = np.minimum(ratio, 1.0)
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.where(last > 0.0, _DOUBT * last * below / (1.0 - below), 0.0))

@@ -1,1 +1,0 @@
-"""Boundaries to an order in the parameters, from the emitted recursion."""

@@ -1,0 +1,549 @@
+"""Boundaries of a region as power series in mu, and as formulas in LaTeX: sums over harmonics.
+
+The formulas are the words of the emitted recursion, taken between resonant harmonics.  With the
+Fourier coefficients ``c_m = (a_m - i b_m)/2`` of all that multiplies y (the parameters included),
+V takes harmonic l to harmonic m with the factor ``-c_(m-l)``, P keeps the harmonics 0 and n, and a
+power of R brings ``(-1)^k / (m (m - n))^k``.  Sums over P are written out.  The mean ``c_0`` moves
+the boundaries as a whole and is taken out of V; so each step changes the harmonic, unless there is
+damping, which brings ``-2 i K (m - n/2)``.  The formulas say so: in their sums
+``c_(m-l)`` is 0 for m = l.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import hill_recursion
+from ..core.errors import bad
+from ..core.inputs import is_whole
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check, Result, provenance
+from .bloch import HIGHEST_ORDER, effective_operator
+from .boundaries import hill_boundaries
+from .checks import check_function, check_regions
+from .perturbation import root_components
+from .transfer import EPS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+Array = NDArray[np.float64]
+
+# Origins of theta that show the round-off: the boundaries do not depend on it.
+_ORIGINS = (0.0, 1.0, 2.0, 3.0, 4.0)
+_CAUTION = 8.0
+# Roundings of the leading component of the root, which all others hang on.
+_LEADING = 4.0 * EPS
+# A leading coefficient of the root is taken for zero where it is within the round-off of the terms
+# that make it, so many units of their size; above this share of its majorant it cannot be.
+_ROUNDED, _CLEAR = 64.0, 1e-6
+# Turns of the phases of f, harmonic by harmonic: what cancels at one does not at another.
+_PHASES = (0.7, 1.3, 2.1)
+HIGHEST_FORMULA = max(hill_recursion.WORDS)
+_WIDTH = 200  # characters of source in a line of a sum
+_POWER = re.compile(r"R(?:\^(\d+))?")
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoundarySeries(Result):
+    """``lam2 = n^2/4 + alpha_1 mu + alpha_2 mu^2 + ...`` for both boundaries of a region.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (order,)
+        alpha_1, alpha_2, ... of the boundary that is the lower and the upper one at small
+        positive mu; for negative mu they change places where the first difference is of odd order.
+        Both are the same for region 0, and where they do not part up to this order.
+    error : ndarray, shape (2, order)
+        Estimate of their absolute error.
+    region, order : int
+        Number n and highest power of mu.
+    damping_ratio : float
+        beta of ``K = beta mu``.
+    splitting : int
+        Power of mu at which the two part; 0 where they do not up to this order.
+    function : PeriodicFunction
+        As given.
+    """
+
+    lower: Array
+    upper: Array
+    region: int
+    order: int
+    damping_ratio: float
+    splitting: int
+    function: PeriodicFunction
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "lower": ("power",),
+        "upper": ("power",),
+        "error": ("end", "power"),
+    }
+
+    def latex(self, any_region: bool = False) -> str:
+        """Return both boundaries as a formula, to the order; see :func:`boundary_latex`.
+
+        Parameters
+        ----------
+        any_region : bool
+            True to have the letter n, for any region from 1, in place of the number.
+
+        Raises
+        ------
+        BadInput
+            If the order is above 6.
+        """
+        region = None if any_region else self.region
+        return boundary_latex(self.order, region, self.damping_ratio > 0.0)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw partial sums of every order and the exact boundaries, mu upwards."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        mu = np.linspace(0.0, 1.0, 101)
+        exact = hill_boundaries(self.function, mu, (self.region,), damping=self.damping_ratio * mu)
+        start = 0.25 * self.region**2
+        pairs = ((exact.upper[0], self.upper), (exact.lower[0], self.lower))
+        for end, alpha in pairs if self.region else pairs[:1]:
+            named = "exact" if alpha is self.upper else None
+            ax.plot(end, mu, color="black", lw=1.6, label=named)
+            for k in range(1, self.order + 1):
+                partial = start + sum(alpha[j] * mu ** (j + 1) for j in range(k))
+                label = f"order {k}" if named else None
+                ax.plot(partial, mu, "--", color=f"C{k - 1}", lw=1.0, label=label)
+        known = np.concatenate([exact.lower[0], exact.upper[0]])
+        known = known[np.isfinite(known)]
+        room = 0.3 * np.ptp(known) + 0.1
+        ax.set_xlim(known.min() - room, known.max() + room)
+        ax.set_xlabel(r"$\lambda^2$")
+        ax.set_ylabel(r"$\mu$")
+        ax.legend()
+        return ax
+
+
+def boundary_series(
+    f: PeriodicFunction, region: int, order: int = 4, damping_ratio: float = 0.0
+) -> BoundarySeries:
+    """Return the power series in mu of the boundaries of one region.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        Coefficient of period 2 pi in ``y'' + 2 K y' + (lam2 + mu f) y = 0``.
+    region : int
+        Number n >= 0.
+    order : int
+        1 to 10: highest power of mu.
+    damping_ratio : float
+        beta >= 0 of ``K = beta mu``, Smith 7.1.4.2.
+
+    Returns
+    -------
+    BoundarySeries
+        The error estimate compares series for several origins of theta, on which the boundaries
+        do not depend; it covers round-off, not the error of f.  A difference of the two that is
+        within the round-off of its terms, or within the error of f, is taken for zero, and the
+        error holds what it may be; one that no harmonics of f make is zero indeed.
+
+    Raises
+    ------
+    BadInput
+        If an argument is out of range, or the damping closes the region at every small mu.
+
+    Notes
+    -----
+    Smith (7.12), (7.23), (7.35), (7.46), to any order by Bloch's recursion.
+    """
+    check_function(f)
+    (n,) = check_regions((region,))
+    if not is_whole(order, 1, HIGHEST_ORDER):
+        raise bad("order", repr(order), f"a whole number from 1 to {HIGHEST_ORDER}", "choose one")
+    real = isinstance(damping_ratio, int | float | np.integer | np.floating)
+    if not real or not 0.0 <= damping_ratio < np.inf:
+        raise bad("damping_ratio", repr(damping_ratio), "a finite number >= 0", "correct it")
+    runs = [_alphas(_turned(f, origin), n, order, damping_ratio) for origin in _ORIGINS]
+    (middle, half), splitting, doubt = runs[0]
+    spread = np.max([np.abs(other - runs[0][0]) for other, *_ in runs[1:]], axis=0).sum(axis=0)
+    error = _CAUTION * spread + 2.0 * EPS * (np.abs(middle) + np.abs(half)) + doubt
+    disagreeing = float(sum(other != splitting for _, other, _ in runs))
+    return BoundarySeries(
+        method=f"Bloch's recursion, order {order}",
+        error=np.stack([error, error]),
+        error_norm="absolute, entrywise",
+        checks={"origins that disagree on the order of splitting": Check(disagreeing, 0.0)},
+        provenance=provenance(),
+        lower=middle - half,
+        upper=middle + half,
+        region=n,
+        order=order,
+        damping_ratio=float(damping_ratio),
+        splitting=splitting,
+        function=f,
+    )
+
+
+def _turned(f: PeriodicFunction, origin: float, power: int = 1) -> PeriodicFunction:
+    """Return ``f(theta + origin)``, or with other phases that grow with a power of the harmonic."""
+    turn = (f.a - 1j * f.b) * np.exp(1j * origin * np.arange(len(f.a)) ** power)
+    return PeriodicFunction(a=turn.real, b=-turn.imag, error=f.error)
+
+
+def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
+    """Return below which size the coupling ``B_k`` of region n may be zero; ``size`` is its own.
+
+    Whether its terms cancel is seen with other phases of the harmonics.
+    """
+    reach = float(f.amplitudes[1:].sum())
+    given = k * f.error * (reach / float({1: 2}.get(n, n - 1))) ** (k - 1)
+    if size > _CLEAR * reach**k:
+        return given
+    point = np.array([[1.0], [0.0]])
+    others = [
+        effective_operator([_turned(f, phase, 2)], n, k, True).components(point)[1][-1, 0]
+        for phase in _PHASES
+    ]
+    return _ROUNDED * EPS * max(size, *(float(abs(other)) for other in others)) + given
+
+
+def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Array, int, Array]:
+    """Return the coefficients of middle and half, shape (2, order), and the order of splitting.
+
+    Also what the coefficients may be off by for a leading one that is zero or uncertain, (order,).
+    """
+    point = np.array([[1.0], [ratio]])
+    a, b = effective_operator([f], n, order, True).components(point)
+    middle, drag = a[:, 0].real, a.imag
+    half, doubt = np.zeros(order), np.zeros(order)
+    # Damping is of the first order, and exact.
+    s = 1 if ratio > 0.0 and n else 0
+    for k in range(1, order + 1 if n and not s else 0):
+        size = float(np.abs(b[k - 1, 0]))
+        # Where no path leads from one harmonic to the other there is a zero without round-off.
+        least = _uncertain(f, n, k, size) if size > 0.0 else 0.0
+        if size > least:
+            s = k
+            break
+        doubt[k - 1] = least
+    if not s:
+        return np.stack([middle, half]), 0, doubt
+    root, sign, _ = root_components(drag, b, s)
+    if sign[0] <= 0.0:
+        closing = np.abs(b[s - 1, 0]) / n
+        expected = f"less than {closing:.6g}, where the damping closes region {n}"
+        raise bad("damping_ratio", f"{ratio:g}", expected, "take less damping")
+    nudged = b.copy()
+    nudged[s - 1] *= 1.0 + _LEADING
+    half[s - 1 :] = root[:, 0]
+    doubt[s - 1 :] += np.abs(root_components(drag, nudged, s)[0] - root)[:, 0]
+    return np.stack([middle, half]), s, doubt
+
+
+# ---------------------------------------------------------------- formulas
+
+
+@dataclass(frozen=True, order=True)
+class _Chain:
+    """Steps between two harmonics over others that are summed, with the powers of R there."""
+
+    end: str
+    start: str
+    powers: tuple[int, ...]
+
+
+_Terms = dict[tuple[_Chain, ...], int]
+
+
+def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> str:
+    """Return both boundaries of a region as a formula, to an order.
+
+    Parameters
+    ----------
+    order : int
+        1 to 6.
+    n : int, optional
+        Number of the region; by default the letter n, for any region from 1.
+    damped : bool
+        True to have ``2 K y'`` in the equation.
+
+    Returns
+    -------
+    str
+        An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous
+        parts of A and B.  Sums run over all whole numbers other than 0 and n; between equal
+        harmonics stands what damping does, or nothing.
+
+    Raises
+    ------
+    BadInput
+        If the order or the region is out of range.
+
+    Notes
+    -----
+    Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
+    """
+    region = _checked(order, n)
+    if region == "0":
+        lines = [r"\lambda^2 &= " + _sum_of("A", order)]
+        lines += _parts("A", "0", "0", order, region, damped)
+    else:
+        centre = r"\frac{n^2}{4}" if n is None else _fraction(n)
+        lines = [
+            rf"\lambda^2 &= {centre} + \operatorname{{Re}} A \pm "
+            r"\sqrt{\left|B\right|^2 - \left(\operatorname{Im} A\right)^2}",
+            rf"A &= {_sum_of('A', order)}, \quad B = {_sum_of('B', order)}",
+            *_parts("A", "n", "n", order, region, damped),
+            *_parts("B", "n", "0", order, region, damped),
+        ]
+    return _aligned([*lines, *_where(order, region, damped)])
+
+
+def solution_latex(order: int, n: int | None = None, damped: bool = False) -> str:
+    """Return the solution on a boundary as a formula, to an order.
+
+    Parameters
+    ----------
+    order : int
+        1 to 5.
+    n, damped
+        As for :func:`boundary_latex`.
+
+    Returns
+    -------
+    str
+        An ``aligned`` environment: y with the two amplitudes u, w of the resonant harmonics, and
+        the homogeneous parts of the other harmonics ``v_m``.
+
+    Raises
+    ------
+    BadInput
+        If the order or the region is out of range.
+
+    Notes
+    -----
+    Smith (7.14), (7.29)-(7.30) is order 1.  The amplitudes are an eigenvector of
+    ``[[A, B], [conj B, conj A]]``.
+    """
+    region = _checked(order, n, HIGHEST_FORMULA - 1)
+    wave = rf"e^{{i (m - {region}/2) \theta}}"
+    if region == "0":
+        lines = [r"y &= 1 + \sum_{m} v_{m} e^{i m \theta}"]
+    else:
+        plus, minus = (rf"e^{{{sign}i {region} \theta/2}}" for sign in ("", "-"))
+        mirrored = rf"\bar{{v}}_{{{region}-m}}"
+        lines = [
+            rf"y &= u {plus} + w {minus} + \sum_{{m}} \left(u v_{{m}} + w {mirrored}\right) {wave}"
+        ]
+    lines.append(rf"v_{{m}} &= {_sum_of('v', order, ',m')}")
+    end = "0" if region == "0" else "n"
+    for k in range(1, order + 1):
+        lines += _written(f"v_{{{k},m}}", _terms(k + 1, "m", end, damped, region), region, damped)
+    return _aligned([*lines, *_where(order + 1, region, damped)])
+
+
+def _checked(order: int, n: int | None, highest: int = HIGHEST_FORMULA) -> str:
+    """Return the region as it is written."""
+    if not is_whole(order, 1, highest):
+        raise bad(
+            "order",
+            repr(order),
+            f"a whole number from 1 to {highest}",
+            "the terms of higher orders are many: use perturbation_boundaries for their values",
+        )
+    if n is None:
+        return "n"
+    if not is_whole(n, 0):
+        raise bad("region", repr(n), "a whole number >= 0", "correct it")
+    return str(int(n))
+
+
+def _fraction(n: int) -> str:
+    if n % 2 == 0:
+        return str((n // 2) ** 2)
+    return rf"\frac{{{n * n}}}{{4}}"
+
+
+def _sum_of(letter: str, order: int, more: str = "") -> str:
+    return " + ".join(f"{letter}_{{{k}{more}}}" for k in range(1, order + 1))
+
+
+def _aligned(lines: list[str]) -> str:
+    body = " \\\\\n".join(lines)
+    return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
+
+
+def _where(order: int, region: str, damped: bool) -> Iterator[str]:
+    """Yield the lines that say what the letters are."""
+    if order > 1:
+        others = "0" if region == "0" else f"0, {region}"
+        yield rf"m, m_1, m_2, \dots &\neq {others}"
+        if order > 2 and not damped:
+            yield r"\text{in the sums: } c_{m-l} &= 0 \quad (m = l)"
+        if damped:
+            yield (
+                r"v_{m,l} &= c_{m-l} \quad (m \neq l), \qquad "
+                rf"v_{{m,m}} = {_drag('m', region)}"
+            )
+
+
+def _drag(m: str, region: str) -> str:
+    return rf"2 i {m} K" if region == "0" else rf"i (2 {m} - {region}) K"
+
+
+def _parts(
+    letter: str, end: str, start: str, order: int, region: str, damped: bool
+) -> Iterator[str]:
+    """Yield the lines of ``A_1, A_2, ...`` or ``B_1, ...``."""
+    for k in range(1, order + 1):
+        terms = _terms(k, end, start, damped, region)
+        mean = ["-c_{0}"] if k == 1 and end == start else []
+        yield from _written(f"{letter}_{{{k}}}", terms, region, damped, mean)
+
+
+def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Terms:
+    """Return the words of an order between two harmonics, sums over P written out.
+
+    An end ``"m"`` stands for a harmonic that is not resonant: the column instead of the operator.
+    """
+    found: Counter[tuple[_Chain, ...]] = Counter()
+    resonant = ("0",) if region == "0" else ("0", "n")
+    for coefficient, word in hill_recursion.WORDS[order]:
+        stops = word.split(" V ")[1:-1]
+        powers = [0 if stop == "P" else _power(stop) for stop in stops]
+        sign = coefficient * (-1) ** (order + sum(powers))
+        head: tuple[_Chain, ...] = ()
+        if end == "m":
+            # Omega_k is what stands behind "P V" in h_(k+1): its first letter is a power of R.
+            if not powers[0]:
+                continue
+            sign, head, powers = -sign, (_Chain("m", "m", (powers[0],)),), powers[1:]
+        for chains in _paths(end, start, powers, resonant):
+            still = [chain for chain in chains if not chain.powers and chain.end == chain.start]
+            if still and (not damped or region == "0"):
+                continue
+            kept = chains if damped else tuple(map(_canonical, chains))
+            # What damping does to the harmonic 0 is the opposite of what it does to n.
+            turned = still.count(_Chain("0", "0", ()))
+            kept = tuple(_Chain("n", "n", ()) if c == _Chain("0", "0", ()) else c for c in kept)
+            found[(*head, *sorted(kept))] += sign * (-1) ** turned
+    return {key: value for key, value in sorted(found.items()) if value}
+
+
+def _power(letter: str) -> int:
+    match = _POWER.fullmatch(letter)
+    if match is None:
+        raise ValueError(f"word of the emitted module: unknown letter {letter}")
+    return int(match[1] or 1)
+
+
+def _paths(
+    end: str, start: str, powers: list[int], resonant: tuple[str, ...]
+) -> Iterator[tuple[_Chain, ...]]:
+    """Yield the chains of a word for every choice of the harmonics at which P stands."""
+    if 0 not in powers:
+        yield (_Chain(end, start, tuple(powers)),)
+        return
+    place = powers.index(0)
+    for stop in resonant:
+        head = _Chain(end, stop, tuple(powers[:place]))
+        for rest in _paths(stop, start, powers[place + 1 :], resonant):
+            yield (head, *rest)
+
+
+def _canonical(chain: _Chain) -> _Chain:
+    """Return the chain of equal value that is written, where f is real and nothing is damped."""
+    turned = chain.powers[::-1]
+    if chain.end == chain.start == "0":
+        return _Chain("n", "n", turned)
+    if {chain.end, chain.start} == {"0", "n"}:
+        return _Chain(chain.end, chain.start, max(chain.powers, turned))
+    return chain
+
+
+def _written(
+    left: str, terms: _Terms, region: str, damped: bool, before: list[str] | None = None
+) -> Iterator[str]:
+    """Yield a sum as lines of a few terms each."""
+    texts = list(before or [])
+    for chains, coefficient in terms.items():
+        size = "" if abs(coefficient) == 1 else f"{abs(coefficient)} "
+        sign = "-" if coefficient < 0 else "+"
+        texts.append(f"{sign} {size}{_product(chains, region, damped)}")
+    texts = texts or ["0"]
+    texts[0] = texts[0].removeprefix("+ ").replace("- ", "-", 1)
+    lead = f"{left} &= "
+    while texts:
+        line = texts.pop(0)
+        while texts and len(line) + len(texts[0]) < _WIDTH:
+            line += " " + texts.pop(0)
+        yield lead + line
+        lead = r"&\quad "
+
+
+def _product(chains: tuple[_Chain, ...], region: str, damped: bool) -> str:
+    """Return a product of chains; sums in parentheses where they are not alone."""
+    counts = Counter(chains)
+    # The harmonic m of a column is not one to sum over.
+    column = chains[0].end == chains[0].start == "m"
+    factors = []
+    for chain, count in sorted(counts.items(), key=_sums_last):
+        text = _chain_latex(chain, region, damped, column)
+        if chain.powers and len(counts) + count > 2 and chain.start != "m":
+            text = rf"\left({text}\right)"
+        elif count > 1 and " " in text:
+            text = f"({text})"
+        factors.append(text if count == 1 else f"{text}^{{{count}}}")
+    return " ".join(factors)
+
+
+def _sums_last(item: tuple[_Chain, int]) -> tuple[bool, _Chain]:
+    chain = item[0]
+    return bool(chain.powers) and chain.start != "m", chain
+
+
+def _chain_latex(chain: _Chain, region: str, damped: bool, column: bool) -> str:
+    """Return a chain as a sum over the harmonics between."""
+    if chain.start == "m":
+        return rf"\frac{{1}}{{{_level('m', chain.powers[0], region)}}}"
+    names = [f"m_{i}" for i in range(1, len(chain.powers) + 1)]
+    if len(names) == 1 and not column:
+        names = ["m"]
+    stops = [chain.end, *names, chain.start]
+    steps = " ".join(_step(end, start, region, damped) for end, start in pairwise(stops))
+    if not names:
+        return steps
+    levels = " ".join(_level(m, p, region) for m, p in zip(names, chain.powers, strict=True))
+    return rf"\sum_{{{','.join(names)}}} \frac{{{steps}}}{{{levels}}}"
+
+
+def _level(m: str, power: int, region: str) -> str:
+    """Return a power of ``m (m - n)``."""
+    if region == "0":
+        return f"{m}^{{{2 * power}}}"
+    raised = f"^{{{power}}}" if power > 1 else ""
+    return f"{m}{raised} ({m}-{region}){raised}"
+
+
+def _step(end: str, start: str, region: str, damped: bool) -> str:
+    """Return ``c_(end - start)``, with the damping where there is any."""
+    shown = {"n": region}
+    first, last = shown.get(end, end), shown.get(start, start)
+    fixed = end in ("0", "n"), start in ("0", "n")
+    if all(fixed):
+        if end == start:
+            return f"i {region} K"
+        return f"c_{{{region}}}" if end == "n" else rf"\bar{{c}}_{{{region}}}"
+    if damped and not any(fixed):
+        return f"v_{{{first},{last}}}"
+    if last == "0":
+        return f"c_{{{first}}}"
+    return f"c_{{-{last}}}" if first == "0" else f"c_{{{first}-{last}}}"

@@ -1,0 +1,480 @@
+"""The periodic solutions on the boundaries of Hill's equation, to an order or exactly.
+
+On a boundary of region n the equation ``y'' + 2 K y' + (lam2 + F(theta)) y = 0`` has a solution
+of period 2 pi (n even) or one that changes sign after 2 pi (n odd).
+
+The exact one is a null vector of Hill's matrix.  Where the region is narrow, the direction of the
+solution in the plane of ``exp(+-i n theta/2)`` hangs on a coupling far below the round-off of that
+matrix.  Elimination of all other harmonics gives that coupling as a sum over paths, each factor of
+which is known to round-off: its own relative error is small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import BadInput, bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import Check, Result, provenance
+from ..core.sampling import finite_angles
+from .bloch import BEYOND, effective_operator, wave_columns
+from .boundaries import hill_boundaries
+from .checks import LARGEST, check_regions
+from .fourier_matrix import stacked
+from .perturbation import (
+    Components,
+    amplitudes_of,
+    check_order,
+    combined,
+    contraction,
+    parameters_of,
+    uniform,
+)
+from .transfer import EPS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+End = Literal["lower", "upper"]
+
+# The errors are estimates; the residual may exceed what they predict by so much.
+_LIMIT = 4.0
+# Roundings of one factor of a path: the coefficient, the elimination, its way back.
+_ROUNDINGS = 4.0
+# Share of the largest pair of harmonics from which that of n/2 is taken to eliminate the others.
+_ENOUGH = 0.1
+# What the harmonics beyond the cut may hold, relative to the resonant ones.
+_BEYOND_CUT = 1e-18
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoundarySolution(Result):
+    """A periodic solution on a boundary, ``sum_k a_k cos k theta + b_k sin k theta``.
+
+    Its mean square over a period is 1, and the larger of ``a_k``, ``b_k`` at ``k = n/2`` is
+    positive (where both vanish, the largest of all).
+
+    Attributes
+    ----------
+    wave_numbers : ndarray, shape (L,)
+        Numbers k, whole for even n, half-whole for odd n.
+    a, b : ndarray, shape (L,)
+        Coefficients.
+    lam2 : float
+        The boundary, to the order.
+    mu : ndarray, shape (p,)
+        The parameters.
+    damping : float
+        K.
+    n : int
+        Number of the region.
+    end : str
+        ``"lower"`` or ``"upper"``.
+    order : int or None
+        Order of the perturbation; None where Hill's matrix gave the solution.
+    residual : float
+        Root mean square of ``y'' + 2 K y' + (lam2 + F) y`` over a period.
+    degenerate : bool
+        True where the two ends cannot be told apart: every solution is periodic there, and
+        ``error`` is the distance from those.
+    """
+
+    wave_numbers: Array
+    a: Array
+    b: Array
+    lam2: float
+    mu: Array
+    damping: float
+    n: int
+    end: str
+    order: int | None
+    residual: float
+    degenerate: bool
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "wave_numbers": ("wave_number",),
+        "a": ("wave_number",),
+        "b": ("wave_number",),
+        "mu": ("parameter",),
+    }
+
+    @property
+    def period(self) -> float:
+        """Period [rad]: 2 pi for even, 4 pi for odd n."""
+        return 2.0 * np.pi * (1 + self.n % 2)
+
+    def __call__(self, theta: ArrayLike) -> Array:
+        """Evaluate at angles [rad] of any shape; the result has the same shape."""
+        angles = finite_angles(theta)
+        # Horner in exp(i theta), times the half turn that odd regions have.
+        z, first = np.exp(1j * angles), np.exp(1j * self.wave_numbers[0] * angles)
+        total = np.zeros(angles.shape, dtype=complex)
+        for c in (self.a - 1j * self.b)[::-1]:
+            total = total * z + c
+        return np.asarray((total * first).real)
+
+    def latex(self, any_region: bool = False) -> str:
+        """Return the solution to its order as a formula; see :func:`.series.solution_latex`.
+
+        Parameters
+        ----------
+        any_region : bool
+            True to have the letter n, for any region from 1, in place of the number.
+
+        Raises
+        ------
+        BadInput
+            If the solution is the exact one, or the order above 5.
+        """
+        from .series import solution_latex
+
+        region = None if any_region else self.n
+        return solution_latex(self.order or 0, region, self.damping > 0.0)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the solution over a period."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        theta = np.linspace(0.0, self.period, 721)
+        ax.plot(theta, self(theta))
+        ax.set_xlabel(r"$\theta$ [rad]")
+        ax.set_ylabel("$y$")
+        return ax
+
+
+def boundary_solution(
+    f: PeriodicFunction | Sequence[PeriodicFunction],
+    mu: float | Sequence[float],
+    n: int,
+    end: End = "lower",
+    order: int | None = None,
+    damping: float = 0.0,
+) -> BoundarySolution:
+    """Return the periodic solution on one boundary of an unstable region.
+
+    Parameters
+    ----------
+    f : PeriodicFunction or sequence of PeriodicFunction
+        Coefficient of period 2 pi, or one for each parameter.
+    mu : float or sequence of float
+        The parameter, or one for each function.
+    n : int
+        Number of the region; region 0 has an upper end alone.
+    end : {"lower", "upper"}
+        Which end of the region.
+    order : int, optional
+        1 to 8 for the solution to that order in the parameters and K (Smith's ``y_0 + mu y_1 +
+        ...``); by default the eigenvector of Hill's matrix.
+    damping : float
+        K, at least zero.
+
+    Returns
+    -------
+    BoundarySolution
+        ``error`` estimates the largest deviation over theta from the true solution.  Its check
+        compares the residual of the equation with the one that the errors predict.
+
+    Raises
+    ------
+    BadInput
+        If an argument is out of range, damping closes the region, the orders do not visibly
+        converge at these parameters, or Hill's matrix would need more than 2048 harmonics.
+
+    Notes
+    -----
+    Smith (7.13)-(7.36), (7.41)-(7.47): the columns of Bloch's wave operator and the eigenvector
+    of the effective operator.
+    """
+    functions, values = parameters_of(f, mu)
+    (number,) = check_regions((n,))
+    if end not in ("lower", "upper") or (end == "lower" and number == 0):
+        expected = "'upper'" if number == 0 else "'lower' or 'upper'"
+        raise bad("end", repr(end), expected, "region 0 has an upper end alone")
+    amps, k, shape = amplitudes_of(values, damping)
+    if shape:
+        raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
+    point = np.array([float(v) for v in amps])
+    if float(np.sum(np.abs(point) * [item.bound() for item in functions])) > 1e100:
+        raise bad("mu", "a product mu f beyond 1e100", "a moderate one", "scale the equation")
+    whole = combined(functions, point)
+    if order is None:
+        solution = _exact(whole, number, end, float(k))
+    else:
+        check_order(order)
+        solution = _to_order(whole, number, end, int(order), float(k))
+    return _result(solution, point, float(k), number, end, order)
+
+
+class _Solution(NamedTuple):
+    """A solution as coefficients of ``exp(i (m - n/2) theta)``, m = -r ... n + r."""
+
+    lam2: float
+    coefficients: Complex
+    error: float
+    residual: float
+    predicted: float
+    degenerate: bool
+
+
+def _result(
+    solution: _Solution, point: Array, damping: float, n: int, end: str, order: int | None
+) -> BoundarySolution:
+    """Normalise, and turn into cosines and sines."""
+    v = solution.coefficients
+    k = _wave_numbers(v)
+    there = k >= 0.0
+    k, v = k[there], v[there]
+    a, b = 2.0 * v.real, -2.0 * v.imag
+    if n % 2 == 0:
+        a[0], b[0] = v[0].real, 0.0
+    weight = np.where(k == 0.0, 1.0, 0.5)
+    size = float(np.sqrt(np.sum(weight * (a * a + b * b))))
+    at = int(np.flatnonzero(k == 0.5 * n)[0])
+    leading = np.array([a[at], b[at]])
+    if float(np.abs(leading).max()) < 1e-8 * size:
+        leading = np.concatenate([a, b])
+    scale = 1.0 / size if leading[np.argmax(np.abs(leading))] > 0.0 else -1.0 / size
+    share = solution.residual / solution.predicted
+    return BoundarySolution(
+        method="Hill matrix" if order is None else f"perturbation, order {order}",
+        error=solution.error / size,
+        error_norm="absolute, largest over theta; the mean square of y is 1",
+        checks={"residual of the equation over what the errors predict": Check(share, _LIMIT)},
+        provenance=provenance(),
+        wave_numbers=k,
+        a=scale * a,
+        b=scale * b,
+        lam2=solution.lam2,
+        mu=point,
+        damping=damping,
+        n=n,
+        end=end,
+        order=None if order is None else int(order),
+        residual=solution.residual / size,
+        degenerate=solution.degenerate,
+    )
+
+
+def _wave_numbers(v: Complex) -> Array:
+    return np.asarray(np.arange(v.size) - 0.5 * (v.size - 1))
+
+
+def _residual(f: PeriodicFunction, v: Complex, lam2: float, damping: float) -> float:
+    """Return the norm of the residual of the coefficients; the mean of f belongs to it."""
+    c = np.asarray(0.5 * (f.a - 1j * f.b), dtype=complex)
+    c[0] = f.a[0]
+    out = np.convolve(v, np.concatenate([c[:0:-1].conj(), c]))
+    h, k = f.harmonics, _wave_numbers(v)
+    out[h : h + v.size] += (lam2 - k * k + 2j * damping * k) * v
+    return float(np.linalg.norm(out))
+
+
+def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float) -> _Solution:
+    """Return the solution by the columns of the wave operator."""
+    damped = damping > 0.0
+    operator = effective_operator((f,), n, order + BEYOND, damped)
+    at = np.array([1.0, damping] if damped else [1.0])
+    a, b = (item[:, None] for item in operator.components(at))
+    reach = f.bound() + n * damping
+    noise = np.array([4.0 * EPS * (0.25 * n * n + reach) + f.error])
+    parts = Components(n, order, a, b, noise, noise + reach, np.array([damped]))
+    with np.errstate(all="ignore"):
+        ends = uniform(parts)
+        fall = float(contraction(np.abs(a) + np.abs(b), parts.distance)[0])
+    if ends.outside[0]:
+        raise bad(
+            "boundary_solution",
+            f"orders that do not converge visibly in region {n} (order {order})",
+            "smaller parameters",
+            "use order=None for the exact solution",
+        )
+    if np.isnan(ends.half[0]):
+        raise _closed(n)
+    half = float(ends.half[0]) * (1.0 if end == "upper" else -1.0)
+    sum_a, sum_b = complex(a[:order].sum()), complex(b[:order].sum())
+    lost = float(np.abs(a[order:]).sum() + np.abs(b[order:]).sum() + noise[0])
+    phase, turn, degenerate = (
+        _direction(sum_a.imag, sum_b, (lost, lost), end) if n else (0.0, 0.0, False)
+    )
+    columns = wave_columns(f, n, order + BEYOND, damping)
+    every = np.exp(1j * phase) * columns
+    if n:
+        every = every + every[:, ::-1].conj()
+    v, rest = every[: order + 1].sum(axis=0), np.abs(every[order + 1 :])
+    k = _wave_numbers(v)
+    geometric = 1.0 / (1.0 - min(1.25 * fall, 0.95))
+    body = float(np.abs(v).sum())
+    error = 2.0 * geometric * float(rest.sum()) + (turn + 8.0 * EPS) * body
+    detours = float((np.abs(k * k - 0.25 * n * n) * rest).sum())
+    lam2 = float(ends.centre[0]) + half
+    rounding = 4.0 * EPS * float((np.abs(v) * (np.abs(k * k - lam2) + reach)).sum())
+    predicted = geometric * (detours + 2.0 * lost * body) + rounding
+    return _Solution(lam2, v, error, _residual(f, v, lam2, damping), predicted, degenerate)
+
+
+def _closed(n: int) -> BadInput:
+    return bad("boundary_solution", f"region {n}, closed by damping", "an open region", "lower K")
+
+
+def _direction(
+    a: float, b: complex, lost: tuple[float, float], end: str
+) -> tuple[float, float, bool]:
+    """Return the phase of the eigenvector, its error, and whether it is arbitrary.
+
+    ``A u + B conj(u) = (Re A -+ sqrt(|B|^2 - (Im A)^2)) u`` with ``u = exp(i phase)``, from Im A
+    and B and their errors.
+    """
+    size, (lost_a, lost_b) = abs(b), lost
+    if size <= lost_b:
+        return (0.0 if end == "upper" else 0.5 * np.pi), 0.0, True
+    half = float(np.sqrt(max((size - a) * (size + a), 0.0)))
+    phase = -0.5 * float(np.angle(complex(half if end == "upper" else -half, -a) / b))
+    near = np.arcsin(min(1.0, abs(a) / size))
+    far = np.arcsin(min(1.0, (abs(a) + lost_a) / (size - lost_b)))
+    return phase, 0.5 * float(np.arcsin(lost_b / size) + far - near), False
+
+
+# ---------------------------------------------------------------- the exact solution
+
+
+def _exact(f: PeriodicFunction, n: int, end: End, damping: float) -> _Solution:
+    """Return the solution by Hill's matrix, cut where the harmonics left out do not matter."""
+    bounds = hill_boundaries(f, 1.0, (n,), damping)
+    target, slack = float(getattr(bounds, end)[0]), float(bounds.error[0])
+    if np.isnan(target):
+        raise _closed(n)
+    harmonic = n + 8 + f.harmonics + int(np.sqrt(2.0 * f.bound()))
+    pair, gap = 0.5 * n, 0.0
+    # While f is small the others are far from resonance.
+    if float(f.amplitudes[1:].sum()) > 0.5 * max(n - 1, 1):
+        pair, gap = _leading_pair(f, n, harmonic, target, damping)
+    while harmonic <= LARGEST:
+        others = _Others(f, n, pair, harmonic, target, slack, damping)
+        if others.edge <= _BEYOND_CUT:
+            return others.joined(end, gap)
+        harmonic += max(harmonic // 2, f.harmonics)
+    raise bad(
+        "boundary_solution",
+        f"{f.harmonics} harmonics, mu f up to {f.bound():.3g}",
+        f"a problem that {LARGEST} harmonics settle",
+        "truncate the function or take a smaller mu",
+    )
+
+
+def _leading_pair(
+    f: PeriodicFunction, n: int, harmonic: int, target: float, damping: float
+) -> tuple[float, float]:
+    """Return the k >= 0 of the two harmonics exp(+-i k theta) that all others are eliminated from.
+
+    Those of n/2 where they are large, else the largest ones of the solutions near the boundary.
+    Also how far the next solution is.
+    """
+    odd = n % 2
+    matrix = stacked(f, odd, harmonic + odd, np.ones(1), damping)[0]
+    matrix[np.diag_indices_from(matrix)] -= target + f.mean
+    _, sizes, right = np.linalg.svd(matrix)
+    # The second solution counts where the two are hardly apart.
+    share = (sizes[-1] + EPS * sizes[0]) / (sizes[-2] + EPS * sizes[0])
+    size = right[-1] ** 2 + share * right[-2] ** 2
+    if not odd:
+        size = np.concatenate([[0.0], size])
+    size = size.reshape(-1, 2).sum(axis=1)
+    k = np.arange(size.size) + 0.5 * odd
+    here = int(np.argmax(k == 0.5 * n))
+    chosen = here if size[here] >= _ENOUGH * size.max() else int(size.argmax())
+    return float(k[chosen]), float(sizes[-2])
+
+
+class _Others:
+    """All harmonics but a pair ``+-k``, and what the upper one of the pair calls forth.
+
+    ``(H - lam2) y = -H_up`` among the others, ``y = 1`` at the upper one.  The sizes of the entries
+    of their inverse bound, to first order, what round-off and the doubt of the boundary do to y.
+    """
+
+    def __init__(
+        self,
+        f: PeriodicFunction,
+        n: int,
+        pair: float,
+        harmonic: int,
+        lam2: float,
+        slack: float,
+        damping: float,
+    ) -> None:
+        self.f, self.n, self.lam2, self.damping = f, n, lam2, damping
+        self.k = k = np.arange(-harmonic - n, harmonic + 1) + 0.5 * n
+        self.up, self.down = (int(np.argmax(k == side * pair)) for side in (1, -1))
+        rest = np.delete(np.arange(k.size), [self.up, self.down])
+        self.slack, self.drag = slack + f.error, -2.0 * damping * k
+        self.steps = _ROUNDINGS * (n + 2.0) * EPS
+        self.coupling = _couplings(f, k.size)
+        self.sizes = np.abs(self.coupling)
+        self.levels = k * k - lam2 - f.mean + 1j * self.drag
+        matrix = self.coupling[np.ix_(rest, rest)]
+        matrix[np.diag_indices_from(matrix)] += self.levels[rest]
+        inverse = np.linalg.inv(matrix)
+        self.y = np.zeros(k.size, dtype=complex)
+        self.y[rest] = -inverse @ self.coupling[rest, self.up]
+        self.y[self.up] = 1.0
+        self.edge = float(
+            np.abs(self.y[[*range(f.harmonics + 1), *range(-f.harmonics - 1, 0)]]).max()
+        )
+        weight = np.abs(self.y)
+        weight[self.up] = 0.0
+        self.weight = weight
+        loss = self.steps * ((k * k + abs(lam2) + abs(f.mean)) * weight + self.sizes @ weight)
+        loss += self.steps * self.sizes[:, self.up] + self.slack * weight
+        loss += f.error * (1.0 + weight.sum())
+        self.doubt = np.zeros(k.size)
+        self.doubt[rest] = np.abs(inverse) @ loss[rest]
+
+    def joined(self, end: str, gap: float) -> _Solution:
+        """Return the solution: ``u y`` and its mirror, with ``u = exp(i phase)``."""
+        weight, drag = self.weight, np.abs(self.drag)
+        if self.up == self.down:
+            phase, turn, degenerate = 0.0, 0.0, False
+        else:
+            b = complex(self.coupling[self.down] @ self.y).conjugate()
+            # The Hermitian part of H leaves A real: no round-off of it enters.
+            a = float(self.drag @ np.abs(self.y) ** 2)
+            lost_a = self.steps * float(drag[self.up] + drag @ weight**2)
+            lost_a += 2.0 * float(drag @ (weight * self.doubt))
+            paths = float(self.sizes[self.down, self.up] + self.sizes[self.down] @ weight)
+            lost_b = self.steps * paths + self.slack * float(weight @ weight[::-1])
+            lost_b += self.f.error * float(1.0 + weight.sum()) ** 2
+            # Re A less lam2 shows which of the two eigenvalues is zero, except where both are.
+            centre = float((self.levels[self.up] + self.coupling[self.up] @ self.y).real)
+            size = self.k[self.up] ** 2 + abs(self.lam2) + self.f.bound()
+            if abs(centre) > 4.0 * (self.slack + EPS * size) * (1.0 + float(weight @ weight)):
+                end = "upper" if centre < 0.0 else "lower"
+            phase, turn, degenerate = _direction(a, b, (lost_a, lost_b), end)
+        v = np.exp(1j * phase) * self.y
+        v = v + v[::-1].conj()
+        norm = float(np.abs(v) @ (self.k * self.k + abs(self.lam2) + self.f.bound()))
+        predicted = 4.0 * EPS * norm + self.slack * float(np.linalg.norm(v))
+        residual = _residual(self.f, v, self.lam2, self.damping)
+        error = 4.0 * float(self.doubt.sum()) + (turn + 8.0 * EPS) * float(np.abs(v).sum())
+        # Or by the residual over the distance of the next solution, where that is far away.
+        largest = np.sqrt(2.0 * np.count_nonzero(np.abs(v) > EPS * np.abs(v).max()))
+        apart = max(gap - self.slack, 1e-300)
+        error = min(error, float(largest) * 2.0 * (residual + predicted) / apart)
+        return _Solution(self.lam2, v, error, residual, predicted, degenerate)
+
+
+def _couplings(f: PeriodicFunction, size: int) -> Complex:
+    """Return ``-c_(k-l)`` for all pairs of harmonics, the mean left out."""
+    c = np.zeros(size, dtype=complex)
+    kept = min(f.harmonics + 1, size)
+    c[:kept] = -0.5 * (f.a - 1j * f.b)[:kept]
+    c[0] = 0.0
+    apart = np.subtract.outer(np.arange(size), np.arange(size))
+    return np.where(apart >= 0, c[np.abs(apart)], c[np.abs(apart)].conj())

@@ -1,0 +1,463 @@
+"""The damping that closes a region of Hill's equation, and the parameter that opens it.
+
+Smith (7.50), (7.51): damping closes a region below a least parameter, and at a given parameter
+above a critical damping.  Exactly, where the largest Floquet exponent of the undamped region is K
+(:mod:`.boundaries`), and to any order up to 8, where ``|B| = |Im A|`` of the effective operator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import BadInput, bad
+from ..core.periodic_function import PeriodicFunction
+from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
+from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
+from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
+from .checks import arguments, axes_over, check_function, check_regions
+from .perturbation import CONTRACTION, Components, Sums, check_order
+from .transfer import EPS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+# With more harmonics order 8 takes longer than the half trace.
+_MOST_HARMONICS = 200
+# Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
+# many times the square of the region's number.  Where it begins without damping any width will do.
+_PER_DECADE, _FARTHEST, _SMALLEST = 24, 16.0, 1e-3
+# How often a maximum between those values is looked at more closely, and by how much.
+_ZOOMS, _ZOOM = 3, 8
+
+
+@dataclass(frozen=True, kw_only=True)
+class Thresholds(Result):
+    """Where regions close: the critical damping at given mu, or the least mu at given damping.
+
+    What was solved for has the regions as its first axis, and so have ``lam2``, ``error``,
+    ``absent`` and ``outside``; what was given has the shape of the argument.
+
+    Attributes
+    ----------
+    damping : ndarray
+        K above which the region is closed; 0 where the equation has no such region, NaN where the
+        entry is flagged.  Or as given.
+    mu : ndarray
+        As given.  Or the least positive mu at which the region is open; inf where there is none
+        up to ``searched`` (``absent``), NaN where the entry is flagged.
+    lam2 : ndarray
+        Where the region closes.
+    error : ndarray
+        Estimate of the absolute error of what was solved for; 0 where that is infinite.
+    absent : ndarray of bool
+        True where the region does not open up to ``searched``.
+    outside : ndarray of bool
+        True where the orders do not visibly converge (never with ``order=None``).
+    regions : tuple of int
+        Numbers n.
+    order : int or None
+        Order of the perturbation; None for the exact value.
+    searched : ndarray, shape (len(regions),)
+        Largest mu that was looked at, for each region; empty where mu was given.
+    """
+
+    damping: Array
+    mu: Array
+    lam2: Array
+    absent: Mask
+    outside: Mask
+    regions: tuple[int, ...]
+    order: int | None
+    searched: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("damping", "mu", "lam2", "error", "absent", "outside"), BROADCAST),
+        **dict.fromkeys(("regions", "searched"), ("region",)),
+    }
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw what was solved for over what was given, a line for each region.
+
+        Raises
+        ------
+        BadInput
+            If what was given is not one-dimensional.
+        """
+        across, up = (self.damping, self.mu) if self.searched.size else (self.mu, self.damping)
+        labels = ("$K$", r"least $\mu$") if self.searched.size else (r"$\mu$", "critical $K$")
+        ax = axes_over(ax, "Thresholds.plot", "values", across)
+        for n, row in zip(self.regions, up, strict=True):
+            ax.plot(across, np.where(np.isfinite(row), row, np.nan), label=f"region {n}")
+        ax.set_xlabel(labels[0])
+        ax.set_ylabel(labels[1])
+        ax.legend()
+        return ax
+
+
+def critical_damping(
+    f: PeriodicFunction,
+    mu: ArrayLike | None = None,
+    regions: Sequence[int] = (1, 2),
+    order: int | None = None,
+    *,
+    damping: ArrayLike | None = None,
+) -> Thresholds:
+    """Return the damping K at which regions of y'' + 2 K y' + (lam2 + mu f) y = 0 close.
+
+    Or, with ``damping`` in place of mu, the least mu > 0 at which they open.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        Coefficient of period 2 pi (``-f`` for the largest negative mu).
+    mu : array_like, optional
+        Any shape, any sign.
+    regions : sequence of int
+        Numbers n >= 1 (region 0 reaches to minus infinity and is never closed).
+    order : int, optional
+        1 to 8: total degree in mu and K that is kept.  By default the exact value.
+    damping : array_like, optional
+        K, at least zero, any shape.
+
+    Returns
+    -------
+    Thresholds
+        The exact damping is ``arccosh(max |D|) / (2 pi)``, with D the undamped half trace: the
+        largest Floquet exponent in the undamped region.  Where a narrow region's ends do not
+        resolve it so well, the value of order 8 takes its place, with its error.  The check
+        looks whether ``hill_boundaries`` has the region open just below and closed just above.
+
+        The least mu is the first crossing of the critical damping with K as mu grows, sought on
+        24 values per decade, with the maxima between them, and refined: a region that opens and
+        closes again within one step and shows no maximum on these values is not seen.  Without
+        damping it is 0, or inf where no value of mu up to ``searched`` opens the region.  The
+        check is that the critical damping there is K again.
+
+    Raises
+    ------
+    BadInput
+        If both or neither of mu and damping are given, an argument is not finite, K is negative,
+        a region is not a whole number >= 1, the order is not 1 to 8, or mu f is too large for
+        ``hill_boundaries``.
+
+    Notes
+    -----
+    Smith (7.50) and (7.51), ``mu = 2 K n / sqrt(an^2 + bn^2)``, are order 1.
+    """
+    check_function(f)
+    numbers = check_regions(regions, least=1)
+    if order is not None:
+        check_order(order)
+    if (mu is None) == (damping is None):
+        given = "neither" if mu is None else "both"
+        raise bad("mu, damping", given, "one of them", "pass damping= to have the least mu")
+    method = "largest half trace" if order is None else f"perturbation, order {order}"
+    if mu is not None:
+        return _critical(f, mu, numbers, order, method)
+    return _least(f, 0.0 if damping is None else damping, numbers, order, method)
+
+
+class Closing(NamedTuple):
+    """Where one region closes, at points ``(n,)``: K, lam2, the error of K, and flags."""
+
+    damping: Array
+    lam2: Array
+    error: Array
+    outside: Mask
+
+
+Closings = Callable[[Array], Closing]
+
+
+def _closings(f: PeriodicFunction, n: int, order: int | None) -> Closings:
+    """Return the function from mu to the closing of region n."""
+    if order is None:
+        return partial(_exact, f, n)
+    operator = effective_operator((f,), n, int(order) + BEYOND, damped=True)
+    return partial(_to_order, operator, f)
+
+
+def _exact(f: PeriodicFunction, n: int, mu: Array) -> Closing:
+    """Return the exact closing, or that of order 8 where its error is smaller."""
+    bounds = hill_boundaries(f, mu, (n,))
+    sharp = Ends(bounds.lower[0], bounds.upper[0], bounds.error[0], np.zeros(mu.shape, dtype=bool))
+    k, place, error = largest_exponent(f, n, mu, sharp)
+    exact = Closing(k, place + k * k, error, np.zeros(mu.size, dtype=bool))
+    coarse = np.flatnonzero(error > 1e-13 * k)
+    if coarse.size and f.harmonics <= _MOST_HARMONICS:
+        high = _closings(f, n, HIGHEST)(mu[coarse])
+        # An order that does not see a tongue is not wrong about its width: the errors decide.
+        better = ~high.outside & (high.error < error[coarse])
+        for mine, other in zip(exact[:3], high[:3], strict=True):
+            mine[coarse[better]] = other[better]
+    return exact
+
+
+def _to_order(operator: EffectiveOperator, f: PeriodicFunction, mu: Array) -> Closing:
+    """Return the critical damping to the operator's order less two: ``|B| = |Im A|``."""
+    n = operator.n
+
+    def gap(k: Array) -> Array:
+        sums = _sums(operator, f, mu, k)
+        return sums.split - sums.drag
+
+    with np.errstate(all="ignore"):
+        first = gap(np.zeros_like(mu)) / n
+        # Where the components overflow there is nothing to start from, and the ratio flags it.
+        start = np.where(np.isfinite(first), np.maximum(first, 0.0), 0.0)
+        before, value_before = np.zeros_like(mu), first * n
+        k = start
+        rate = np.full(mu.shape, float(n))
+        for _ in range(40):
+            value = gap(k)
+            step = k - before
+            steep = (value_before - value) / np.where(step == 0.0, 1.0, step)
+            rate = np.where((step != 0.0) & (steep > 0.25 * n) & (steep < 4.0 * n), steep, rate)
+            new = np.clip(k + value / rate, 0.0, 4.0 * start)
+            new = np.where(np.isfinite(new), new, k)
+            before, value_before, k = k, value, new
+            if np.all(np.abs(k - before) <= 2.0 * EPS * k):
+                break
+        sums = _sums(operator, f, mu, k)
+        left = sums.turned + sums.spread
+        outside = ~(sums.ratio < CONTRACTION) | ~(left < 0.5 * max(n - 1, 1))
+        settled = np.abs(sums.split - sums.drag) <= np.maximum(left, 1e-9 * sums.split)
+        return Closing(k, sums.centre, left / rate + 4.0 * EPS * k, outside | ~settled)
+
+
+def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: Array) -> Sums:
+    """Return the sums of A and B with the round-off that a coupling without detours has.
+
+    The level n^2/4 takes no part in B and Im A, and neither does its round-off.
+    """
+    n, order = operator.n, operator.order - BEYOND
+    a, b = operator.components(np.stack([mu, damping]))
+    strength = np.abs(mu) * float(f.amplitudes[1:].sum())
+    distance = float({1: 2}.get(n, n - 1))
+    noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
+    for k in range(len(b)):
+        # Components that vanish term by term carry no round-off either.
+        if np.any(operator.coupling[k] != 0.0):
+            noise = noise + 8.0 * EPS * strength * (strength / distance) ** k
+    return Sums.of(Components(n, order, a, b, noise, strength, np.ones(mu.shape, dtype=bool)))
+
+
+# ---------------------------------------------------------------- the critical damping
+
+
+def _critical(
+    f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...], order: int | None, method: str
+) -> Thresholds:
+    (amp, _), shape = arguments(mu=mu, damping=0.0)
+    flat = np.broadcast_to(amp, shape).ravel()
+    rows = [_closings(f, n, order)(flat) for n in regions]
+    size = (len(regions), flat.size)
+    k, lam2, error = (np.reshape([row[i] for row in rows], size) for i in range(3))
+    outside = np.reshape([row.outside for row in rows], size).astype(bool)
+    for item in (k, lam2, error):
+        item[outside] = np.nan
+    checks: Mapping[str, Check] = {}
+    if order is None:
+        checks = DeferredChecks(partial(_either_side, f, flat, regions, k, error))
+    full = (len(regions), *shape)
+    return Thresholds(
+        method=method,
+        error=error.reshape(full),
+        error_norm="absolute, entrywise, of K",
+        checks=checks,
+        provenance=provenance(),
+        damping=k.reshape(full),
+        mu=flat.reshape(shape),
+        lam2=lam2.reshape(full),
+        absent=np.zeros(full, dtype=bool),
+        outside=outside.reshape(full),
+        regions=regions,
+        order=None if order is None else int(order),
+        searched=np.zeros(0),
+    )
+
+
+def _either_side(
+    f: PeriodicFunction, mu: Array, regions: tuple[int, ...], critical: Array, error: Array
+) -> Mapping[str, Check]:
+    """Count the contradictions with the damped boundaries just below and just above."""
+    wrong, seen = 0, 0
+    for i, n in enumerate(regions):
+        k, slack = critical[i], np.maximum(1e-4 * critical[i], 100.0 * error[i])
+        # Narrow regions open with a square root: Hill's matrix needs some width to see it.
+        sure = np.argwhere((k > 2.0 * slack) & (k > 1e-6) & np.isfinite(k))
+        if not sure.size:
+            continue
+        (chosen,) = sample_of(sure)
+        seen += chosen.size
+        both = hill_boundaries(f, mu[chosen], (n,), k[chosen] + slack[chosen] * [[-1.0], [1.0]])
+        shut = np.isnan(both.upper[0])
+        wrong += int(np.count_nonzero(shut[0]) + np.count_nonzero(~shut[1]))
+    return {"regions open above or closed below": Check(float(wrong), 0.0)} if seen else {}
+
+
+# ---------------------------------------------------------------- the least parameter
+
+
+def _least(
+    f: PeriodicFunction,
+    damping: ArrayLike,
+    regions: tuple[int, ...],
+    order: int | None,
+    method: str,
+) -> Thresholds:
+    (k,), shape = arguments(damping=damping)
+    flat = np.broadcast_to(k, shape).ravel()
+    reach = float(f.amplitudes[1:].sum())
+    scale = max(max(regions, default=1), float(flat.max(initial=0.0)))
+    top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
+    rows = []
+    for n in regions:
+        row = _Opening(_closings(f, n, order), n, flat)
+        if flat.size and top and not _silent(f, n, order):
+            row.search(top)
+        rows.append(row)
+    full = (len(regions), *shape)
+    gap = np.array([row.gap for row in rows])
+    return Thresholds(
+        method=method,
+        error=np.reshape([row.error for row in rows], full),
+        error_norm="absolute, entrywise, of mu",
+        checks={
+            "critical damping there less K, over its error": Check(
+                float(gap[np.isfinite(gap)].max(initial=0.0)), 4.0
+            )
+        },
+        provenance=provenance(),
+        damping=flat.reshape(shape),
+        mu=np.reshape([row.least for row in rows], full),
+        lam2=np.reshape([row.lam2 for row in rows], full),
+        absent=np.reshape([row.absent for row in rows], full).astype(bool),
+        outside=np.reshape([row.outside for row in rows], full).astype(bool),
+        regions=regions,
+        order=None if order is None else int(order),
+        searched=np.array([row.searched for row in rows]),
+    )
+
+
+def _silent(f: PeriodicFunction, n: int, order: int | None) -> bool:
+    """Return True where nothing up to the order couples the two resonant harmonics."""
+    if order is None:
+        return False
+    operator = effective_operator((f,), n, int(order) + BEYOND, damped=True)
+    return not any(np.any(row != 0.0) for row in operator.coupling[: int(order)])
+
+
+class _Opening:
+    """The least mu at which one region opens, entry by entry of K; absent before the search."""
+
+    def __init__(self, closing: Closings, n: int, damping: Array) -> None:
+        self.closing, self.n, self.damping = closing, n, damping
+        size = damping.size
+        self.least, self.lam2, self.error = (
+            np.full(size, np.inf),
+            np.full(size, np.nan),
+            np.zeros(size),
+        )
+        self.absent, self.outside = np.ones(size, dtype=bool), np.zeros(size, dtype=bool)
+        self.gap = np.full(size, np.nan)
+        self.searched = 0.0
+
+    def search(self, top: float) -> None:
+        """Bracket the first crossing of the critical damping up to ``top``, and refine it."""
+        damping, n = self.damping, self.n
+        drag = damping[damping > 0.0]
+        # Half traces grow with the first power of mu at most while mu f is small.
+        least = min(1.0, 0.125 * n * float(drag.min())) if drag.size else _SMALLEST
+        bottom = least * top / _FARTHEST / max(n, float(damping.max())) ** 2
+        count = int(np.ceil(_PER_DECADE * np.log10(top / bottom))) + 1
+        grid, highest, edge = self._climb(np.geomspace(bottom, top, count))
+        self.searched = float(grid[-1])
+        # The first grid value above each K: the running maximum is in order.
+        first = np.searchsorted(highest, damping, side="right")
+        self.outside[:] = np.minimum(first, grid.size - 1) >= edge
+        self.absent[:] = (first >= grid.size) & ~self.outside
+        self.least[self.outside] = np.nan
+        open_ = ~self.absent & ~self.outside
+        still = open_ & (damping == 0.0)
+        self.least[still], self.lam2[still] = 0.0, 0.25 * n * n
+        there = np.flatnonzero(open_ & (damping > 0.0))
+        if there.size:
+            low = np.where(first[there] > 1, grid[np.maximum(first[there] - 2, 0)], 0.25 * bottom)
+            self._refine(there, np.log(low), np.log(grid[first[there]]))
+
+    def _sure(self, mu: Array) -> tuple[Array, Mask]:
+        """Return the critical damping less its error, -inf where the orders do not converge."""
+        known = self.closing(mu)
+        return np.where(known.outside, -np.inf, known.damping - known.error), known.outside
+
+    def _climb(self, grid: Array) -> tuple[Array, Array, int]:
+        """Return the grid with the running maximum of the critical damping, as far as needed.
+
+        With the peaks between the values of the grid.  Also the place of the first value at which
+        the orders do not converge.  A decade at a time: small values of mu need small matrices.
+        """
+        value, edge = np.zeros(0), -1
+        for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
+            try:
+                more, outside = self._sure(part)
+            except BadInput:
+                # Hill's matrix would be too large: the search ends here.
+                if not value.size:
+                    raise
+                break
+            if outside.any():
+                edge = value.size + int(np.argmax(outside))
+            value = np.concatenate([value, more])
+            if edge >= 0 or value.max() > self.damping.max():
+                break
+        grid = grid[: value.size]
+        last = value.size if edge < 0 else edge
+        peaks, tops = self._peaks(grid[:last], value[:last])
+        order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
+        grid, value = (np.concatenate(pair)[order] for pair in ((grid, peaks), (value, tops)))
+        return grid, np.maximum.accumulate(value), grid.size if edge < 0 else last + peaks.size
+
+    def _peaks(self, grid: Array, value: Array) -> tuple[Array, Array]:
+        """Return the places of maxima near those on a grid, and the values there."""
+        inner = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] >= value[2:])) + 1
+        if not inner.size:
+            return np.zeros(0), np.zeros(0)
+        low, high = np.log(grid[inner - 1]), np.log(grid[inner + 1])
+        each = np.arange(inner.size)
+        for _ in range(_ZOOMS):
+            x = np.linspace(low, high, _ZOOM + 1)
+            tops = self._sure(np.exp(x.ravel()))[0].reshape(x.shape)
+            best, step = tops.argmax(axis=0), (high - low) / _ZOOM
+            low, high = x[best, each] - step, x[best, each] + step
+        return np.exp(x[best, each]), tops[best, each]
+
+    def _refine(self, there: Index, low: Array, high: Array) -> None:
+        """Solve ``log K_crit(mu) = log K`` in log mu, and enter the solutions."""
+        wanted = self.damping[there]
+
+        def excess(x: Array, which: Index) -> Array:
+            k = self.closing(np.exp(x)).damping
+            return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3)))
+
+        x = crossing(excess, low, high)
+        at, step = self.closing(np.exp(x)), 1e-4
+        with np.errstate(divide="ignore", invalid="ignore"):
+            up, down = (self.closing(np.exp(x + d)).damping for d in (step, -step))
+            slope = np.maximum((np.log(up) - np.log(down)) / (2.0 * step), 1e-3)
+        rounding = 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
+        self.least[there], self.lam2[there] = np.exp(x), at.lam2
+        self.error[there] = np.exp(x) * ((at.error + rounding) / (wanted * slope) + 4.0 * EPS)
+        self.gap[there] = np.abs(at.damping - wanted) / (at.error + rounding)
+        lost = there[at.outside]
+        self.outside[lost], self.least[lost] = True, np.nan

@@ -1,0 +1,457 @@
+"""Exact boundaries without and with damping: tables, mpmath, half traces, extremes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from boundary_cases import closing_damping
+from hill_functions import functions
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import (
+    critical_damping,
+    discriminant,
+    hill_boundaries,
+    perturbation_boundaries,
+)
+from elastolink.runtime.hill.boundaries import half_trace_check
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+FUNCTIONS = functions()
+
+COSINE = PeriodicFunction([0.0, 1.0])
+
+# Abramowitz & Stegun, Table 20.1: characteristic values of y'' + (a - 2 q cos 2x) y = 0, eight
+# decimals printed: q, a0, (b1, a1), (b2, a2), (b5, a5).
+MATHIEU = [
+    (
+        5,
+        -5.80004602,
+        (-5.79008060, 1.85818754),
+        (2.09946045, 7.44910974),
+        (25.51081605, 25.54997175),
+    ),
+    (
+        10,
+        -13.93697996,
+        (-13.93655248, -2.39914240),
+        (-2.38215824, 7.71736985),
+        (26.76642636, 27.70376873),
+    ),
+    (
+        25,
+        -40.25677955,
+        (-40.25677898, -21.31489969),
+        (-21.31486062, -3.52216473),
+        (28.06276590, 40.05019099),
+    ),
+]
+
+
+@pytest.mark.smoke
+@pytest.mark.parametrize(("q", "lowest", "first", "second", "fifth"), MATHIEU)
+def test_mathieu_characteristic_values(q, lowest, first, second, fifth):
+    """With theta = 2x: lam2 = a/4, mu = -q/2, f = cos theta; the sign of mu does not matter."""
+    for sign in (-1.0, 1.0):
+        found = hill_boundaries(COSINE, sign * q / 2, (0, 1, 2, 5))
+        assert 4 * found.upper[0] == pytest.approx(lowest, abs=6e-9)
+        assert found.lower[0] == -np.inf
+        both = 4 * np.stack([found.lower, found.upper], axis=1)[1:]
+        np.testing.assert_allclose(both, [first, second, fifth], rtol=0, atol=6e-9)
+
+
+def hill_matrix_in_mpmath(f, mu, odd, harmonic):
+    """Eigenvalues of Hill's matrix in exp(i k theta), made real by hand, at mpmath's precision."""
+    from mpmath import mp, mpf
+
+    k = [mpf(j) + mpf(odd) / 2 for j in range(-harmonic, harmonic + 1 - odd)]
+    n = len(k)
+    matrix = mp.zeros(2 * n)
+    for i in range(n):
+        for j in range(n):
+            m = abs(i - j)
+            real = imaginary = mpf(0)
+            if 0 < m <= f.harmonics:
+                real = -mpf(mu) * mpf(f.a[m]) / 2
+                imaginary = mpf(mu) * mpf(f.b[m]) / 2 * (1 if i > j else -1)
+            if i == j:
+                real = k[i] ** 2 - mpf(mu) * mpf(f.a[0])
+            matrix[i, j] = matrix[n + i, n + j] = real
+            matrix[n + i, j], matrix[i, n + j] = imaginary, -imaginary
+    return sorted(mp.eigsy(matrix, eigvals_only=True))[::2]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mu", [0.8, -0.8])
+def test_boundaries_against_mpmath_eigenvalues(mu):
+    from mpmath import mp
+
+    f = FUNCTIONS["f3 (5,1,5,2)"].truncated(1e-7)
+    found = hill_boundaries(f, mu, (0, 1, 2, 3, 4))
+    with mp.workdps(25):
+        even, odd = (hill_matrix_in_mpmath(f, mu, parity, 14) for parity in (0, 1))
+        truth = [even[0], odd[0], odd[1], even[1], even[2], odd[2], odd[3], even[3], even[4]]
+        ours = [found.upper[0]]
+        for n in (1, 2, 3, 4):
+            ours += [found.lower[n], found.upper[n]]
+        gaps = np.array([float(abs(x - float(y))) for x, y in zip(truth, ours, strict=True)])
+    assert gaps.max() < 1e-12
+    # The test's own matrix is cut where the coupling squared is below 1e-14.
+    assert gaps.max() <= found.error.max() + 1e-14
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_mu_zero_gives_the_squares(name):
+    regions = range(0, 9)
+    found = hill_boundaries(FUNCTIONS[name], 0.0, regions)
+    exact = np.arange(9) ** 2 / 4
+    np.testing.assert_allclose(found.upper, exact, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(found.lower[1:], exact[1:], rtol=0, atol=1e-13)
+    assert np.all(np.abs(found.upper - exact) <= found.error)
+
+
+def test_closed_tongues_are_closed():
+    """f = cos 2 theta has only tongues of even n: odd ones coexist."""
+    f = PeriodicFunction([0.0, 0.0, 1.0])
+    found = hill_boundaries(f, np.array([0.5, 1.3, -2.0]), (1, 2, 3, 4, 5))
+    assert np.all(np.abs(found.width[[0, 2, 4]]) <= 2 * found.error[[0, 2, 4]])
+    assert np.all(found.width[[1, 3]] > 1e-3)
+    # In phi = 2 theta it is Mathieu's equation with lam2/4 and mu/4.
+    same = hill_boundaries(COSINE, found.mu / 4, (1, 2))
+    np.testing.assert_allclose(found.lower[[1, 3]], 4 * same.lower, atol=1e-12)
+    np.testing.assert_allclose(found.upper[[1, 3]], 4 * same.upper, atol=1e-12)
+
+
+def test_whittaker_coexistence_of_ince_type():
+    """A finite-gap potential: 2 k^2 sn^2 has one gap of its period; n >= 2 are closed.
+
+    Lame's equation y'' + (h - 2 k^2 sn^2(x)) y = 0, period 2K of sn^2 mapped to 2 pi.
+    """
+    from scipy.special import ellipj, ellipk
+
+    m = 0.5
+    scale = ellipk(m) / np.pi
+
+    def potential(theta):
+        sn = ellipj(theta * scale, m)[0]
+        return -2 * m * sn**2 * scale**2
+
+    f = PeriodicFunction.from_callable(potential)
+    found = hill_boundaries(f, 1.0, (0, 1, 2, 3, 4))
+    # Band edges h = k^2, 1, 1 + k^2; all other gaps are closed.
+    edges = np.array([found.upper[0], found.lower[1], found.upper[1]]) / scale**2
+    np.testing.assert_allclose(edges, [m, 1.0, 1.0 + m], rtol=0, atol=1e-12)
+    assert np.all(np.abs(found.width[2:]) <= 2 * found.error[2:] + 1e-13)
+
+
+def test_the_mean_only_shifts():
+    f, mu = FUNCTIONS["24 harmonics"], np.array([0.3, -1.1])
+    plain, shifted = hill_boundaries(f, mu, (1, 2)), hill_boundaries(f + 5.0, mu, (1, 2))
+    np.testing.assert_allclose(shifted.lower, plain.lower - 5 * mu, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(shifted.upper, plain.upper - 5 * mu, rtol=0, atol=1e-13)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    shape=st.sampled_from([(), (1,), (5,), (2, 3), (0,), (2, 1, 2)]),
+    regions=st.lists(st.integers(0, 8), max_size=4),
+    seed=st.integers(0, 99),
+)
+def test_shapes_and_independence_of_the_batch(shape, regions, seed):
+    f = PeriodicFunction([0.1, 1.0, 0.3], [0, 0.2, -0.5])
+    mu = np.random.default_rng(seed).uniform(-2, 2, shape)
+    found = hill_boundaries(f, mu, regions)
+    assert found.lower.shape == found.upper.shape == found.error.shape == (len(regions), *shape)
+    assert found.regions == tuple(regions)
+    for index in list(np.ndindex(mu.shape))[:2]:
+        for i, n in enumerate(regions):
+            alone = hill_boundaries(f, mu[index], (n,))
+            slack = alone.error[0] + found.error[(i, *index)]
+            assert abs(alone.upper[0] - found.upper[(i, *index)]) <= slack
+            assert np.all(found.lower[i] <= found.upper[i] + found.error[i])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((np.nan,), "mu"),
+        ((1.0, (1.5,)), "regions"),
+        ((1.0, (-1,)), "regions"),
+        ((1.0, 3), "regions"),
+        ((1.0, (1,), -0.1), "damping"),
+        ((1.0, (1,), np.inf), "damping"),
+        ((np.ones(2), (1,), np.ones(3)), "broadcast"),
+        ((1e9, (1,)), "2048 harmonics"),
+        ((1e301, (1,)), "2048 harmonics"),
+        ((1.0, (5000,)), "at most 2048"),
+    ],
+)
+def test_bad_input(arguments, message):
+    with pytest.raises(BadInput, match=message):
+        hill_boundaries(COSINE, *arguments)
+
+
+def test_plot_and_export():
+    import matplotlib.pyplot as plt
+
+    found = hill_boundaries(COSINE, np.linspace(0, 1, 5), (1, 2))
+    assert len(found.plot().lines) == 4
+    plt.close("all")
+    assert found.to_dict()["regions"] == [1, 2]
+    with pytest.raises(BadInput, match="slice"):
+        hill_boundaries(COSINE, 1.0).plot()
+
+
+CHECK = "half trace at the ends over what the errors explain"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"mu": np.linspace(0.0, 50.0, 6), "regions": (0, 1, 2, 5, 8)},
+        {"mu": np.linspace(0.0, 1.0, 300), "regions": (1, 2, 3)},
+        {"mu": np.linspace(0.0, 3.0, 50), "regions": (1, 2), "damping": 0.1},
+        {"mu": 1e4, "regions": (1, 2)},
+        # Solutions grow beyond the range of doubles there.
+        {"mu": 1e6, "regions": (1, 2)},
+        {"mu": -1e5, "regions": (0, 3), "damping": 200.0},
+    ],
+)
+def test_the_half_trace_confirms_the_ends(given):
+    found = hill_boundaries(PeriodicFunction([0.3, 1.0, 0.5], [0.0, 0.2]), **given)
+    assert list(found.checks) == [CHECK] and found.passed
+    assert {"elastolink", "numpy"} <= set(found.provenance)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.1])
+def test_a_wrong_end_fails_the_check(damping):
+    f, mu, k = PeriodicFunction([0.0, 1.0, 0.5]), np.array([0.7]), np.array([damping])
+    right = hill_boundaries(f, mu, (1, 2), damping=damping)
+    level = -0.5 * (1.0 + np.exp(-4.0 * np.pi * k))
+    good, wrong = (
+        half_trace_check(f, right.upper[0] + off, right.error[0], mu, k, level)
+        for off in (0.0, 1e-9)
+    )
+    assert good.passed and not wrong.passed
+
+
+def test_checks_are_made_late_once_and_survive_pickling():
+    import pickle
+
+    found = pickle.loads(pickle.dumps(hill_boundaries(PeriodicFunction([0.0, 1.0]), 1.0)))
+    assert found.checks[CHECK] is found.checks[CHECK]
+    assert found.to_dict()["checks"][CHECK]["passed"]
+    nothing = hill_boundaries(PeriodicFunction([0.0, 1.0]), 0.0, (1,), damping=0.1)
+    assert len(nothing.checks) == 0
+
+
+@pytest.mark.parametrize("word", ["no", 1, None])
+def test_certified_is_true_or_false(word):
+    with pytest.raises(BadInput, match="certified"):
+        hill_boundaries(PeriodicFunction([0.0, 1.0]), 0.1, (1,), certified=word)
+
+
+def level_off(f, found, i, n, k):
+    """How far the damped half trace is from its level, and what the figure allows, where open."""
+    there = ~np.isnan(found.lower[i])
+    mu, reach = found.mu[there], found.error[i][there]
+    out = []
+    for ends in (found.lower[i][there], found.upper[i][there]):
+        h = 1e-5
+        half, up, down = (discriminant(f, ends + s, mu, k) for s in (0.0, h, -h))
+        slope = np.abs(up.value - down.value) / (2 * h)
+        bend = np.abs(up.value + down.value - 2 * half.value) / h**2
+        off = np.abs(half.value - (-1.0) ** n * half.level)
+        out.append((off, half.error + 1e-15 + (slope + bend * reach) * reach))
+    return out
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("k", [1e-6, 1e-3, 0.03, 0.2])
+def test_the_half_trace_stands_at_its_damped_level(name, k):
+    f = FUNCTIONS[name]
+    mu = np.linspace(-2, 2, 17)
+    found = hill_boundaries(f, mu, (1, 2, 3, 4), k)
+    seen = 0
+    for i, n in enumerate(found.regions):
+        for off, allowed in level_off(f, found, i, n, k):
+            seen += off.size
+            assert np.all(off <= allowed)
+    assert seen > 0
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_region_is_missing_only_where_no_point_of_it_is_unstable(name):
+    f, k = FUNCTIONS[name], 0.05
+    mu = np.linspace(-2, 2, 15)
+    sharp, damped = (hill_boundaries(f, mu, (1, 2, 3, 4, 5), c) for c in (0.0, k))
+    closed = np.isnan(damped.lower)
+    assert closed.any()
+    assert not closed.all()
+    share = np.linspace(0, 1, 101)[:, None, None]
+    lam2 = sharp.lower + share * sharp.width + k * k
+    half = discriminant(f, lam2, mu, k)
+    excess = (np.abs(half.value) - half.level - half.error).max(axis=0)
+    assert np.all(excess[closed] <= 0)
+    np.testing.assert_array_equal(np.isnan(damped.error), closed)
+
+
+def test_region_zero_never_closes():
+    found = hill_boundaries(COSINE, np.array([0.0, 0.5, 3.0]), (0,), 0.3)
+    half = discriminant(COSINE, found.upper[0], found.mu, 0.3)
+    np.testing.assert_allclose(half.value, half.level, atol=1e-12)
+    assert found.upper[0, 0] == pytest.approx(0.0, abs=1e-13)
+    assert np.all(found.lower == -np.inf)
+
+
+def test_no_damping_in_some_entries():
+    mu, k = np.array([0.0, 0.0, 0.8, 0.8]), np.array([0.0, 0.1, 0.0, 0.1])
+    found = hill_boundaries(COSINE, mu, (1, 2), k)
+    assert found.lower[0, 0] == pytest.approx(0.25, abs=1e-14)
+    assert np.isnan(found.lower[:, 1]).all()
+    plain = hill_boundaries(COSINE, 0.8, (1, 2))
+    np.testing.assert_allclose(found.lower[:, 2], plain.lower, atol=1e-13)
+    assert 0 < found.width[0, 3] < found.width[0, 2]
+    assert np.isnan(found.width[1, 3])
+
+
+def test_near_the_tip_the_error_grows_and_still_covers():
+    """Find K at which region 1 closes by bisection; just inside, the figure must cover."""
+    mu = 0.6
+    low, _ = closing_damping(COSINE, mu, 0.2, 0.4)
+    # Independent: the largest |half trace| over the region equals the level at the tip.
+    sharp = hill_boundaries(COSINE, mu, (1,))
+    lam2 = np.linspace(sharp.lower[0], sharp.upper[0], 4001)
+    top = np.abs(discriminant(COSINE, lam2, mu).value).max()
+    assert np.arccosh(top) / (2 * np.pi) == pytest.approx(low, abs=1e-7)
+    errors = []
+    for inside in (1e-3, 1e-6, 1e-9, 1e-12):
+        k = low * (1 - inside)
+        found = hill_boundaries(COSINE, np.array([mu]), (1,), k)
+        for off, allowed in level_off(COSINE, found, 0, 1, k):
+            assert np.all(off <= allowed)
+        errors.append(found.error[0, 0])
+    assert np.all(np.diff(errors) > 0)
+    assert errors[0] < 1e-11
+    assert 1e-9 < errors[-1] < 1e-5
+
+
+def test_a_rough_function_keeps_its_damped_tongues():
+    """Meissner's square wave cut at 201 harmonics."""
+    m = np.arange(202)
+    a = np.where(m % 2 == 1, 4 / np.pi * np.sin(m * np.pi / 2) / np.maximum(m, 1), 0.0)
+    f = PeriodicFunction(a)
+    found = hill_boundaries(f, np.array([0.4, 0.9]), (1, 2, 3), 0.02)
+    for i, n in enumerate(found.regions):
+        for off, allowed in level_off(f, found, i, n, 0.02):
+            assert np.all(off <= allowed)
+    assert not np.isnan(found.lower[0]).any()
+
+
+@pytest.mark.parametrize(
+    ("mu", "n", "k"), [(150.0, 1, 5.137), (100.0, 3, 6.0), (30.0, 0, 2.0), (-2000.0, 2, 10.9)]
+)
+def test_strong_damping_in_deep_wells(mu, n, k):
+    """The eigenvalues of the matrix are off by many times its round-off, or beyond their slack."""
+    found, proved = (hill_boundaries(COSINE, mu, (n,), k, certified=c) for c in (False, True))
+    assert not np.isnan(found.upper[0])
+    gaps = [found.upper - proved.upper, (found.lower - proved.lower) if n else np.zeros(1)]
+    assert np.all(np.abs(gaps) <= found.error)
+    assert found.error[0] < 1e-13 * abs(mu) * 4
+    assert found.passed
+
+
+@pytest.mark.parametrize("mu", [1.0, 40.0])
+def test_what_doubles_cannot_decide_fails_a_check(mu):
+    closing = float(critical_damping(COSINE, mu, (1,)).damping[0])
+    for away, open_ in ((-1e-9, True), (1e-9, False)):
+        found = hill_boundaries(COSINE, mu, (1,), closing * (1.0 + away))
+        assert np.isfinite(found.upper[0]) == open_ and found.passed
+    # At the tip itself: either ends whose figure covers their distance, or a failing check.
+    for steps in range(-8, 9):
+        k = closing * (1.0 + steps * 1e-15)
+        found = hill_boundaries(COSINE, mu, (1,), k)
+        if np.isnan(found.upper[0]):
+            assert not found.passed
+        else:
+            assert found.error[0] >= 0.5 * found.width[0]
+
+
+@pytest.mark.parametrize("k", [300.0, pytest.param(1e4, marks=pytest.mark.slow)])
+def test_region_zero_under_huge_damping(k):
+    """``-mu^2 / (8 K^2)`` to leading order: z = y'/y is -mu cos / (2 K), and lam2 = -mean z^2."""
+    found = hill_boundaries(COSINE, 0.1, (0, 1), k)
+    assert np.isnan(found.upper[1])
+    gap = abs(found.upper[0] + 0.01 / (8.0 * k * k))
+    assert gap <= found.error[0] + 1e-3 * 0.01 / (8.0 * k * k)
+
+
+def test_damping_beyond_all_bounds_is_refused():
+    with pytest.raises(BadInput, match="damping"):
+        hill_boundaries(COSINE, 0.1, damping=1e308)
+
+
+def general(harmonics, fall, seed=0):
+    rng = np.random.default_rng(seed)
+    size = fall ** np.arange(harmonics + 1)
+    b = rng.uniform(-1, 1, harmonics + 1) * size
+    b[0] = 0.0
+    return PeriodicFunction(rng.uniform(-1, 1, harmonics + 1) * size, b)
+
+
+@pytest.mark.parametrize("mu", [1e-300, 1e-20, 1e-8])
+def test_mu_tends_to_zero(mu):
+    regions = (0, 1, 2, 3, 6)
+    found = hill_boundaries(COSINE, mu, regions)
+    first = perturbation_boundaries(COSINE, mu, regions)
+    slack = found.error + first.error
+    assert np.all(np.abs(found.upper - first.upper) <= slack)
+    assert np.all(np.abs(found.lower[1:] - first.lower[1:]) <= slack[1:])
+
+
+@pytest.mark.parametrize("mu", [100.0, -1e4])
+def test_deep_wells_have_the_levels_of_the_oscillator(mu):
+    """Levels r of a deep cosine well, Abramowitz & Stegun 20.2.30 with q = 2 mu, a = 4 lam2."""
+    found = hill_boundaries(COSINE, mu, (1, 2, 3))
+    expected = []
+    for n in (1, 2, 3):
+        for level in (n - 1, n):
+            shift = (2 * level**2 + 2 * level + 1) / 16
+            expected.append(-abs(mu) + (level + 0.5) * np.sqrt(2 * abs(mu)) - shift)
+    ours = np.stack([found.lower, found.upper], axis=1).ravel()
+    np.testing.assert_allclose(ours, expected, rtol=0, atol=2.0 / np.sqrt(abs(mu)))
+    assert found.error.max() < 1e-11 * abs(mu)
+
+
+def test_high_regions():
+    found = hill_boundaries(general(8, 0.6), np.array([0.4, -0.9]), (40, 99, 100))
+    f = general(8, 0.6)
+    for i in range(3):
+        for ends in (found.lower[i], found.upper[i]):
+            half = discriminant(f, ends, found.mu)
+            assert np.all(np.abs(np.abs(half.value) - 1) <= half.error + found.error[i])
+    squares = np.array([40, 99, 100])[:, None] ** 2 / 4
+    assert np.all(np.abs(found.lower - squares + f.a[0] * found.mu) < 0.05)
+
+
+def test_sparse_harmonics():
+    """Only the tenth harmonic: Mathieu's equation at a tenth of the angle."""
+    f = PeriodicFunction(np.eye(11)[10])
+    same = hill_boundaries(COSINE, 0.02, (1, 2))
+    found = hill_boundaries(f, 2.0, (10, 20))
+    np.testing.assert_allclose(found.lower, 100 * same.lower, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(found.upper, 100 * same.upper, rtol=0, atol=1e-11)
+    others = hill_boundaries(f, 2.0, (1, 2, 3, 11, 19))
+    assert np.all(np.abs(others.width) <= 2 * others.error)
+
+
+def test_rounding_of_a_single_harmonic_is_covered():
+    """Cases at the limit of LAPACK's accuracy; the proved ends are good to 1e-17."""
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        f = PeriodicFunction(rng.uniform(-1, 1, 2))
+        mu = float(rng.uniform(100, 800) * rng.choice([-1, 1]))
+        found, proved = (hill_boundaries(f, mu, (3,), certified=c) for c in (False, True))
+        for side in ("lower", "upper"):
+            assert np.abs(getattr(found, side) - getattr(proved, side)) <= found.error

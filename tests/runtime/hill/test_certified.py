@@ -1,0 +1,523 @@
+"""Proved enclosures: many digits, pairs, damping, extremes; and the bounds they rest on."""
+
+from __future__ import annotations
+
+import pickle
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from boundary_cases import closing_damping, rough
+from hill_functions import functions
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import (
+    boundary_derivatives,
+    characteristic_exponents,
+    hill_boundaries,
+)
+from elastolink.runtime.hill.certified import (
+    _FUNCTION_BITS,
+    _VECTOR_BITS,
+    HillOperator,
+    _root_above,
+    spectrum,
+    wave,
+)
+from elastolink.runtime.hill.fourier_matrix import banded, exponentials, layout, stacked, truncation
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+FUNCTIONS = functions()
+
+COSINE = PeriodicFunction([0.0, 1.0])
+
+GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
+
+
+def number(x):
+    from mpmath import mpf
+
+    return mpf(x.numerator) / mpf(x.denominator)
+
+
+class Truncated:
+    """Hill's matrix in cos, sin at mpmath's precision, from the integrals of the products."""
+
+    def __init__(self, f, mu, damping, odd, harmonic):
+        from mpmath import mp, mpf
+
+        self.basis = [(mpf(2 * i + odd) / 2, s) for i in range(harmonic) for s in "cs"]
+        if not odd:
+            self.basis.remove((0, "s"))
+        n = len(self.basis)
+        self.width = 2 * f.harmonics + 1
+        self.matrix = mp.zeros(n)
+        for i, (j, js) in enumerate(self.basis):
+            for m in range(max(0, i - self.width), min(n, i + self.width + 1)):
+                k, ks = self.basis[m]
+                self.matrix[i, m] = -mpf(mu) * self.product(f, j, js, k, ks)
+            self.matrix[i, i] += j * j
+        for i, (j, js) in enumerate(self.basis):
+            if js == "c" and j > 0:
+                drag = 2 * mpf(damping) * j
+                self.matrix[i + 1, i] += drag
+                self.matrix[i, i + 1] -= drag
+
+    @staticmethod
+    def product(f, j, js, k, ks):
+        """(1/pi) times the integral of f times two of the basis, over one period of both."""
+        from mpmath import mpf, sqrt
+
+        def cos(m):
+            # (1/pi) integral of f cos m theta over 2 pi, m whole of either sign.
+            m = abs(int(m))
+            return mpf(f.a[m]) * (2 if m == 0 else 1) if m <= f.harmonics else mpf(0)
+
+        def sin(m):
+            value = mpf(f.b[abs(int(m))]) if abs(int(m)) <= f.harmonics else mpf(0)
+            return value if m >= 0 else -value
+
+        if js == ks:
+            value = (cos(j - k) + (cos(j + k) if js == "c" else -cos(j + k))) / 2
+        elif js == "s":
+            value = (sin(j + k) + sin(j - k)) / 2
+        else:
+            value = (sin(j + k) + sin(k - j)) / 2
+        return value / sqrt(2) ** ((j == 0) + (k == 0))
+
+    def below(self, t):
+        """How many eigenvalues lie below t: negative pivots of Gauss elimination (Sylvester)."""
+        n = self.matrix.rows
+        rows = [
+            {m: self.matrix[i, m] for m in range(i, min(n, i + self.width + 1))} for i in range(n)
+        ]
+        count = 0
+        for i in range(n):
+            rows[i][i] -= t
+            count += rows[i][i] < 0
+            for m in range(i + 1, min(n, i + self.width + 1)):
+                factor = rows[i][m] / rows[i][i]
+                for j in range(m, min(n, i + self.width + 1)):
+                    rows[m][j] = rows[m].get(j, 0) - factor * rows[i][j]
+        return count
+
+    def determinant_sign(self, t):
+        from mpmath import mp
+
+        return mp.sign(mp.det(self.matrix - t * mp.eye(self.matrix.rows)))
+
+
+def assert_enclosed(f, mu, regions, found, harmonic):
+    """Exactly the right number of eigenvalues below either end of each interval."""
+    from mpmath import mp, mpf
+
+    with mp.workdps(60):
+        # The test's own cut raises its eigenvalues by less than this.
+        slack = mpf(10) ** -45
+        for odd in (0, 1):
+            matrix = Truncated(f, mu, 0, odd, harmonic)
+            for row, n in enumerate(regions):
+                if n % 2 != odd:
+                    continue
+                for end, index in (("lower", n - 1), ("upper", n)):
+                    if n == 0 and end == "lower":
+                        continue
+                    low, high = (number(x) for x in found.enclosure(end, row))
+                    assert matrix.below(low - slack) <= index < matrix.below(high + slack)
+
+
+@pytest.mark.parametrize(
+    ("f", "mu", "harmonic"),
+    [(COSINE, 1.0, 30), (GENERAL, 0.7, 60), (GENERAL, -3.0, 70), (COSINE, 300.0, 90)],
+)
+def test_intervals_hold_the_eigenvalues_at_60_digits(f, mu, harmonic):
+    regions = (0, 1, 2, 3, 4, 5, 6)
+    found = hill_boundaries(f, mu, regions, certified=True)
+    assert_enclosed(f, mu, regions, found, harmonic)
+    assert max(found.lower_radius.max(), found.upper_radius.max()) < 1e-18
+    assert not found.pair[1:].any()
+
+
+@pytest.mark.parametrize("q", [1e3, pytest.param(1e4, marks=pytest.mark.slow)])
+def test_mathieu_values_at_large_q(q):
+    """Low and high orders; 12 digits of max(|a|, 2 q), the larger of the value and the wells."""
+    regions = (0, 1, 2, 7, 60, 150)
+    proved = hill_boundaries(COSINE, -q / 2, regions, certified=True)
+    assert_enclosed(COSINE, -q / 2, regions, proved, 260)
+    plain = hill_boundaries(COSINE, -q / 2, regions)
+    scale = np.maximum(np.abs(4 * proved.upper), 2 * q)
+    assert np.all(4 * np.abs(plain.upper - proved.upper) <= 1e-12 * scale)
+    assert np.all(4 * np.abs(plain.lower[1:] - proved.lower[1:]) <= 1e-12 * scale[1:])
+
+
+@pytest.mark.slow
+@settings(max_examples=6, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_random_functions_at_60_digits(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 4))
+    a, b = rng.normal(size=(2, count + 1)) * rng.uniform(0.1, 1.0)
+    b[0] = 0.0
+    f, mu = PeriodicFunction(a, b), float(rng.normal() * 10 ** rng.uniform(-3, 1))
+    regions = tuple(int(n) for n in rng.choice(8, 2, replace=False))
+    found = hill_boundaries(f, mu, regions, certified=True)
+    assert_enclosed(f, mu, regions, found, 75)
+
+
+@pytest.mark.smoke
+def test_published_series_of_a0():
+    """A&S 20.2.25: a0 = -q^2/2 + 7 q^4/128 - 29 q^6/2304 + 68687 q^8/18874368 + O(q^10)."""
+    q = Fraction(1, 1024)
+    series = -(q**2) / 2 + 7 * q**4 / 128 - 29 * q**6 / 2304 + 68687 * q**8 / 18874368
+    found = hill_boundaries(COSINE, -float(q) / 2, (0,), certified=True)
+    low, high = (4 * x for x in found.enclosure("upper", 0))
+    # The next coefficient is about -0.0011; 1 is a generous cover.
+    assert low - q**10 <= series <= high + q**10
+    assert high - low < Fraction(1, 10**24)
+
+
+@pytest.mark.parametrize("mu", [0.5, -2.0, 40.0])
+def test_touching_edges_are_a_pair_and_never_a_gap(mu):
+    """Only even harmonics: odd regions are closed, and even ones are those of half the angle."""
+    f = PeriodicFunction([0.0, 0.0, 1.0])
+    found = hill_boundaries(f, mu, (1, 2, 3, 4, 5), certified=True)
+    np.testing.assert_array_equal(found.pair, [True, False, True, False, True])
+    for i in (0, 2, 4):
+        low, high = found.enclosure("lower", i), found.enclosure("upper", i)
+        assert max(low[0], high[0]) <= min(low[1], high[1])
+    # Open regions: Mathieu's equation in 2 theta, enclosed independently.
+    same = hill_boundaries(COSINE, mu / 4, (1, 2), certified=True)
+    for i, j in ((1, 0), (3, 1)):
+        for end in ("lower", "upper"):
+            a, b = found.enclosure(end, i), same.enclosure(end, j)
+            assert a[0] <= 4 * b[1] and 4 * b[0] <= a[1]
+
+
+def test_a_narrow_gap_is_proved_open():
+    """Region n of Mathieu's equation is about mu^n wide; doubles do not show it, intervals do."""
+    found = hill_boundaries(COSINE, 1e-3, (1, 2, 3, 4, 5, 6), certified=True)
+    widths = [
+        float(found.enclosure("upper", i)[0] - found.enclosure("lower", i)[1]) for i in range(6)
+    ]
+    # Leading term (DLMF 28.6): a_n - b_n = 8 (q/4)^n / ((n-1)!)^2, q = 2 mu, lam2 = a/4.
+    expected = [2 * (0.5e-3) ** n / np.prod(np.arange(1.0, n)) ** 2 for n in range(1, 7)]
+    np.testing.assert_allclose(widths[:5], expected[:5], rtol=1e-5)
+    assert not found.pair.any()
+
+
+def test_mu_zero_gives_the_squares():
+    found = hill_boundaries(GENERAL, 0.0, (0, 1, 2, 5), certified=True)
+    for row, n in enumerate((0, 1, 2, 5)):
+        low, high = found.enclosure("upper", row)
+        assert low <= Fraction(n * n, 4) <= high and high - low < Fraction(1, 10**30)
+    assert found.pair[1:].all() and not found.pair[0]
+
+
+@pytest.mark.parametrize(
+    ("mu", "k"),
+    [
+        pytest.param(1.0, 0.01, marks=pytest.mark.slow),
+        pytest.param(-3.0, 0.05, marks=pytest.mark.slow),
+        (0.8, 0.2),
+    ],
+)
+def test_damped_intervals_hold_an_eigenvalue_at_40_digits(mu, k):
+    """The determinant of the damped matrix changes its sign across every interval."""
+    from mpmath import mp, mpf
+
+    regions = (0, 1, 2, 3)
+    found = hill_boundaries(GENERAL, mu, regions, k, certified=True)
+    plain = hill_boundaries(GENERAL, mu, regions, k)
+    np.testing.assert_array_equal(found.closed, np.isnan(plain.upper))
+    assert found.passed
+    seen = 0
+    with mp.workdps(40):
+        for odd in (0, 1):
+            matrix = Truncated(GENERAL, mu, k, odd, 26)
+            for row, n in enumerate(regions):
+                if n % 2 != odd or found.closed[row]:
+                    continue
+                for end in ("lower", "upper")[n == 0 :]:
+                    low, high = (number(x) for x in found.enclosure(end, row))
+                    # The cut of the test's matrix, whose tail falls faster than 1e-25 here.
+                    low, high = low - mpf(10) ** -25, high + mpf(10) ** -25
+                    assert matrix.determinant_sign(low) * matrix.determinant_sign(high) < 0
+                    seen += 1
+    assert seen >= 3
+
+
+def test_damping_closes_with_proof_and_near_the_tip_says_undecided():
+    mu = 0.6
+    low, high = closing_damping(COSINE, mu, 0.2, 0.4)
+    inside = hill_boundaries(COSINE, mu, (1,), low * (1 - 1e-6), certified=True)
+    beyond = hill_boundaries(COSINE, mu, (1,), high * (1 + 1e-3), certified=True)
+    tip = hill_boundaries(COSINE, mu, (1,), 0.5 * (low + high), certified=True)
+    assert inside.passed and not inside.closed[0] and inside.lower[0] < inside.upper[0]
+    assert beyond.passed and beyond.closed[0] and np.isnan(beyond.upper[0])
+    assert not tip.passed and not tip.closed[0] and np.isnan(tip.upper[0])
+    with pytest.raises(BadInput, match="finite end"):
+        tip.enclosure("lower", 0)
+
+
+def test_shapes_export_and_refusals(tmp_path):
+    found = hill_boundaries(GENERAL, [[0.1, 0.2]], (0, 1, 3), [[0.0], [0.01]], certified=True)
+    assert found.lower.shape == found.pair.shape == found.upper_radius.shape == (3, 2, 2)
+    assert np.all(found.lower[0] == -np.inf)
+    assert pickle.loads(pickle.dumps(found)).to_dict() == found.to_dict()
+    found.save(tmp_path / "b.csv")
+    with pytest.raises(BadInput, match="'lower' or 'upper'"):
+        found.enclosure("middle", 0)
+    nothing = hill_boundaries(GENERAL, np.zeros((0,)), (1,), certified=True)
+    assert nothing.lower.shape == (1, 0)
+    assert hill_boundaries(GENERAL, 1.0, (), certified=True).upper.shape == (0,)
+
+
+def test_the_order_of_regions_and_repeats_do_not_matter():
+    one = hill_boundaries(GENERAL, 0.4, (3, 1, 3), certified=True)
+    assert one.lower[0] == one.lower[2]
+    assert one.lower[1] == hill_boundaries(GENERAL, 0.4, (1,), certified=True).lower[0]
+
+
+def random_function(rng):
+    count = int(rng.choice([1, 2, 4, 12, 30]))
+    size = rng.uniform(0.3, 0.95) ** np.arange(count + 1)
+    a, b = rng.normal(size=(2, count + 1)) * size
+    a[0] = b[0] = 0.0
+    return PeriodicFunction(a, b)
+
+
+def test_the_bound_of_the_truncation_holds_and_is_of_use():
+    """Matrices cut early, against certified ends: never below, never above by more than said."""
+    rng = np.random.default_rng(31)
+    shares = []
+    for _ in range(40):
+        f, mu = random_function(rng), float(10 ** rng.uniform(-1, 1.5))
+        goal = float(10 ** rng.uniform(-9, -2))
+        cut = truncation(f, mu, 4, goal=goal)
+        assert cut.left_out <= goal * 1.0001
+        truth = hill_boundaries(f, mu, (1, 2, 3, 4), certified=True)
+        for odd, rows in ((1, (0, 2)), (0, (1, 3))):
+            values = np.linalg.eigvalsh(stacked(f, odd, cut.harmonic + odd, np.array([mu]))[0])
+            for row in rows:
+                n = row + 1
+                excess = values[n - 1 : n + 1] - [truth.lower[row], truth.upper[row]]
+                noise = 4 * 2.2e-16 * cut.norm
+                assert np.all(excess >= -noise)
+                assert np.all(excess <= cut.left_out + noise)
+                shares.append(excess.max() / cut.left_out)
+    # A majorant of eigenvectors is not sharp, and covers the highest region; but it is not idle.
+    assert np.max(shares) > 1e-6
+
+
+def test_the_cut_grows_slowly_with_the_goal():
+    sizes = [truncation(GENERAL, 1.0, 6, goal=10.0**-e).harmonic for e in (5, 10, 20, 30)]
+    assert sizes == sorted(sizes) and sizes[-1] <= 2 * sizes[0] + 10
+
+
+@pytest.mark.parametrize("odd", [0, 1])
+def test_isolation_covers_the_eigenvalues(odd):
+    rng = np.random.default_rng(32)
+    for _ in range(15):
+        f, mu = random_function(rng), float(10 ** rng.uniform(-2, 1.5))
+        found = spectrum(f, mu, odd, 4 + odd)
+        regions = (1, 3) if odd else (2, 4)
+        truth = hill_boundaries(f, mu, regions, certified=True)
+        for row, n in enumerate(regions):
+            ends = [truth.lower[row], truth.upper[row]]
+            assert np.all(np.abs(found.values[n - 1 : n + 1] - ends) <= found.reach)
+        assert found.reach < 1e-5
+
+
+def test_clusters_join_what_is_close():
+    f = PeriodicFunction([0.0, 0.0, 1.0])
+    found = spectrum(f, 1.0, 1, 5)
+    assert found.cluster(0) == found.cluster(1) == (0, 1)
+    assert found.cluster(4) is None
+    apart = spectrum(GENERAL, 1.0, 1, 5)
+    assert apart.cluster(0) == (0, 0)
+
+
+@pytest.mark.parametrize("odd", [0, 1])
+@pytest.mark.parametrize("k", [0.0, 0.0625])
+def test_the_integer_operator_is_the_matrix(odd, k):
+    """On random integer vectors, against sums of fractions over the float matrix's definition."""
+    size = layout(odd, 6 + odd).squares.size
+    x = np.random.default_rng(1).normal(size=size)
+    x /= np.linalg.norm(x)
+    # Dyadic coefficients, so that the float matrix is exact but for the root of 1/2.
+    f = PeriodicFunction([0.25, 1.0, -0.5], [0.0, 0.5, 0.75])
+    image = HillOperator(f, 0.5, k)(wave(odd, x))
+    wide = stacked(f, odd, 8 + odd, np.array([0.5]), k)[0]
+    expected = exponentials(wide[:, :size] @ x, odd)
+    unit = 2.0 ** -(_VECTOR_BITS + _FUNCTION_BITS + 2)
+    got = (image[0] * unit + 1j * image[1] * unit).astype(complex)
+    np.testing.assert_allclose(got, expected, rtol=0, atol=1e-13)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.fractions(min_value=0, max_value=10**12))
+def test_roots_are_bounded_from_above_and_tightly(value):
+    root = _root_above(value)
+    assert root * root >= value
+    assert root * root <= value * (1 + Fraction(1, 10**15)) + Fraction(1, 10**30)
+
+
+@pytest.mark.parametrize("odd", [0, 1])
+@pytest.mark.parametrize("harmonic", [1, 2, 9])
+def test_the_band_is_that_of_the_dense_matrix(odd, harmonic):
+    band = banded(GENERAL, odd, harmonic + odd, 0.7)
+    dense = stacked(GENERAL, odd, harmonic + odd, np.array([0.7]))[0]
+    n = len(dense)
+    for i in range(n):
+        expected = np.diagonal(dense, -i)
+        ours = band[i, : n - i] if i < len(band) else np.zeros(n - i)
+        np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-16)
+
+
+@pytest.mark.parametrize(
+    "f",
+    [PeriodicFunction([0.5]), PeriodicFunction([0.0], [0.0, 1.0]), PeriodicFunction([0.0, 0.0])],
+)
+@pytest.mark.parametrize("k", [0.0, 0.1])
+def test_poor_functions(f, k):
+    plain = hill_boundaries(f, 1.5, (0, 1, 2), k)
+    proved = hill_boundaries(f, 1.5, (0, 1, 2), k, certified=True)
+    assert proved.passed
+    np.testing.assert_array_equal(np.isnan(plain.upper), np.isnan(proved.upper))
+    there = ~np.isnan(plain.upper)
+    assert np.all(np.abs(plain.upper - proved.upper)[there] <= plain.error[there] + 1e-16)
+
+
+def agree(f, mu, regions, damping=0.0):
+    """Plain and certified boundaries, each within the other's figure; the certified ones."""
+    plain = hill_boundaries(f, mu, regions, damping)
+    proved = hill_boundaries(f, mu, regions, damping, certified=True)
+    assert proved.passed
+    np.testing.assert_array_equal(np.isnan(plain.upper), np.isnan(proved.upper))
+    for end in ("lower", "upper"):
+        ours, truth = getattr(plain, end), getattr(proved, end)
+        there = np.isfinite(truth)
+        slack = (plain.error + proved.error)[there]
+        assert np.all(np.abs(ours[there] - truth[there]) <= slack)
+    return proved
+
+
+@pytest.mark.parametrize("mu", [100.0, -1e4, pytest.param(1e5, marks=pytest.mark.slow)])
+def test_mu_is_large(mu):
+    """Deep wells: lam2 < 0, regions that cover all but a hair."""
+    found = agree(COSINE, mu, (0, 1, 2, 3))
+    assert np.all(found.upper < 0.0)
+    assert found.error.max() < 1e-15 * abs(mu)
+    # The stable band between two regions narrows like exp(-8 sqrt(|mu| / 2)) or so; the ends
+    # belong to the two problems, so that each is enclosed by itself.
+    if abs(mu) <= 1e4:
+        gap = found.enclosure("lower", 1)[1] - found.enclosure("upper", 0)[0]
+        assert gap >= 0
+
+
+def test_beyond_what_can_be_settled_is_refused():
+    for certified in (False, True):
+        with pytest.raises(BadInput, match="2048 harmonics"):
+            hill_boundaries(COSINE, 1e9, (1,), certified=certified)
+        with pytest.raises(BadInput, match="at most 2048"):
+            hill_boundaries(COSINE, 1.0, (4000,), certified=certified)
+
+
+def test_large_sparse_problems_agree_with_the_dense_ones():
+    """Band and dense reductions at the same size, in both problems."""
+    f = PeriodicFunction([0.1, 1.0, -0.3], [0.0, 0.4, 0.2])
+    band = hill_boundaries(f, 5e3, (1, 2, 7))
+    proved = hill_boundaries(f, 5e3, (1, 2, 7), certified=True)
+    assert np.all(np.abs(band.lower - proved.lower) <= band.error + proved.error)
+    assert np.all(np.abs(band.upper - proved.upper) <= band.error + proved.error)
+    assert band.error.max() < 1e-13 * 5e3
+
+
+@pytest.mark.parametrize("b", [0.125, -0.25, 0.5])
+def test_coexistence_in_the_whittaker_hill_equation(b):
+    """cos theta + b cos 2 theta closes all even regions at mu = 2 b, odd ones from 3 on at 8 b.
+
+    There it is Ince's equation with polynomial solutions; b and mu are exact in doubles.
+    """
+    f, regions = PeriodicFunction([0.0, 1.0, b]), (1, 2, 3, 4, 5, 6)
+    for mu, closed in ((2 * b, (2, 4, 6)), (8 * b, (3, 5))):
+        found = agree(f, mu, regions)
+        np.testing.assert_array_equal(found.pair, [n in closed for n in regions])
+        for i in np.flatnonzero(found.pair):
+            low, high = found.enclosure("lower", i), found.enclosure("upper", i)
+            assert max(low[0], high[0]) <= min(low[1], high[1])
+    for mu in (2 * b + 2.0**-40, 2 * b - 2.0**-40):
+        # 1e-12 beside it region 2 is open, by less than doubles show, and that is proved.
+        other = hill_boundaries(f, mu, (2,), certified=True)
+        gap = float(other.enclosure("upper", 0)[0] - other.enclosure("lower", 0)[1])
+        assert 1e-15 < gap < 1e-11 and not other.pair[0]
+
+
+def test_coexistence_of_lames_equation():
+    """2 m sn^2: one gap; all others are closed, for a function known to 1e-15 only.
+
+    The certificate is for the rounded coefficients: gaps of the size of their errors may show.
+    """
+    from scipy.special import ellipj, ellipk
+
+    m = 0.5
+    scale = ellipk(m) / np.pi
+    f = PeriodicFunction.from_callable(
+        lambda theta: -2 * m * ellipj(theta * scale, m)[0] ** 2 * scale**2
+    )
+    found = agree(f, 1.0, (1, 2, 3, 4))
+    assert found.upper[0] - found.lower[0] > 0.1
+    assert np.all(found.width[1:] <= 2 * (found.function_error + found.error[1:]))
+
+
+def test_three_equal_wells_make_clusters():
+    """cos 3 theta, deep: three nearly equal levels in every group, told apart or held together."""
+    f = PeriodicFunction([0.0, 0.0, 0.0, 1.0])
+    found = agree(f, 400.0, (0, 1, 2, 3, 4, 5))
+    for n in (1, 2, 4, 5):
+        assert found.pair[n]
+    # Levels r of the well in 3 theta: mu/9 in Mathieu's equation, whose own ends these are.
+    same = agree(COSINE, 400.0 / 9, (0, 1, 2))
+    np.testing.assert_allclose(found.upper[[0, 3]], 9 * same.upper[[0, 1]], rtol=1e-15)
+
+
+@pytest.mark.parametrize("certified", [False, True])
+def test_damping_at_and_beyond_critical(certified):
+    k = np.array([0.0, 1e-12, 0.5, 1.0, 50.0])
+    found = hill_boundaries(COSINE, 0.3, (0, 1, 2), k, certified=certified)
+    assert np.isfinite(found.upper[0]).all()
+    assert np.isnan(found.upper[1:, 2:]).all()
+    assert np.isfinite(found.upper[1, :2]).all()
+    if certified:
+        assert found.passed and found.closed[1:, 2:].all()
+    # Region 0 ends where lam2 = 0 is balanced: K^2 moves it up, the coupling down.
+    assert np.all(found.upper[0] <= 0.0)
+
+
+@pytest.mark.slow
+def test_a_thousand_harmonics_certified():
+    found = agree(rough(1000), 0.3, (1, 2))
+    assert found.error.max() < 1e-13
+
+
+@pytest.mark.slow
+def test_a_hundred_and_fifty_rough_harmonics_certified():
+    f = rough(150)
+    found = agree(f, 0.7, (0, 1, 2, 3))
+    assert found.error.max() < 1e-14
+    assert not found.pair.any()
+
+
+@pytest.mark.parametrize("mu", [1e-300, 1e4, -300.0])
+def test_bands_and_derivatives_at_the_extremes(mu):
+    bands = characteristic_exponents(COSINE, None, mu, nu=[0.0, 0.25, 0.5], bands=(0, 1))
+    assert np.all(np.diff(bands.lam2, axis=0) >= -bands.error[1:])
+    found = boundary_derivatives(COSINE, mu, (1, 2), ("mu",))
+    if abs(mu) > 1.0:
+        # Levels of the oscillator: -|mu| + (r + 1/2) sqrt(2 |mu|) - ...
+        r = np.array([0, 1])
+        slope = np.sign(mu) * (-1 + (r + 0.5) / np.sqrt(2 * abs(mu)))
+        np.testing.assert_allclose(found.lower[0], slope, rtol=0, atol=1e-4)
+    else:
+        np.testing.assert_allclose(found.upper[0], [0.5, 0.0], rtol=0, atol=1e-14)

@@ -1,0 +1,174 @@
+"""Derivatives of boundaries: differences of certified ends, double edges, exact cases."""
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import boundary_derivatives, hill_boundaries
+
+COSINE = PeriodicFunction([0.0, 1.0])
+GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
+G = PeriodicFunction([0.2, 0.5, -0.3], [0.0, 0.1, 0.7])
+REGIONS = (1, 2, 3)
+# A power of two, so that mu +- STEP and the coefficients +- STEP are exact or nearly so.
+STEP = 2.0**-16
+
+
+def ends(f, mu, k):
+    """Both ends to about 1e-19: the doubles with their rests."""
+    found = hill_boundaries(f, mu, REGIONS, k, certified=True)
+    return np.stack(
+        [
+            getattr(found, end).astype(np.longdouble) + getattr(found, f"{end}_rest")
+            for end in ("lower", "upper")
+        ]
+    )
+
+
+def difference(values):
+    """Fourth-order central difference in steps of STEP."""
+    one = values(STEP) - values(-STEP)
+    two = values(2 * STEP) - values(-2 * STEP)
+    return ((8 * one - two) / (12 * STEP)).astype(float)
+
+
+def changed(kind, m, step):
+    a, b = GENERAL.a.copy(), GENERAL.b.copy()
+    (a if kind == "a" else b)[m] += step
+    return PeriodicFunction(a, b)
+
+
+@pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="differences need 80 bits")
+@pytest.mark.parametrize(("mu", "k"), [(0.75, 0.0), (0.75, 0.03125), (-2.0, 0.0625), (4.0, 0.0)])
+def test_against_differences_of_certified_ends(mu, k):
+    names = ("mu", "a2", "b1", G, "K")
+    found = boundary_derivatives(GENERAL, mu, REGIONS, names[: 5 if k else 4], k)
+    assert found.directions == ("mu", "a2", "b1", "g3", "K")[: 5 if k else 4]
+    expected = [
+        difference(lambda h: ends(GENERAL, mu + h, k)),
+        difference(lambda h: ends(changed("a", 2, h), mu, k)),
+        difference(lambda h: ends(changed("b", 1, h), mu, k)),
+        difference(lambda h: ends(GENERAL * mu + G * h, 1.0, k)),
+    ]
+    if k:
+        expected.append(difference(lambda h: ends(GENERAL, mu, k + h)))
+    # Rounding of the coefficients, 1e-16 over the step, and the fifth derivative times STEP^4,
+    # which close to a tip may be some 1e6.
+    slack = 2e-11
+    for row, (low, high) in enumerate(expected):
+        there = ~np.isnan(low)
+        assert there.any()
+        np.testing.assert_array_equal(np.isnan(found.lower[row]), ~there)
+        assert np.all(np.abs(found.lower[row] - low)[there] <= found.error[row][there] + slack)
+        assert np.all(np.abs(found.upper[row] - high)[there] <= found.error[row][there] + slack)
+    assert np.nanmax(found.error) < 1e-11
+
+
+def test_at_mu_zero_the_slopes_are_those_of_the_first_order():
+    """Smith (7.25): lam2 = n^2/4 - a0 mu -+ |mu| sqrt(an^2 + bn^2) / 2."""
+    found = boundary_derivatives(GENERAL, 0.0, (0, 1, 2, 3, 4), ("mu", "K", "a0"))
+    half = 0.5 * np.append(GENERAL.amplitudes[1:4], 0.0)
+    assert found.double[1:].all() and not found.double[0]
+    np.testing.assert_allclose(found.lower[0, 1:], -0.3 - half, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(found.upper[0, 1:], -0.3 + half, rtol=0, atol=1e-13)
+    assert found.upper[0, 0] == pytest.approx(-0.3, abs=1e-13)
+    assert np.isnan(found.lower[:, 0]).all()
+    # Damping closes a double edge at once; a change of the mean times mu = 0 does nothing.
+    assert np.isnan(found.upper[1, 1:]).all() and np.isnan(found.error[1, 1:]).all()
+    np.testing.assert_allclose(found.upper[2], 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_closed_region_opens_with_one_sided_slopes(sign):
+    """f = cos 2 theta leaves odd regions closed; cos theta opens them."""
+    f, g = PeriodicFunction([0.0, 0.0, 1.0]), PeriodicFunction([0.1, 1.0])
+    found = boundary_derivatives(f, 1.0, REGIONS, (g,))
+    np.testing.assert_array_equal(found.double, [True, False, True])
+    h = sign * 2.0**-20
+    base, moved = ends(f, 1.0, 0.0), ends(f + g * h, 1.0, 0.0)
+    slopes = np.sort((moved - base).astype(float) / h, axis=0)
+    # First differences: the second derivatives, below 5, times the step.
+    np.testing.assert_allclose(found.lower[0], slopes[0], rtol=0, atol=1e-5)
+    np.testing.assert_allclose(found.upper[0], slopes[1], rtol=0, atol=1e-5)
+
+
+def test_the_sum_rule_of_the_mean():
+    """Adding to the mean moves every boundary by just that, times mu: d lam2 / d a0 = -mu."""
+    mu = np.array([[0.5, -1.5]])
+    found = boundary_derivatives(GENERAL, mu, (0, 1, 4), ("a0", "mu", "a1", "a2", "a3"), 0.0)
+    assert found.lower.shape == (5, 3, 1, 2)
+    expected = np.broadcast_to(-mu, (3, 1, 2))
+    np.testing.assert_allclose(found.upper[0], expected, rtol=0, atol=1e-14)
+
+
+def test_euler_relation_ties_the_coefficients_to_mu():
+    """Lam2 depends on the products mu a_m, mu b_m alone: mu d/dmu = sum a_m d/da_m + b_m d/db_m."""
+    names = [f"{kind}{m}" for kind in "ab" for m in range(4) if (kind, m) != ("b", 0)]
+    found = boundary_derivatives(GENERAL, 0.8, REGIONS, ("mu", *names))
+    weights = np.concatenate([GENERAL.a, GENERAL.b[1:]])
+    for end in (found.lower, found.upper):
+        total = np.tensordot(weights, end[1:], axes=1)
+        assert np.all(np.abs(total - 0.8 * end[0]) <= 2 * found.error.sum(axis=0) + 1e-15)
+
+
+def test_without_damping_the_slope_in_k_vanishes():
+    found = boundary_derivatives(GENERAL, 0.8, REGIONS, ("K",))
+    np.testing.assert_allclose(found.lower, 0.0, atol=1e-14)
+    assert not found.double.any()
+
+
+def test_closed_regions_give_nan():
+    found = boundary_derivatives(COSINE, 0.1, REGIONS, ("mu", "K"), 0.3)
+    assert np.isnan(found.lower).all() and np.isnan(found.error).all()
+
+
+@pytest.mark.parametrize("direction", ["c2", "b0", "a", "a-1", 3, None, "lam2"])
+def test_an_unknown_direction_is_refused(direction):
+    with pytest.raises(BadInput, match=r"directions\[0\]"):
+        boundary_derivatives(COSINE, 1.0, (1,), (direction,))
+
+
+def test_nothing_asked_nothing_given():
+    assert boundary_derivatives(COSINE, 1.0, (), ("mu",)).lower.shape == (1, 0)
+    assert boundary_derivatives(COSINE, 1.0, (1,), ()).lower.shape == (0, 1)
+    assert boundary_derivatives(COSINE, np.zeros(0), (1,)).lower.shape == (1, 1, 0)
+
+
+@pytest.mark.parametrize("name", ["a99999999999", "b5000", "a" + "9" * 5000, "a\u0663"])
+def test_coefficients_beyond_all_harmonics_are_refused(name):
+    with pytest.raises(BadInput, match=r"directions\[0\]") as told:
+        boundary_derivatives(COSINE, 0.3, (1,), (name,))
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-11])
+def test_figures_next_to_the_tip(short):
+    """The ends move as ``centre -+ c sqrt(K0 - K)``: both slopes times what is left are known."""
+    from elastolink.runtime.hill import critical_damping
+
+    top = float(critical_damping(COSINE, 1.0, (1,)).damping[0])
+    k = top * (1.0 - short)
+    found = boundary_derivatives(COSINE, 1.0, (1,), ("K",), k)
+    # Slopes of the upper and lower end differ by -c / sqrt(K0 - K), with c from a step away.
+    away = top * (1.0 - 1e-2)
+    far = boundary_derivatives(COSINE, 1.0, (1,), ("K",), away)
+    c = float((far.lower - far.upper)[0, 0]) * np.sqrt(top - away)
+    expected = c / np.sqrt(top - k)
+    slopes = float((found.lower - found.upper)[0, 0])
+    # The next term of the expansion is 1 % of the first where c is taken.
+    assert slopes == pytest.approx(expected, rel=0.02)
+    # Round-off of K, 1e-16 of it, and of the matrix, a few 1e-15: over twice their distance.
+    floor = 0.1 * 1e-16 / short * expected
+    assert floor <= found.error[0, 0] < 1e-13 / short * expected + 1e-9
+
+
+def test_no_derivatives_where_doubles_see_no_two_ends():
+    from elastolink.runtime.hill import critical_damping
+
+    top = float(critical_damping(COSINE, 1.0, (1,)).damping[0])
+    for steps in range(-12, 13):
+        found = boundary_derivatives(COSINE, 1.0, (1,), ("mu", "K"), top * (1.0 + steps * 2e-16))
+        blank = np.isnan(found.error[:, 0])
+        assert np.array_equal(np.isnan(found.lower[:, 0]), blank)
+        slope = np.abs(found.upper[:, 0])
+        assert np.all(blank | (found.error[:, 0] > 1e-7 * slope))

@@ -1,0 +1,171 @@
+"""Exponents at given lam2 and lam2 of given exponents: half trace, boundaries, mpmath."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import characteristic_exponents, discriminant, hill_boundaries
+
+FUNCTIONS = functions()
+
+COSINE = PeriodicFunction([0.0, 1.0])
+
+GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
+
+
+def bands_of(f, mu, nu, bands=(0, 1, 2), k=0.0):
+    return characteristic_exponents(f, None, mu, k, nu=nu, bands=bands)
+
+
+@pytest.mark.smoke
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("k", [0.0, 0.05])
+def test_the_half_trace_is_the_cosine_of_the_phase(name, k):
+    f = FUNCTIONS[name]
+    mu, nu = np.linspace(-1.5, 1.5, 7)[:, None], np.linspace(-0.9, 1.3, 11)
+    found = bands_of(f, mu, nu, (0, 1, 2, 5), k)
+    h = 1e-5
+    half, up, down = (discriminant(f, found.lam2 + step, mu, k) for step in (0.0, h, -h))
+    expected = np.exp(-2 * np.pi * k) * np.cos(2 * np.pi * nu)
+    off = np.abs(half.value - expected)
+    slope = np.abs(up.value - down.value) / (2 * h)
+    bend = np.abs(up.value + down.value - 2 * half.value) / h**2
+    # 1e-15: the rounding of the cosine.
+    assert np.all(off <= half.error + (slope + bend * found.error) * found.error + 1e-15)
+    assert found.passed and list(found.checks)
+    assert found.error.max() < 3e-12
+
+
+@pytest.mark.parametrize("mu", [0.7, -2.0])
+def test_the_ends_of_the_bands_are_the_boundaries(mu):
+    f = FUNCTIONS["24 harmonics"]
+    ends = hill_boundaries(f, mu, (0, 1, 2, 3, 4))
+    found = bands_of(f, mu, [0.0, 0.5], (0, 1, 2, 3))
+    for band in range(4):
+        # Band j reaches from the upper end of region j to the lower one of region j + 1.
+        bottom, top = sorted(found.lam2[band])
+        slack = found.error[band].max() + ends.error.max()
+        assert abs(bottom - ends.upper[band]) <= slack
+        assert abs(top - ends.lower[band + 1]) <= slack
+        assert np.argmin(found.lam2[band]) == band % 2
+
+
+def test_without_a_function_the_bands_are_parabolas():
+    nu = np.linspace(0, 0.5, 9)
+    found = bands_of(GENERAL, 0.0, nu, (0, 1, 2, 3))
+    exact = np.stack([nu**2, (1 - nu) ** 2, (1 + nu) ** 2, (2 - nu) ** 2])
+    assert np.all(np.abs(found.lam2 - exact) <= found.error)
+
+
+def test_phase_symmetries():
+    base = bands_of(GENERAL, 1.3, 0.2)
+    for nu in (-0.2, 0.8, 1.2, -3.2):
+        other = bands_of(GENERAL, 1.3, nu)
+        assert np.all(np.abs(other.lam2 - base.lam2) <= base.error + other.error)
+
+
+def eigenvalues(f, mu, nu, size):
+    """Return the eigenvalues lam2 of Hill's matrix at nu, in mpmath's working precision."""
+    from mpmath import mp, mpf
+
+    matrix = mp.zeros(2 * size + 1)
+    for i in range(2 * size + 1):
+        for j in range(2 * size + 1):
+            m = abs(i - j)
+            c = mp.mpc(f.a[m], -f.b[m] if i > j else f.b[m]) / 2 if 0 < m <= f.harmonics else mpf(0)
+            matrix[i, j] = -mpf(mu) * c
+        matrix[i, i] = (i - size + mpf(nu)) ** 2 - mpf(mu) * mpf(f.a[0])
+    return sorted(mp.eighe(matrix, eigvals_only=True))
+
+
+def test_against_mpmath_at_30_digits():
+    from mpmath import mp, mpf
+
+    f, mu, nu = GENERAL, 0.9, 0.3
+    found = bands_of(f, mu, nu, (0, 1, 2, 3, 4))
+    with mp.workdps(30):
+        truth = eigenvalues(f, mu, nu, 20)[:5]
+    gaps = [abs(float(mpf(float(x)) - y)) for x, y in zip(found.lam2, truth, strict=True)]
+    assert np.all(np.array(gaps) <= found.error)
+    assert found.error.max() < 3e-12
+
+
+@pytest.mark.parametrize("k", [0.0, 0.1])
+def test_exponents_invert_the_bands(k):
+    nu = np.linspace(0.02, 0.48, 9)
+    bands = bands_of(GENERAL, 1.1, nu, (0, 1, 2), k)
+    found = characteristic_exponents(GENERAL, bands.lam2, 1.1, k)
+    # The rounding of lam2 enters by d nu / d lam2 (202 in the narrow lowest band at nu = 0.02).
+    lam2 = [bands_of(GENERAL, 1.1, nu + step, (0, 1, 2), k).lam2 for step in (1e-4, -1e-4)]
+    slope = 2e-4 / np.abs(lam2[0] - lam2[1])
+    assert np.all(np.abs(found.nu - nu) <= found.error + slope * bands.error)
+    np.testing.assert_array_equal(found.growth, np.full(bands.lam2.shape, -k))
+    assert found.stable.all()
+
+
+@pytest.mark.parametrize("band", [0, 1, 2])
+def test_exponents_close_to_the_end_of_a_band_against_mpmath(band):
+    """The lowest band is narrow: 202 units of nu to one of lam2 at nu = 0.02.
+
+    The error is that of nu at the very lam2 given, here the nu of which the 30-digit eigenvalue is
+    that double, one Newton step from 0.02.
+    """
+    from mpmath import mp, mpf
+
+    lam2 = float(bands_of(GENERAL, 1.1, 0.02).lam2[band])
+    found = characteristic_exponents(GENERAL, lam2, 1.1)
+    with mp.workdps(30):
+        start, step = mpf("0.02"), mpf("1e-12")
+        at, ahead = (eigenvalues(GENERAL, 1.1, nu, 16)[band] for nu in (start, start + step))
+        truth = start + (mpf(lam2) - at) * step / (ahead - at)
+        off = float(abs(mpf(float(found.nu)) - truth))
+    assert off <= found.error
+    assert found.error < 2e-12
+
+
+def test_exponents_of_a_constant_coefficient():
+    lam2, k = np.array([0.3, 2.0, -1.0, 0.01]), 0.2
+    found = characteristic_exponents(PeriodicFunction([0.0]), lam2, 0.0, k)
+    root = np.sqrt((lam2 - k * k).astype(complex))
+    turns = root.real - np.rint(root.real)
+    assert np.all(np.abs(found.nu - np.abs(turns)) <= found.error + 1e-15)
+    assert np.all(np.abs(found.growth - (np.abs(root.imag) - k)) <= found.error + 1e-15)
+    np.testing.assert_array_equal(found.stable, [True, True, False, True])
+
+
+def test_growth_beyond_doubles_is_said():
+    found = characteristic_exponents(COSINE, [-1e5, -100.0], 1.0)
+    assert not found.passed
+    assert np.isinf(found.growth[0]) and np.isinf(found.error[0])
+    assert found.growth[1] == pytest.approx(10.0, abs=0.01)
+
+
+def test_plot_shapes_and_empty():
+    import matplotlib.pyplot as plt
+
+    found = bands_of(COSINE, 1.0, np.linspace(0, 0.5, 5))
+    assert len(found.plot().lines) == 3
+    plt.close("all")
+    assert bands_of(COSINE, np.zeros((0, 1)), [0.1, 0.2]).lam2.shape == (3, 0, 2)
+    assert bands_of(COSINE, 1.0, 0.1, ()).lam2.shape == (0,)
+    with pytest.raises(BadInput, match="slice"):
+        bands_of(COSINE, 1.0, 0.1).plot()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((np.nan, 0.1), "mu"),
+        ((1.0, np.inf), "nu"),
+        ((1.0, 0.1, (-1,)), "bands"),
+        ((1.0, 0.1, 3), "bands"),
+        ((1.0, 0.1, (9999,)), "bands"),
+        ((1.0, 0.1, (0,), -1.0), "damping"),
+        ((1e9, 0.1), "2048"),
+    ],
+)
+def test_bad_input(arguments, message):
+    with pytest.raises(BadInput, match=message):
+        bands_of(COSINE, *arguments)

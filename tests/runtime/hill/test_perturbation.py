@@ -1,0 +1,752 @@
+"""Perturbation boundaries: exact coefficients, both forms, flags, extremes."""
+
+from __future__ import annotations
+
+import tracemalloc
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from elastolink.derive.perturbation.exact import exact_operator
+from elastolink.derive.perturbation.surd import ExactHarmonics
+from elastolink.generated import hill_recursion
+from hill_functions import functions
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import (
+    PerturbationBoundaries,
+    critical_damping,
+    hill_boundaries,
+    perturbation_boundaries,
+)
+from elastolink.runtime.hill.bloch import effective_operator, wave_columns
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+FUNCTIONS = functions()
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_formula(name):
+    """Smith (7.46), (7.49), written out once more."""
+    f, mu, k = FUNCTIONS[name], np.array([[-1.0, 0.3], [2.0, 0.05]]), 0.01
+    found = perturbation_boundaries(f, mu, (1, 2, 3), damping=k, outside="value")
+    for i, n in enumerate((1, 2, 3)):
+        square = mu**2 * (f.a[n] ** 2 + f.b[n] ** 2) - 4 * k**2 * n**2
+        closed = square < 0
+        np.testing.assert_array_equal(np.isnan(found.lower[i]), closed)
+        np.testing.assert_array_equal(np.isnan(found.error[i]), closed)
+        np.testing.assert_array_equal(found.closed[i], closed & ~found.outside[i])
+        assert np.all(np.isinf(found.error[i][found.outside[i] & ~closed]))
+        half = 0.5 * np.sqrt(square[~closed])
+        middle = (n**2 / 4 - f.a[0] * mu)[~closed]
+        np.testing.assert_allclose(found.lower[i][~closed], middle - half, rtol=1e-14, atol=1e-15)
+        np.testing.assert_allclose(found.upper[i][~closed], middle + half, rtol=1e-14, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("k", [0.0, 0.003, 0.03])
+def test_the_error_figure_covers_the_truth_and_is_not_idle(name, k):
+    f, mu = FUNCTIONS[name], np.linspace(-1, 1, 41)
+    regions = (0, 1, 2, 3, 4)
+    exact, first = hill_boundaries(f, mu, regions, k), perturbation_boundaries(f, mu, regions, 1, k)
+    ratios = []
+    for end in ("lower", "upper"):
+        gap = np.abs(getattr(exact, end)[1:] - getattr(first, end)[1:])
+        both = ~np.isnan(gap)
+        figure = (first.error + exact.error)[1:][both]
+        assert np.all(gap[both] <= figure)
+        ratios += list(figure[gap[both] > 1e-12] / gap[both][gap[both] > 1e-12])
+    inside = ~first.outside[0]
+    gap = np.abs(exact.upper[0] - first.upper[0])[inside]
+    assert np.all(gap <= (first.error[0] + exact.error[0])[inside])
+    assert np.mean(first.outside) < 0.35
+    assert np.median(ratios) < 50
+
+
+def test_a_figure_beyond_half_the_width_fails_the_check():
+    f = PeriodicFunction([0.0, 1.0, 0.2])
+    assert perturbation_boundaries(f, [0.0, 0.05], (1, 2)).passed
+    assert not perturbation_boundaries(f, [0.0, 3.0], (1, 2)).passed
+    assert "error over half the width" not in perturbation_boundaries(f, 0.1, (3,)).checks
+
+
+def test_parameters_that_cancel_at_one_point():
+    """1e15 cos - 3e15 (cos / 3): the sum is exact in fractions, and known to 0.1 in doubles."""
+    third = 1.0 / 3.0
+    functions = (PeriodicFunction([0.0, 1.0]), PeriodicFunction([0.0, third]))
+    for scale in (1e10, 1e12, 1e15):
+        mu = [scale + 0.1, -3.0 * scale]
+        left = float(Fraction(mu[0]) + Fraction(mu[1]) * Fraction(third))
+        found = perturbation_boundaries(functions, mu, (1,), order=2)
+        exact = hill_boundaries(functions[0], left, (1,))
+        told = found.error[0] + exact.error[0]
+        assert not abs(found.lower[0] - exact.lower[0]) > told
+        assert not abs(found.upper[0] - exact.upper[0]) > told
+
+
+COSINE = PeriodicFunction([0.0, 1.0])
+
+GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
+
+SECOND = PeriodicFunction([-0.1, 0.2, 0.5], [0.0, 0.7, -0.2])
+
+# Powers of q in a_m(q) and b_m(q) less m^2, exact: DLMF 28.6.1-28.6.7 (Abramowitz & Stegun
+# 20.2.25), from the power given by the region's order up to q^8 or as far as printed.
+MATHIEU = {
+    (0, "a"): {2: "-1/2", 4: "7/128", 6: "-29/2304", 8: "68687/18874368"},
+    (1, "a"): {
+        **{1: "1", 2: "-1/8", 3: "-1/64", 4: "-1/1536", 5: "11/36864"},
+        **{6: "49/589824", 7: "55/9437184", 8: "-83/35389440"},
+    },
+    (1, "b"): {
+        **{1: "-1", 2: "-1/8", 3: "1/64", 4: "-1/1536", 5: "-11/36864"},
+        **{6: "49/589824", 7: "-55/9437184", 8: "-83/35389440"},
+    },
+    (2, "a"): {2: "5/12", 4: "-763/13824", 6: "1002401/79626240", 8: "-1669068401/458647142400"},
+    (2, "b"): {2: "-1/12", 4: "5/13824", 6: "-289/79626240", 8: "21391/458647142400"},
+    (3, "a"): {
+        **{2: "1/16", 3: "1/64", 4: "13/20480", 5: "-5/16384"},
+        **{6: "-1961/23592960", 7: "-609/104857600"},
+    },
+    (3, "b"): {
+        **{2: "1/16", 3: "-1/64", 4: "13/20480", 5: "5/16384"},
+        **{6: "-1961/23592960", 7: "609/104857600"},
+    },
+    (4, "a"): {2: "1/30", 4: "433/864000", 6: "-5701/2721600000"},
+    (4, "b"): {2: "1/30", 4: "-317/864000", 6: "10049/2721600000"},
+}
+
+# Radii of convergence in q, DLMF table 28.6.1: the series of a_0 and a_2; of b_2; of a_1 and b_1.
+RADII = {0: 1.4687686138, 1: 3.7699574940, 2: 1.4687686138}
+
+
+@pytest.mark.parametrize(
+    ("m", "kind", "order"),
+    [(*key, order) for key, printed in MATHIEU.items() for order in range(1, max(printed) + 1)],
+)
+def test_the_series_of_mathieus_equation(m, kind, order):
+    """Truncated polynomials on both sides: they agree to round-off wherever q lies."""
+    printed = {k: Fraction(v) for k, v in MATHIEU[m, kind].items()}
+    q = np.array([0.01, 0.4, 1.3])
+    wanted = np.array(
+        [float(sum(c * Fraction(x) ** k for k, c in printed.items() if k <= order)) for x in q]
+    )
+    # A change of sign of mu changes a and b of odd number, and lower and upper with them.
+    found = perturbation_boundaries(COSINE, -0.5 * q, (m,), order, form="series", outside="value")
+    values = found.upper[0] if kind == "a" else found.lower[0]
+    np.testing.assert_allclose(4 * values - m * m, wanted, rtol=0, atol=4e-15 * (1 + m * m))
+
+
+@pytest.mark.parametrize("n", RADII)
+def test_nothing_is_given_beyond_the_radius_of_convergence(n):
+    q = RADII[n] * np.array([0.3, 0.45, 1.3, 2.0, 10.0])
+    for order in range(2, 9):
+        found = perturbation_boundaries(COSINE, 0.5 * q, (n,), order)
+        np.testing.assert_array_equal(found.outside[0], [False, False, True, True, True])
+
+
+@pytest.mark.parametrize("form", ["uniform", "series"])
+def test_several_parameters_are_one_function(form):
+    eps = np.array([[0.05, -0.02, 0.01], [0.02, 0.03, 0.0]])
+    k = 0.001
+    found = perturbation_boundaries([GENERAL, SECOND], list(eps), (1, 2, 3), 5, k, form)
+    assert found.parameters.shape == (2, 3)
+    np.testing.assert_array_equal(found.mu, eps[0])
+    for j in range(3):
+        whole = GENERAL * float(eps[0, j]) + SECOND * float(eps[1, j])
+        one = perturbation_boundaries(whole, 1.0, (1, 2, 3), 5, k, form)
+        np.testing.assert_allclose(found.lower[:, j], one.lower, rtol=2e-15)
+        np.testing.assert_allclose(found.upper[:, j], one.upper, rtol=2e-15)
+        # A single point of several parameters takes another way: one function.
+        single = perturbation_boundaries([GENERAL, SECOND], list(eps[:, j]), (1, 2, 3), 5, k, form)
+        np.testing.assert_allclose(single.upper, one.upper, rtol=2e-15)
+        np.testing.assert_allclose(single.error, one.error, rtol=1e-3)
+
+
+def test_parameters_broadcast():
+    found = perturbation_boundaries(
+        [COSINE, SECOND], [np.zeros((2, 1)), np.linspace(0, 0.1, 3)], (1, 2), 3, np.zeros(3)
+    )
+    assert isinstance(found, PerturbationBoundaries)
+    assert found.lower.shape == found.outside.shape == found.closed.shape == (2, 2, 3)
+    assert found.parameters.shape == (2, 2, 3)
+
+
+def test_the_uniform_form_holds_where_c_n_vanishes():
+    """The second harmonic of f and the second order of the first cancel: a kink, not a root."""
+    mu = 0.1
+    f = PeriodicFunction([0.0, 1.0, -0.5 * mu])
+    exact = hill_boundaries(f, mu, (2,))
+    for order in (3, 5):
+        found = perturbation_boundaries(f, mu, (2,), order)
+        assert not found.outside.any()
+        gap = max(abs(found.upper - exact.upper)[0], abs(found.lower - exact.lower)[0])
+        assert gap <= found.error[0] + exact.error[0]
+        assert gap < 10 * mu ** (order + 1)
+    # The first component of the root is not the dominant one there.
+    assert perturbation_boundaries(f, mu, (2,), 3, form="series").outside.all()
+
+
+def test_open_closed_flagged_and_undecided_are_told_apart():
+    f, n = GENERAL, 1
+    tip = 0.5 * f.amplitudes[n] * 0.05
+    k = tip * np.array([0.5, 1.5])
+    found = perturbation_boundaries(f, [0.05, 0.05], (n,), 6, k)
+    np.testing.assert_array_equal(found.closed[0], [False, True])
+    np.testing.assert_array_equal(np.isnan(found.upper[0]), [False, True])
+    assert not found.outside.any() and not found.undecided.any()
+    far = perturbation_boundaries(f, [5.0, 5.0], (n,), 6, k)
+    assert far.outside.all() and not far.closed.any() and np.isnan(far.lower).all()
+    assert not far.passed and found.passed
+
+
+def random_case(rng):
+    def function():
+        harmonics, fall = int(rng.choice([1, 2, 3, 5, 8, 24])), rng.uniform(0.3, 0.95)
+        a, b = rng.normal(size=(2, harmonics + 1)) * fall ** np.arange(harmonics + 1)
+        b *= rng.random() < 0.7
+        b[0] = 0.0
+        return PeriodicFunction(a, b)
+
+    functions = [function() for _ in range(rng.integers(1, 4))]
+    ray = rng.normal(size=len(functions))
+    whole = sum((f * float(x) for f, x in zip(functions, ray, strict=True)), PeriodicFunction())
+    n, order = int(rng.integers(0, 7)), int(rng.integers(1, 9))
+    mu = 10.0 ** rng.uniform(-3, 0.6, 4) / whole.bound()
+    k = np.zeros(4)
+    if rng.random() < 0.5 and 0 < n <= whole.harmonics:
+        k = 0.5 * whole.amplitudes[n] * mu / n * rng.uniform(0.0, 1.1, 4)
+    return functions, ray, whole, n, order, mu, k
+
+
+@pytest.mark.parametrize("form", ["uniform", "series"])
+@pytest.mark.parametrize(
+    "cases", [pytest.param(60, id="some"), pytest.param(600, id="all", marks=pytest.mark.slow)]
+)
+def test_the_figures_cover_the_truth(form, cases):
+    rng = np.random.default_rng(17)
+    ratios, covered, flagged, wrong = [], [], [], 0
+    for _ in range(cases):
+        functions, ray, whole, n, order, mu, k = random_case(rng)
+        exact = hill_boundaries(whole, mu, (n,), k)
+        found = perturbation_boundaries(functions, list(ray[:, None] * mu), (n,), order, k, form)
+        flagged.append(found.outside)
+        sure = ~found.outside & ~found.undecided
+        wrong += np.count_nonzero(sure & (np.isnan(exact.upper) != found.closed))
+        both = np.isfinite(found.upper) & np.isfinite(exact.upper)
+        gap = np.abs(found.upper - exact.upper)[both]
+        if n:
+            gap = np.maximum(gap, np.abs(found.lower - exact.lower)[both])
+        slack = exact.error[both]
+        covered.append(gap <= found.error[both] + slack)
+        clear = gap > 10 * slack
+        ratios.append((found.error[both] / np.maximum(gap, 1e-300))[clear])
+    covered, ratios = np.concatenate(covered), np.concatenate(ratios)
+    assert covered.size > 2 * cases
+    assert covered.mean() >= 0.99
+    assert wrong == 0
+    assert np.median(ratios) < 20
+    # A flag is no way out: at these parameters most of the entries are numbers.
+    assert np.mean(flagged) < 0.45
+
+
+@pytest.mark.parametrize(
+    "cases", [pytest.param(60, id="some"), pytest.param(600, id="all", marks=pytest.mark.slow)]
+)
+def test_nothing_certain_is_false_about_the_tip(cases):
+    """Damping within 1e-7 to a third of the critical one, which the half trace gives."""
+    rng = np.random.default_rng(23)
+    seen = 0
+    for _ in range(cases):
+        _, _, whole, n, order, mu, _ = random_case(rng)
+        truth = critical_damping(whole, mu, (max(n, 1),))
+        k = truth.damping[0] * (1 + rng.normal(size=4) * 10.0 ** rng.uniform(-7, -0.5, 4))
+        k = np.maximum(k, 0.0)
+        apart = np.abs(k - truth.damping[0]) > 4 * truth.error[0]
+        for form in ("uniform", "series"):
+            found = perturbation_boundaries(whole, mu, (max(n, 1),), order, k, form)
+            sure = apart & ~found.outside[0] & ~found.undecided[0]
+            np.testing.assert_array_equal(found.closed[0][sure], (k > truth.damping[0])[sure])
+            seen += np.count_nonzero(sure)
+    assert seen > 2 * cases
+
+
+@pytest.mark.parametrize("k", [0.0, 0.01])
+@pytest.mark.parametrize("order", [4, 8])
+def test_a_single_harmonic_couples_its_multiples(k, order):
+    """cos 3 theta: region 3 at first, region 6 at second order, none of the others ever."""
+    f = PeriodicFunction([0.0, 0.0, 0.0, 1.0])
+    found = perturbation_boundaries(f, 0.2, (1, 2, 3, 4, 5, 6), order, k)
+    width = np.nan_to_num(found.width)
+    assert width[2] > 0.1 and (width[5] > 1e-3 or k > 0)
+    # What is left is the root of round-off of the level.
+    assert np.all(width[[0, 1, 3, 4]] < 1e-7)
+    same = perturbation_boundaries(COSINE, 0.2 / 9, (1,), order, k / 3)
+    np.testing.assert_allclose(found.upper[2], 9 * same.upper[0], rtol=1e-14)
+
+
+def test_what_would_not_fit_is_refused():
+    f = PeriodicFunction(np.ones(1001))
+    with pytest.raises(BadInput, match="coefficients"):
+        perturbation_boundaries([f, f, f], [np.zeros(2)] * 3, (1,), 8, 0.1)
+
+
+def test_the_result_leaves_with_its_masks(tmp_path):
+    found = perturbation_boundaries(GENERAL, np.linspace(0, 2, 5), (1, 2), 4, 0.01)
+    with np.load(found.save(tmp_path / "found.npz")) as kept:
+        np.testing.assert_array_equal(kept["outside"], found.outside)
+        np.testing.assert_array_equal(kept["closed"], found.closed)
+    assert (tmp_path / "found.csv") == found.save(tmp_path / "found.csv")
+    assert found.to_dict()["order"] == 4
+    assert found.plot().lines
+
+
+UNIT = 2.0**-53
+
+# Number of parts, damping, order.
+KINDS = [(1, False, 8), (1, True, 8), (2, False, 6), (2, True, 5), (3, False, 5), (3, True, 4)]
+
+
+def random_parts(seed, count):
+    """Return coefficients of the parts: a mean, cosines, sines (none in some)."""
+    rng = np.random.default_rng(seed)
+    harmonics = int(rng.integers(1, 8))
+    decay = rng.uniform(0.2, 1.2) ** np.arange(harmonics)
+    sines = 1.0 * (rng.random(count) < 0.7)
+    return [
+        (rng.normal(), decay * rng.normal(size=harmonics), s * decay * rng.normal(size=harmonics))
+        for s in sines
+    ]
+
+
+def periodic(parts):
+    return [PeriodicFunction([mean, *a], [0.0, *b]) for mean, a, b in parts]
+
+
+class Upwards(np.ndarray):
+    """Differences become sums: the recursion then adds up the sizes of all of its terms."""
+
+    def __sub__(self, other):
+        return self + other
+
+
+def majorants(parts, n, order, damped):
+    """Return for each order the sum of the sizes of all terms, every parameter being 1."""
+    half = sum(0.5 * np.hypot(a, b) for _, a, b in parts)
+    reach = (order // 2) * len(half)
+    m = np.arange(-reach, n + reach + 1)
+    v = sum(x * (np.eye(m.size, k=k) + np.eye(m.size, k=-k)) for k, x in enumerate(half, 1))
+    v = v + damped * np.diag(np.abs(2.0 * m - n))
+    levels = np.abs(m * (m - n)).astype(float)
+    r = 1.0 / np.where(levels == 0.0, np.inf, levels)
+    rows = np.flatnonzero(levels == 0.0)
+    effective, _ = getattr(hill_recursion, f"order_{order}")(
+        np.eye(m.size)[:, rows].view(Upwards),
+        lambda x: (v @ x).view(Upwards),
+        lambda x: (r[:, None] * x).view(Upwards),
+        lambda x: x[rows],
+        lambda x, h: (x @ h).view(Upwards),
+    )
+    return [float(np.max(h)) for h in effective]
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("count, damped, order", KINDS)
+def test_coefficients_are_the_exact_ones_to_a_few_roundings(count, damped, order, seed):
+    """Measured over 4000 operators: at most 3.8 roundings of the sum of the sizes of the terms."""
+    parts = random_parts(100 * count + seed, count)
+    exact_parts = [ExactHarmonics.of(mean, a.tolist(), b.tolist()) for mean, a, b in parts]
+    for n in range(7):
+        exact = exact_operator(exact_parts, n, order, damped)
+        found = effective_operator(periodic(parts), n, order, damped)
+        allowed = majorants(parts, n, order, damped)
+        allowed[0] = max(allowed[0], *(abs(mean) for mean, _, _ in parts))
+        for k in range(order):
+            assert found.exponents[k].tolist() == [list(row) for row in exact.exponents[k]]
+            for one, other in ((found.diagonal, exact.diagonal), (found.coupling, exact.coupling)):
+                wanted = np.array([complex(float(x), float(y)) for x, y in other[k]])
+                assert np.max(np.abs(one[k] - wanted)) <= 8 * UNIT * allowed[k]
+
+
+def matrix(parts, n, values, damping, reach):
+    """Return Hill's matrix ``k^2 - 2 i K k - F`` for m = -reach ... n + reach."""
+    m = np.arange(-reach, n + reach + 1)
+    k = m - 0.5 * n
+    out = np.diag(k * k - 2j * damping * k)
+    for part, value in zip(parts, values, strict=True):
+        c = 0.5 * (part.a - 1j * part.b)
+        out -= value * part.a[0] * np.eye(m.size)
+        for j in range(1, len(c)):
+            out -= value * (c[j] * np.eye(m.size, k=-j) + c[j].conj() * np.eye(m.size, k=j))
+    return out
+
+
+@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize("n", range(5))
+def test_the_boundaries_are_eigenvalues_of_hills_matrix(n, damped):
+    """No recursion in the reference: LAPACK on 2 x 30 harmonics, where the remainder is small."""
+    parts = periodic(random_parts(7, 2))
+    values = np.array([0.02, -0.03] + [0.004] * damped)
+    a, b = (x.sum(0) for x in effective_operator(parts, n, 8, damped).components(values))
+    root = np.sqrt(complex(abs(b) ** 2 - a.imag**2))
+    found = [0.25 * n * n + a.real + s * root for s in ((-1, 1) if n else (0,))]
+    whole = np.linalg.eigvals(matrix(parts, n, values[:2], values[2] if damped else 0.0, 30))
+    for value in found:
+        assert np.min(np.abs(whole - value)) < 1e-12
+
+
+@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize("n", [0, 1, 2, 3])
+def test_the_solutions_obey_the_equation_to_the_order(n, damped):
+    """``(H0 + V) Omega - Omega h`` on the whole column falls with the next power."""
+    parts = periodic(random_parts(11, 2))
+    order = 5
+    left = []
+    for t in (2e-2, 1e-2):
+        drag = 0.3 * t if damped else 0.0
+        whole = parts[0] * t + parts[1] * (-0.7 * t)
+        column = wave_columns(whole, n, order, drag).sum(axis=0)
+        mirror = column[::-1].conj()
+        operator = effective_operator((whole,), n, order, damped)
+        a, b = (x.sum(0) for x in operator.components([1.0, drag][: 1 + damped]))
+        reach = (column.size - n - 1) // 2
+        assert column[reach + n] == 1.0
+        if n:
+            assert column[reach] == 0.0
+        hill = matrix(parts, n, [t, -0.7 * t], drag, reach)
+        rest = hill @ column - (0.25 * n * n + a) * column - (b.conj() * mirror if n else 0.0)
+        left.append(np.max(np.abs(rest)))
+    assert left[0] < 1e-6
+    assert np.log2(left[0] / left[1]) == pytest.approx(order + 1, abs=0.2)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_a_shift_of_the_angle_turns_b_and_leaves_a(n):
+    mean, a, b = random_parts(8, 1)[0]
+    angle = 0.7
+    c = 0.5 * (a - 1j * b) * np.exp(1j * angle * np.arange(1, len(a) + 1))
+    one = effective_operator(periodic([(mean, a, b)]), n, 7, True)
+    two = effective_operator(periodic([(mean, 2 * c.real, -2 * c.imag)]), n, 7, True)
+    for k in range(7):
+        size = 1e-14 * np.max(np.abs(np.concatenate([one.diagonal[k], one.coupling[k]])))
+        np.testing.assert_allclose(two.diagonal[k], one.diagonal[k], atol=size)
+        turned = one.coupling[k] * np.exp(1j * angle * n)
+        np.testing.assert_allclose(two.coupling[k], turned, atol=size)
+
+
+def test_the_mean_moves_the_first_component_alone():
+    (mean, a, b), n = random_parts(9, 1)[0], 3
+    one = effective_operator(periodic([(0.0, a, b)]), n, 5)
+    two = effective_operator(periodic([(mean, a, b)]), n, 5)
+    assert two.diagonal[0] == one.diagonal[0] - mean
+    for k in range(1, 5):
+        assert two.diagonal[k] == one.diagonal[k]
+        assert two.coupling[k] == one.coupling[k]
+
+
+def test_signs_of_damping_and_of_the_angle():
+    """K -> -K belongs to time reversed; an even f then gives the conjugates of A and B."""
+    mean, a, _ = random_parts(10, 1)[0]
+    operator = effective_operator(periodic([(mean, a, 0 * a)]), 2, 6, True)
+    forth, back = operator.components([0.3, 0.1]), operator.components([0.3, -0.1])
+    for one, other in zip(forth, back, strict=True):
+        np.testing.assert_allclose(one, other.conj(), rtol=1e-13, atol=1e-16)
+
+
+F = PeriodicFunction([0.0, 1.0])
+
+
+FORMS = ("uniform", "series")
+
+EPS = float(np.finfo(float).eps)
+
+
+def general(harmonics, fall=0.7, seed=0):
+    rng = np.random.default_rng(seed)
+    size = fall ** np.arange(harmonics + 1)
+    a, b = rng.uniform(-1, 1, (2, harmonics + 1)) * size
+    b[0] = 0.0
+    return PeriodicFunction(a, b)
+
+
+MIXED = general(6)
+
+
+def agrees(f, mu, regions, order, form="uniform", damping=0.0):
+    """Compare with Hill's matrix wherever the entry is not flagged; return the result."""
+    found = perturbation_boundaries(f, mu, regions, order, damping, form)
+    exact = hill_boundaries(f, mu, regions, damping)
+    for ours, theirs in ((found.lower, exact.lower), (found.upper, exact.upper)):
+        there = np.isfinite(ours) & np.isfinite(theirs)
+        gap = np.abs(ours[there] - theirs[there])
+        assert np.all(gap <= (found.error + exact.error)[there])
+    return found
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("order", [1, 4, 8])
+def test_mu_zero(form, order):
+    found = perturbation_boundaries(MIXED, 0.0, range(8), order, 0.0, form)
+    levels = np.arange(8) ** 2 / 4
+    np.testing.assert_array_equal(found.upper, levels)
+    np.testing.assert_array_equal(found.lower[1:], levels[1:])
+    assert found.lower[0] == -np.inf
+    assert np.all(found.error <= 16 * EPS * (levels + 1))
+    assert not found.outside.any()
+    assert not found.closed.any()
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("mu", [1e-300, 5e-324, -1e-200, 1e-20])
+def test_mu_hardly_there(form, mu):
+    found = perturbation_boundaries(MIXED, mu, (0, 1, 2, 7), 8, 0.0, form)
+    np.testing.assert_allclose(found.upper, [0.0, 0.25, 1.0, 12.25], atol=3 * abs(mu), rtol=EPS)
+    assert not found.outside.any()
+    assert np.all(np.isfinite(found.error))
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("damping", [0.0, 1.0])
+@pytest.mark.parametrize("mu", [1e3, 1e150, 1e300, -1e300, 1.7e308])
+def test_mu_beyond_all_bounds_is_flagged(form, damping, mu):
+    found = perturbation_boundaries(MIXED, [mu, 0.0], (0, 1, 2), 8, damping, form)
+    assert found.outside[:, 0].all()
+    assert np.isnan(found.upper[:, 0]).all()
+    assert np.isnan(found.error[:, 0]).all()
+    assert found.checks["entries outside the estimated range"].value == 3
+    assert not found.passed
+    told = perturbation_boundaries(MIXED, [mu, 0.0], (0, 1), 8, damping, form, outside="value")
+    # The number where there is one, with no claim about it.
+    gone = np.isnan(told.upper[:, 0])
+    assert np.all(np.isposinf(told.error[:, 0]) | gone)
+    assert not gone.any() or abs(mu) > 1e30
+
+
+@pytest.mark.parametrize("order", range(1, 9))
+def test_boundaries_below_zero(order):
+    """A mean of either sign takes lam2 down or up without touching the rest."""
+    for mean in (50.0, -50.0, 1e6):
+        shifted = COSINE + mean
+        plain = perturbation_boundaries(COSINE, 0.1, (0, 1, 2, 3), order)
+        found = perturbation_boundaries(shifted, 0.1, (0, 1, 2, 3), order)
+        np.testing.assert_allclose(
+            found.upper, plain.upper - 0.1 * mean, rtol=0, atol=2 * EPS * abs(mean)
+        )
+        assert np.all(np.abs(found.upper - plain.upper + 0.1 * mean) <= found.error + plain.error)
+        assert np.sign(found.upper[1]) == -np.sign(mean)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("f", [PeriodicFunction(), PeriodicFunction([0.7])], ids=["zero", "one"])
+def test_a_constant_has_no_width(f, form):
+    found = perturbation_boundaries(f, [0.3, -40.0], range(5), 8, 0.0, form)
+    levels = np.arange(5)[:, None] ** 2 / 4 - f.mean * np.array([0.3, -40.0])
+    np.testing.assert_allclose(found.upper, levels, rtol=2 * EPS, atol=2 * EPS)
+    np.testing.assert_array_equal(found.lower[1:], found.upper[1:])
+    assert not found.outside.any()
+    drag = perturbation_boundaries(f, 0.3, (1, 2), 8, 0.01, form)
+    assert drag.closed.all()
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("order", [1, 2, 5, 8])
+def test_where_c_n_vanishes(form, order):
+    a, b = MIXED.a.copy(), MIXED.b.copy()
+    a[3] = b[3] = 0.0
+    found = agrees(PeriodicFunction(a, b), np.array([1e-6, 0.01, 0.05, -0.05]), (3,), order, form)
+    assert not found.outside.any()
+    assert np.all(found.width[0] >= 0)
+    almost = a.copy()
+    almost[3] = 1e-9
+    # The series may be flagged about a root of almost nothing, but never be wrong.
+    agrees(PeriodicFunction(almost, b), np.array([1e-6, 1e-3, 0.05]), (3,), order, form)
+
+
+def test_a_thousand_harmonics():
+    """Order 1 and 2 of a function with a thousand harmonics, within bounds of memory."""
+    rng = np.random.default_rng(4)
+    size = 1.0 / (1.0 + np.arange(1001)) ** 2
+    a, b = rng.uniform(-1, 1, (2, 1001)) * size
+    b[0] = 0.0
+    f = PeriodicFunction(a, b)
+    tracemalloc.start()
+    try:
+        for order in (1, 2, 4, 8):
+            agrees(f, np.array([1e-3, 0.02]), (1, 2), order)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    # Hill's matrix itself takes most: (2 x 1000)^2 doubles, a few times.
+    assert peak < 1.5e9
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e-3])
+def test_memory_of_order_eight(damping):
+    """The columns hold 24 x 8 harmonics on either side, times the monomials of two parameters."""
+    f = general(24)
+    tracemalloc.start()
+    try:
+        agrees(f, np.linspace(-0.1, 0.1, 11), range(1, 7), 8, "uniform", damping)
+        perturbation_boundaries(f, np.linspace(-0.1, 0.1, 100_000), (1,), 8, damping)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    # Five results of 1e5 doubles and what blocks of 4096 points take.
+    assert peak < 1e8
+
+
+def test_too_many_parameters_are_refused_before_any_work():
+    parts = [general(24, seed=i) for i in range(12)]
+    with pytest.raises(BadInput, match="coefficients"):
+        perturbation_boundaries(parts, [np.zeros(2)] * 12, (1,), 8)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_at_and_beyond_critical_damping(n):
+    f, mu = MIXED, 0.02
+    width = perturbation_boundaries(f, mu, (n,), 8).width[0]
+    critical = 0.5 * width / n
+    for share, closed in ((0.9, False), (1.1, True), (3.0, True)):
+        for form in FORMS:
+            found = agrees(f, mu, (n,), 8, form, share * critical)
+            assert found.outside[0] or found.closed[0] == closed
+    # A hair's breadth from the tip: the result says so where it cannot tell.
+    for share in 1 + np.array([-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6, 1e-3]):
+        found = agrees(f, mu, (n,), 8, "uniform", share * critical)
+        exact = hill_boundaries(f, mu, (n,), share * critical)
+        assert found.undecided[0] or found.closed[0] == np.isnan(exact.upper[0])
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("damping", [0.0, 1e-3])
+def test_negative_mu_is_the_negative_function(form, damping):
+    mu = np.array([1e-5, 0.01, 0.05])
+    for order in (1, 3, 8):
+        one = perturbation_boundaries(MIXED, -mu, range(5), order, damping, form)
+        other = perturbation_boundaries(-MIXED, mu, range(5), order, damping, form)
+        for name in ("lower", "upper", "error"):
+            np.testing.assert_allclose(
+                getattr(one, name), getattr(other, name), rtol=1e-13, atol=1e-15
+            )
+        np.testing.assert_array_equal(one.outside, other.outside)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_very_high_regions(form):
+    f = general(8)
+    for n in (50, 100, 400):
+        found = agrees(f, np.array([0.01, 0.4, -0.9]), (n,), 8, form)
+        # Far from resonance with any harmonic the gap is narrower than round-off.
+        assert np.all(found.width[0] <= 2 * found.error[0])
+        assert not found.outside.any()
+    wide = general(60, 0.99)
+    assert np.any(agrees(wide, np.array([1e-3, 0.1]), (50,), 8, form).width > 1e-4)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-20, 1e20])
+def test_the_scale_of_f_and_mu_may_be_exchanged(scale):
+    mu = np.array([0.01, -0.03])
+    plain = perturbation_boundaries(MIXED, mu, (0, 1, 2, 5), 8)
+    with np.errstate(under="ignore"):
+        found = perturbation_boundaries(MIXED * scale, mu / scale, (0, 1, 2, 5), 8)
+    tiny = scale < 1e-30
+    assert tiny or not found.outside.any()
+    for name in ("lower", "upper"):
+        ours, theirs = getattr(found, name), getattr(plain, name)
+        there = np.isfinite(ours) & np.isfinite(theirs)
+        gaps = np.abs(ours[there] - theirs[there])
+        assert np.all(gaps <= (found.error + plain.error)[there])
+
+
+@pytest.mark.parametrize("scale", [1e150, 1e307])
+def test_a_huge_function_is_refused_or_right(scale):
+    try:
+        found = perturbation_boundaries(MIXED * scale, 0.01 / scale, (0, 1, 2), 8)
+    except BadInput as refusal:
+        assert "overflow" in str(refusal)
+        return
+    plain = perturbation_boundaries(MIXED, 0.01, (0, 1, 2), 8)
+    there = ~found.outside
+    assert np.all(np.abs(found.upper - plain.upper)[there] <= (found.error + plain.error)[there])
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"mu": np.nan},
+        {"mu": np.inf},
+        {"mu": "much"},
+        {"mu": None},
+        {"mu": 1j},
+        {"mu": [[1.0], [1.0, 2.0]]},
+        {"f": None},
+        {"f": "cos"},
+        {"f": []},
+        {"f": [COSINE, "cos"], "mu": [0.1, 0.2]},
+        {"f": [COSINE, COSINE]},
+        {"f": [COSINE, COSINE], "mu": [0.1]},
+        {"f": [COSINE, COSINE], "mu": [0.1, np.nan]},
+        {"f": [COSINE, COSINE], "mu": [np.ones(2), np.ones(3)]},
+        {"damping": -1e-300},
+        {"damping": np.nan},
+        {"damping": "a little"},
+        {"damping": [0.1, np.inf]},
+        {"damping": np.ones(3), "mu": np.ones(2)},
+        {"order": 0},
+        {"order": 9},
+        {"order": 2.0},
+        {"order": True},
+        {"order": "2"},
+        {"order": None},
+        {"order": np.nan},
+        {"regions": (-1,)},
+        {"regions": (0.5,)},
+        {"regions": "two"},
+        {"regions": 2},
+        {"regions": (np.nan,)},
+        {"regions": (np.inf,)},
+        {"regions": (10**9,)},
+        {"regions": None},
+        {"form": "exact"},
+        {"form": None},
+        {"form": 1},
+        {"outside": "zero"},
+        {"outside": None},
+        {"form": ["uniform"]},
+        {"outside": []},
+    ],
+    ids=lambda item: next(iter(item)) + " " + repr(next(iter(item.values())))[:20],
+)
+def test_bad_input_is_refused_in_one_line(changes):
+    with pytest.raises(BadInput) as refusal:
+        perturbation_boundaries(**{"f": COSINE, "mu": 0.1, **changes})
+    assert "\n" not in str(refusal.value)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    n=st.integers(0, 12),
+    order=st.integers(1, 8),
+    form=st.sampled_from(FORMS),
+    mu=st.floats(-1e3, 1e3),
+    k=st.one_of(st.just(0.0), st.floats(0.0, 2.0)),
+    a=st.lists(st.floats(-2, 2), min_size=1, max_size=5),
+    b=st.lists(st.floats(-2, 2), min_size=0, max_size=4),
+)
+def test_anything_finite_is_answered_or_flagged(n, order, form, mu, k, a, b):
+    f = PeriodicFunction(a, [0.0, *b])
+    found = perturbation_boundaries(f, mu, (n,), order, k, form)
+    upper, error = found.upper[0], found.error[0]
+    assert np.isnan(upper) == bool(found.outside[0] or found.closed[0])
+    assert np.isnan(upper) or (np.isfinite(error) and error >= 0.0)
+    if n and not np.isnan(upper):
+        assert found.lower[0] <= upper
+    again = perturbation_boundaries(f, mu, (n,), order, k, form)
+    np.testing.assert_array_equal(again.upper, found.upper)
+    np.testing.assert_array_equal(again.error, found.error)
+
+
+def test_no_points_and_no_regions():
+    assert perturbation_boundaries(COSINE, np.zeros((0, 3)), (1, 2)).lower.shape == (2, 0, 3)
+    assert perturbation_boundaries(COSINE, 0.1, ()).lower.shape == (0,)

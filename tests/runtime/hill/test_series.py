@@ -1,0 +1,461 @@
+"""Coefficients of the boundaries and their formulas: published, derived otherwise, read back."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+import re
+from fractions import Fraction
+
+import elastolink as el
+import numpy as np
+import pytest
+from boundary_truth import MP, boundary
+from elastolink.derive.perturbation.exact import exact_operator, exact_series
+from elastolink.derive.perturbation.strained import strained_boundaries
+from elastolink.derive.perturbation.surd import ExactHarmonics
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import boundary_series, perturbation_boundaries
+from elastolink.runtime.hill.bloch import effective_operator, wave_columns
+from elastolink.runtime.hill.series import HIGHEST_FORMULA, boundary_latex, solution_latex
+from strained_truth import PUBLISHED, published
+
+MIXED = el.PeriodicFunction(a=[0.1, 1.0, 0.4, 0.15], b=[0.0, 0.3, -0.2, 0.1])
+
+MATHIEU = el.PeriodicFunction(a=[0.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("n", "upper", "published"),
+    [
+        # NIST DLMF 28.6(i): a_m and b_m in powers of q, exact rationals; a = 4 lam2, q = 2 mu up
+        # to the origin of theta, which turns odd powers about.
+        (0, True, {2: -1 / 2, 4: 7 / 128, 6: -29 / 2304, 8: 68687 / 18874368}),
+        (1, True, {1: 1, 2: -1 / 8, 3: -1 / 64, 4: -1 / 1536, 5: 11 / 36864, 6: 49 / 589824}),
+        (2, False, {2: -1 / 12, 4: 5 / 13824, 6: -289 / 79626240}),
+        (2, True, {2: 5 / 12, 4: -763 / 13824, 6: 1002401 / 79626240}),
+        (3, True, {2: 1 / 16, 3: 1 / 64, 4: 13 / 20480, 5: -5 / 16384, 6: -1961 / 23592960}),
+    ],
+)
+def test_mathieu(n, upper, published):
+    found = boundary_series(MATHIEU, n, 8)
+    alpha = found.upper if upper else found.lower
+    for power, value in published.items():
+        assert 4 * alpha[power - 1] / 2**power == pytest.approx(value, rel=1e-12)
+    assert found.passed
+    for power in (3, 5, 7) if n % 2 == 0 else ():
+        assert abs(alpha[power - 1]) <= found.error[:, power - 1].max() + 1e-17
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 5])
+@pytest.mark.parametrize("ratio", [0.0, 0.005])
+def test_remainder_falls_with_the_next_power(n, ratio):
+    order = 3
+    if n == 5 and ratio:
+        return
+    found = boundary_series(MIXED, n, order, ratio)
+    gaps = []
+    for mu in (0.02, 0.01):
+        exact = el.hill_boundaries(MIXED, mu, (n,), damping=ratio * mu)
+        powers = mu ** np.arange(1, order + 1)
+        ends = 0.25 * n * n + np.array([found.lower @ powers, found.upper @ powers])
+        true = (exact.lower[0], exact.upper[0])
+        gaps.append(abs(ends[1] - true[1]) if n == 0 else np.abs(ends - true).max())
+    assert np.log2(gaps[0] / gaps[1]) == pytest.approx(order + 1, abs=0.25)
+
+
+def test_no_width_to_first_order():
+    gapless = el.PeriodicFunction(a=[0.0, 1.0, 0.0, 0.3], b=[0.0, 0.2, 0.0, 0.0])
+    found = boundary_series(gapless, 2, 4)
+    assert found.splitting == 2 and found.lower[0] == found.upper[0] == 0.0
+    assert found.lower[1] < found.upper[1]
+    # A function of period pi leaves the odd regions closed for ever.
+    closed = boundary_series(el.PeriodicFunction(a=[0.0, 0.0, 1.0]), 1, 6)
+    assert closed.splitting == 0 and np.array_equal(closed.lower, closed.upper)
+
+
+def test_error_covers_the_exact_coefficients():
+    # alpha_2 of region 1 of a cos theta + b sin theta is -(a^2 + b^2)/8 by turning the origin.
+    for a, b in ((0.3, 1.7), (1e-3, 2.0), (5.0, 1e-9)):
+        f = el.PeriodicFunction(a=[0.0, a], b=[0.0, b])
+        found = boundary_series(f, 1, 4)
+        size = np.hypot(a, b)
+        exact = np.array([0.5, -1 / 8, -1 / 32, -1 / 384]) * size ** np.arange(1, 5)
+        assert np.all(np.abs(found.upper - exact) <= found.error[1] + 4e-16 * np.abs(exact))
+
+
+def test_plot():
+    ax = boundary_series(MIXED, 2, 2).plot()
+    assert {line.get_label() for line in ax.get_lines()} >= {"exact", "order 1", "order 2"}
+
+
+def test_small_differences_are_not_taken_for_zero():
+    # cos theta + 1e-14 cos 2 theta: c_2 itself opens region 2.
+    found = boundary_series(el.PeriodicFunction([0.0, 1.0, 1e-14]), 2, 2)
+    assert found.splitting == 1
+    assert found.upper[0] - found.lower[0] == pytest.approx(1e-14, rel=1e-13, abs=0)
+    assert abs(found.upper[1] - found.lower[1]) == pytest.approx(0.5, rel=1e-13)
+    # DLMF 28.6.14 for a = 4 lam2, q = 2 mu: a_n - b_n begins with 2 q^n / (4^(n-1) (n-1)!^2).
+    for size in (1.0, 1e-3):
+        found = boundary_series(el.PeriodicFunction([0.0, size]), 10, 10)
+        width = 0.5 * (2 * size) ** 10 / (4.0**9 * 362880.0**2)
+        assert found.splitting == 10
+        assert found.upper[9] - found.lower[9] == pytest.approx(width, rel=1e-12, abs=0)
+    # The same with a fiftieth harmonic, which takes no part.
+    a = np.zeros(51)
+    a[[1, 50]] = 0.01, 1.0
+    found = boundary_series(el.PeriodicFunction(a), 3, 3)
+    assert found.splitting == 3 and found.passed
+    assert found.upper[2] - found.lower[2] == pytest.approx(0.02**3 / 128, rel=1e-12, abs=0)
+
+
+def test_a_cancelled_difference_is_zero_within_its_error():
+    """Region 4: ``B_2 = c_2^2 / 4 + 2 c_1 c_3 / 3`` vanishes with ``a_3 = -3 a_2^2 / (8 a_1)``."""
+    a1, a2 = 0.7, 0.3
+    f = el.PeriodicFunction([0.0, a1, a2, -3 * a2 * a2 / (8 * a1)])
+    found = boundary_series(f, 4, 4)
+    assert found.splitting == 3 and found.passed
+    assert found.upper[1] == found.lower[1]
+    # Terms of 0.02, some units of round-off.
+    assert 1e-17 < found.error[0, 1] < 1e-14
+    near = boundary_series(el.PeriodicFunction(f.a * [1, 1, 1, 1 + 1e-9]), 4, 4)
+    assert near.splitting == 2
+
+
+def test_the_error_of_the_function_is_no_difference():
+    f = el.PeriodicFunction([0.0, 1.0, 1e-17], error=1e-15)
+    found = boundary_series(f, 2, 3)
+    assert found.splitting == 2
+    assert found.error[0, 0] >= 1e-17
+
+
+F = PeriodicFunction([0.4, 0.9, -0.5], [0.0, 0.3, 0.7])
+
+ONE = PeriodicFunction([0.3, 1.0], [0.0, 0.5])
+
+DRAG = 0.3
+
+
+def lines(text):
+    """Return the sums of a formula by their left sides."""
+    body = text.removeprefix("\\begin{aligned}\n").removesuffix("\n\\end{aligned}")
+    found, left = {}, ""
+    for line in body.split(" \\\\\n"):
+        head, _, rest = line.partition("&")
+        left = head.strip() or left
+        found[left] = found.get(left, "") + rest.removeprefix("= ").replace(r"\quad", "")
+    return found
+
+
+RULE = r"\text{in the sums: } c_{m-l}"
+
+
+def evaluate(sums, name, f, n, order, m=None):
+    """Read a sum as Python: indices as arguments, a space as a product.
+
+    The coefficient between equal harmonics is the mean, unless the formula says that it is 0.
+    """
+    text = sums[name]
+    mean = f.a[0]
+    if RULE in sums:
+        assert sums[RULE].split() == ["0", "(m", "=", "l)"]
+        mean = 0.0
+    c = np.concatenate([0.5 * (f.a + 1j * f.b)[:0:-1], [mean], 0.5 * (f.a - 1j * f.b)[1:]])
+    numbers = range(-order * f.harmonics, n + order * f.harmonics + 1)
+    others = [k for k in numbers if k * (k - n)]
+
+    def harmonic(k):
+        if k == "mean":
+            return f.a[0]
+        return c[k + f.harmonics] if abs(k) <= f.harmonics else 0.0
+
+    def v(k, j):
+        return 1j * (2 * k - n) * DRAG if k == j else harmonic(k - j)
+
+    def total(term):
+        count = len(inspect.signature(term).parameters)
+        return sum(term(*values) for values in itertools.product(others, repeat=count))
+
+    text = text.replace("c_{0}", "c('mean')").replace(r"\bar{c}_", "b_")
+    text = re.sub(r"\b([cbv])_\{([^{}]*)\}", r"\1(\2)", re.sub(r"m_(\d)", r"m\1", text))
+    text = re.sub(r"\^\{(\d+)\}", r"**\1", text)
+    text = re.sub(r"\\frac\{([^{}]*)\}\{([^{}]*)\}", r"((\1)/(\2))", text)
+    text = text.replace(r"\left(", "(").replace(r"\right)", ")")
+    text = re.sub(r"(?<=[\w)]) (?=[\w(\\])", "*", text)
+    # A sum reaches to the end of its fraction, which is one pair of parentheses by now.
+    while match := re.search(r"\\sum_\{([^{}]*)\}\s*\*?\s*\(", text):
+        depth, end = 1, match.end()
+        while depth:
+            depth += {"(": 1, ")": -1}.get(text[end], 0)
+            end += 1
+        inner = text[match.end() - 1 : end]
+        text = f"{text[: match.start()]}total(lambda {match[1]}: {inner}){text[end:]}"
+    names = {"c": harmonic, "b": lambda k: np.conj(harmonic(k)), "v": v, "total": total}
+    return eval(text, {**names, "n": n, "m": m, "i": 1j, "K": DRAG})
+
+
+@pytest.mark.parametrize("letter", [True, False])
+@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize("n", [0, 1, 2, 3])
+def test_formulas_of_the_boundaries_read_back(n, damped, letter):
+    order = 4
+    operator = effective_operator([F], n, order, damped)
+    values = [1.0, DRAG] if damped else [1.0]
+    a, b = operator.components(values)
+    found = lines(boundary_latex(order, None if letter and n else n, damped))
+    for k in range(1, order + 1):
+        assert evaluate(found, f"A_{{{k}}}", F, n, order) == pytest.approx(a[k - 1], abs=1e-13)
+        if n:
+            assert evaluate(found, f"B_{{{k}}}", F, n, order) == pytest.approx(b[k - 1], abs=1e-13)
+
+
+@pytest.mark.parametrize("order", [5, 6])
+def test_high_orders_read_back(order):
+    """One harmonic: no path of six steps goes further than three from a resonant one."""
+    a, b = effective_operator([ONE], 1, order).components([1.0])
+    sums = lines(boundary_latex(order, 1))
+    for name, value in (("A", a[-1]), ("B", b[-1])):
+        found = evaluate(sums, f"{name}_{{{order}}}", ONE, 1, 3)
+        assert found == pytest.approx(value, abs=1e-13)
+
+
+@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize("n", [0, 1, 2])
+def test_formulas_of_the_solution_read_back(n, damped):
+    order = 3
+    columns = wave_columns(F, n, order, DRAG if damped else 0.0)
+    harmonics = np.arange(columns.shape[1]) - (columns.shape[1] - n - 1) // 2
+    found = lines(solution_latex(order, n or 0, damped))
+    for m, column in zip(harmonics.tolist(), columns.T, strict=True):
+        if m * (m - n):
+            for k in range(1, order + 1):
+                value = evaluate(found, f"v_{{{k},m}}", F, n, order, int(m))
+                assert value == pytest.approx(column[k], abs=1e-13)
+
+
+@pytest.mark.parametrize("text", [boundary_latex, solution_latex])
+@pytest.mark.parametrize("n", [None, 0, 1, 12])
+@pytest.mark.parametrize("damped", [False, True])
+def test_braces_and_environments_are_balanced(text, n, damped):
+    for order in range(1, HIGHEST_FORMULA):
+        found = text(order, n, damped)
+        depth = 0
+        for sign in found:
+            depth += {"{": 1, "}": -1}.get(sign, 0)
+            assert depth >= 0
+        assert depth == 0
+        assert found.count(r"\left") == found.count(r"\right")
+        assert found.startswith("\\begin{aligned}\n") and found.endswith("\n\\end{aligned}")
+        assert found.isascii()
+        assert not re.search(r"\+ -|- -|\(-1\)|--", found)
+        assert all(line.count("&") == 1 for line in found.splitlines()[1:-1])
+
+
+def test_the_first_orders_are_what_one_writes_by_hand():
+    found = lines(boundary_latex(3))
+    assert found["A_{1}"] == "-c_{0}"
+    assert found["B_{1}"] == "-c_{n}"
+    assert found["A_{2}"] == r"-\sum_{m} \frac{c_{n-m} c_{m-n}}{m (m-n)}"
+    assert found["B_{2}"] == r"-\sum_{m} \frac{c_{n-m} c_{m}}{m (m-n)}"
+    assert lines(boundary_latex(1, 2, True))["A_{1}"] == "-c_{0} - i 2 K"
+    assert r"\lambda^2 &= \frac{9}{4} + " in boundary_latex(1, 3)
+    assert r"\lambda^2 &= 4 + " in boundary_latex(1, 4)
+    assert lines(solution_latex(1))["v_{1,m}"] == r"\frac{1}{m (m-n)} c_{m-n}"
+
+
+MISUSE = {
+    "order 0": (lambda: boundary_latex(0), "order"),
+    "order 7": (lambda: boundary_latex(7), "use perturbation_boundaries"),
+    "order 6": (lambda: solution_latex(6), "from 1 to 5"),
+    "order as a truth": (lambda: boundary_latex(True), "order"),
+    "region": (lambda: boundary_latex(1, -1), "region"),
+    "half region": (lambda: solution_latex(1, 0.5), "region"),
+}
+
+
+@pytest.mark.parametrize("case", MISUSE)
+def test_misuse_is_refused_in_one_line(case):
+    call, expected = MISUSE[case]
+    with pytest.raises(BadInput, match=expected) as told:
+        call()
+    assert "\n" not in str(told.value)
+
+
+ORDER = 8
+
+# In q: lam2 = a/4, mu f = -(q/2) cos theta.
+FUNCTION = ExactHarmonics.of(0, [Fraction(-1, 2)])
+
+DOUBLE = PeriodicFunction([0.0, -0.5])
+
+
+def parted(name):
+    """Return the number m and the end: a_m is the upper one for q > 0."""
+    return int(name[1:]), 1 if name[0] == "a" else -1
+
+
+def from_operator(name):
+    m, side = parted(name)
+    found = exact_series(exact_operator([FUNCTION], m, ORDER), (1,))
+    return [4 * value for value in (found.upper if side > 0 else found.lower)]
+
+
+def from_strained(name):
+    m, side = parted(name)
+    upper, lower = strained_boundaries(FUNCTION, m, ORDER).branches
+    return [4 * value for value in (upper if side > 0 else lower).alpha]
+
+
+def product(one, other):
+    out = [Fraction(0)] * (ORDER + 1)
+    for i, x in enumerate(one):
+        for j, y in enumerate(other[: ORDER + 1 - i]):
+            out[i + j] += x * y
+    return out
+
+
+def inverse(series):
+    out = [1 / series[0]]
+    for k in range(1, ORDER + 1):
+        out.append(-sum(series[j] * out[k - j] for j in range(1, k + 1)) / series[0])
+    return out
+
+
+def from_continued_fraction(name):
+    """Expand DLMF 28.6.16-28.6.19 in q, each round of the iteration with an order more."""
+    m, side = parted(name)
+    square = [Fraction(int(k == 2)) for k in range(ORDER + 1)]
+
+    def level(k, a):
+        own = [Fraction(k * k if j == 0 else 0) - x for j, x in enumerate(a)]
+        if k == 1:
+            own[1] += side
+        return own
+
+    def less(one, other):
+        return [x - y for x, y in zip(one, other, strict=True)]
+
+    a = [Fraction(m * m)] + [Fraction(0)] * ORDER
+    for _ in range(ORDER + 1):
+        above = below = [Fraction(0)] * (ORDER + 1)
+        for k in range(m + 2 * ORDER, m, -2):
+            above = product(square, inverse(less(level(k, a), above)))
+        for k in range(m % 2 or (0 if side > 0 else 2), m, 2):
+            twice = [x * (2 if k == 0 else 1) for x in square]
+            below = product(twice, inverse(less(level(k, a), below)))
+        # 0 = m^2 [+ side q] - a - above - below; the constant meets cos 2 z twice from below too.
+        both = [x + y * (2 if m == 0 else 1) for x, y in zip(below, above, strict=True)]
+        a = [x - y for x, y in zip(level(m, [Fraction(0)] * (ORDER + 1)), both, strict=True)]
+    return a[1:]
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_the_published_coefficients(name):
+    expected = published(name)
+    assert len(expected) == {"0": 8, "1": 8, "2": 8, "3": 7}.get(name[1], 6)
+    for found in (from_operator(name), from_strained(name), from_continued_fraction(name)):
+        assert len(found) == ORDER
+        assert found[: len(expected)] == expected
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_beyond_what_is_published_all_routes_agree(name):
+    expected = from_continued_fraction(name)
+    assert from_operator(name) == expected
+    assert from_strained(name) == expected
+
+
+@pytest.mark.parametrize("m", [7, 8, 9, 12])
+def test_the_general_term(m):
+    """DLMF 28.6.14, for m >= 7."""
+    m2 = Fraction(m * m)
+    expected = [
+        0,
+        1 / (2 * (m2 - 1)),
+        0,
+        (5 * m2 + 7) / (32 * (m2 - 1) ** 3 * (m2 - 4)),
+        0,
+        (9 * m2**2 + 58 * m2 + 29) / (64 * (m2 - 1) ** 5 * (m2 - 4) * (m2 - 9)),
+    ]
+    for kind in "ab":
+        assert from_operator(f"{kind}{m}")[:6] == expected
+
+
+@pytest.mark.parametrize("m", [1, 2, 3, 4])
+def test_the_width_of_a_region(m):
+    """DLMF 28.6.15: the first difference of a_m and b_m is 2 / (2^(m-1) (m-1)!)^2 q^m."""
+    high, low = from_operator(f"a{m}"), from_operator(f"b{m}")
+    difference = [x - y for x, y in zip(high, low, strict=True)]
+    factorial = np.prod(range(1, m), dtype=int)
+    assert difference[: m - 1] == [0] * (m - 1)
+    assert difference[m - 1] == Fraction(2, int(2 ** (m - 1) * factorial) ** 2)
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_the_value_to_ninety_digits(name):
+    """The truncated series against the eigenvalue: what is left is of the power that follows."""
+    m, side = parted(name)
+    series, q = from_operator(name), Fraction(1, 10**6)
+    truth = 4 * boundary((FUNCTION,), (q,), Fraction(0), m, side)
+    total = m * m + sum(value.rational * q**k for k, value in enumerate(series, 1))
+    gap = abs(truth - MP.mpf(total.numerator) / total.denominator)
+    assert gap < MP.mpf(10) ** (-6 * (ORDER + 1))
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_the_run_time_series(name):
+    """Both the coefficients of the run time and the steps between the orders of its boundaries."""
+    m, side = parted(name)
+    exact = np.array([float(x) for x in from_operator(name)])
+    found = boundary_series(DOUBLE, m, ORDER)
+    ours = 4 * (found.upper if side > 0 else found.lower)
+    eps = np.finfo(float).eps
+    np.testing.assert_allclose(ours, exact, rtol=4 * eps, atol=4 * eps * abs(exact).max() ** 2)
+    if m == 0 and side < 0:
+        return
+    values = [m * m]
+    for order in range(1, ORDER + 1):
+        ends = perturbation_boundaries(DOUBLE, 1.0, (m,), order, form="series", outside="value")
+        values.append(4 * (ends.upper if side > 0 else ends.lower)[0])
+    np.testing.assert_allclose(np.diff(values), exact, rtol=0, atol=8 * eps * max(1, m * m))
+
+
+# DLMF 28.6.21-28.6.26 for the ratios of the coefficients, free of the normalisation: those of
+# cos 3z, cos 5z ... to that of the leading harmonic.
+def harmonics(m, side, order):
+    """Return ``{k: series in q}`` of the solution divided by its leading coefficient."""
+    branch = strained_boundaries(FUNCTION, m, order + 3).branches[0 if side > 0 else 1]
+    kind = 0 if side > 0 else 1
+    out = {}
+    for k in range(m % 2, m + 2 * order + 1, 2):
+        out[k] = [wave.coefficient(k)[kind] for wave in branch.solutions[: order + 1]]
+    return out
+
+
+def test_the_periodic_solutions():
+    """28.6.22-28.6.25: with the leading coefficient as unit, to the order q^2.
+
+    ce_1 = cos z - (q/8) cos 3z + (q^2/128)(2/3 cos 5z - 2 cos 3z - cos z) ...; division by
+    1 - q^2/128 changes nothing to this order but the own coefficient.  se_1 likewise.
+    """
+    one = Fraction(1)
+    ce1 = harmonics(1, 1, 2)
+    assert ce1[1] == [1, 0, 0]
+    assert ce1[3] == [0, -one / 8, -one / 64]
+    assert ce1[5] == [0, 0, one / 192]
+    se1 = harmonics(1, -1, 2)
+    assert se1[1] == [1, 0, 0]
+    assert se1[3] == [0, -one / 8, one / 64]
+    assert se1[5] == [0, 0, one / 192]
+    # ce_2 = cos 2z - (q/4)(cos 4z/3 - 1) + (q^2/128)(cos 6z/3 - 76/9 cos 2z) ...
+    ce2 = harmonics(2, 1, 2)
+    assert ce2[0] == [0, one / 4, 0]
+    assert ce2[2] == [1, 0, 0]
+    assert ce2[4] == [0, -one / 12, 0]
+    assert ce2[6] == [0, 0, one / 384]
+    # se_2 = sin 2z - (q/12) sin 4z + (q^2/128)(sin 6z/3 - 4/9 sin 2z) ...
+    se2 = harmonics(2, -1, 2)
+    assert se2[2] == [1, 0, 0]
+    assert se2[4] == [0, -one / 12, 0]
+    assert se2[6] == [0, 0, one / 384]

@@ -1,0 +1,169 @@
+"""Periodic solutions on the boundaries: to an order, exactly, and by an integrator."""
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.hill import boundary_solution, hill_boundaries
+from scipy.integrate import solve_ivp
+
+COSINE = PeriodicFunction([0.0, 1.0])
+GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
+THETA = np.linspace(0.0, 4 * np.pi, 97)
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 4])
+@pytest.mark.parametrize("damping", [0.0, 1e-5])
+@pytest.mark.parametrize("order", [None, 2, 6])
+def test_it_solves_the_equation(n, damping, order):
+    """The residual is taken anew, from the values alone, by differences of Fourier series."""
+    mu = 0.1
+    end = "upper"
+    found = boundary_solution(GENERAL, mu, n, end, order, damping)
+    assert found.passed
+    k, a, b = found.wave_numbers, found.a, found.b
+    phase = np.outer(THETA, k)
+    y = np.cos(phase) @ a + np.sin(phase) @ b
+    np.testing.assert_allclose(found(THETA), y, atol=1e-13)
+    slope = np.cos(phase) @ (k * b) - np.sin(phase) @ (k * a)
+    bend = -np.cos(phase) @ (k * k * a) - np.sin(phase) @ (k * k * b)
+    residual = bend + 2 * damping * slope + (found.lam2 + mu * GENERAL(THETA)) * y
+    # The largest value over theta of what is small in the root mean square.
+    assert np.abs(residual).max() <= 10 * found.residual + 1e-12
+    assert found.residual < {None: 1e-12, 2: 1e-2, 6: 1e-5}[order]
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_the_motion_from_its_start_is_periodic(n):
+    """An integrator that knows nothing of Fourier series follows it for a period."""
+    mu, damping = 0.3, 0.01
+    found = boundary_solution(GENERAL, mu, n, "lower", None, damping)
+    h = 1e-5
+    start = [float(found(0.0)), float(found(h) - found(-h)) / (2 * h)]
+
+    def rates(theta, state):
+        force = (found.lam2 + mu * GENERAL(theta)) * state[0] + 2 * damping * state[1]
+        return [state[1], -float(force)]
+
+    grid = np.linspace(0.0, found.period, 40)
+    run = solve_ivp(rates, (0.0, found.period), start, t_eval=grid, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(run.y[0], found(grid), atol=1e-7)
+    np.testing.assert_allclose(run.y[0][-1], start[0], atol=1e-7)
+
+
+@pytest.mark.parametrize("end", ["lower", "upper"])
+@pytest.mark.parametrize("n", [1, 2, 3, 5])
+@pytest.mark.parametrize("damping", [0.0, 0.001])
+@pytest.mark.parametrize("order", [1, 3, 5, 8])
+def test_the_figure_covers_the_exact_solution(end, n, damping, order):
+    f, mu = PeriodicFunction([0.1, 0.5, 0.4, 0.3, 0.3, 0.3], [0.0, 0.2, -0.3, 0.1, 0.2, 0.1]), 0.05
+    exact = boundary_solution(f, mu, n, end, None, damping)
+    found = boundary_solution(f, mu, n, end, order, damping)
+    gap = np.abs(found(THETA) - exact(THETA)).max()
+    assert gap <= found.error + exact.error
+    assert found.passed
+    if gap > 1e-11:
+        assert found.error < 300 * gap
+
+
+def test_the_error_falls_with_the_order():
+    exact = boundary_solution(GENERAL, 0.05, 1)
+    gaps = [
+        np.abs(boundary_solution(GENERAL, 0.05, 1, order=order)(THETA) - exact(THETA)).max()
+        for order in (1, 2, 3, 4, 5)
+    ]
+    assert np.all(np.diff(np.log10(gaps)) < -0.7)
+
+
+def test_normalisation_and_sign():
+    for n in (0, 1, 2, 3):
+        found = boundary_solution(GENERAL, 0.2, n, "upper")
+        theta = np.linspace(0.0, found.period, 4096, endpoint=False)
+        assert np.mean(found(theta) ** 2) == pytest.approx(1.0, abs=1e-12)
+        at = list(found.wave_numbers).index(0.5 * n)
+        assert max(found.a[at], found.b[at], key=abs) > 0
+        assert found.period == (4 * np.pi if n % 2 else 2 * np.pi)
+        sign = -1.0 if n % 2 else 1.0
+        np.testing.assert_allclose(found(theta + 2 * np.pi), sign * found(theta), atol=1e-11)
+
+
+def test_mathieu_functions_are_even_or_odd():
+    """At q > 0 (mu < 0) the lower end of an odd region has the odd solution, se_1."""
+    q = 1.0
+    for order in (None, 4):
+        even = boundary_solution(COSINE, -q / 2, 1, "upper", order)
+        odd = boundary_solution(COSINE, -q / 2, 1, "lower", order)
+        assert np.abs(even.b).max() < 1e-12
+        assert np.abs(odd.a).max() < 1e-12
+
+
+def test_the_first_correction_by_hand():
+    """Region 1 of cos theta: y = cos(theta/2) + mu/4 cos(3 theta/2) + ... up to its norm.
+
+    With y0 = cos(theta/2) the product cos theta y0 holds cos(3 theta/2)/2, which (1/4 - 9/4) has to
+    balance: the coefficient is mu/4.
+    """
+    mu = 1e-4
+    found = boundary_solution(COSINE, mu, 1, "lower", order=1)
+    at = {float(k): i for i, k in enumerate(found.wave_numbers)}
+    assert found.lam2 == pytest.approx(0.25 - mu / 2, abs=1e-15)
+    assert found.a[at[1.5]] / found.a[at[0.5]] == pytest.approx(mu / 4, rel=1e-8)
+
+
+def test_several_parameters():
+    second = PeriodicFunction([0.0, 0.0, 1.0])
+    whole = COSINE * 0.1 + second * 0.05
+    for order in (None, 5):
+        several = boundary_solution([COSINE, second], [0.1, 0.05], 2, "upper", order)
+        one = boundary_solution(whole, 1.0, 2, "upper", order)
+        np.testing.assert_allclose(several(THETA), one(THETA), atol=1e-12)
+    assert several.mu.shape == (2,)
+
+
+def test_where_the_ends_coincide_every_solution_will_do():
+    """Only cos 3 theta: region 1 is closed, and both ends have solutions."""
+    f = PeriodicFunction([0.0, 0.0, 0.0, 1.0])
+    for order in (None, 4):
+        pair = [boundary_solution(f, 0.1, 1, end, order) for end in ("lower", "upper")]
+        for found in pair:
+            assert found.degenerate and found.passed
+        # They are two, not one.
+        product = np.mean(pair[0](THETA[:-1]) * pair[1](THETA[:-1]))
+        assert abs(product) < 1e-3
+
+
+def test_a_deep_well_needs_many_harmonics():
+    found = boundary_solution(COSINE, -2000.0, 1, "lower")
+    assert found.passed
+    bounds = hill_boundaries(COSINE, -2000.0, (1,))
+    assert found.lam2 == pytest.approx(bounds.lower[0], rel=1e-14)
+    # The solution is confined to the bottom of the well.
+    theta = np.linspace(0.0, 4 * np.pi, 2001)
+    assert np.abs(found(theta)).max() > 2.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "where"),
+    [
+        ({"n": 0, "end": "lower"}, "end"),
+        ({"n": 1, "end": "middle"}, "end"),
+        ({"n": 1, "mu": [0.1, 0.2]}, "mu"),
+        ({"n": 1, "order": 9}, "order"),
+        ({"n": 1, "damping": -1.0}, "damping"),
+        ({"n": 1, "damping": 1.0}, "closed by damping"),
+        ({"n": 1, "damping": 1.0, "order": 3}, "closed by damping|converge"),
+        ({"n": 1, "mu": 30.0, "order": 3}, "converge"),
+        ({"n": 1, "mu": 1e200}, "mu"),
+        ({"n": -1}, "regions"),
+    ],
+)
+def test_bad_input(arguments, where):
+    with pytest.raises(BadInput, match=where):
+        boundary_solution(**{"f": COSINE, "mu": 0.1, **arguments})
+
+
+def test_bad_angles_and_picture():
+    found = boundary_solution(COSINE, 0.1, 1)
+    with pytest.raises(BadInput, match="theta"):
+        found([0.0, np.nan])
+    assert found.plot().lines

@@ -1,0 +1,128 @@
+"""Where exponents of the mean system meet: speeds, labels, signatures, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.floquet import floquet_multipliers
+from elastolink.runtime.stability import resonances, tongue
+from periodic_systems import named
+
+
+def _beam(**changes):
+    """Return two modes of 3 and 7 rad/s, softened by w^2 pull, with a small periodic load."""
+    values = {"pull": 0.0, "load": 0.0, **changes}
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("B", "pull", np.eye(2)),
+        Term("K", None, np.diag([9.0, 49.0])),
+        Term("Kg", "load", lambda theta: np.cos(theta)[:, None, None] * np.ones((2, 2))),
+    )
+    return LinearPeriodic(2, terms, values, named(values))
+
+
+def test_speeds_of_a_constant_system():
+    found = resonances(_beam(), (2.4, 20.0), highest=4)
+    expected = {
+        "2 w1 = w": 6.0,
+        "2 w1 = 2 w": 3.0,
+        "2 w2 = w": 14.0,
+        "2 w2 = 2 w": 7.0,
+        "2 w2 = 3 w": 14 / 3,
+        "2 w2 = 4 w": 3.5,
+        "w1 + w2 = w": 10.0,
+        "w1 + w2 = 2 w": 5.0,
+        "w1 + w2 = 3 w": 10 / 3,
+        "w1 + w2 = 4 w": 2.5,
+        "w2 - w1 = w": 4.0,
+    }
+    assert {item.label: pytest.approx(item.speed, rel=1e-13) for item in found} == expected
+    assert [item.speed for item in found] == sorted((i.speed for i in found), reverse=True)
+    for item in found:
+        assert item.opens == (item.kind != "difference")
+        assert sum(item.signatures) == (2 if item.kind == "difference" else 0)
+        np.testing.assert_allclose(item.frequencies, np.array([3.0, 7.0])[np.array(item.modes) - 1])
+
+
+def test_the_mean_inertia_shifts_them_and_divergence_ends_them():
+    # Omega^2 = k - pull w^2: 2 sqrt(9 - w^2/4) = w at w = 3 sqrt 2.
+    found = resonances(_beam(pull=0.25), (1.0, 30.0), highest=1, kinds=("principal",))
+    assert [item.label for item in found] == ["2 w2 = w", "2 w1 = w"]
+    np.testing.assert_allclose([item.speed for item in found], [7 * 2**0.5, 3 * 2**0.5])
+    multipliers = floquet_multipliers(_beam(pull=0.25), [item.speed for item in found]).multipliers
+    assert np.all(np.min(np.abs(multipliers + 1), axis=-1) < 1e-6)
+    # Beyond w = 6 the first mode does not oscillate; the second keeps its number, and what ends
+    # at w = 6 is no meeting.
+    near = resonances(_beam(pull=0.25), (5.9, 6.2), highest=9)
+    assert [item.label for item in near] == ["w2 - w1 = w"]
+    assert near[0].frequencies[0] - near[0].frequencies[1] == pytest.approx(near[0].speed)
+
+
+def test_a_parameter_may_be_detuned():
+    found = resonances(
+        _beam(), (0.0, 6.0), detuning="pull", speed=2.0, highest=2, kinds=("principal",)
+    )
+    # 9/4 - pull = n^2/4 and 49/4 - pull = n^2/4.
+    assert [(item.label, item.detuning) for item in found] == [
+        ("2 w1 = w", "pull"),
+        ("2 w1 = 2 w", "pull"),
+    ]
+    np.testing.assert_allclose([item.speed for item in found], [2.0, 1.25])
+    ends = tongue(_beam(), found[0], parameter=("load", 0.2), speed=2.0, order=3)
+    assert ends.passed, dict(ends.checks)
+    # Half the width is half the amplitude of the load over w^2, to first order.
+    assert ends.width == pytest.approx(0.2 / 4, rel=0.01)
+    assert ends.plot().get_xlabel() == "pull"
+
+
+def test_no_values_no_ends():
+    system = _beam()
+    resonance = resonances(system, (9.0, 11.0))[0]
+    found = tongue(system, resonance, parameter=("load", np.zeros((0, 3))))
+    assert found.lower.shape == (0, 3)
+    assert found.passed
+
+
+def test_same_input_same_bytes():
+    system = _beam()
+    resonance = resonances(system, (9.0, 11.0))[0]
+    first, second = (
+        tongue(system, resonance, parameter=("load", [0.1, 0.5]), order=3) for _ in range(2)
+    )
+    assert first.lower.tobytes() == second.lower.tobytes()
+    assert first.error.tobytes() == second.error.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("span", "changes", "words"),
+    [
+        ((0.0, 5.0), {}, "speed_range"),
+        ((5.0, 2.0), {}, "speed_range"),
+        ((1.0, np.inf), {}, "speed_range"),
+        ((1.0, 5.0), {"highest": 0}, "highest"),
+        ((1.0, 5.0), {"kinds": ("sums",)}, "sums"),
+        ((1.0, 5.0), {"kinds": None}, "kinds"),
+        ((1.0, 5.0), {"push": 1.0}, "push"),
+        ((1.0, 5.0), {"detuning": "push"}, "push"),
+        ((1.0, 5.0), {"detuning": "pull", "speed": -1.0}, "speed"),
+    ],
+)
+def test_bad_input(span, changes, words):
+    with pytest.raises(BadInput, match=words):
+        resonances(_beam(), span, **changes)
+
+
+def test_a_mean_system_at_divergence_is_refused():
+    # A mode without stiffness has an exponent of zero twice, with one eigenvector.
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag([0.0, 49.0])),
+        Term("Kg", "load", lambda theta: np.cos(theta)[:, None, None] * np.ones((2, 2))),
+    )
+    system = LinearPeriodic(2, terms, {"load": 0.0}, named(["load"]))
+    resonance = resonances(system, (10.0, 20.0), highest=1)[0]
+    assert resonance.label == "2 w2 = w"
+    with pytest.raises(BadInput, match="multiple exponent"):
+        tongue(system, resonance, parameter=("load", 0.1))

@@ -1,0 +1,756 @@
+"""Tongues of coupled modes as series: orders, damping, checks, random systems, Smith's rig."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import matplotlib
+import numpy as np
+import pytest
+from elastolink import load_scene
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.floquet import (
+    floquet_multipliers,
+    speed_boundaries,
+)
+from elastolink.runtime.hill.boundaries import hill_boundaries
+from elastolink.runtime.stability import resonances, tongue
+from periodic_systems import is_growing, named, wave
+from scipy.integrate import solve_ivp
+
+matplotlib.use("Agg")
+
+W2 = np.sqrt(5.3)
+
+
+def _pair(first=((0.0, 1.0), (1.0, 0.0)), second=((0.0, 0.0), (0.0, 0.0)), **changes):
+    """Return y'' + C y' + (diag(1, 5.3) + eps (first cos theta + second cos(2 theta + .4))) y."""
+    values = {"eps": 0.0, "d1": 0.0, "d2": 0.0, **changes}
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag([1.0, 5.3])),
+        Term("K", "eps", wave(first)),
+        Term("K", "eps", wave(second, 2, 0.4)),
+        Term("C", "d1", np.diag([1.0, 0.0])),
+        Term("C", "d2", np.diag([0.0, 1.0])),
+    )
+    return LinearPeriodic(2, terms, values, named(values))
+
+
+FULL = _pair(((0.4, 1.0), (1.0, -0.3)), ((0.2, 0.3), (0.3, 0.1)))
+
+
+def _whole(**changes):
+    """Two modes with periodic mass, Coriolis, centrifugal and axial terms, all times eps."""
+    values = {"eps": 0.0, "c": 0.0, **changes}
+    terms = (
+        Term("M", None, np.array([[2.0, 0.3], [0.3, 1.0]])),
+        Term("M", "eps", wave([[0.3, 0.1], [0.1, 0.2]], 1, 0.3)),
+        Term("A", None, np.array([[0.1, -0.2], [0.3, 0.0]])),
+        Term("A", "eps", wave([[0.1, 0.2], [-0.1, 0.1]], 2, 1.0)),
+        Term("B", None, np.array([[0.1, 0.05], [0.05, -0.2]])),
+        Term("B", "eps", wave([[0.2, 0.1], [0.1, -0.3]])),
+        Term("K", None, np.array([[20.0, 3.0], [3.0, 9.0]])),
+        Term("Kg", "eps", wave([[2.0, 1.0], [1.0, 3.0]], 1, -0.4)),
+        Term("C", "c", np.array([[0.4, 0.1], [0.1, 0.3]])),
+    )
+    return LinearPeriodic(2, terms, values, named(values))
+
+
+def _resonance(system, label, span=(0.3, 12.0), **options):
+    return next(item for item in resonances(system, span, **options) if item.label == label)
+
+
+def _exact(system, found, **parameters):
+    """Return the exact ends by bisection of the multipliers, all values at once; ``(2, nb)``."""
+    # Undamped, multipliers leave the circle with a square root, and round-off is magnified so:
+    # 1e-8 of growth is 1e-15 of speed.  Damped, they cross it.
+    limit = 0.0 if len(parameters) > 1 else 1e-8
+    middle = (found.lower + found.upper) / 2
+    ends = []
+    for end, side in ((found.lower, -1), (found.upper, 1)):
+        inner, outer = middle.copy(), end + 0.4 * side * found.width
+        assert np.all(is_growing(system, inner, limit, **parameters))
+        assert not np.any(is_growing(system, outer, limit, **parameters))
+        for _ in range(44):
+            trial = (inner + outer) / 2
+            grows = is_growing(system, trial, limit, **parameters)
+            inner, outer = np.where(grows, trial, inner), np.where(grows, outer, trial)
+        ends.append((inner + outer) / 2)
+    return np.array(ends)
+
+
+EPS = np.array([0.1, 0.05, 0.025])
+
+CASES = {
+    "principal": (FULL, "2 w1 = w", {}),
+    "second mode": (FULL, "2 w2 = w", {}),
+    "sum": (FULL, "w1 + w2 = w", {}),
+    "sum, second harmonic": (FULL, "w1 + w2 = 2 w", {}),
+    "principal, damped": (FULL, "2 w1 = w", {"d1": 0.05, "d2": 0.2}),
+    "sum, damped": (FULL, "w1 + w2 = w", {"d1": 0.06, "d2": 0.18}),
+    "periodic mass": (_whole(), "2 w1 = w", {}),
+    "periodic mass, sum": (_whole(), "w1 + w2 = w", {}),
+    "periodic mass, sum, damped": (_whole(), "w1 + w2 = w", {"c": 0.2}),
+    "difference, not conservative": (
+        _pair(((0.3, 1.0), (-0.8, 0.2))),
+        "w2 - w1 = w",
+        {},
+    ),
+    "difference, not conservative, damped": (
+        _pair(((0.3, 1.0), (-0.8, 0.2)), ((0.2, 0.4), (0.1, -0.3))),
+        "w2 - w1 = w",
+        {"d1": 0.1, "d2": 0.2},
+    ),
+}
+
+
+REST = sorted({*CASES} - {"principal", "periodic mass, sum, damped"})
+
+
+def slow(*cases):
+    return [pytest.param(case, marks=pytest.mark.slow) for case in cases]
+
+
+def _series(system, label, order, damping, eps=EPS):
+    """Return the tongue at values of eps, damping in proportion to it."""
+    unit = {name: value * EPS[0] for name, value in damping.items()}
+    return tongue(
+        system,
+        _resonance(system, label, (0.3, 20.0), highest=2),
+        parameter=("eps", eps),
+        order=order,
+        damping_factor=eps / EPS[0],
+        **unit,
+    )
+
+
+@pytest.mark.parametrize("name", ["principal", "periodic mass, sum, damped", *slow(*REST)])
+def test_the_error_falls_with_the_first_power_left_out(name):
+    system, label, damping = CASES[name]
+    changed = {key: value * EPS for key, value in damping.items()}
+    exact = _exact(system, _series(system, label, 6, damping), eps=EPS, **changed)
+    for order in (1, 2, 3, 4):
+        found = _series(system, label, order, damping)
+        assert np.all(found.open)
+        actual = np.abs(np.stack([found.lower, found.upper]) - exact)
+        # Slopes are exact in the limit; the next power bends them by a share of eps.
+        slopes = np.log2(actual[:, 1:-1] / actual[:, 2:])
+        known = actual[:, 2:] > 1e-11
+        assert np.all(slopes[known] > order + 1 - 0.35), (order, slopes)
+        assert np.any(np.abs(slopes[known] - order - 1) < 0.25) or not np.any(known)
+        worst = np.max(actual, axis=0)
+        assert np.all(worst <= found.error + 1e-11)
+        assert np.all(found.error <= 1e3 * worst + 1e-11)
+
+
+@pytest.mark.parametrize("name", ["sum", "periodic mass, sum, damped"])
+def test_checks_pass_and_say_what_was_compared(name):
+    system, label, damping = CASES[name]
+    found = _series(system, label, 2, damping)
+    assert found.passed, dict(found.checks)
+    assert set(found.checks) == {
+        "told apart",
+        "error over half the width",
+        "stable inside",
+        "unstable outside",
+    }
+    assert found.expansion == "parameter"
+    assert len(found.operators) == 1
+
+
+def test_a_wrong_end_fails_the_checks():
+    from dataclasses import replace
+
+    system, label, damping = CASES["sum"]
+    found = _series(system, label, 3, damping)
+    checks = found.checks._make
+    wide = replace(found, upper=found.upper + 0.5 * found.width)
+    assert not replace(checks, tongue=wide)()["stable inside"].passed
+    narrow = replace(found, upper=found.upper - 0.5 * found.width)
+    assert not replace(checks, tongue=narrow)()["unstable outside"].passed
+
+
+@pytest.mark.smoke
+def test_first_order_is_the_textbook_s():
+    # Averaging by hand: |w - w1 - w2| < (d1 + d2)/(2 sqrt(d1 d2)) sqrt(eps^2/(4 w1 w2) - d1 d2).
+    system = _pair()
+    label, eps = "w1 + w2 = w", 1e-4
+    resonance = _resonance(system, label)
+    assert resonance.speed == pytest.approx(1 + W2, rel=1e-14)
+    plain = tongue(system, resonance, parameter=("eps", eps), order=1)
+    assert plain.width == pytest.approx(eps / np.sqrt(W2), rel=1e-8)
+    for d1, d2 in ((1e-5, 1e-5), (2e-6, 2e-5), (1e-6, 4e-5)):
+        widening = (d1 + d2) / (2 * np.sqrt(d1 * d2))
+        half = widening * np.sqrt(eps**2 / (4 * W2) - d1 * d2)
+        found = tongue(system, resonance, parameter=("eps", eps), order=1, d1=d1, d2=d2)
+        # The formula's own error is of the next order in eps.
+        assert found.width == pytest.approx(2 * half, rel=10 * widening * eps)
+
+
+def test_damping_closes_a_tongue():
+    system = _pair()
+    resonance = _resonance(system, "w1 + w2 = w")
+    factors = np.array([0.0, 0.9, 1.1])
+    # Closed from d1 d2 = eps^2/(4 w1 w2) on, to first order.
+    critical = 1e-3 / (2 * np.sqrt(W2))
+    given = {"d1": critical, "d2": critical}
+    found = tongue(system, resonance, parameter=("eps", 1e-3), damping_factor=factors, **given)
+    assert found.open.tolist() == [True, True, False]
+    assert np.isnan(found.lower[2])
+    assert found.width[2] == 0.0
+    assert found.passed, dict(found.checks)
+
+
+def test_equal_signatures_do_not_open():
+    # The difference tongue of a definite conservative system (Krein).
+    resonance = _resonance(FULL, "w2 - w1 = w")
+    assert resonance.signatures == (1, 1)
+    assert not resonance.opens
+    found = tongue(FULL, resonance, parameter=("eps", [0.05, 0.1]), order=4)
+    assert not np.any(found.open)
+    np.testing.assert_array_equal(found.lower, found.upper)
+    for eps, speed in zip((0.05, 0.1), found.lower, strict=True):
+        near = speed * (1 + np.linspace(-0.05, 0.05, 101))
+        assert not np.any(is_growing(FULL, near, 1e-9, eps=eps))
+
+
+@pytest.mark.slow
+def test_opposite_signatures_open_a_difference_tongue():
+    # A gyroscopically stabilised pair: its slow mode has negative energy.
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("A", None, np.array([[0.0, -1.5], [1.5, 0.0]]), power=-1),
+        Term("K", None, np.diag([-0.5, -0.8])),
+        Term("K", "eps", wave([[0.4, 0.9], [0.9, -0.3]], 1, 0.2)),
+    )
+    system = LinearPeriodic(2, terms, {"eps": 0.0}, named(["eps"]))
+    sums = _resonance(system, "w1 + w2 = w")
+    assert sums.signatures == (-1, -1)
+    assert not tongue(system, sums, parameter=("eps", 0.05), order=3).open
+    difference = _resonance(system, "w2 - w1 = w")
+    assert difference.signatures == (1, -1)
+    found = tongue(system, difference, parameter=("eps", EPS), order=3)
+    exact = _exact(system, found, eps=EPS)
+    assert np.all(np.abs(np.stack([found.lower, found.upper]) - exact) <= found.error + 1e-11)
+
+
+def test_neither_conservative_nor_reversible_without_damping_has_no_end():
+    system = _pair(((0.3, 1.0), (-0.8, 0.2)), ((0.2, 0.4), (0.1, -0.3)))
+    resonance = _resonance(system, "w2 - w1 = w", eps=0.08)
+    assert resonance.signatures == (0, 0)
+    found = tongue(system, resonance, parameter=("eps", 0.08), order=3)
+    assert (found.lower, found.upper) == (0.0, np.inf)
+    assert np.all(is_growing(system, np.linspace(1.2, 1.4, 21), 1e-6, eps=0.08))
+
+
+@pytest.mark.parametrize("n", [1, *slow(2, 3)])
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_a_single_mode_gives_the_boundaries_of_hill_s_equation(n, damping):
+    f = PeriodicFunction(a=[0.2, 1.0, 0.3], b=[0.0, 0.4, -0.2])
+    terms = (
+        Term("M", None, np.eye(1)),
+        Term("K", "lam2", np.eye(1)),
+        Term("B", "mu", lambda theta: -f(theta)[:, None, None]),
+        Term("C", "drag", 2 * np.eye(1), power=1),
+    )
+    values = {"lam2": 1.0, "mu": 0.0, "drag": 0.0}
+    system = LinearPeriodic(1, terms, values, named(values))
+    label = f"2 w1 = {n} w" if n > 1 else "2 w1 = w"
+    resonance = _resonance(system, label, (0.01, 4.0), detuning="lam2")
+    assert resonance.speed == pytest.approx(n * n / 4, rel=1e-13)
+    # Without a coefficient c_n damping of first order closes the region.
+    drag = 0.0 if n == 3 else damping
+    mu = np.array([-0.04, 0.02, 0.04])
+    for order in (2, 3, 4):
+        found = tongue(
+            system,
+            resonance,
+            parameter=("mu", mu),
+            order=order,
+            drag=drag,
+            damping_factor=np.abs(mu),
+        )
+        exact = hill_boundaries(f, mu, (n,), damping=drag * np.abs(mu))
+        gap = np.maximum(np.abs(found.lower - exact.lower[0]), np.abs(found.upper - exact.upper[0]))
+        assert np.all(found.open)
+        assert np.all(gap <= found.error)
+        assert np.all(found.error <= 30 * gap + 1e-14)
+        # Halving mu divides the larger error by the first power left out, at the least.
+        assert gap[2] > 2 ** (order + 1 - 0.4) * gap[1] or gap[2] < 1e-12
+    assert found.passed, dict(found.checks)
+
+
+def test_the_order_may_be_too_low_to_open_a_tongue():
+    system = _pair(((1.0, 0.0), (0.0, 0.5)))
+    resonance = _resonance(system, "2 w1 = 2 w")
+    first = tongue(system, resonance, parameter=("eps", 0.05), order=1)
+    assert not first.open
+    assert first.lower == first.upper
+    second = tongue(system, resonance, parameter=("eps", 0.05), order=2)
+    assert second.open
+    assert second.lower < second.upper
+    assert first.error > second.error
+
+
+def test_truncations_keep_the_pairs_of_a_conservative_system():
+    resonance = _resonance(_whole(), "w1 + w2 = w")
+    found = tongue(_whole(), resonance, parameter=("eps", 0.4), order=3)
+    operator = found.operators[0]
+    ends = found.centres[0] / np.array([found.lower, found.upper]) - 1
+    sigma = np.linspace(-0.1, 0.1, 41)
+    powers = sigma[:, None] ** np.arange(6)
+    values = np.linalg.eigvals(np.tensordot(powers, operator.polynomials(1.0, 0.0, 5), axes=1))
+    # s and -conj s: the real parts cancel, whatever the size of what is left out.
+    np.testing.assert_allclose(np.sum(values.real, axis=1), 0.0, atol=1e-14)
+    stable = values[np.abs(sigma - np.mean(ends)) > 0.6 * np.ptp(ends)]
+    assert 10 < len(stable) < 41
+    np.testing.assert_allclose(stable.real, 0.0, atol=1e-13)
+
+
+def test_exponents_of_the_operator_approach_the_exact_ones():
+    damping = {"c": 0.3}
+    resonance = _resonance(_whole(), "w1 + w2 = w")
+    errors = []
+    for size in (0.2, 0.1, 0.05):
+        found = tongue(
+            _whole(), resonance, parameter=("eps", size), order=1, damping_factor=size, **damping
+        )
+        operator, sigma = found.operators[0], 0.3 * size
+        matrix = sum(sigma**k * value for k, value in enumerate(operator.polynomials(1, size, 3)))
+        told = np.exp(2 * np.pi * (operator.centre + np.linalg.eigvals(matrix)))
+        exact = floquet_multipliers(
+            _whole(), found.centres[0] / (1 + sigma), eps=size, c=0.3 * size
+        ).multipliers
+        errors.append(np.max(np.min(np.abs(told[:, None] - exact), axis=1)))
+    slopes = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(slopes, 4.0, atol=0.25)
+
+
+def test_a_parameter_beside_other_periodic_parts_expands_about_the_mean():
+    more = Term("K", None, wave([[0.05, 0.0], [0.0, 0.0]]))
+    system = _pair(((0.4, 1.0), (1.0, -0.3))).with_terms(more)
+    resonance = _resonance(system, "w1 + w2 = w")
+    values = np.array([[0.05], [0.1]])
+    found = tongue(system, resonance, parameter=("eps", values), damping_factor=[0.0, 1.0], order=3)
+    assert found.expansion == "periodic"
+    assert found.lower.shape == (2, 2)
+    assert len(found.operators) == 2
+    assert found.passed, dict(found.checks)
+    alone = tongue(system, resonance, eps=0.1, order=3)
+    assert alone.lower.shape == ()
+    assert alone.lower == found.lower[1, 1]
+
+
+def test_pictures_and_records():
+    resonance = _resonance(FULL, "w1 + w2 = w")
+    found = tongue(FULL, resonance, parameter=("eps", EPS))
+    axes = found.plot()
+    assert axes.get_ylabel() == "eps"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [found.label]
+    alone = tongue(FULL, resonance, eps=0.1)
+    assert alone.plot().get_xlabel() == "crank speed [rpm]"
+    record = found.to_dict()
+    assert record["resonance"]["modes"] == [1, 2]
+    np.testing.assert_array_equal(record["width"], found.width)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"order": 0}, "order"),
+        ({"order": 9}, "order"),
+        ({"merge": 0.7}, "merge"),
+        ({"merge": "near"}, "merge"),
+        ({"damping_factor": -1.0}, "damping_factor"),
+        ({"damping_factor": [1.0, 2.0]}, "broadcast"),
+        ({"damping": 1.0}, "damping"),
+        ({"parameter": ("eps", [0.1, np.nan, 0.2])}, "finite"),
+        ({"parameter": ("epsilon", 0.1)}, "epsilon"),
+        ({"parameter": "eps"}, "pair"),
+        ({"eps": 0.1}, "once"),
+        ({"d3": 0.1}, "d3"),
+    ],
+)
+def test_bad_input(changes, words):
+    resonance = _resonance(FULL, "w1 + w2 = w")
+    given = {"parameter": ("eps", [0.1, 0.2, 0.3]), **changes}
+    with pytest.raises(BadInput, match=words):
+        tongue(FULL, resonance, **given)
+
+
+def test_a_resonance_that_does_not_fit_is_refused():
+    from dataclasses import replace
+
+    resonance = _resonance(FULL, "w1 + w2 = w")
+    with pytest.raises(BadInput, match="modes"):
+        tongue(FULL, replace(resonance, modes=(1, 3)), parameter=("eps", 0.1))
+    with pytest.raises(BadInput, match="a Resonance"):
+        tongue(FULL, "w1 + w2 = w", parameter=("eps", 0.1))
+    with pytest.raises(BadInput, match="no such resonance"):
+        tongue(FULL, replace(resonance, harmonic=30), parameter=("eps", 0.1))
+
+
+@pytest.mark.slow
+def test_four_exponents_that_meet_exactly():
+    # Two like oscillators, coupled: y1 + y2 and y1 - y2 are Mathieu's equation with +-eps.
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.eye(2)),
+        Term("K", "eps", wave([[0.0, 1.0], [1.0, 0.0]])),
+        Term("C", "d", np.eye(2)),
+    )
+    both = LinearPeriodic(2, terms, {"eps": 0.0, "d": 0.0}, named(["eps", "d"]))
+    one = LinearPeriodic(
+        1,
+        (
+            Term("M", None, np.eye(1)),
+            Term("K", None, np.eye(1)),
+            Term("K", "eps", wave([[1.0]])),
+            Term("C", "d", np.eye(1)),
+        ),
+        {"eps": 0.0, "d": 0.0},
+        named(["eps", "d"]),
+    )
+    for drag in (0.0, 0.02):
+        given = {"parameter": ("eps", 0.1), "order": 2, "d": drag}
+        single = tongue(one, _resonance(one, "2 w1 = w"), **given)
+        for label in ("2 w1 = w", "w1 + w2 = w"):
+            found = tongue(both, _resonance(both, label), **given)
+            assert (found.dimension, single.dimension) == (4, 2)
+            np.testing.assert_allclose(found.lower, single.lower, rtol=1e-11)
+            np.testing.assert_allclose(found.upper, single.upper, rtol=1e-11)
+            assert found.passed
+
+
+@pytest.mark.parametrize("units", [(1e5, 1e-4)])
+def test_units_of_mass_and_coordinates_do_not_matter(units):
+    turn = np.diag(units)
+    terms = []
+    for term in FULL.terms:
+        old = term.function
+        new = (
+            (lambda theta, old=old: turn @ old(theta) @ turn)
+            if callable(old)
+            else turn @ old @ turn
+        )
+        terms.append(Term(term.array, term.scale, new, term.power))
+    other = LinearPeriodic(2, tuple(terms), FULL.parameters, FULL.scales)
+    given = {"parameter": ("eps", EPS), "order": 3, "d1": 0.004, "d2": 0.012}
+    expected = tongue(FULL, _resonance(FULL, "w1 + w2 = w"), **given)
+    found = tongue(other, _resonance(other, "w1 + w2 = w"), **given)
+    np.testing.assert_allclose(found.lower, expected.lower, rtol=1e-11)
+    np.testing.assert_allclose(found.upper, expected.upper, rtol=1e-11)
+
+
+def _system(squares, wave, damping):
+    """Return y'' + C y' + (diag(squares) + eps wave cos theta) y = 0."""
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("K", None, np.diag(squares)),
+        Term("K", "eps", lambda theta: np.cos(theta)[:, None, None] * np.array(wave)),
+        Term("C", "c", np.diag(damping)),
+    )
+    return LinearPeriodic(
+        2,
+        terms,
+        {"eps": 0.0, "c": 1.0},
+        lambda values: {name: np.asarray(values[name], dtype=float) for name in ("eps", "c")},
+    )
+
+
+def _near(second, damping):
+    return _system((3.11**2, second**2), ((0.5, 0.4), (0.4, 0.5)), damping)
+
+
+@pytest.mark.parametrize("damping", [(0.003, 0.013), *slow((0.013, 0.003), (0.001, 0.03))])
+def test_unequal_damping_does_not_hide_a_tongue_beside_others(damping):
+    # 2 w1, w1 + w2 and 2 w2 lie side by side; the motion is nearly all of the lightly damped mode.
+    system = _near(3.551, damping)
+    given = {"parameter": ("eps", 0.12), "order": 3}
+    resonance = _resonance(system, "w1 + w2 = w")
+    found = tongue(system, resonance, **given)
+    alone = tongue(system, resonance, merge=0.0, **given)
+    assert (found.dimension, alone.dimension) == (4, 2)
+    assert found.open
+    assert alone.open
+    assert abs(found.lower - alone.lower) <= found.error + alone.error
+    assert abs(found.upper - alone.upper) <= found.error + alone.error
+    assert found.passed, dict(found.checks)
+    ends = np.array([found.lower, found.upper]) + 3 * found.error * np.array([[-1.0], [1.0]])
+    assert is_growing(system, ends, 0.0, eps=0.12).tolist() == [[False, True], [True, False]]
+
+
+def test_damping_of_one_mode_alone_leaves_no_end_beside_others_either():
+    system = _near(3.551, (0.01, 0.0))
+    resonance = _resonance(system, "w1 + w2 = w")
+    found = tongue(system, resonance, parameter=("eps", 0.12), order=3)
+    assert found.dimension == 4
+    assert (found.open, found.lower, found.upper) == (True, 0.0, np.inf)
+    assert not found.passed
+
+
+@pytest.mark.slow
+def test_a_range_wrongly_said_to_be_closed_fails_the_checks():
+    for system, merge in ((_near(3.551, (0.003, 0.013)), 0.04), (_near(4.4, (0.003, 0.006)), 0.0)):
+        resonance = _resonance(system, "w1 + w2 = w")
+        values, factors = np.array([0.02, 0.12]), np.array([3.0, 1.0])
+        given = {"parameter": ("eps", values), "damping_factor": factors}
+        found = tongue(system, resonance, order=3, merge=merge, **given)
+        assert found.open.tolist() == [False, True]
+        assert found.checks["told apart"].value == 0.0
+        nothing = np.full(2, np.nan)
+        closed = replace(
+            found, lower=nothing, upper=nothing, error=nothing, open=np.zeros(2, dtype=bool)
+        )
+        assert replace(found.checks._make, tongue=closed)()["told apart"].value == 1.0
+
+
+def test_a_series_out_of_its_depth_does_not_pass_a_closed_range():
+    # The ends are beyond the detunings that a series of order 2 can tell of.
+    system = _system((1.0, 5.3), ((0.0, 1.0), (1.0, 0.0)), (0.01, 0.03))
+    resonance = _resonance(system, "w1 + w2 = w")
+    found = tongue(system, resonance, parameter=("eps", 5.0), order=2)
+    assert np.isnan(found.lower)
+    assert is_growing(system, 1 + np.sqrt(5.3), 1e-3, eps=5.0)
+    assert not found.passed
+
+
+def _waves(rng, size, symmetric=True):
+    """Return two harmonics with random matrices as a function of angle."""
+    parts = []
+    for harmonic in (1, 2):
+        for phase in (0.0, np.pi / 2):
+            matrix = rng.normal(size=(size, size)) / (2 * harmonic)
+            parts.append((harmonic, phase, (matrix + matrix.T) / 2 if symmetric else matrix))
+    return lambda theta: sum(
+        np.cos(harmonic * theta - phase)[:, None, None] * matrix
+        for harmonic, phase, matrix in parts
+    )
+
+
+def _definite(rng, size):
+    root = np.eye(size) + 0.2 * rng.normal(size=(size, size))
+    return root @ root.T
+
+
+def _random(seed: int, size: int = 2) -> LinearPeriodic:
+    """Every array of the family periodic in proportion to eps, with damping."""
+    rng = np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.normal(size=(size, size)))[0]
+    stiffness = turn @ np.diag(np.sort(rng.uniform(1.0, 12.0, size))) @ turn.T
+    terms = (
+        Term("M", None, _definite(rng, size)),
+        Term("M", "eps", _waves(rng, size)),
+        Term("A", None, 0.1 * rng.normal(size=(size, size))),
+        Term("A", "eps", _waves(rng, size, symmetric=False)),
+        Term("B", None, 0.05 * np.diag(rng.normal(size=size))),
+        Term("B", "eps", _waves(rng, size)),
+        Term("K", None, stiffness),
+        Term("K", "eps", _waves(rng, size)),
+        Term("C", "c", _definite(rng, size)),
+    )
+    return LinearPeriodic(size, terms, {"eps": 0.0, "c": 0.0}, named(["eps", "c"]))
+
+
+def _count(system, speed, limit, **parameters):
+    """Return how many multipliers are outside the unit circle, so that tongues may overlap."""
+    values = floquet_multipliers(system, speed, rtol=1e-13, **parameters).multipliers
+    return np.sum(np.abs(values) > 1 + limit, axis=-1)
+
+
+# Small enough that neighbouring tongues do not touch.
+SMALL = np.array([0.02, 0.01, 0.005])
+
+
+def _ratios(system, resonance, order, drag):
+    """Return actual errors over the figures, at all ends that are known to half a width."""
+    found = tongue(
+        system,
+        resonance,
+        parameter=("eps", SMALL),
+        order=order,
+        c=drag,
+        damping_factor=SMALL / SMALL[0],
+    )
+    kept = np.flatnonzero(found.open & (2 * found.error < found.width))
+    if not len(kept):
+        return []
+    eps, error = SMALL[kept], found.error[kept]
+    given = {"eps": eps, "c": drag * eps / SMALL[0]}
+    # Undamped, round-off of a double multiplier is magnified by the square root.
+    limit = 0.0 if drag else 1e-8
+    ratios = []
+    for end, side in ((found.lower[kept], -1.0), (found.upper[kept], 1.0)):
+        inner, outer = end - 2 * side * error, end + 2 * side * error
+        beyond = _count(system, outer, limit, **given)
+        covered = _count(system, inner, limit, **given) > beyond
+        for _ in range(14):
+            trial = (inner + outer) / 2
+            grows = _count(system, trial, limit, **given) > beyond
+            inner, outer = np.where(grows, trial, inner), np.where(grows, outer, trial)
+        actual = np.abs((inner + outer) / 2 - end)
+        ratios += np.where(covered, actual / error, np.inf)[error > 1e-10].tolist()
+    return ratios
+
+
+def _sample(seeds):
+    ratios = []
+    for seed in seeds:
+        system = _random(seed)
+        for place, resonance in enumerate(resonances(system, (0.9, 9.0), highest=2)):
+            if resonance.opens:
+                drag = 0.0 if (seed + place) % 2 else 0.0015
+                ratios += _ratios(system, resonance, 1 + (seed + place) % 3, drag)
+    return np.array(ratios)
+
+
+@pytest.mark.slow
+def test_error_estimates_of_random_systems():
+    ratios = _sample(range(100, 109))
+    assert len(ratios) >= 200
+    assert np.mean(ratios <= 1) >= 0.99
+    assert np.median(ratios) > 1e-3
+
+
+@pytest.mark.slow
+def test_three_modes_against_an_integration_of_the_second_order_equation():
+    system, eps = _random(7, size=3), 0.02
+    compared = 0
+    for resonance in resonances(system, (1.5, 9.0), kinds=("principal", "sum"), highest=1):
+        found = tongue(system, resonance, parameter=("eps", eps), order=4)
+        if not found.open or 40 * found.error > found.width:
+            continue
+        for end, side in ((found.lower, -1), (found.upper, 1)):
+            counts = [
+                int(np.sum(np.abs(np.linalg.eigvals(_by_hand(system, speed, eps))) > 1 + 1e-6))
+                for speed in end + 0.05 * found.width * np.array([-side, side])
+            ]
+            assert counts[0] == counts[1] + (1 if resonance.kind == "principal" else 2)
+            compared += 1
+    assert compared >= 6
+
+
+def _by_hand(system, speed, eps):
+    """Return the monodromy matrix of (q, dq/dtheta) from M q'' + ... = 0, M' by differences."""
+    n, h = system.size, 1e-5
+
+    def arrays(theta):
+        at = np.array([theta - h, theta, theta + h])
+        found = {name: system.array(name, at, speed, eps=eps) for name in "MABK"}
+        mass_slope = (found["M"][2] - found["M"][0]) / (2 * h)
+        gyro_slope = (found["A"][2] - found["A"][0]) / (2 * h)
+        return {name: value[1] for name, value in found.items()}, mass_slope, gyro_slope
+
+    def slope(theta, state):
+        now, mass_slope, gyro_slope = arrays(theta)
+        q, rate = state.reshape(2, n, 2 * n)
+        force = -(mass_slope + now["A"] - now["A"].T) @ rate
+        force -= (now["K"] / speed**2 + gyro_slope - now["B"]) @ q
+        return np.concatenate([rate, np.linalg.solve(now["M"], force)]).ravel()
+
+    start = np.eye(2 * n).ravel()
+    solution = solve_ivp(slope, (0.0, system.period), start, "DOP853", rtol=1e-10, atol=1e-12)
+    return solution.y[:, -1].reshape(2 * n, 2 * n)
+
+
+# ---------------------------------------------------------------- Smith's 1/16 inch rig
+
+
+@pytest.fixture(scope="module")
+def rig():
+    """Smith, chapter 9, suggestion 1: what his theory of a single mode leaves out."""
+    overrides = {"model.modes": 2}
+    return load_scene("smith_1972_5152_sixteenth_inch", overrides=overrides).system()
+
+
+def _of_rig(rig, label):
+    return next(r for r in resonances(rig, (38.0, 95.0), highest=16) if r.label == label)
+
+
+# Lower and upper ends [rad/s] from tracing the multipliers (``stability_edges`` over 38 to 95
+# rad/s), another route; known to 1e-10.
+ENDS_OF_RIG = {
+    "2 w1 = 8 w": (40.891123489060, 40.892797076534),
+    "2 w1 = 6 w": (54.348335957327, 54.394296845030),
+    "w1 + w2 = 12 w": (68.036981760352, 68.036997799096),
+    "w1 + w2 = 10 w": (81.399396817947, 81.400714630995),
+    "2 w2 = 16 w": (81.849855944670, 81.849860337154),
+    "w1 + w2 = 9 w": (89.959733389095, 89.961082056150),
+}
+
+
+def test_which_resonances_of_the_rig_there_are(rig):
+    found = resonances(rig, (38.0, 95.0), highest=10)
+    labels = [item.label for item in found]
+    assert [label for label in labels if "+" in label] == ["w1 + w2 = 9 w", "w1 + w2 = 10 w"]
+    assert all(item.opens == (item.kind != "difference") for item in found)
+    assert all(np.ptp(item.signatures) == 0 for item in found if item.kind == "difference")
+    assert {"2 w1 = 4 w", "w2 - w1 = 6 w"} < set(labels)
+
+
+@pytest.mark.parametrize(
+    ("label", "most"),
+    [
+        # The largest errors at order 4 [rad/s].
+        ("2 w1 = 8 w", 0.003),
+        ("2 w1 = 6 w", 0.08),
+        ("w1 + w2 = 12 w", 0.04),
+        ("2 w2 = 16 w", 0.002),
+        ("w1 + w2 = 9 w", 0.3),
+    ],
+)
+def test_tongues_of_the_rig(rig, label, most):
+    resonance, errors, exact = _of_rig(rig, label), [], np.array(ENDS_OF_RIG[label])
+    # At order 2 the wide 2 w1 = 4 w hides 2 w2 = 16 w beside it.
+    for order in (4,) if label == "2 w2 = 16 w" else (2, 4):
+        found = tongue(rig, resonance, order=order)
+        actual = np.max(np.abs(np.array([found.lower, found.upper]) - exact))
+        assert actual <= found.error
+        errors.append(actual)
+    assert found.expansion == "periodic" and found.error <= most
+    assert np.all(np.diff(errors) < 0.0)
+    # The mean equation alone is much farther off.
+    assert errors[-1] < 0.6 * abs(resonance.speed - exact.mean())
+
+
+@pytest.mark.slow
+def test_four_exponents_of_the_rig_that_nearly_meet_are_treated_together(rig):
+    # 2 w1 = 4 w lies beside w1 + w2 = 10 w: alone the pair's series diverges.
+    resonance = _of_rig(rig, "w1 + w2 = 10 w")
+    together = tongue(rig, resonance, order=6)
+    alone = tongue(rig, resonance, order=6, merge=0.0)
+    assert (together.dimension, alone.dimension) == (4, 2)
+    lower = ENDS_OF_RIG[resonance.label][0]
+    assert abs(together.lower - lower) < 0.03 < abs(alone.lower - lower)
+    assert together.open
+    # Below order 4 the wide tongue of the first mode hides the other, and that is said.
+    hidden = tongue(rig, resonance, order=2)
+    assert np.isnan(hidden.lower)
+    assert not hidden.checks["told apart"].passed
+
+
+@pytest.mark.slow
+def test_tongues_over_the_follower_inertia_of_the_rig(rig):
+    resonance = _of_rig(rig, "2 w1 = 8 w")
+    inertia = rig.parameters["follower_inertia"] * np.array([1.0, 2.0])
+    found = tongue(rig, resonance, parameter=("follower_inertia", inertia), order=5)
+    for k, value in enumerate(inertia):
+        edges = speed_boundaries(rig, 1, speed_range=(40.6, 41.2), follower_inertia=value).speed
+        # The only region here that has a width to speak of.
+        widest = int(np.argmax(np.diff(edges)[::2])) * 2
+        assert abs(found.lower[k] - edges[widest]) <= found.error[k] < 0.02
+        assert abs(found.upper[k] - edges[widest + 1]) <= found.error[k]
+    assert np.all(np.diff(found.width) > 0)
+
+
+@pytest.mark.slow
+def test_damping_of_the_rig_closes_the_combination_tongues(rig):
+    # A decrement of 0.05, the lowest that Smith observed (section 9.5.5), of the first mode.
+    first = _of_rig(rig, "2 w1 = 6 w").frequencies[0]
+    drag = 2 * (0.05 / (2 * np.pi)) * first * rig.parameters["mass_per_length"]
+    for label in ("w1 + w2 = 12 w", "2 w2 = 14 w"):
+        found = tongue(rig, _of_rig(rig, label), order=3, damping_factor=[0.0, 1.0], damping=drag)
+        assert found.open.tolist() == [True, False]

@@ -117,7 +117,6 @@ _PUBLIC = {
     "monodromy_matrices": "floquet.namespace_monodromy",
     "multiplier_surfaces": "hill.cases.surfaces",
     "natural_frequencies": "frequencies",
-    "newmark_regions": "integrators.newmark_stability",
     "optimal_offset": "rigid",
     "orbit_multipliers": "constrained",
     "overhang_frequencies": "systems.rod",

@@ -1,4 +1,4 @@
-"""The emitted modules of forces: the smallest one that serves a machine."""
+"""The emitted modules of forces."""
 
 from __future__ import annotations
 
@@ -20,8 +20,6 @@ class ForceModule:
     ----------
     module : module
         Emitted.
-    accelerated, straight : bool
-        Whether it takes a crank acceleration, and whether it leaves out ``across``.
     geometry_names : tuple of str
         Its geometry arguments.
     returned : mapping of str to tuple of str
@@ -29,8 +27,6 @@ class ForceModule:
     """
 
     module: ModuleType
-    accelerated: bool
-    straight: bool
     geometry_names: tuple[str, ...]
     returned: Mapping[str, tuple[str, ...]]
 
@@ -42,39 +38,31 @@ class ForceModule:
         return [(name, float(given[name])) for name in self.geometry_names]
 
 
-def force_module(machine: Machine, steady: bool) -> ForceModule:
-    """Return the smallest emitted module that serves a machine.
+def force_module(machine: Machine) -> ForceModule:
+    """Return the emitted module that serves a machine.
 
     Parameters
     ----------
     machine : Machine
         The machine.
-    steady : bool
-        Whether the crank acceleration is zero everywhere.
 
     Raises
     ------
     BadInput
         If there is none.
     """
-    straight = all(mass.across == 0.0 for mass in machine.masses.values())
-    drops: tuple[str, ...] = ()
-    if steady:
-        drops = ("across", "crank_acceleration") if straight else ("crank_acceleration",)
-    return _module(MECHANISMS[type(machine.linkage).__name__], drops)
+    return _module(MECHANISMS[type(machine.linkage).__name__])
 
 
-@lru_cache(maxsize=16)
-def _module(mechanism: str, drop: tuple[str, ...]) -> ForceModule:
+@lru_cache(maxsize=3)
+def _module(mechanism: str) -> ForceModule:
     from ...derive.spec import ModelSpec
     from ..systems.modules import find_module
 
-    module = find_module(ModelSpec(mechanism, "forces", drop=drop)).module
+    module = find_module(ModelSpec(mechanism, "forces")).module
     names = tuple(signature(module.forces).parameters)
     return ForceModule(
         module=module,
-        accelerated="acceleration" in names,
-        straight="across2" not in names,
         geometry_names=tuple(
             name for name in names[1 : names.index("mass2")] if name not in _DRIVE
         ),

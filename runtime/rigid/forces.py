@@ -159,7 +159,7 @@ class Evaluation:
         longest = max(abs(size) for size in machine.linkage.lengths.values())
         exponent = int(np.frexp(longest)[1])
         self.exponent = exponent if abs(exponent) > _SAFE_EXPONENT else 0
-        self.kernels = force_module(machine, not np.any(acceleration))
+        self.kernels = force_module(machine)
 
     def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:
         """Return the wanted forces by name.
@@ -199,14 +199,11 @@ class Evaluation:
         return names | (set(self.kernels.returned["pin_forces"]) if "pins" in wanted else set())
 
     def _inertia(self, out: Array, rows: Mapping[str, int], function: str, own: list[str]) -> float:
-        motion = [_plain(self.theta), _plain(self.speed)]
-        if self.kernels.accelerated:
-            motion.append(_plain(self.acceleration))
+        motion = [_plain(self.theta), _plain(self.speed), _plain(self.acceleration)]
         masses: list[float] = []
         for link in self.machine.linkage.links:
             mass = self.machine.mass(link)
-            masses += [math.ldexp(mass.mass, self.exponent), mass.along]
-            masses += [] if self.kernels.straight else [mass.across]
+            masses += [math.ldexp(mass.mass, self.exponent), mass.along, mass.across]
             masses.append(math.ldexp(mass.inertia, -self.exponent))
         arguments = [*motion, *self._geometry(), *map(np.float64, masses)]
         return self._evaluate(function, arguments, out, rows, own)

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation.exact import exact_operator
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.benchmarking import benchmark_perturbation
 from elastolink.runtime.benchmarking.perturbation import matrix_ends
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.perturbation.effective import effective_operator
+from smith_chapter_8.exact import exact_operator
+from smith_chapter_8.surd import ExactHarmonics
 
 REGIONS = (1, 2, 3, 4, 5, 6)
 

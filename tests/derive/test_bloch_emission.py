@@ -7,16 +7,17 @@ import inspect
 
 import numpy as np
 import pytest
+from elastolink.derive import bloch as bloch
+from elastolink.derive import words
 from elastolink.derive.catalogue import find
 from elastolink.derive.emission import emit
 from elastolink.derive.latex import latex_document
 from elastolink.derive.models.hill_recursion import MODEL
-from elastolink.derive.perturbation import bloch, words
-from elastolink.derive.perturbation.exact import _Algebra
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.derive.pipeline import lower, module_text, only_wanted
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import hill_recursion
+from smith_chapter_8.exact import _Algebra
+from smith_chapter_8.surd import ExactHarmonics
 
 SPEC = ModelSpec("hill", "recursion")
 ORDERS = range(1, 11)

@@ -8,8 +8,9 @@ from math import comb
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation import bloch, printing, words
-from elastolink.derive.perturbation.words import Element, H, P, R, V, effective_words, wave_words
+from elastolink.derive import bloch as bloch
+from elastolink.derive import printing, words
+from elastolink.derive.bloch import Element, H, P, R, V, effective_words, wave_words
 
 ORDERS = range(1, 8)
 

@@ -10,7 +10,6 @@ import array_api_strict
 import mpmath
 import numpy as np
 import pytest
-from elastolink.derive.checks import Point, exact_at, reference_of
 from elastolink.derive.models import coupler as model
 from elastolink.derive.models import four_bar
 from elastolink.derive.pipeline import equations_of_motion, lower, module_text
@@ -22,6 +21,7 @@ from elastolink.generated import (
     four_bar_coupler_reduced,
 )
 from elastolink.runtime.systems.assembly import assemble
+from judging import Point, exact_at, reference_of
 from linkage_truth import Linkage, end_load, motion
 
 EMITTED = {

@@ -10,7 +10,6 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.checks import reference_of
 from elastolink.derive.lagrange import euler_lagrange
 from elastolink.derive.models import four_bar, four_bar_forces
 from elastolink.derive.models.four_bar_vectors import link_vectors
@@ -28,6 +27,7 @@ from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin, inertia_wr
 from elastolink.derive.spec import ModelSpec
 from force_machines import SIDES, call, cartesian, change_points, emitted, random_machine, state_of
 from forces_truth import LOADS, MECHANISMS, forces, links, loads
+from judging import reference_of
 from multibody_truth import solve as eliminate
 
 STRAIGHT = ModelSpec("four_bar", "forces", drop=("across",))

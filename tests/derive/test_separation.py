@@ -15,9 +15,8 @@ from elastolink.derive.arrays import (
     IndexedEntry,
     IndexedVector,
 )
-from elastolink.derive.describe import Description
 from elastolink.derive.emission import emit
-from elastolink.derive.ir import Argument
+from elastolink.derive.ir import Argument, Description
 from elastolink.derive.separation import NotSeparable, StagedSystem, lower_linear_periodic
 from elastolink.derive.spec import ModelSpec
 from elastolink.derive.staged import Steps

@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 from boundary_truth import MP, boundary
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from smith_chapter_8.surd import ExactHarmonics
 
 SCENES = 400
 POINTS = 6

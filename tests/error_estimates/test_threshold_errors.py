@@ -6,13 +6,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation.exact import exact_operator, exact_series
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.benchmarking.reference import half_traces
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.perturbation.coefficients import boundary_series
 from elastolink.runtime.hill.perturbation.thresholds import critical_damping, least_parameter
 from honesty import verdict
+from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.surd import ExactHarmonics
 
 SCENES = 200
 extended = pytest.mark.skipif(

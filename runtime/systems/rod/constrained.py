@@ -19,7 +19,7 @@ from .free_free import FreeFreeModes
 from .inputs import require_drop, require_numbers, require_points
 
 DROPPED = ("tension",)
-_DERIVATIVES = ("", "_d1", "_d2", "_d3")
+_DERIVATIVES = ("psi", "psi_d1", "psi_d2", "psi_d3")
 _STATIONS = np.linspace(0.0, 1.0, 21)
 
 
@@ -78,7 +78,7 @@ def free_free_rod(
     Parameters
     ----------
     modes : int
-        Number N of elastic free-free modes; modules for 1 to 5 are packaged.
+        Number N of elastic free-free modes.
     crank_ratio : float
         Crank length over base length G/a_x, positive; not 1.
     frame : float
@@ -105,8 +105,8 @@ def free_free_rod(
     Raises
     ------
     BadInput
-        If a number is not usable, a term to drop is unknown, the crank cannot turn fully with the
-        block on the rod, or no module was emitted for so many modes.
+        If a number is not usable, a term to drop is unknown, or the crank cannot turn fully with
+        the block on the rod.
 
     Notes
     -----
@@ -123,10 +123,9 @@ def free_free_rod(
     require_numbers({**positive, "speed": speed}, signed=("speed",))
     dropped = require_drop(drop, DROPPED)
     shapes = FreeFreeModes(modes)
-    modes = shapes.size
     linkage = QuickReturn(frame=frame, crank=crank_ratio * frame, rod=length)
     linkage.require_full_turn()
-    spec = ModelSpec("quick_return", "free_free", ("rod",), modes, dropped)
+    spec = ModelSpec("quick_return", "free_free", ("rod",), shapes.size, dropped)
     emitted = find_module(spec)
     at_block = _AtBlock(shapes, linkage, float(speed))
     system = Constrained.from_module(
@@ -139,11 +138,14 @@ def free_free_rod(
             "mass_per_length": mass_per_length,
             "speed": speed,
         },
-        external={
-            f"psi_{i + 1}{_DERIVATIVES[order]}": at_block.mode(order, i)
-            for order in range(len(_DERIVATIVES))
-            for i in range(modes)
+        external={name: at_block.modes(order) for order, name in enumerate(_DERIVATIVES)},
+        modes={
+            "left": shapes.left_values,
+            "stiffness": shapes.roots**4,
+            "inward": shapes.shortening[0],
+            "retreat": shapes.shortening[1],
         },
+        drop=emitted.dropped,
         provenance={**(provenance or {}), **emitted.provenance},
     )
     own = {f.name: getattr(system, f.name) for f in fields(Constrained)}
@@ -162,26 +164,26 @@ class _AtBlock:
     def __init__(self, modes: FreeFreeModes, linkage: QuickReturn, speed: float) -> None:
         self._modes, self._speed = modes, speed
         self._crank, self._frame = linkage.crank / linkage.rod, linkage.frame / linkage.rod
-        self._last: tuple[float, float, tuple[list[float], ...]] | None = None
+        self._last: tuple[float, float, tuple[Array, ...]] | None = None
         self._last_batch: tuple[object, tuple[Array, ...]] | None = None
 
-    def mode(self, order: int, index: int) -> Callable[[Array, Array], ArrayLike]:
-        """Return a derivative of one mode as a function of coordinates and time."""
+    def modes(self, order: int) -> Callable[[Array, Array], ArrayLike]:
+        """Return a derivative of the modes as a function of coordinates and time."""
 
-        def value(q: Array, t: Array) -> ArrayLike:
+        def values(q: Array, t: Array) -> ArrayLike:
             if q.ndim == 1 and np.ndim(t) == 0:
-                return self._single(float(q[2]), float(t))[order][index]
-            return self._batch(q[..., 2], t)[order][..., index]
+                return self._single(float(q[2]), float(t))[order]
+            return self._batch(q[..., 2], t)[order]
 
-        return value
+        return values
 
-    def _single(self, gamma: float, t: float) -> tuple[list[float], ...]:
+    def _single(self, gamma: float, t: float) -> tuple[Array, ...]:
         last = self._last
         if last is None or last[0] != gamma or last[1] != t:
             # Plain floats are several times faster than arrays of no dimension.
             turned = math.cos(gamma - t * self._speed)
             found = self._modes.at(self._crank * turned + self._frame * math.cos(gamma))
-            self._last = last = (gamma, t, tuple(row.tolist() for row in found))
+            self._last = last = (gamma, t, found)
         return last[2]
 
     def _batch(self, gamma: Array, t: Array) -> tuple[Array, ...]:

@@ -101,6 +101,7 @@ def _made(
         geometry={**linkage.geometry, "length": length},
         parameters=parameters,
         basis=basis,
+        drop=emitted.dropped,
         labels=basis.labels,
         reference_length=length,
         provenance={**told, **emitted.provenance},

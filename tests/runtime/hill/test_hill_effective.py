@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation.exact import exact_operator
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.generated import hill_recursion
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.perturbation.effective import HIGHEST_ORDER, effective_operator
+from smith_chapter_8.exact import exact_operator
+from smith_chapter_8.surd import ExactHarmonics
 
 UNIT = 2.0**-53
 # Number of parts, damping, order.

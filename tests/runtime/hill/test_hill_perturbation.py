@@ -2,12 +2,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from elastolink.generated import hill_boundaries_first_order
 from elastolink.runtime.benchmarking.records import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.exact.matrix import hill_boundaries
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
+from smith_chapter_8.first_order import boundaries as first_order_boundaries
 
 FUNCTIONS = functions()
 
@@ -36,7 +36,7 @@ def test_first_order_is_the_emitted_formula(name, form):
     f, mu, k = FUNCTIONS[name], np.linspace(-0.4, 0.5, 8), 0.002
     found = perturbation_boundaries(f, mu, (1, 2, 3), damping=k, form=form, outside="value")
     for i, n in enumerate((1, 2, 3)):
-        centre, square = hill_boundaries_first_order.first_order(
+        centre, square = first_order_boundaries()(
             float(n), mu, float(f.a[0]), float(f.a[n]), float(f.b[n]), k
         )
         open_ = square > 0

@@ -12,12 +12,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from boundary_truth import MP, boundary
-from elastolink.derive.perturbation.exact import exact_operator, exact_series
-from elastolink.derive.perturbation.strained import strained_boundaries
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.perturbation.boundaries import perturbation_boundaries
 from elastolink.runtime.hill.perturbation.coefficients import boundary_series
+from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import ExactHarmonics
 from strained_truth import PUBLISHED, published
 
 ORDER = 8

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash f4e2ca8de65c64536f8426aa2c5b175a; derived with SymPy 1.14.0.
+Content hash 7f87a679887d70ba15d9b85425952e95; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "f4e2ca8de65c64536f8426aa2c5b175a"
+CONTENT = "7f87a679887d70ba15d9b85425952e95"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 216 operations
-Content hash 08b65224fca6d9342745bd35859e7153; derived with SymPy 1.14.0.
+Content hash f96a6ab94b00dbe6043fa55bfad12c21; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_element",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "08b65224fca6d9342745bd35859e7153"
+CONTENT = "f96a6ab94b00dbe6043fa55bfad12c21"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -10,7 +10,7 @@ rotations, k curvatures; node 3 is the middle.
 
 Cost per evaluation:
     shapes: 113 operations
-Content hash 4aae087f5399d093bca84f63af8d4c31; derived with SymPy 1.14.0.
+Content hash ddd0b7bd5c7170dd33ced7096730907f; derived with SymPy 1.14.0.
 """
 
 __all__ = ["shapes"]
@@ -19,7 +19,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_shapes","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "4aae087f5399d093bca84f63af8d4c31"
+CONTENT = "ddd0b7bd5c7170dd33ced7096730907f"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

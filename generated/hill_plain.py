@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 1ea0fb45f1a526b9e5bdd591a15832fc; derived with SymPy 1.14.0.
+Content hash 7284834c74e2730edda4e47ce8403188; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "1ea0fb45f1a526b9e5bdd591a15832fc"
+CONTENT = "7284834c74e2730edda4e47ce8403188"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

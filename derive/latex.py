@@ -357,7 +357,7 @@ def _text(words: str) -> str:
 
 
 Line = tuple[str, list[str]]
-_LETTERS = {"H": "H_{0}", "O": r"\Omega", "h": "h"}
+_OPERATORS = {"H": "H_{0}", "O": r"\Omega", "h": "h"}
 
 
 def word_latex(word: Word) -> str:
@@ -372,8 +372,8 @@ def word_latex(word: Word) -> str:
 
 def _letter(letter: Letter) -> str:
     if isinstance(letter, tuple):
-        return f"{_LETTERS[letter[0]]}_{{{letter[1]}}}"
-    return _LETTERS.get(letter, letter)
+        return f"{_OPERATORS[letter[0]]}_{{{letter[1]}}}"
+    return _OPERATORS.get(letter, letter)
 
 
 def element_latex(element: Element) -> list[str]:

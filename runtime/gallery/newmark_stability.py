@@ -75,8 +75,9 @@ def newmark_regions(
         multipliers at long steps, 3 stable without condition with a pair at every step.
     """
     limit = newmark_limit(gamma, beta, damping)
-    turning = margins(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)), _PHASES[-1])
-    paired = np.broadcast_to(turning[3] >= 0.0, limit.shape)
+    at = (np.asarray(v, dtype=float) for v in (gamma, beta, damping, _PHASES[-1]))
+    turning = margins(*at)[3]
+    paired = np.broadcast_to(turning >= 0.0, limit.shape)
     found = np.where(limit > 0.0, 1, 0)
     found = np.where(np.isinf(limit), 2, found)
     return np.where(np.isinf(limit) & paired, 3, found).astype(np.int64)

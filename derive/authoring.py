@@ -12,17 +12,16 @@ from collections.abc import Iterable
 import sympy as sp
 
 from .arrays import CrankMotion, DiscreteSystem
-from .describe import Description
 from .driven import DrivenMotion, driven_motion
 from .entries import ConstrainedSystem, MatrixForm, TranscendentalSystem
-from .ir import Argument, Result
+from .integrals import antiderivative, definite
+from .ir import Argument, Description, Result
 from .lagrange import euler_lagrange, quadratic_form, variational_equations
 from .linear import linear_periodic
 from .pipeline import Model
 from .projection.assumed_modes import assumed_modes, assumed_shapes
 from .projection.bases import FiniteBasis, IndexedBasis, sine_basis
 from .projection.galerkin import mass_normalised, project, project_action
-from .projection.integrals import antiderivative, definite
 from .projection.moving_basis import Moments, MovingShapes, project_moving
 from .records import (
     ActionDensity,

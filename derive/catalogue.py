@@ -21,7 +21,8 @@ class CatalogueEntry:
     formulations : tuple of str
         Named sets of assumptions that the file knows.
     module : str
-        Importable name of the file, relative to ``elastolink.derive``; its ``MODEL`` is used.
+        Importable name of the file, relative to ``elastolink.derive``; its ``MODEL`` is used, or
+        what is named behind a colon.
     sources : tuple of str
         Files in ``models`` that the derivation reads, for the content hash.
     specs : tuple of ModelSpec
@@ -45,38 +46,30 @@ class CatalogueEntry:
         return tuple(_MODELS / name for name in self.sources)
 
 
-_DROPS: tuple[tuple[str, ...], ...] = (
-    (),
-    ("crank_acceleration",),
-    ("across", "crank_acceleration"),
-)
-
-
 def _forces(mechanism: str, *more: str) -> CatalogueEntry:
-    """Return the entry of a rigid linkage's forces: all, at constant speed, of straight links."""
+    """Return the entry of a rigid linkage's forces."""
     return CatalogueEntry(
         mechanism=mechanism,
         formulations=("forces",),
         module=f".models.{mechanism}_forces",
         sources=(f"{mechanism}.py", f"{mechanism}_forces.py", *more),
-        specs=tuple(ModelSpec(mechanism, "forces", drop=drop) for drop in _DROPS),
+        specs=(ModelSpec(mechanism, "forces"),),
         choices=Choices(drop=("across", "crank_acceleration")),
     )
 
 
 def _multibody(mechanism: str, *more: str) -> CatalogueEntry:
-    """Return the entry of a rigid linkage in redundant coordinates: driven, and free."""
+    """Return the entry of a rigid linkage in redundant coordinates."""
     return CatalogueEntry(
         mechanism=mechanism,
         formulations=("multibody",),
-        module=f".models.{mechanism}_multibody",
-        sources=(f"{mechanism}.py", f"{mechanism}_forces.py", f"{mechanism}_multibody.py", *more),
-        specs=tuple(ModelSpec(mechanism, "multibody", drop=drop) for drop in ((), ("drive",))),
+        module=f".models.{mechanism}_forces:MULTIBODY",
+        sources=(f"{mechanism}.py", f"{mechanism}_forces.py", *more),
+        specs=(ModelSpec(mechanism, "multibody"),),
         choices=Choices(drop=("across", "drive")),
     )
 
 
-_ROD_DROPS: tuple[tuple[str, ...], ...] = ((), ("frame",), ("frame", "tension"), ("tension",))
 _BEAMS = ("cubic", "internal_node", "curvature", "timoshenko")
 _COUPLER = ("complete", "printed", "reduced")
 
@@ -181,12 +174,9 @@ CATALOGUE = (
         mechanism="quick_return",
         formulations=("free_free",),
         module=".models.free_free_rod",
-        sources=("block_sums.py", "free_free_modes.py", "free_free_rod.py"),
-        specs=tuple(
-            ModelSpec("quick_return", "free_free", flexible=("rod",), modes=modes, drop=drop)
-            for drop in ((), ("tension",))
-            for modes in range(1, 6)
-        ),
+        sources=("free_free_modes.py", "free_free_rod.py"),
+        specs=(ModelSpec("quick_return", "free_free", flexible=("rod",)),),
+        closed_in_modes=True,
         choices=Choices(flexible=("rod",), drop=("tension",)),
     ),
     CatalogueEntry(
@@ -194,10 +184,7 @@ CATALOGUE = (
         formulations=("moving_basis",),
         module=".models.flexible_rod",
         sources=("quick_return.py", "flexible_rod.py"),
-        specs=tuple(
-            ModelSpec("quick_return", "moving_basis", flexible=("rod",), drop=drop)
-            for drop in _ROD_DROPS
-        ),
+        specs=(ModelSpec("quick_return", "moving_basis", flexible=("rod",)),),
         closed_in_modes=True,
         choices=Choices(flexible=("rod",), drop=("frame", "tension")),
     ),
@@ -229,16 +216,9 @@ CATALOGUE = (
     ),
     CatalogueEntry(
         mechanism="hill",
-        formulations=("boundaries_first_order",),
-        module=".models.hill_boundaries",
-        sources=("hill_boundaries.py",),
-        specs=(ModelSpec("hill", "boundaries_first_order"),),
-    ),
-    CatalogueEntry(
-        mechanism="hill",
         formulations=("recursion",),
-        module=".models.hill_recursion",
-        sources=("hill_recursion.py",),
+        module=".models.hill:RECURSION",
+        sources=("hill.py",),
         specs=(ModelSpec("hill", "recursion"),),
     ),
     CatalogueEntry(
@@ -247,13 +227,6 @@ CATALOGUE = (
         module=".models.hill_meissner",
         sources=("hill_meissner.py",),
         specs=(ModelSpec("hill", "meissner"),),
-    ),
-    CatalogueEntry(
-        mechanism="newmark",
-        formulations=("stability",),
-        module=".models.newmark",
-        sources=("newmark.py",),
-        specs=(ModelSpec("newmark", "stability"),),
     ),
 )
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import sympy as sp
 
-from .describe import Description
 from .external import ExternalValues, external_values
-from .ir import Argument, Kernel, ModuleSpec, Result
+from .ir import Argument, Description, Kernel, ModuleSpec, Result, Table, drops_table
 from .lowering import lower_kernel
+from .modal import IDENTITY, Modes
 from .records import EquationsOfMotion, VariationalEquations
 from .spec import Family, ModelSpec
 from .staged import Steps, chosen_outputs
@@ -65,11 +66,18 @@ class ConstrainedSystem:
         Emitted too where given, for the linearised motion.
     steps : Steps
         Closed forms of prescribed quantities.
+    modes : Modes, optional
+        Where the last coordinate stands for one of each mode (see :mod:`.modal`).
+    dropped : mapping
+        Terms that a caller may leave out, to the parameters and numbers of modes that then vanish
+        and the multipliers whose constraints are released.
     """
 
     equations: EquationsOfMotion
     variations: VariationalEquations | None = None
     steps: Steps = field(default_factory=Steps)
+    modes: Modes | None = None
+    dropped: Mapping[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -121,11 +129,16 @@ def lower_constrained(
     ValueError
         If an open function is applied to more than one argument.
     """
-    e, v = system.equations, system.variations
+    e, v, modes = system.equations, system.variations, system.modes
     outer = {argument.name: argument for argument in description.arguments}
+    if modes is not None:
+        each = outer[modes.amplitude]
+        for symbol in (*e.velocities, *(v.accelerations if v else ())):
+            if symbol.name.startswith(f"{modes.amplitude}_d"):
+                outer[symbol.name] = replace(each, name=symbol.name, meaning="")
     time = _argument(e.t, "Time", outer)
     positions = [_argument(q, "Coordinate", outer) for q in e.coordinates]
-    velocities = [_argument(q, "Velocity", outer) for q in e.velocities]
+    velocities = [_argument(q, "", outer) for q in e.velocities]
     arrays = {
         "constraints": {"constraints": e.constraints, "jacobian": e.jacobian},
         "dynamics": {
@@ -145,26 +158,33 @@ def lower_constrained(
             "jacobian_rate": v.jacobian_rate,
             "jacobian_acceleration": v.jacobian_acceleration,
         }
-        more = [_argument(a, "Acceleration", outer) for a in v.accelerations]
+        more = [_argument(a, "", outer) for a in v.accelerations]
         more += [_argument(lam, "Multiplier", outer) for lam in e.multipliers]
         states["variations"] = [*positions, *velocities, *more]
     forms = [matrix for group in arrays.values() for matrix in group.values()]
     values = external_values([*forms, *(value for _, value in system.steps.steps)])
-    passed = [_argument(s, "Passed in", outer) for s in values.symbols]
+    external = values.symbols if modes is None else sp.symbols(modes.external)
+    passed = [_argument(s, "Passed in", outer) for s in external]
+    numbers = [] if modes is None else [outer[name] for name in modes.numbers]
     kernels = [
         _ArrayKernel(
             name,
             _SUMMARIES[name],
-            (*states[name], time, *passed, *description.parameters),
+            (*states[name], time, *passed, *description.parameters, *numbers),
             {key: values.plain(matrix) for key, matrix in arrays[name].items()},
+            () if modes is None else (IDENTITY.name, *modes.numbers),
         )
         for name in arrays
     ]
-    tables = (
-        ("COORDINATES", repr(tuple(q.name for q in e.coordinates))),
-        ("MULTIPLIERS", repr(tuple(lam.name for lam in e.multipliers))),
-        ("EXTERNAL", repr(tuple(s.name for s in values.symbols))),
+    tables: tuple[Table, ...] = (
+        Table("COORDINATES", tuple(q.name for q in e.coordinates)),
+        Table("MULTIPLIERS", tuple(lam.name for lam in e.multipliers)),
+        Table("EXTERNAL", tuple(s.name for s in external)),
     )
+    if modes is not None:
+        words = "Coordinate that stands for one of each mode, and the numbers of modes and pairs."
+        tables += (Table("MODES", (modes.amplitude, modes.numbers), words),)
+    tables += drops_table(system.dropped)
     steps = _plain_steps(system.steps, values)
     return _module(spec, "constrained", kernels, steps, description, tables)
 
@@ -187,13 +207,13 @@ def lower_transcendental(
         (frequency, *description.arguments, *description.parameters),
         {"stiffness": system.matrix, "poles": sp.ImmutableDenseMatrix([[system.poles]])},
     )
-    sizes = (("SIZE", repr(system.matrix.rows)),)
+    sizes = (Table("SIZE", system.matrix.rows),)
     return _module(spec, "transcendental", (kernel,), system.steps, description, sizes)
 
 
 def _argument(symbol: sp.Symbol, word: str, known: Mapping[str, Argument]) -> Argument:
     """Return the argument as the description words it, or in a general form."""
-    general = Argument(symbol.name, "float or ndarray, shape (...)", "", f"{word} {symbol.name}")
+    general = Argument(symbol.name, "float or ndarray, shape (...)", "", word)
     return known.get(symbol.name, general)
 
 
@@ -203,38 +223,49 @@ def _plain_steps(steps: Steps, values: ExternalValues) -> Steps:
 
 @dataclass(frozen=True)
 class _ArrayKernel:
-    """One function that returns the entries of several arrays: no zeros, and equal ones once."""
+    """One function that returns the entries of several arrays: no zeros, and equal ones once.
+
+    An entry that is a sum of numbers times some of the ``matrices`` returns these numbers.
+    """
 
     name: str
     summary: str
     arguments: tuple[Argument, ...]
     arrays: Mapping[str, sp.ImmutableDenseMatrix]
+    matrices: tuple[str, ...] = ()
 
-    def lowered(self, steps: Steps, references: Sequence[str]) -> tuple[Kernel, str]:
-        """Return the kernel and, as text, where each returned entry belongs."""
+    def lowered(self, steps: Steps) -> tuple[Kernel, dict[str, object]]:
+        """Return the kernel and, by array, its shape and where each returned entry belongs."""
         found: dict[sp.Expr, int] = {}
         results: list[Result] = []
-        places: list[str] = []
+        places: dict[str, object] = {}
         for array, matrix in self.arrays.items():
             entries = []
-            for (i, j), entry in _filled(matrix):
+            for (i, j), entry, kind in self._filled(matrix):
                 if entry not in found:
                     found[entry] = len(results)
-                    name = f"{array}_{i + 1}_{j + 1}"
-                    results.append(Result(name, "float or ndarray", "", f"Entry of {array}"))
-                entries.append(f"({i}, {j}, {found[entry]})")
-            listed = "".join(f"{entry}, " for entry in entries).strip()
-            places.append(f"'{array}': ({matrix.shape}, ({listed}))")
+                    name = "_".join([array, str(i + 1), str(j + 1), *kind])
+                    results.append(Result(name, "float or ndarray", "", ""))
+                entries.append((i, j, found[entry], *kind))
+            places[array] = (matrix.shape, tuple(entries))
         outputs = list(zip(results, found, strict=True))
-        kernel = lower_kernel(self.name, self.summary, self.arguments, steps, outputs, references)
-        return kernel, f"'{self.name}': {{{', '.join(places)}}}"
+        return lower_kernel(self.name, self.summary, self.arguments, steps, outputs), places
 
-
-def _filled(matrix: sp.ImmutableDenseMatrix) -> Iterable[tuple[tuple[int, int], sp.Expr]]:
-    for i in range(matrix.rows):
-        for j in range(matrix.cols):
-            if matrix[i, j] != 0:
-                yield (i, j), matrix[i, j]
+    def _filled(
+        self, matrix: sp.ImmutableDenseMatrix
+    ) -> Iterable[tuple[tuple[int, int], sp.Expr, tuple[str, ...]]]:
+        """Yield place, value and the matrix that the value multiplies, if there is one."""
+        last = matrix.rows - 1, matrix.cols - 1
+        for i, j in product(range(matrix.rows), range(matrix.cols)):
+            if matrix[i, j] == 0:
+                continue
+            if not self.matrices or (i, j) != last or matrix.rows != matrix.cols:
+                yield (i, j), matrix[i, j], ()
+                continue
+            for name in self.matrices:
+                factor = sp.diff(matrix[i, j], sp.Symbol(name))
+                if factor != 0:
+                    yield (i, j), factor, (name,)
 
 
 def _module(
@@ -243,11 +274,12 @@ def _module(
     kernels: Sequence[_ArrayKernel],
     steps: Steps,
     description: Description,
-    tables: tuple[tuple[str, str], ...],
+    tables: tuple[Table, ...],
 ) -> ModuleSpec:
     """Put a module together; a function all of whose entries are zero is not emitted."""
-    lowered = [kernel.lowered(steps, description.references) for kernel in kernels]
-    arrays = "{" + ", ".join(places for _, places in lowered) + "}"
+    lowered = [kernel.lowered(steps) for kernel in kernels]
+    arrays = {kernel.name: places for kernel, places in lowered}
+    words = "Of each function its arrays: shape, and row, column and place among what it returns."
     return ModuleSpec(
         spec=spec,
         family=family,
@@ -256,5 +288,5 @@ def _module(
         references=description.references,
         kernels=tuple(kernel for kernel, _ in lowered if kernel.results),
         parameters=description.parameters,
-        tables=(*tables, ("ARRAYS", arrays)),
+        tables=(*tables, Table("ARRAYS", arrays, words)),
     )

@@ -5,11 +5,12 @@ No SymPy object gets past this point.  Standard library only.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from .spec import Family, ModelSpec
 
-IR_VERSION = 1
+IR_VERSION = 2
 UNBROKEN = "\u00a0"  # a space of an expression at which its line is not to be broken
 
 
@@ -25,12 +26,50 @@ class Argument:
 
 @dataclass(frozen=True)
 class Result:
-    """One returned array of an emitted function."""
+    """One returned array of an emitted function; without a meaning where its name says it."""
 
     name: str
     shape: str
     unit: str
     meaning: str
+
+
+@dataclass(frozen=True)
+class Description:
+    """What the derivation cannot know about a module.
+
+    Attributes
+    ----------
+    title : str
+        First line of the module's docstring, without the full stop.
+    references : tuple of str
+        Equations of the documents.
+    arguments : tuple of Argument
+        Arguments of the functions of angle or of a closed form, the array that sets the namespace
+        first; of a constrained system, the coordinates and what else deserves a unit and words.
+    kernel, summary : str
+        Name and first docstring line of the function of a closed form.
+    results : mapping of str to Result
+        Returned quantities of a closed form by name.
+    parameters : tuple of Argument
+        Inertial and elastic parameters.
+    notes : tuple of str
+        Further paragraphs of the module's docstring.
+    """
+
+    title: str
+    references: tuple[str, ...]
+    arguments: tuple[Argument, ...] = ()
+    kernel: str = ""
+    summary: str = ""
+    results: Mapping[str, Result] = field(default_factory=dict)
+    parameters: tuple[Argument, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def array_results(words: Mapping[str, tuple[str, str]]) -> dict[str, Result]:
+    """Return results that have the shape of the crank angle, from unit and meaning by name."""
+    return {name: Result(name, "ndarray, shape (...)", *pair) for name, pair in words.items()}
 
 
 @dataclass(frozen=True)
@@ -64,8 +103,6 @@ class Kernel:
         The body, in order of evaluation.
     returns : tuple of str
         Finished expressions, one per result.
-    references : tuple of str
-        Equations of the documents that the function stands for.
     operations : int
         Arithmetic operations per evaluation.
     """
@@ -76,68 +113,49 @@ class Kernel:
     results: tuple[Result, ...]
     statements: tuple[Statement, ...]
     returns: tuple[str, ...]
-    references: tuple[str, ...] = ()
     operations: int = 0
-    broadcast: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
-class TermRow:
-    """One separated term of a linear-periodic system: which pieces multiply to what.
-
-    Attributes
-    ----------
-    array : str
-        ``M A B S C D K Kg`` or ``f h g p`` (design: system forms).
-    power : int
-        Power of the crank speed that multiplies the term in the equation of motion in time.
-    scale, angle, modal : str or None
-        Names of the parameter monomial, the function of angle and the modal array; None means 1
-        (for ``modal``: the identity, or a vector of ones).  Where ``modal`` is an integral over
-        shapes that the caller passes in, it stands among the module's basis rows, or is returned
-        by its function ``basis_products``.
-    """
-
-    array: str
-    power: int
-    scale: str | None
-    angle: str | None
-    modal: str | None
-
-
-@dataclass(frozen=True)
-class BasisRow:
-    """An integral over shapes that the caller passes in (see :class:`.arrays.BasisIntegral`).
+class Table:
+    """A constant of an emitted module: nested tuples and mappings of numbers, text and None.
 
     Attributes
     ----------
     name : str
-        Its name in the terms.
-    weight : tuple of float
-        Coefficients of the weight by powers of eta, from the constant one on.
-    row, column : tuple of int
-        Derivatives by eta and xi of the two factors; ``column`` is None for a vector.
-    at : float or None
-        Value of eta where it is no integral.
+        Under which the module holds it.
+    value : tuple, dict, str, float or int
+        What it holds.
+    comment : str
+        What a reader has to know of it.
     """
 
     name: str
-    weight: tuple[float, ...]
-    row: tuple[int, int]
-    column: tuple[int, int] | None
-    at: float | None
+    value: object
+    comment: str = ""
+
+
+def drops_table(dropped: Mapping[tuple[str, ...], object]) -> tuple[Table, ...]:
+    """Return the table of terms that a module's user may leave out, if there are any."""
+    return (Table("DROPS", dict(dropped), _DROPS),) if dropped else ()
+
+
+_DROPS = (
+    "Terms of the energies that may be left out, to the names of what then vanishes, or to the "
+    "separated terms that go and those that come."
+)
 
 
 @dataclass(frozen=True)
 class ModuleSpec:
-    """Everything that a template needs to lay out one module.
+    """Everything that the template needs to lay out one module.
 
     Attributes
     ----------
     spec : ModelSpec
         The model that was asked for.
     family : str
-        System family; chooses the template.
+        System family.
     title : str
         First line of the module's docstring.
     notes : tuple of str
@@ -146,14 +164,10 @@ class ModuleSpec:
         Equations of the documents.
     kernels : tuple of Kernel
         The functions, in order.
-    terms : tuple of TermRow
-        Separated terms; linear-periodic family only.
     parameters : tuple of Argument
         Inertial and elastic parameters, with units.
-    basis : tuple of BasisRow
-        Integrals over shapes that the caller passes in; linear-periodic family only.
-    words : tuple of (int, tuple of (int, str))
-        Words of the effective operator and their coefficients by order; recursion family only.
+    tables : tuple of Table
+        Constants: separated terms, places of entries, numbers.
     """
 
     spec: ModelSpec
@@ -162,11 +176,8 @@ class ModuleSpec:
     notes: tuple[str, ...]
     references: tuple[str, ...]
     kernels: tuple[Kernel, ...]
-    terms: tuple[TermRow, ...] = ()
     parameters: tuple[Argument, ...] = ()
-    tables: tuple[tuple[str, str], ...] = field(default=())
-    basis: tuple[BasisRow, ...] = ()
-    words: tuple[tuple[int, tuple[tuple[int, str], ...]], ...] = ()
+    tables: tuple[Table, ...] = ()
 
     @property
     def operations(self) -> int:

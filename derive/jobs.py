@@ -62,7 +62,8 @@ class Job:
             If a user's file cannot be imported or defines no model.
         """
         if self.module.startswith("."):
-            packaged: Model = importlib.import_module(self.module, __package__).MODEL
+            file, _, name = self.module.partition(":")
+            packaged: Model = getattr(importlib.import_module(file, __package__), name or "MODEL")
             return packaged
         own: Model = _load_file(Path(self.module)).MODEL
         return own

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from .records import (
+    MATRICES,
+    VECTORS,
     CrankMotion,
     DiscreteSystem,
     EquationsOfMotion,
@@ -192,138 +195,136 @@ def quadratic_form(
         because of a cubic term or an unknown power of the crank's rate.
     """
     q, qd, table = _plain_names(coordinates, t)
-    energy = sp.expand(_enter(lagrangian, table, coordinates))
-    work = {
-        i: _enter((forces or {}).get(c, 0), table, coordinates) for i, c in enumerate(coordinates)
-    }
-    arrays, linear = _collect(energy, q, qd, crank)
-    _verify(energy, _reassemble(arrays, linear, q, qd, crank), q, qd)
-    _add_linear_terms(arrays, linear, crank)
-    for i, expression in work.items():
-        _add_force(arrays, sp.expand(expression), i, q, qd, crank)
-    _split_geometric(arrays, geometric)
-    frozen = {name: sp.ImmutableDenseMatrix(matrix) for name, matrix in arrays.items()}
-    return DiscreteSystem(crank, len(q), frozen, tuple(symbol.name for symbol in q))
+    found = _Arrays(len(q), crank)
+    for term in _terms(_enter(lagrangian, table, coordinates), q, qd, crank):
+        found.add_energy(term)
+    for i, coordinate in enumerate(coordinates):
+        force = _enter((forces or {}).get(coordinate, sp.S.Zero), table, coordinates)
+        for term in _terms(force, q, qd, crank):
+            found.add_force(i, term)
+    found.refuse_lost()
+    arrays = found.matrices(tuple(geometric))
+    return DiscreteSystem(crank, len(q), arrays, tuple(symbol.name for symbol in q))
 
 
-_RATE_POWERS = {"B": (2, 0), "S": (0, 1), "K": (0, 0)}
-_FORCE_POWERS = {"f": (2, 0), "h": (1, 0), "g": (0, 1), "p": (0, 0)}
+_RATE_POWERS = {(2, 0): "B", (0, 1): "S", (0, 0): "K"}
+_FORCE_POWERS = {(2, 0): "f", (1, 0): "h", (0, 1): "g", (0, 0): "p"}
 
 
-def _rate_coefficient(expression: sp.Expr, crank: CrankMotion, powers: tuple[int, int]) -> sp.Expr:
-    return sp.expand(expression).coeff(crank.rate, powers[0]).coeff(crank.acceleration, powers[1])
+@dataclass(frozen=True)
+class _Term:
+    """A product of an expanded polynomial: what it is made of."""
+
+    whole: sp.Expr
+    coefficient: sp.Expr
+    positions: tuple[int, ...]
+    velocities: tuple[int, ...]
+    rates: tuple[int, int]
+
+    @property
+    def order(self) -> tuple[int, int]:
+        return len(self.velocities), len(self.positions)
 
 
-def _at_zero(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> sp.Expr:
-    return expression.xreplace(dict.fromkeys(symbols, sp.S.Zero))
+def _terms(
+    expression: sp.Expr, q: Sequence[sp.Symbol], qd: Sequence[sp.Symbol], crank: CrankMotion
+) -> Iterator[_Term]:
+    """Yield the terms of a polynomial in coordinates, velocities and the rates of the crank."""
+    every = [*q, *qd, crank.rate, crank.acceleration]
+    index = {symbol: place for place, symbol in enumerate(every)}
+    n = len(q)
+    for term in sp.Add.make_args(sp.expand(expression)):
+        places, rest = [], []
+        for factor in sp.Mul.make_args(term):
+            base, exponent = factor.as_base_exp()
+            if base in index and exponent.is_Integer and exponent > 0:
+                places += [index[base]] * int(exponent)
+            else:
+                rest.append(factor)
+        coefficient = sp.Mul(*rest)
+        if coefficient.free_symbols & set(every[: 2 * n]):
+            raise NotRepresentable(f"these terms have no place in the arrays: {term}")
+        yield _Term(
+            term,
+            coefficient,
+            tuple(place for place in places if place < n),
+            tuple(place - n for place in places if n <= place < 2 * n),
+            (places.count(2 * n), places.count(2 * n + 1)),
+        )
 
 
-def _collect(
-    energy: sp.Expr, q: Sequence[sp.Symbol], qd: Sequence[sp.Symbol], crank: CrankMotion
-) -> tuple[dict[str, sp.Matrix], dict[str, sp.Matrix]]:
-    """Read second-order and first-order coefficients off the Lagrangian."""
-    size, every = len(q), [*q, *qd]
-    arrays = {name: sp.zeros(size, size) for name in ("M", "A", "B", "S", "C", "D", "K", "Kg")}
-    arrays |= {name: sp.zeros(size, 1) for name in _FORCE_POWERS}
-    linear = {name: sp.zeros(size, 1) for name in ("td qd", "qd", *_FORCE_POWERS)}
-    for i in range(size):
-        momentum, push = sp.diff(energy, qd[i]), sp.diff(energy, q[i])
-        for j in range(size):
-            inertia = _at_zero(sp.diff(momentum, qd[j]), every)
-            arrays["M"][i, j] = _rate_coefficient(inertia, crank, (0, 0))
-            mixed = _at_zero(sp.diff(momentum, q[j]), every)
-            arrays["A"][i, j] = _rate_coefficient(mixed, crank, (1, 0))
-            stiff = _at_zero(sp.diff(push, q[j]), every)
-            for name, powers in _RATE_POWERS.items():
-                sign = -1 if name == "K" else 1
-                arrays[name][i, j] = sign * _rate_coefficient(stiff, crank, powers)
-        at_rest = _at_zero(momentum, every)
-        linear["td qd"][i] = _rate_coefficient(at_rest, crank, (1, 0))
-        linear["qd"][i] = _rate_coefficient(at_rest, crank, (0, 0))
-        for name, powers in _FORCE_POWERS.items():
-            linear[name][i] = _rate_coefficient(_at_zero(push, every), crank, powers)
-    return arrays, linear
+class _Arrays:
+    """The arrays of a quadratic Lagrangian as they are read off, term by term."""
 
+    def __init__(self, size: int, crank: CrankMotion) -> None:
+        self._size, self._crank = size, crank
+        self._entries: dict[tuple[str, int, int], list[sp.Expr]] = {}
+        self._lost: dict[str, list[sp.Expr]] = {"terms": [], "forces": []}
 
-def _reassemble(
-    arrays: Mapping[str, sp.Matrix],
-    linear: Mapping[str, sp.Matrix],
-    q: Sequence[sp.Symbol],
-    qd: Sequence[sp.Symbol],
-    crank: CrankMotion,
-) -> sp.Expr:
-    x, v, td, tdd = sp.Matrix(q), sp.Matrix(qd), crank.rate, crank.acceleration
-    half = sp.Rational(1, 2)
-    total = half * (v.T * arrays["M"] * v)[0] + td * (v.T * arrays["A"] * x)[0]
-    total += half * (x.T * (td**2 * arrays["B"] + tdd * arrays["S"] - arrays["K"]) * x)[0]
-    total += (v.T * (td * linear["td qd"] + linear["qd"]))[0]
-    for name, (first, second) in _FORCE_POWERS.items():
-        total += td**first * tdd**second * (x.T * linear[name])[0]
-    return total
+    def _add(self, name: str, i: int, j: int, value: sp.Expr) -> None:
+        self._entries.setdefault((name, i, j), []).append(value)
 
+    def add_energy(self, term: _Term) -> None:
+        """Add a term of the Lagrangian."""
+        c, rates = term.coefficient, term.rates
+        if term.order == (2, 0) and rates == (0, 0):
+            self._symmetric("M", term.velocities, c)
+        elif term.order == (1, 1) and rates == (1, 0):
+            self._add("A", term.velocities[0], term.positions[0], c)
+        elif term.order == (0, 2) and rates in _RATE_POWERS:
+            name = _RATE_POWERS[rates]
+            self._symmetric(name, term.positions, -c if name == "K" else c)
+        elif term.order == (0, 1) and rates in _FORCE_POWERS:
+            self._add(_FORCE_POWERS[rates], term.positions[0], 0, c)
+        elif term.order == (1, 0) and rates in ((0, 0), (1, 0)):
+            # A momentum c, or td c, acts as minus its rate.
+            i, turned = term.velocities[0], rates == (1, 0)
+            self._add("f" if turned else "h", i, 0, -self._crank.derivative(c))
+            if turned:
+                self._add("g", i, 0, -c)
+        elif term.order != (0, 0):
+            self._lost["terms"].append(term.whole)
 
-def _verify(
-    energy: sp.Expr, assembled: sp.Expr, q: Sequence[sp.Symbol], qd: Sequence[sp.Symbol]
-) -> None:
-    every = [*q, *qd]
-    lost = sp.expand(energy - assembled)
-    lost -= _at_zero(lost, every)
-    lost = sp.expand(lost)
-    if lost != 0:
-        raise NotRepresentable(f"these terms have no place in the arrays: {lost}")
+    def _symmetric(self, name: str, places: tuple[int, ...], value: sp.Expr) -> None:
+        i, j = places
+        self._add(name, i, j, value)
+        self._add(name, j, i, value)
 
+    def add_force(self, i: int, term: _Term) -> None:
+        """Add a term of a generalised force: damping to C, displacements to K, D, B, S."""
+        c, rates = term.coefficient, term.rates
+        if term.order == (1, 0):
+            powers = (self._crank.rate, self._crank.acceleration)
+            rated = sp.Mul(*(r**k for r, k in zip(powers, rates, strict=True)))
+            self._add("C", i, term.velocities[0], -c * rated)
+        elif term.order == (0, 1) and rates in {**_RATE_POWERS, (1, 0): "D"}:
+            name = {**_RATE_POWERS, (1, 0): "D"}[rates]
+            self._add(name, i, term.positions[0], c if name in "BS" else -c)
+        elif term.order == (0, 0) and rates in _FORCE_POWERS:
+            self._add(_FORCE_POWERS[rates], i, 0, c)
+        else:
+            self._lost["forces"].append(term.whole)
 
-def _add_linear_terms(
-    arrays: dict[str, sp.Matrix], linear: Mapping[str, sp.Matrix], crank: CrankMotion
-) -> None:
-    """Turn terms linear in the coordinates into forces: -d/dt of momenta, plus direct terms."""
-    for name in _FORCE_POWERS:
-        arrays[name] += linear[name]
-    for i, momentum in enumerate(linear["td qd"]):
-        if momentum != 0:
-            arrays["f"][i] -= crank.derivative(momentum)
-            arrays["g"][i] -= momentum
-    for i, momentum in enumerate(linear["qd"]):
-        if momentum != 0:
-            arrays["h"][i] -= crank.derivative(momentum)
+    def refuse_lost(self) -> None:
+        """Refuse what the arrays cannot hold.
 
+        Raises
+        ------
+        NotRepresentable
+            With the terms that are left over.
+        """
+        for what, lost in self._lost.items():
+            if (left := sp.expand(sp.Add(*lost))) != 0:
+                raise NotRepresentable(f"these {what} have no place in the arrays: {left}")
 
-def _add_force(
-    arrays: dict[str, sp.Matrix],
-    force: sp.Expr,
-    row: int,
-    q: Sequence[sp.Symbol],
-    qd: Sequence[sp.Symbol],
-    crank: CrankMotion,
-) -> None:
-    """Add a generalised force: damping to C, displacement terms to K, D, B, S, the rest to p..g."""
-    every = [*q, *qd]
-    accounted = sp.S.Zero
-    for j, (position, velocity) in enumerate(zip(q, qd, strict=True)):
-        damping = _at_zero(sp.diff(force, velocity), every)
-        arrays["C"][row, j] -= damping
-        accounted += damping * velocity
-        stiff = _at_zero(sp.diff(force, position), every)
-        for name, powers in {**_RATE_POWERS, "D": (1, 0)}.items():
-            part = _rate_coefficient(stiff, crank, powers)
-            arrays[name][row, j] += -part if name in ("K", "D") else part
-            accounted += part * crank.rate ** powers[0] * crank.acceleration ** powers[1] * position
-    constant = _at_zero(force, every)
-    for name, powers in _FORCE_POWERS.items():
-        part = _rate_coefficient(constant, crank, powers)
-        arrays[name][row] += part
-        accounted += part * crank.rate ** powers[0] * crank.acceleration ** powers[1]
-    lost = sp.expand(force - accounted)
-    if lost != 0:
-        raise NotRepresentable(f"these forces have no place in the arrays: {lost}")
-
-
-def _split_geometric(arrays: dict[str, sp.Matrix], geometric: Iterable[sp.Symbol]) -> None:
-    marks = tuple(geometric)
-    if not marks:
-        return
-    for i, entry in enumerate(arrays["K"]):
-        terms = sp.Add.make_args(sp.expand(entry))
-        moved = sp.Add(*(term for term in terms if term.has(*marks)))
-        arrays["Kg"][i] += moved
-        arrays["K"][i] = sp.expand(entry - moved)
+    def matrices(self, geometric: tuple[sp.Symbol, ...]) -> dict[str, sp.ImmutableDenseMatrix]:
+        """Return the arrays; stiffness terms with one of the symbols go to Kg."""
+        found = {name: sp.zeros(self._size, self._size) for name in MATRICES}
+        found |= {name: sp.zeros(self._size, 1) for name in VECTORS}
+        for (name, i, j), values in self._entries.items():
+            if name == "K":
+                moved = [value for value in values if geometric and value.has(*geometric)]
+                found["Kg"][i, j] = sp.Add(*moved)
+                values = [value for value in values if value not in moved]
+            found[name][i, j] = sp.Add(*values)
+        return {name: sp.ImmutableDenseMatrix(matrix) for name, matrix in found.items()}

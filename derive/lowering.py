@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import sympy as sp
 from sympy.codegen.cfunctions import expm1
 from sympy.core.function import AppliedUndef
 
-from .describe import Description
-from .folding import fold_scalars
-from .ir import Argument, Kernel, ModuleSpec, Result, Statement
+from .ir import Argument, Description, Kernel, ModuleSpec, Result, Statement, Table, drops_table
+from .modal import COUNTED_MODES, EACH_MODE, ModeProduct, ModeSum
 from .spec import ModelSpec
-from .staged import ClosedForm, KernelForms, Steps
+from .staged import ClosedForm, KernelForms, Step, Steps
 
 _FUNCTIONS: dict[type[sp.Function], str] = {
     sp.sin: "sin",
@@ -61,8 +60,14 @@ class _Printer:
     """Source of expressions, each with how tightly it binds."""
 
     scalars: frozenset[sp.Symbol]
+    _known: dict[sp.Basic, tuple[str, int]] = field(default_factory=dict)
 
     def line(self, e: sp.Basic) -> tuple[str, int]:
+        if e not in self._known:
+            self._known[e] = self._line(e)
+        return self._known[e]
+
+    def _line(self, e: sp.Basic) -> tuple[str, int]:
         if isinstance(e, sp.Symbol):
             return e.name, _ATOM
         if isinstance(e, sp.Integer):
@@ -84,6 +89,10 @@ class _Printer:
             return f"({self.line(e.args[0])[0]} {sign} {self.line(e.args[1])[0]})", _ATOM
         if isinstance(e, sp.Mod):
             return f"({self._wrap(e.args[0], _PRODUCT)} % {self._wrap(e.args[1], _POWER)})", _ATOM
+        if isinstance(e, ModeSum):
+            return f"_sum({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
+        if isinstance(e, ModeProduct):
+            return f"_product({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
         for kind, name in _FUNCTIONS.items():
             if isinstance(e, kind):
                 return f"xp.{name}({', '.join(self.line(a)[0] for a in e.args)})", _ATOM
@@ -238,7 +247,6 @@ def lower_kernel(
     arguments: Sequence[Argument],
     steps: Steps,
     outputs: Sequence[tuple[Result, sp.Expr]],
-    references: Sequence[str] = (),
 ) -> Kernel:
     """Turn named steps and outputs into straight-line code.
 
@@ -255,8 +263,6 @@ def lower_kernel(
         Intermediate quantities.
     outputs : sequence of (Result, Expr)
         Returned quantities.
-    references : sequence of str
-        Equations of the documents that the function stands for.
 
     Raises
     ------
@@ -278,9 +284,10 @@ def lower_kernel(
     inputs = {argument.name for argument in arguments}
     ordered = _in_order_of_need(values, named, returned, inputs, name)
     scalars = _scalars(arguments, ordered, values)
-    done = _released(ordered, values, returned, scalars)
+    vectors = _vectors(arguments, ordered, values)
+    done = _released(ordered, values, returned, scalars | vectors)
     statements = tuple(
-        Statement(symbol.name, to_line(values[symbol], scalars), done.get(symbol, ()))
+        Statement(symbol.name, _line(values[symbol], scalars, vectors), done.get(symbol, ()))
         for symbol in ordered
     )
     return Kernel(
@@ -289,10 +296,50 @@ def lower_kernel(
         arguments=tuple(arguments),
         results=tuple(result for result, _ in outputs),
         statements=statements,
-        returns=tuple(to_line(expression, scalars) for expression in returned),
-        references=tuple(references),
-        operations=count_operations([values[s] for s in ordered] + list(returned)),
+        returns=tuple(_line(expression, scalars, vectors) for expression in returned),
+        operations=_operations([values[s] for s in ordered] + list(returned), vectors),
     )
+
+
+def _vectors(
+    arguments: Sequence[Argument],
+    ordered: Sequence[sp.Symbol],
+    values: Mapping[sp.Symbol, sp.Expr],
+) -> set[sp.Symbol]:
+    """Return the symbols that stand for one value of each mode."""
+    found = {sp.Symbol(a.name) for a in arguments if a.shape.startswith(EACH_MODE)}
+    for symbol in ordered:
+        value = values[symbol]
+        if isinstance(value, ModeProduct) or (
+            not isinstance(value, ModeSum) and value.free_symbols & found
+        ):
+            found.add(symbol)
+    return found
+
+
+def _line(value: sp.Expr, scalars: set[sp.Symbol], vectors: set[sp.Symbol]) -> str:
+    """Return an expression as Python source, over all modes where it has a value of each."""
+    used = _by_name(value.free_symbols & vectors)
+    if not used or value in vectors or isinstance(value, ModeSum | ModeProduct):
+        return to_line(value, scalars)
+    names = {symbol: sp.Symbol(f"{symbol.name}_i") for symbol in used}
+    loop = ", ".join(names[symbol].name for symbol in used)
+    over = ", ".join(symbol.name for symbol in used)
+    over = over if len(used) == 1 else f"zip({over})"
+    return f"[{to_line(value.xreplace(names), scalars)} for {loop} in {over}]"
+
+
+def _operations(values: Sequence[sp.Expr], vectors: set[sp.Symbol]) -> int:
+    """Return the operations of expressions, for ``COUNTED_MODES`` modes where they have any."""
+    total, n = 0, COUNTED_MODES
+    for value in values:
+        if isinstance(value, ModeSum):
+            total += 2 * n - 1
+        elif isinstance(value, ModeProduct):
+            total += n * (2 * n - 1)
+        else:
+            total += count_operations([value]) * (n if value.free_symbols & vectors else 1)
+    return total
 
 
 def _without_trivial(steps: Steps, finals: list[sp.Expr]) -> tuple[Steps, list[sp.Expr]]:
@@ -420,7 +467,6 @@ def lower_closed_form(spec: ModelSpec, closed: ClosedForm, description: Descript
         (*description.arguments, *description.parameters),
         closed.steps,
         outputs,
-        description.references,
     )
     return _closed_module(spec, (kernel,), description)
 
@@ -443,14 +489,16 @@ def lower_kernel_forms(spec: ModelSpec, forms: KernelForms, description: Descrip
                 arguments,
                 steps,
                 list(zip(results, finals, strict=True)),
-                description.references,
             )
         )
-    return _closed_module(spec, tuple(kernels), description)
+    return _closed_module(spec, tuple(kernels), description, drops_table(forms.dropped))
 
 
 def _closed_module(
-    spec: ModelSpec, kernels: tuple[Kernel, ...], description: Description
+    spec: ModelSpec,
+    kernels: tuple[Kernel, ...],
+    description: Description,
+    tables: tuple[Table, ...] = (),
 ) -> ModuleSpec:
     return ModuleSpec(
         spec=spec,
@@ -460,4 +508,75 @@ def _closed_module(
         references=description.references,
         kernels=kernels,
         parameters=description.parameters,
+        tables=tables,
     )
+
+
+def fold_scalars(
+    steps: Steps, outputs: Sequence[sp.Expr], scalars: Iterable[str]
+) -> tuple[Steps, list[sp.Expr]]:
+    """Name every product and sum of single numbers that stands beside an array.
+
+    Parameters
+    ----------
+    steps : Steps
+        Intermediate quantities.
+    outputs : sequence of Expr
+        What is returned.
+    scalars : iterable of str
+        Names of the arguments that are single numbers.
+
+    Returns
+    -------
+    steps, outputs
+        With further steps, in numbers alone.
+    """
+    folding = _Folding(set(scalars))
+    found: list[Step] = []
+    for symbol, value in steps.steps:
+        folded = folding.plain(value)
+        if folding.is_scalar(value):
+            folding.scalars.add(symbol.name)
+        found += [*folding.take(), (symbol, folded)]
+    finals = [folding.plain(sp.sympify(value)) for value in outputs]
+    return Steps((*found, *folding.take())), finals
+
+
+class _Folding:
+    """The names given so far."""
+
+    def __init__(self, scalars: set[str]) -> None:
+        self.scalars = scalars
+        self._names: dict[sp.Expr, sp.Symbol] = {}
+        self._new: list[Step] = []
+
+    def take(self) -> list[Step]:
+        """Return the definitions made since the last call."""
+        new, self._new = self._new, []
+        return new
+
+    def is_scalar(self, value: sp.Basic) -> bool:
+        return all(symbol.name in self.scalars for symbol in value.free_symbols)
+
+    def plain(self, value: sp.Basic) -> sp.Basic:
+        """Return an expression with its scalar parts named."""
+        if self.is_scalar(value) or not value.args:
+            return value
+        if not isinstance(value, sp.Mul | sp.Add):
+            return value.func(*(self.plain(part) for part in value.args))
+        numbers = [part for part in value.args if self.is_scalar(part)]
+        arrays = [self.plain(part) for part in value.args if not self.is_scalar(part)]
+        return value.func(self._named(value.func(*numbers)), *arrays)
+
+    def _named(self, value: sp.Expr) -> sp.Expr:
+        """Return a name for a product or sum of scalars, its sign apart."""
+        if value.is_number or value.is_Symbol:
+            return value
+        if value.could_extract_minus_sign():
+            return -self._named(-value)
+        if value not in self._names:
+            symbol = sp.Symbol(f"c{len(self._names)}", real=True)
+            self._names[value] = symbol
+            self.scalars.add(symbol.name)
+            self._new.append((symbol, value))
+        return self._names[value]

@@ -18,16 +18,14 @@ from .spec import Entry, ModelSpec
 _HERE = Path(__file__).parent
 _NAMED = b'name = "elastolink"'
 # What can change an emitted byte: all here and in the folders of every model, but the bookkeeping.
-_FOLDERS = ("perturbation", "projection", "rigid")
+_FOLDERS = ("projection", "rigid")
 _BOOKKEEPING = {
     "__init__.py",
     "catalogue.py",
-    "checks.py",
     "folder.py",
     "jobs.py",
     "latex.py",
     "manifest.py",
-    "printing.py",
     "regenerate.py",
 }
 

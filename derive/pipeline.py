@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from .arrays import VECTORS
-from .describe import Description
+from .arrays import VECTORS, DiscreteSystem
+from .bloch import Recursion, lower_recursion
 from .emission import emit
 from .entries import (
     ConstrainedSystem,
@@ -22,11 +22,9 @@ from .entries import (
     lower_matrices,
     lower_transcendental,
 )
-from .ir import ModuleSpec
+from .ir import Description, ModuleSpec
 from .lagrange import euler_lagrange
 from .lowering import lower_closed_form, lower_kernel_forms
-from .perturbation.bloch import Recursion
-from .perturbation.unrolling import lower_recursion
 from .records import ActionDensity, EquationsOfMotion, FieldEquations, Lagrangian
 from .separation import StagedSystem, lower_linear_periodic
 from .spec import Choices, ModelSpec
@@ -141,8 +139,13 @@ def only_wanted(spec: ModelSpec, system: System) -> System:
         return replace(system, variations=None)
     if not isinstance(system, StagedSystem) or "forcing" in spec.outputs:
         return system
-    arrays = {name: a for name, a in system.system.arrays.items() if name not in VECTORS}
-    return replace(system, system=system.system.with_(arrays=arrays))
+    dropped = {terms: _unforced(left) for terms, left in system.dropped.items()}
+    return replace(system, system=_unforced(system.system), dropped=dropped)
+
+
+def _unforced(system: DiscreteSystem) -> DiscreteSystem:
+    arrays = {name: entry for name, entry in system.arrays.items() if name not in VECTORS}
+    return system.with_(arrays=arrays)
 
 
 def lower(spec: ModelSpec, system: System, description: Description) -> ModuleSpec:

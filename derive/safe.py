@@ -15,6 +15,26 @@ class UnsafeRewriting(ArithmeticError):  # noqa: N818 - reads as what it is
     """A rewriting did not reproduce the expression that it started from."""
 
 
+def vanishes(expression: sp.Expr) -> bool:
+    """Return True where a rational function of exponentials is zero everywhere.
+
+    Exponents, those of hyperbolic functions among them, are sums of whole multiples of halves of
+    the same products.
+    """
+    plain = sp.expand(expression, deep=False).rewrite(sp.exp)
+    bases: dict[sp.Expr, sp.Symbol] = {}
+    table = {}
+    for exponential in plain.atoms(sp.exp):
+        value = sp.S.One
+        for term in sp.Add.make_args(sp.expand(exponential.args[0])):
+            multiple, product = term.as_coeff_Mul()
+            base = bases.setdefault(product, sp.Symbol(f"base_{len(bases)}", positive=True))
+            value *= base ** (2 * multiple)
+        table[exponential] = value
+    above, _ = sp.fraction(sp.together(plain.xreplace(table)))
+    return bool(sp.expand(above) == 0)
+
+
 def bernstein_in_cosine(
     expression: sp.Expr,
     cosine: sp.Symbol,

@@ -5,21 +5,28 @@ All points of a sweep then share the functions of angle, whatever the parameters
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeAlias, TypeVar
 
 import sympy as sp
 
-from .arrays import MATRICES, BasisEntry, DiscreteSystem, IndexedEntry, IndexedVector
-from .describe import Description
-from .ir import Argument, Kernel, ModuleSpec, Result, TermRow
+from .arrays import (
+    MATRICES,
+    BasisEntry,
+    BasisIntegral,
+    BasisProduct,
+    DiscreteSystem,
+    IndexedEntry,
+    IndexedVector,
+)
+from .ir import Argument, Description, Kernel, ModuleSpec, Result, Table, drops_table
 from .lowering import lower_kernel
-from .projection.basis_terms import BasisFactor, basis_kernels, basis_rows
 from .spec import ModelSpec
 from .staged import Steps
 
 _Value = TypeVar("_Value")
+BasisFactor: TypeAlias = BasisIntegral | BasisProduct
 
 
 class NotSeparable(ValueError):  # noqa: N818 - reads as what it is
@@ -44,6 +51,8 @@ class StagedSystem:
         Quantities that the caller evaluates at the angle and passes in.
     place : Symbol or None
         The step that is the parameter xi of shapes that the caller passes in.
+    dropped : mapping
+        Terms that a caller may leave out, to the system without them.
     """
 
     system: DiscreteSystem
@@ -52,6 +61,7 @@ class StagedSystem:
     geometry: tuple[sp.Symbol, ...]
     external: tuple[sp.Symbol, ...] = ()
     place: sp.Symbol | None = None
+    dropped: Mapping[tuple[str, ...], DiscreteSystem] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -119,10 +129,10 @@ def _collect(stages: _Stages, expression: sp.Expr) -> dict[tuple[sp.Expr, sp.Exp
     return parts
 
 
-def _groups(staged: StagedSystem) -> list[_Group]:
+def _groups(staged: StagedSystem, system: DiscreteSystem) -> list[_Group]:
     """Separate every array; terms that share scale and modal array are added up."""
     groups: list[_Group] = []
-    for name, entry in staged.system.arrays.items():
+    for name, entry in system.arrays.items():
         if isinstance(entry, IndexedEntry | IndexedVector):
             groups += _closed_groups(staged, name, entry)
         elif isinstance(entry, BasisEntry):
@@ -288,21 +298,30 @@ def lower_linear_periodic(
         kernel: _Names(kernel.removesuffix("functions"), stages.angle, staged.external)
         for kernel in _KERNELS
     }
-    rows = []
-    groups = _groups(staged)
-    for group in groups:
+
+    def row(group: _Group) -> tuple[object, ...]:
         angle_name = angle_names[_KERNEL_OF[group.array]]
-        rows.append(
-            TermRow(
-                group.array,
-                0,
-                None if group.scale == 1 else scale_name(group.scale),
-                None if group.angle == 1 else angle_name(group.angle),
-                modal_name((group.modal, group.array in MATRICES))
-                if isinstance(group.modal, _Modal)
-                else group.modal.name,
-            )
+        return (
+            group.array,
+            0,
+            None if group.scale == 1 else scale_name(group.scale),
+            None if group.angle == 1 else angle_name(group.angle),
+            modal_name((group.modal, group.array in MATRICES))
+            if isinstance(group.modal, _Modal)
+            else group.modal.name,
         )
+
+    groups = _groups(staged, staged.system)
+    rows = [row(group) for group in groups]
+    dropped = {}
+    for terms, system in staged.dropped.items():
+        others = _groups(staged, system)
+        left = [row(group) for group in others]
+        dropped[terms] = (
+            tuple(r for r in rows if r not in left),
+            tuple(r for r in left if r not in rows),
+        )
+        groups += others
     kernels = [_scales_kernel(scale_name, staged, description)]
     for kernel, (_, words) in _KERNELS.items():
         if set(angle_names[kernel].table) - set(staged.external):
@@ -311,7 +330,8 @@ def lower_linear_periodic(
     modal_kernels, tables = _modal(modal_name, staged)
     factors = [group.modal for group in groups if not isinstance(group.modal, _Modal)]
     if staged.place is not None:
-        modal_kernels += basis_kernels(factors, staged.place, staged.steps, description)
+        modal_kernels += _basis_kernels(factors, staged.place, staged.steps, description)
+    external = Table("EXTERNAL", tuple(symbol.name for symbol in staged.external))
     return ModuleSpec(
         spec=spec,
         family="linear_periodic",
@@ -319,11 +339,21 @@ def lower_linear_periodic(
         notes=description.notes,
         references=description.references,
         kernels=(*(k for k in kernels if k.results), *modal_kernels),
-        terms=tuple(rows),
         parameters=description.parameters,
-        tables=(("EXTERNAL", repr(tuple(symbol.name for symbol in staged.external))), *tables),
-        basis=basis_rows(factors),
+        tables=(
+            external,
+            *tables,
+            *_basis_table(factors),
+            Table("TERMS", tuple(rows), _TERMS),
+            *drops_table(dropped),
+        ),
     )
+
+
+_TERMS = (
+    "Separated terms: array, extra power of the crank speed, scale, function of angle, and modal "
+    "array or integral over the shapes."
+)
 
 
 def _scales_kernel(names: _Names[Any], staged: StagedSystem, description: Description) -> Kernel:
@@ -334,8 +364,7 @@ def _scales_kernel(names: _Names[Any], staged: StagedSystem, description: Descri
         *(by_name[s.name] for s in staged.geometry if s in used and s.name in by_name),
     ]
     outputs = [
-        (Result(name, "float or ndarray", "", f"Factor {value}"), value)
-        for value, name in names.table.items()
+        (Result(name, "float or ndarray", "", ""), value) for value, name in names.table.items()
     ]
     return lower_kernel(
         "scales", "Return the factors made of parameters", arguments, Steps(), outputs
@@ -346,7 +375,7 @@ def _angle_kernel(
     name: str, summary: str, names: _Names[Any], staged: StagedSystem, description: Description
 ) -> Kernel:
     outputs = [
-        (Result(key, "ndarray, shape (...)", "", f"Function of angle {value}"), value)
+        (Result(key, "ndarray, shape (...)", "", ""), value)
         for value, key in names.table.items()
         if value not in staged.external
     ]
@@ -359,7 +388,7 @@ def _angle_kernel(
         for argument in description.arguments
         if argument.name == staged.geometry[0].name or sp.Symbol(argument.name) in _plain(used)
     ]
-    return lower_kernel(name, summary, arguments, staged.steps, outputs, description.references)
+    return lower_kernel(name, summary, arguments, staged.steps, outputs)
 
 
 def _plain(symbols: Iterable[sp.Symbol]) -> set[sp.Symbol]:
@@ -369,7 +398,7 @@ def _plain(symbols: Iterable[sp.Symbol]) -> set[sp.Symbol]:
 
 def _modal(
     names: _Names[tuple[_Modal, bool]], staged: StagedSystem
-) -> tuple[tuple[Kernel, ...], tuple[tuple[str, str], ...]]:
+) -> tuple[tuple[Kernel, ...], tuple[Table, ...]]:
     """Return the kernels of closed modal arrays and the tables of explicit ones."""
     m, n = sp.symbols("m n", integer=True, positive=True)
     for entry in staged.system.arrays.values():
@@ -383,14 +412,13 @@ def _modal(
     matrices, vectors, tables = [], [], []
     for (modal, matrix), name in names.table.items():
         if modal.explicit is not None:
-            tables.append((name.upper(), _numbers(modal.explicit, column=not matrix)))
+            tables.append(Table(name.upper(), _numbers(modal.explicit, column=not matrix)))
         elif matrix:
             off = modal.off_diagonal.subs(m - n, apart).subs(n - m, -apart)
             value = sp.Piecewise((modal.diagonal, sp.Eq(m, n)), (off, True))
-            matrices.append((Result(name, "ndarray, shape (N, N)", "", _entry(modal)), value))
+            matrices.append((Result(name, "ndarray, shape (N, N)", "", ""), value))
         else:
-            words = f"Entries {modal.diagonal}"
-            vectors.append((Result(name, "ndarray, shape (N,)", "", words), modal.diagonal))
+            vectors.append((Result(name, "ndarray, shape (N,)", "", ""), modal.diagonal))
     kernels = []
     if matrices:
         # The difference of two mode numbers divides; on the diagonal it is not used.
@@ -398,20 +426,101 @@ def _modal(
         summary = "Return the modal arrays of the matrices"
         kernels.append(lower_kernel("modal_matrices", summary, (index, column), guard, matrices))
     if vectors:
-        flat = Argument("m", "ndarray, shape (N,)", "", "Mode numbers, from 1")
+        flat = Argument("m", "ndarray, shape (N,)", "", index.meaning)
         summary = "Return the modal arrays of the forcing"
         kernels.append(lower_kernel("modal_vectors", summary, (flat,), Steps(), vectors))
     return tuple(kernels), tuple(tables)
 
 
-def _entry(modal: _Modal) -> str:
-    if modal.off_diagonal == 0:
-        return f"Diagonal {modal.diagonal}"
-    return f"Diagonal {modal.diagonal}, else {modal.off_diagonal}"
+def _numbers(matrix: sp.ImmutableDenseMatrix, *, column: bool) -> tuple[Any, ...]:
+    rows = [tuple(float(sp.N(item, 40)) for item in matrix.row(i)) for i in range(matrix.rows)]
+    return tuple(row[0] for row in rows) if column else tuple(rows)
 
 
-def _numbers(matrix: sp.ImmutableDenseMatrix, *, column: bool) -> str:
-    rows = [[repr(float(sp.N(item, 40))) for item in matrix.row(i)] for i in range(matrix.rows)]
-    if column:
-        return "(" + ", ".join(row[0] for row in rows) + ",)"
-    return "(" + ", ".join("(" + ", ".join(row) + ",)" for row in rows) + ",)"
+def _basis_table(factors: Iterable[BasisFactor]) -> tuple[Table, ...]:
+    """Return the definitions of all integrals that the terms and their products need, once each.
+
+    Raises
+    ------
+    ValueError
+        If two different integrals bear one name.
+    """
+    found: dict[str, tuple[object, ...]] = {}
+    for integral in _integrals(factors):
+        row = (
+            integral.name,
+            _coefficients(integral),
+            integral.row,
+            integral.column,
+            None if integral.at is None else float(integral.at),
+        )
+        if found.setdefault(integral.name, row) != row:
+            raise ValueError(f"two integrals are called {integral.name}")
+    return (Table("BASIS", tuple(found.values()), _INTEGRALS),) if found else ()
+
+
+_INTEGRALS = (
+    "Integrals over shapes e_i(eta; xi) that are passed in: name, coefficients of the weight by "
+    "powers of eta, derivatives by eta and xi of the first and of the second factor, and the eta "
+    "of a value that is no integral."
+)
+
+
+def _integrals(factors: Iterable[BasisFactor]) -> Iterable[BasisIntegral]:
+    for factor in factors:
+        if isinstance(factor, BasisIntegral):
+            yield factor
+        else:
+            yield from factor.rows.values()
+            yield from factor.columns.values()
+
+
+def _coefficients(integral: BasisIntegral) -> tuple[float, ...]:
+    coefficients = sp.Poly(integral.weight, integral.eta).all_coeffs()[::-1]
+    return tuple(float(c) for c in coefficients)
+
+
+def _basis_kernels(
+    factors: Iterable[BasisFactor], place: sp.Symbol, steps: Steps, description: Description
+) -> tuple[Kernel, ...]:
+    """Return the function that gives the place xi, and the one that gives products of vectors.
+
+    Parameters
+    ----------
+    factors : iterable of BasisIntegral or BasisProduct
+        What the terms need.
+    place : Symbol
+        The step that is xi.
+    steps : Steps
+        Closed forms of what follows the crank.
+    description : Description
+        Words of the arguments.
+    """
+    used = {place.name}.union(*({s.name for s in v.free_symbols} for _, v in _chain(place, steps)))
+    arguments = [a for a in description.arguments if a.name in used]
+    if description.arguments[0] not in arguments:
+        arguments.insert(0, description.arguments[0])
+    words = "Place of the support as a fraction of the length"
+    result = Result(place.name, "ndarray, shape (...)", "", words)
+    summary = "Return the place of the support, on which the shapes depend"
+    kernels = [lower_kernel(place.name, summary, arguments, steps, [(result, place)])]
+    products = {f.name: f for f in factors if isinstance(f, BasisProduct)}
+    if products:
+        kernels.append(_products_kernel(list(products.values())))
+    return tuple(kernels)
+
+
+def _chain(place: sp.Symbol, steps: Steps) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
+    return steps.needed([place]).steps
+
+
+def _products_kernel(products: list[BasisProduct]) -> Kernel:
+    arguments: dict[str, Argument] = {}
+    for shape, end in (("(..., N, 1)", "rows"), ("(..., 1, N)", "columns")):
+        for product in products:
+            for symbol, integral in getattr(product, end).items():
+                words = f"The vector {integral.name}, along the {end}"
+                arguments[symbol.name] = Argument(symbol.name, f"ndarray, shape {shape}", "", words)
+    outputs = [(Result(p.name, "ndarray, shape (..., N, N)", "", ""), p.form) for p in products]
+    summary = "Return the matrices that are made of products of integrals"
+    return lower_kernel("basis_products", summary, list(arguments.values()), Steps(), outputs)

@@ -1,10 +1,13 @@
-"""Taylor polynomials: what takes over where a closed form loses its digits near zero."""
+"""Power series at zero: what takes over where a closed form loses its digits."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import islice
 from typing import NamedTuple
 
 import sympy as sp
+from sympy.polys.constructor import construct_domain
 
 
 class Polynomial(NamedTuple):
@@ -29,29 +32,49 @@ def taylor(expression: sp.Expr, variable: sp.Symbol, terms: int) -> Polynomial:
     Raises
     ------
     ValueError
-        If the expression is of another kind.
+        If the expression is of another kind, or has fewer terms.
     """
-    parts = [
-        _part(term, variable)
-        for term in sp.Add.make_args(sp.expand(sp.sympify(expression).rewrite(sp.exp)))
-    ]
-    found: list[sp.Expr] = []
-    order = 0
-    while len(found) <= terms:
-        coefficient = sp.Add(
-            *(
-                factor * rate ** (order - power) / sp.factorial(order - power)
-                for factor, power, rate in parts
-                if power == order or (power < order and rate != 0)
-            )
-        )
-        coefficient = sp.expand(coefficient)
-        if coefficient != 0:
-            found.append(coefficient * variable**order)
-        order += 1
-        if order > 40 * (terms + 1) or not parts:
-            raise ValueError(f"{expression} has no {terms + 1} non-zero terms in {variable}")
+    coefficients = series_terms(expression, variable)
+    found = [value * variable**order for order, value in islice(coefficients, terms + 1)]
+    if len(found) <= terms:
+        raise ValueError(f"{expression} has no {terms + 1} non-zero terms in {variable}")
     return Polynomial(sp.Add(*found[:-1]), found[-1])
+
+
+def series_terms(expression: sp.Expr, variable: sp.Symbol) -> Iterator[tuple[int, sp.Expr]]:
+    """Yield order and coefficient of the non-zero terms of the Taylor series at zero.
+
+    The parts ``c variable^n exp(a variable)`` of the expression go on by ``a / k`` from term to
+    term, in the field of their coefficients.
+
+    Parameters
+    ----------
+    expression, variable
+        As for :func:`taylor`.
+    """
+    terms = sp.Add.make_args(sp.expand(sp.sympify(expression).rewrite(sp.exp)))
+    parts = [_part(term, variable) for term in terms if term != 0]
+    if not parts:
+        return
+    factors, powers, rates = zip(*parts, strict=True)
+    field, numbers = construct_domain([*factors, *rates], field=True)
+    values, rates = numbers[: len(parts)], numbers[len(parts) :]
+    order, idle = 0, 0
+    while idle < _IDLE:
+        total = field.zero
+        for i, power in enumerate(powers):
+            if order > power:
+                values[i] = values[i] * rates[i] * field.from_sympy(sp.Rational(1, order - power))
+            if order >= power:
+                total += values[i]
+        coefficient = sp.expand(field.to_sympy(total))
+        idle = 0 if coefficient != 0 else idle + 1
+        if coefficient != 0:
+            yield order, coefficient
+        order += 1
+
+
+_IDLE = 40  # orders without a term, after which there is none
 
 
 def _part(term: sp.Expr, variable: sp.Symbol) -> tuple[sp.Expr, int, sp.Expr]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from itertools import combinations
 from typing import TypeAlias, TypeVar
 
 import sympy as sp
@@ -54,6 +55,21 @@ class Steps:
     def mapping(self) -> Mapping[sp.Symbol, sp.Expr]:
         """Return the steps as a mapping in their order."""
         return dict(self.steps)
+
+
+def vanishing(terms: Mapping[str, Iterable[str]]) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """Return what vanishes where some of the terms are dropped, by each choice of them.
+
+    Parameters
+    ----------
+    terms : mapping
+        Term to the names of arguments, numbers or multipliers that vanish without it.
+    """
+    return {
+        chosen: tuple(name for term in chosen for name in terms[term])
+        for count in range(1, len(terms) + 1)
+        for chosen in combinations(sorted(terms), count)
+    }
 
 
 def chosen_outputs(
@@ -121,9 +137,12 @@ class KernelForms:
     ----------
     kernels : tuple of KernelForm
         In order.
+    dropped : mapping
+        Terms that a caller may leave out, to the arguments that then vanish.
     """
 
     kernels: tuple[KernelForm, ...]
+    dropped: Mapping[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
 
     def only(self, names: Iterable[str]) -> KernelForms:
         """Return some of the functions.
@@ -134,4 +153,4 @@ class KernelForms:
             If one is not there.
         """
         known = [(kernel.name, kernel) for kernel in self.kernels]
-        return KernelForms(tuple(kernel for _, kernel in chosen_outputs(known, names)))
+        return replace(self, kernels=tuple(k for _, k in chosen_outputs(known, names)))

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import sympy as sp
 
+from .integrals import antiderivative
 from .jets import Flux, JetSpace, linearise, order_part
-from .projection.integrals import antiderivative
 from .records import (
     ActionDensity,
     BoundaryCondition,

@@ -15,99 +15,102 @@ Cost per evaluation:
     bending_rates: 252 operations
     bending_inertias: 230 operations
     axial: 5 operations
-    axial_rates: 58 operations
+    axial_rates: 57 operations
     axial_inertias: 47 operations
     bending_poles: 48 operations
     axial_poles: 12 operations
     bending_shapes: 506 operations
     axial_shapes: 8 operations
-Content hash 6717cd4ba4eaad4ace05d5c2404cd34b; derived with SymPy 1.14.0.
+Content hash b53e0bba8d89d87576fea24f40a00236; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "axial",
-    "axial_inertias",
-    "axial_poles",
-    "axial_rates",
-    "axial_shapes",
-    "bending",
-    "bending_inertias",
-    "bending_poles",
-    "bending_rates",
-    "bending_shapes",
+    "bending", "bending_rates", "bending_inertias", "axial", "axial_rates", "axial_inertias",
+    "bending_poles", "axial_poles", "bending_shapes", "axial_shapes",
 ]
-
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"dynamic_stiffness","mechanism":"beam","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "6717cd4ba4eaad4ace05d5c2404cd34b"
+CONTENT = "b53e0bba8d89d87576fea24f40a00236"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "z": (
+        "",
+        "Length over wave length in bending, lambda L: z^4 = omega^2 rho A L^4 / (E I); above 0",
+    ),
+    "F1": ("", "Moment at one end over rotation of the other [E I / L]"),
+    "F2": ("", "Moment over rotation of the same end [E I / L]"),
+    "F3": ("", "Moment at the right end over deflection of the left [E I / L^2]"),
+    "F4": ("", "Moment over deflection of the right end [E I / L^2]"),
+    "F5": ("", "Force at one end over deflection of the other [E I / L^3]"),
+    "F6": ("", "Force over deflection of the same end [E I / L^3]"),
+    "G1": ("", "-dF1/d(z^4): in units of mass, rho A L times L^n"),
+    "G2": ("", "-dF2/d(z^4): in units of mass, rho A L times L^n"),
+    "G3": ("", "-dF3/d(z^4): in units of mass, rho A L times L^n"),
+    "G4": ("", "-dF4/d(z^4): in units of mass, rho A L times L^n"),
+    "G5": ("", "-dF5/d(z^4): in units of mass, rho A L times L^n"),
+    "G6": ("", "-dF6/d(z^4): in units of mass, rho A L times L^n"),
+    "H1": ("", "(F1(0) - F1) / z^4: in units of mass, as G1"),
+    "H2": ("", "(F2(0) - F2) / z^4: in units of mass, as G2"),
+    "H3": ("", "(F3(0) - F3) / z^4: in units of mass, as G3"),
+    "H4": ("", "(F4(0) - F4) / z^4: in units of mass, as G4"),
+    "H5": ("", "(F5(0) - F5) / z^4: in units of mass, as G5"),
+    "H6": ("", "(F6(0) - F6) / z^4: in units of mass, as G6"),
+    "b": ("", "The same along the beam, beta L: b^2 = omega^2 rho L^2 / E; above 0"),
+    "F7": ("", "Force along the beam over displacement of the same end [E A / L]"),
+    "F8": ("", "Force along the beam at one end over displacement of the other [E A / L]"),
+    "G7": ("", "-dF7/d(b^2): in units of the mass rho A L"),
+    "G8": ("", "-dF8/d(b^2): in units of the mass rho A L"),
+    "H7": ("", "(F7(0) - F7) / b^2: in units of the mass rho A L"),
+    "H8": ("", "(F8(0) - F8) / b^2: in units of the mass rho A L"),
+    "bending_count": ("", "Whole number, as a float"),
+    "axial_count": ("", "Whole number, as a float"),
+    "xi": ("", "Place along the beam from its left end, in lengths: from 0 to 1"),
+    "deflection_value": ("", "Deflection for a unit deflection of the right end"),
+    "deflection_slope": (
+        "", "Deflection for a unit deflection of the right end, its slope along xi",
+    ),
+    "deflection_curvature": (
+        "", "Deflection for a unit deflection of the right end, its curvature along xi",
+    ),
+    "deflection_third": (
+        "", "Deflection for a unit deflection of the right end, its third along xi",
+    ),
+    "rotation_value": ("", "Deflection for a unit slope by xi at the right end"),
+    "rotation_slope": (
+        "", "Deflection for a unit slope by xi at the right end, its slope along xi",
+    ),
+    "rotation_curvature": (
+        "", "Deflection for a unit slope by xi at the right end, its curvature along xi",
+    ),
+    "rotation_third": (
+        "", "Deflection for a unit slope by xi at the right end, its third along xi",
+    ),
+    "stretch_value": ("", "Displacement for a unit one of the right end"),
+    "stretch_slope": ("", "Displacement for a unit one of the right end, its slope along xi"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "bending": (
-        "F1",
-        "F2",
-        "F3",
-        "F4",
-        "F5",
-        "F6",
-    ),
-    "bending_rates": (
-        "G1",
-        "G2",
-        "G3",
-        "G4",
-        "G5",
-        "G6",
-    ),
-    "bending_inertias": (
-        "H1",
-        "H2",
-        "H3",
-        "H4",
-        "H5",
-        "H6",
-    ),
-    "axial": (
-        "F7",
-        "F8",
-    ),
-    "axial_rates": (
-        "G7",
-        "G8",
-    ),
-    "axial_inertias": (
-        "H7",
-        "H8",
-    ),
-    "bending_poles": (
-        "bending_count",
-    ),
-    "axial_poles": (
-        "axial_count",
-    ),
+    "bending": ("F1", "F2", "F3", "F4", "F5", "F6"),
+    "bending_rates": ("G1", "G2", "G3", "G4", "G5", "G6"),
+    "bending_inertias": ("H1", "H2", "H3", "H4", "H5", "H6"),
+    "axial": ("F7", "F8"),
+    "axial_rates": ("G7", "G8"),
+    "axial_inertias": ("H7", "H8"),
+    "bending_poles": ("bending_count",),
+    "axial_poles": ("axial_count",),
     "bending_shapes": (
-        "deflection_value",
-        "deflection_slope",
-        "deflection_curvature",
-        "deflection_third",
-        "rotation_value",
-        "rotation_slope",
-        "rotation_curvature",
-        "rotation_third",
+        "deflection_value", "deflection_slope", "deflection_curvature", "deflection_third",
+        "rotation_value", "rotation_slope", "rotation_curvature", "rotation_third",
     ),
-    "axial_shapes": (
-        "stretch_value",
-        "stretch_slope",
-    ),
+    "axial_shapes": ("stretch_value", "stretch_slope"),
 }
 
 
@@ -121,29 +124,8 @@ def _namespace(array):
 def bending(z):
     """Return the frequency functions of bending.
 
-    Parameters
-    ----------
     z : ndarray, shape (...)
-        Length over wave length in bending, lambda L: z^4 = omega^2 rho A L^4 / (E I); above 0.
-
-    Returns
-    -------
-    F1 : ndarray, shape (...)
-        Moment at one end over rotation of the other [E I / L].
-    F2 : ndarray, shape (...)
-        Moment over rotation of the same end [E I / L].
-    F3 : ndarray, shape (...)
-        Moment at the right end over deflection of the left [E I / L^2].
-    F4 : ndarray, shape (...)
-        Moment over deflection of the right end [E I / L^2].
-    F5 : ndarray, shape (...)
-        Force at one end over deflection of the other [E I / L^3].
-    F6 : ndarray, shape (...)
-        Force over deflection of the same end [E I / L^3].
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(z)
     x0 = z**2
@@ -199,41 +181,16 @@ def bending(z):
     x12 = x11 * z
     x13 = x0 * x11
     return (
-        x12 * full_excess,
-        x12 * full_lag,
-        x13 * full_spread,
-        -x13 * full_odd * full_sine,
-        x11 * (-x8 * full_odd - x4 * x8),
-        x11 * (x8 * full_even * full_sine + x7 * x8),
+        x12 * full_excess, x12 * full_lag, x13 * full_spread, -x13 * full_odd * full_sine,
+        x11 * (-x8 * full_odd - x4 * x8), x11 * (x8 * full_even * full_sine + x7 * x8),
     )
 
 
 def bending_rates(z):
     """Return minus the rates of F1 to F6 with the squared frequency z^4.
 
-    Parameters
-    ----------
     z : ndarray, shape (...)
-        Length over wave length in bending, lambda L: z^4 = omega^2 rho A L^4 / (E I); above 0.
-
-    Returns
-    -------
-    G1 : ndarray, shape (...)
-        -dF1/d(z^4): in units of mass, rho A L times L^n.
-    G2 : ndarray, shape (...)
-        -dF2/d(z^4): in units of mass, rho A L times L^n.
-    G3 : ndarray, shape (...)
-        -dF3/d(z^4): in units of mass, rho A L times L^n.
-    G4 : ndarray, shape (...)
-        -dF4/d(z^4): in units of mass, rho A L times L^n.
-    G5 : ndarray, shape (...)
-        -dF5/d(z^4): in units of mass, rho A L times L^n.
-    G6 : ndarray, shape (...)
-        -dF6/d(z^4): in units of mass, rho A L times L^n.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(z)
     x0 = z**2
@@ -349,29 +306,8 @@ def bending_rates(z):
 def bending_inertias(z):
     """Return what takes F1 to F6 from their static values, over z^4.
 
-    Parameters
-    ----------
     z : ndarray, shape (...)
-        Length over wave length in bending, lambda L: z^4 = omega^2 rho A L^4 / (E I); above 0.
-
-    Returns
-    -------
-    H1 : ndarray, shape (...)
-        (F1(0) - F1) / z^4: in units of mass, as G1.
-    H2 : ndarray, shape (...)
-        (F2(0) - F2) / z^4: in units of mass, as G2.
-    H3 : ndarray, shape (...)
-        (F3(0) - F3) / z^4: in units of mass, as G3.
-    H4 : ndarray, shape (...)
-        (F4(0) - F4) / z^4: in units of mass, as G4.
-    H5 : ndarray, shape (...)
-        (F5(0) - F5) / z^4: in units of mass, as G5.
-    H6 : ndarray, shape (...)
-        (F6(0) - F6) / z^4: in units of mass, as G6.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(z)
     x0 = z**2
@@ -484,50 +420,21 @@ def bending_inertias(z):
 def axial(b):
     """Return the frequency functions of the motion along the beam.
 
-    Parameters
-    ----------
     b : ndarray, shape (...)
-        The same along the beam, beta L: b^2 = omega^2 rho L^2 / E; above 0.
-
-    Returns
-    -------
-    F7 : ndarray, shape (...)
-        Force along the beam over displacement of the same end [E A / L].
-    F8 : ndarray, shape (...)
-        Force along the beam at one end over displacement of the other [E A / L].
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(b)
     sine = xp.sin(b)
     cosine = xp.cos(b)
     x0 = b / sine
-    return (
-        x0 * cosine,
-        -x0,
-    )
+    return x0 * cosine, -x0
 
 
 def axial_rates(b):
     """Return minus the rates of F7 and F8 with the squared frequency b^2.
 
-    Parameters
-    ----------
     b : ndarray, shape (...)
-        The same along the beam, beta L: b^2 = omega^2 rho L^2 / E; above 0.
-
-    Returns
-    -------
-    G7 : ndarray, shape (...)
-        -dF7/d(b^2): in units of the mass rho A L.
-    G8 : ndarray, shape (...)
-        -dF8/d(b^2): in units of the mass rho A L.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(b)
     x0 = b**2
@@ -541,7 +448,7 @@ def axial_rates(b):
     x5 = x0 * x2
     return (
         (
-            xp.where(x4, x3 * (x1 - xp.sin(2 * b) / 4), x5 * (square * (square * (square * (square
+            xp.where(x4, x3 * (x1 - cosine * sine / 2), x5 * (square * (square * (square * (square
             * (square * (square * (square * (square * (square * (8.11214080967848e-17 * square -
             1.0261858124243278e-14) + 1.0774951030455441e-12) - 9.212583131039402e-11) +
             6.264556529106794e-09) - 3.2888921777810664e-07) + 1.282667949334616e-05) -
@@ -561,21 +468,8 @@ def axial_rates(b):
 def axial_inertias(b):
     """Return what takes F7 and F8 from their static values, over b^2.
 
-    Parameters
-    ----------
     b : ndarray, shape (...)
-        The same along the beam, beta L: b^2 = omega^2 rho L^2 / E; above 0.
-
-    Returns
-    -------
-    H7 : ndarray, shape (...)
-        (F7(0) - F7) / b^2: in units of the mass rho A L.
-    H8 : ndarray, shape (...)
-        (F8(0) - F8) / b^2: in units of the mass rho A L.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(b)
     square = b**2
@@ -605,19 +499,8 @@ def axial_inertias(b):
 def bending_poles(z):
     """Return how many bending frequencies of the beam with held ends lie below z.
 
-    Parameters
-    ----------
     z : ndarray, shape (...)
-        Length over wave length in bending, lambda L: z^4 = omega^2 rho A L^4 / (E I); above 0.
-
-    Returns
-    -------
-    bending_count : ndarray, shape (...)
-        Whole number, as a float.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...).
     """
     xp = _namespace(z)
     part = z / 2
@@ -648,19 +531,8 @@ def bending_poles(z):
 def axial_poles(b):
     """Return how many axial frequencies of the beam with held ends lie below b.
 
-    Parameters
-    ----------
     b : ndarray, shape (...)
-        The same along the beam, beta L: b^2 = omega^2 rho L^2 / E; above 0.
-
-    Returns
-    -------
-    axial_count : ndarray, shape (...)
-        Whole number, as a float.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    Returns ndarray, shape (...).
     """
     xp = _namespace(b)
     nearest = xp.floor(0.3183098861837907 * b + 1 / 2)
@@ -672,35 +544,8 @@ def axial_poles(b):
 def bending_shapes(z, xi):
     """Return the deflection between the ends for unit displacements of the right end.
 
-    Parameters
-    ----------
-    z : ndarray, shape (...)
-        Length over wave length in bending, lambda L: z^4 = omega^2 rho A L^4 / (E I); above 0.
-    xi : ndarray, shape (...)
-        Place along the beam from its left end, in lengths: from 0 to 1.
-
-    Returns
-    -------
-    deflection_value : ndarray, shape (...)
-        Deflection for a unit deflection of the right end.
-    deflection_slope : ndarray, shape (...)
-        Deflection for a unit deflection of the right end, its slope along xi.
-    deflection_curvature : ndarray, shape (...)
-        Deflection for a unit deflection of the right end, its curvature along xi.
-    deflection_third : ndarray, shape (...)
-        Deflection for a unit deflection of the right end, its third along xi.
-    rotation_value : ndarray, shape (...)
-        Deflection for a unit slope by xi at the right end.
-    rotation_slope : ndarray, shape (...)
-        Deflection for a unit slope by xi at the right end, its slope along xi.
-    rotation_curvature : ndarray, shape (...)
-        Deflection for a unit slope by xi at the right end, its curvature along xi.
-    rotation_third : ndarray, shape (...)
-        Deflection for a unit slope by xi at the right end, its third along xi.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    z, xi : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(z)
     x0 = z**2
@@ -917,28 +762,10 @@ def bending_shapes(z, xi):
 def axial_shapes(b, xi):
     """Return the displacement along the beam for a unit one of the right end.
 
-    Parameters
-    ----------
-    b : ndarray, shape (...)
-        The same along the beam, beta L: b^2 = omega^2 rho L^2 / E; above 0.
-    xi : ndarray, shape (...)
-        Place along the beam from its left end, in lengths: from 0 to 1.
-
-    Returns
-    -------
-    stretch_value : ndarray, shape (...)
-        Displacement for a unit one of the right end.
-    stretch_slope : ndarray, shape (...)
-        Displacement for a unit one of the right end, its slope along xi.
-
-    Notes
-    -----
-    Aannaque (5.1)-(5.19); Aannaque (B.1)-(B.17).
+    b, xi : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(b)
     x0 = 1 / xp.sin(b)
     x1 = xi * b
-    return (
-        x0 * xp.sin(x1),
-        x0 * b * xp.cos(x1),
-    )
+    return x0 * xp.sin(x1), x0 * b * xp.cos(x1)

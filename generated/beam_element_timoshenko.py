@@ -17,131 +17,118 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 216 operations
-Content hash edd7b05da00647a96bd67064b613e07a; derived with SymPy 1.14.0.
+Content hash f96a6ab94b00dbe6043fa55bfad12c21; derived with SymPy 1.14.0.
 """
 
-import numpy as np
-
-__all__ = [
-    "element",
-]
-
+__all__ = ["element"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_element",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "edd7b05da00647a96bd67064b613e07a"
-ARRAYS = (
-    {'element': {'mass': ((6, 6), ((0, 0, 0), (0, 3, 1), (1, 1, 2), (1, 2, 3), (1, 4, 4), (1, 5,
-    5), (2, 1, 3), (2, 2, 6), (2, 4, 7), (2, 5, 8), (3, 0, 1), (3, 3, 0), (4, 1, 4), (4, 2, 7), (4,
-    4, 2), (4, 5, 9), (5, 1, 5), (5, 2, 8), (5, 4, 9), (5, 5, 6),)), 'coupling': ((6, 6), ((0, 1,
-    10), (0, 2, 11), (0, 4, 12), (0, 5, 13), (1, 0, 14), (1, 3, 15), (2, 0, 16), (2, 3, 13), (3, 1,
-    12), (3, 2, 17), (3, 4, 10), (3, 5, 16), (4, 0, 15), (4, 3, 14), (5, 0, 17), (5, 3, 11),)),
-    'centripetal': ((6, 6), ((0, 0, 0), (0, 3, 1), (1, 1, 18), (1, 2, 19), (1, 4, 20), (1, 5, 21),
-    (2, 1, 19), (2, 2, 22), (2, 4, 23), (2, 5, 24), (3, 0, 1), (3, 3, 0), (4, 1, 20), (4, 2, 23),
-    (4, 4, 18), (4, 5, 25), (5, 1, 21), (5, 2, 24), (5, 4, 25), (5, 5, 22),)), 'stiffness': ((6,
-    6), ((0, 0, 26), (0, 3, 27), (1, 1, 28), (1, 2, 29), (1, 4, 30), (1, 5, 29), (2, 1, 29), (2, 2,
-    31), (2, 4, 32), (2, 5, 33), (3, 0, 27), (3, 3, 26), (4, 1, 30), (4, 2, 32), (4, 4, 28), (4, 5,
-    32), (5, 1, 29), (5, 2, 33), (5, 4, 32), (5, 5, 31),)), 'geometric_0': ((6, 6), ((1, 1, 34),
-    (1, 2, 35), (1, 4, 36), (1, 5, 35), (2, 1, 35), (2, 2, 37), (2, 4, 38), (2, 5, 39), (4, 1, 36),
-    (4, 2, 38), (4, 4, 34), (4, 5, 38), (5, 1, 35), (5, 2, 39), (5, 4, 38), (5, 5, 37),)),
-    'geometric_1': ((6, 6), ((1, 1, 40), (1, 2, 41), (1, 4, 42), (1, 5, 43), (2, 1, 41), (2, 2,
-    44), (2, 4, 45), (2, 5, 46), (4, 1, 42), (4, 2, 45), (4, 4, 40), (4, 5, 47), (5, 1, 43), (5, 2,
-    46), (5, 4, 47), (5, 5, 48),)), 'geometric_2': ((6, 6), ((1, 1, 49), (1, 2, 50), (1, 4, 51),
-    (1, 5, 52), (2, 1, 50), (2, 2, 53), (2, 4, 54), (2, 5, 55), (4, 1, 51), (4, 2, 54), (4, 4, 49),
-    (4, 5, 56), (5, 1, 52), (5, 2, 55), (5, 4, 56), (5, 5, 57),)), 'load': ((6, 4), ((0, 0, 58),
-    (0, 1, 59), (1, 2, 60), (1, 3, 61), (2, 2, 62), (2, 3, 63), (3, 0, 59), (3, 1, 58), (4, 2, 61),
-    (4, 3, 60), (5, 2, 64), (5, 3, 65),))}}
-)
+CONTENT = "f96a6ab94b00dbe6043fa55bfad12c21"
 
-# Parameters: name, unit, meaning.
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "mass_per_length": ("kg/m", "rho A"),
+    "axial_stiffness": ("N", "EA"),
+    "bending_stiffness": ("N m^2", "EI"),
+    "shear_stiffness": ("N", "k G A"),
+    "rotary_inertia": ("kg m", "rho I per length"),
+    "length": ("m", "Length of the element"),
+}
 PARAMETERS = (
-    ("mass_per_length", "kg/m", "rho A"),
-    ("axial_stiffness", "N", "EA"),
-    ("bending_stiffness", "N m^2", "EI"),
-    ("shear_stiffness", "N", "k G A"),
-    ("rotary_inertia", "kg m", "rho I per length"),
+    "mass_per_length", "axial_stiffness", "bending_stiffness", "shear_stiffness", "rotary_inertia",
 )
 
 # Names of what each function returns, in order.
 RETURNS = {
     "element": (
-        "mass_1_1",
-        "mass_1_4",
-        "mass_2_2",
-        "mass_2_3",
-        "mass_2_5",
-        "mass_2_6",
-        "mass_3_3",
-        "mass_3_5",
-        "mass_3_6",
-        "mass_5_6",
-        "coupling_1_2",
-        "coupling_1_3",
-        "coupling_1_5",
-        "coupling_1_6",
-        "coupling_2_1",
-        "coupling_2_4",
-        "coupling_3_1",
-        "coupling_4_3",
-        "centripetal_2_2",
-        "centripetal_2_3",
-        "centripetal_2_5",
-        "centripetal_2_6",
-        "centripetal_3_3",
-        "centripetal_3_5",
-        "centripetal_3_6",
-        "centripetal_5_6",
-        "stiffness_1_1",
-        "stiffness_1_4",
-        "stiffness_2_2",
-        "stiffness_2_3",
-        "stiffness_2_5",
-        "stiffness_3_3",
-        "stiffness_3_5",
-        "stiffness_3_6",
-        "geometric_0_2_2",
-        "geometric_0_2_3",
-        "geometric_0_2_5",
-        "geometric_0_3_3",
-        "geometric_0_3_5",
-        "geometric_0_3_6",
-        "geometric_1_2_2",
-        "geometric_1_2_3",
-        "geometric_1_2_5",
-        "geometric_1_2_6",
-        "geometric_1_3_3",
-        "geometric_1_3_5",
-        "geometric_1_3_6",
-        "geometric_1_5_6",
-        "geometric_1_6_6",
-        "geometric_2_2_2",
-        "geometric_2_2_3",
-        "geometric_2_2_5",
-        "geometric_2_2_6",
-        "geometric_2_3_3",
-        "geometric_2_3_5",
-        "geometric_2_3_6",
-        "geometric_2_5_6",
-        "geometric_2_6_6",
-        "load_1_1",
-        "load_1_2",
-        "load_2_3",
-        "load_2_4",
-        "load_3_3",
-        "load_3_4",
-        "load_6_3",
-        "load_6_4",
+        "mass_1_1", "mass_1_4", "mass_2_2", "mass_2_3", "mass_2_5", "mass_2_6", "mass_3_3",
+        "mass_3_5", "mass_3_6", "mass_5_6", "coupling_1_2", "coupling_1_3", "coupling_1_5",
+        "coupling_1_6", "coupling_2_1", "coupling_2_4", "coupling_3_1", "coupling_4_3",
+        "centripetal_2_2", "centripetal_2_3", "centripetal_2_5", "centripetal_2_6",
+        "centripetal_3_3", "centripetal_3_5", "centripetal_3_6", "centripetal_5_6",
+        "stiffness_1_1", "stiffness_1_4", "stiffness_2_2", "stiffness_2_3", "stiffness_2_5",
+        "stiffness_3_3", "stiffness_3_5", "stiffness_3_6", "geometric_0_2_2", "geometric_0_2_3",
+        "geometric_0_2_5", "geometric_0_3_3", "geometric_0_3_5", "geometric_0_3_6",
+        "geometric_1_2_2", "geometric_1_2_3", "geometric_1_2_5", "geometric_1_2_6",
+        "geometric_1_3_3", "geometric_1_3_5", "geometric_1_3_6", "geometric_1_5_6",
+        "geometric_1_6_6", "geometric_2_2_2", "geometric_2_2_3", "geometric_2_2_5",
+        "geometric_2_2_6", "geometric_2_3_3", "geometric_2_3_5", "geometric_2_3_6",
+        "geometric_2_5_6", "geometric_2_6_6", "load_1_1", "load_1_2", "load_2_3", "load_2_4",
+        "load_3_3", "load_3_4", "load_6_3", "load_6_4",
     ),
 }
 
-
-def _namespace(array):
-    """Return the array namespace of an argument, NumPy where it has none."""
-    if hasattr(array, "__array_namespace__"):
-        return array.__array_namespace__()
-    return np
+# Of each function its arrays: shape, and row, column and place among what it returns.
+ARRAYS = {
+    "element": {
+        "mass": (
+            (6, 6),
+            (
+                (0, 0, 0), (0, 3, 1), (1, 1, 2), (1, 2, 3), (1, 4, 4), (1, 5, 5), (2, 1, 3),
+                (2, 2, 6), (2, 4, 7), (2, 5, 8), (3, 0, 1), (3, 3, 0), (4, 1, 4), (4, 2, 7),
+                (4, 4, 2), (4, 5, 9), (5, 1, 5), (5, 2, 8), (5, 4, 9), (5, 5, 6),
+            ),
+        ),
+        "coupling": (
+            (6, 6),
+            (
+                (0, 1, 10), (0, 2, 11), (0, 4, 12), (0, 5, 13), (1, 0, 14), (1, 3, 15), (2, 0, 16),
+                (2, 3, 13), (3, 1, 12), (3, 2, 17), (3, 4, 10), (3, 5, 16), (4, 0, 15), (4, 3, 14),
+                (5, 0, 17), (5, 3, 11),
+            ),
+        ),
+        "centripetal": (
+            (6, 6),
+            (
+                (0, 0, 0), (0, 3, 1), (1, 1, 18), (1, 2, 19), (1, 4, 20), (1, 5, 21), (2, 1, 19),
+                (2, 2, 22), (2, 4, 23), (2, 5, 24), (3, 0, 1), (3, 3, 0), (4, 1, 20), (4, 2, 23),
+                (4, 4, 18), (4, 5, 25), (5, 1, 21), (5, 2, 24), (5, 4, 25), (5, 5, 22),
+            ),
+        ),
+        "stiffness": (
+            (6, 6),
+            (
+                (0, 0, 26), (0, 3, 27), (1, 1, 28), (1, 2, 29), (1, 4, 30), (1, 5, 29), (2, 1, 29),
+                (2, 2, 31), (2, 4, 32), (2, 5, 33), (3, 0, 27), (3, 3, 26), (4, 1, 30), (4, 2, 32),
+                (4, 4, 28), (4, 5, 32), (5, 1, 29), (5, 2, 33), (5, 4, 32), (5, 5, 31),
+            ),
+        ),
+        "geometric_0": (
+            (6, 6),
+            (
+                (1, 1, 34), (1, 2, 35), (1, 4, 36), (1, 5, 35), (2, 1, 35), (2, 2, 37), (2, 4, 38),
+                (2, 5, 39), (4, 1, 36), (4, 2, 38), (4, 4, 34), (4, 5, 38), (5, 1, 35), (5, 2, 39),
+                (5, 4, 38), (5, 5, 37),
+            ),
+        ),
+        "geometric_1": (
+            (6, 6),
+            (
+                (1, 1, 40), (1, 2, 41), (1, 4, 42), (1, 5, 43), (2, 1, 41), (2, 2, 44), (2, 4, 45),
+                (2, 5, 46), (4, 1, 42), (4, 2, 45), (4, 4, 40), (4, 5, 47), (5, 1, 43), (5, 2, 46),
+                (5, 4, 47), (5, 5, 48),
+            ),
+        ),
+        "geometric_2": (
+            (6, 6),
+            (
+                (1, 1, 49), (1, 2, 50), (1, 4, 51), (1, 5, 52), (2, 1, 50), (2, 2, 53), (2, 4, 54),
+                (2, 5, 55), (4, 1, 51), (4, 2, 54), (4, 4, 49), (4, 5, 56), (5, 1, 52), (5, 2, 55),
+                (5, 4, 56), (5, 5, 57),
+            ),
+        ),
+        "load": (
+            (6, 4),
+            (
+                (0, 0, 58), (0, 1, 59), (1, 2, 60), (1, 3, 61), (2, 2, 62), (2, 3, 63), (3, 0, 59),
+                (3, 1, 58), (4, 2, 61), (4, 3, 60), (5, 2, 64), (5, 3, 65),
+            ),
+        ),
+    },
+}
 
 
 def element(
@@ -149,159 +136,8 @@ def element(
 ):
     """Return the arrays of the element.
 
-    Parameters
-    ----------
-    length : float
-        Length of the element [m].
-    mass_per_length : float
-        rho A [kg/m].
-    axial_stiffness : float
-        EA [N].
-    bending_stiffness : float
-        EI [N m^2].
-    shear_stiffness : float
-        k G A [N].
-    rotary_inertia : float
-        rho I per length [kg m].
-
-    Returns
-    -------
-    mass_1_1 : float or ndarray
-        Entry of mass.
-    mass_1_4 : float or ndarray
-        Entry of mass.
-    mass_2_2 : float or ndarray
-        Entry of mass.
-    mass_2_3 : float or ndarray
-        Entry of mass.
-    mass_2_5 : float or ndarray
-        Entry of mass.
-    mass_2_6 : float or ndarray
-        Entry of mass.
-    mass_3_3 : float or ndarray
-        Entry of mass.
-    mass_3_5 : float or ndarray
-        Entry of mass.
-    mass_3_6 : float or ndarray
-        Entry of mass.
-    mass_5_6 : float or ndarray
-        Entry of mass.
-    coupling_1_2 : float or ndarray
-        Entry of coupling.
-    coupling_1_3 : float or ndarray
-        Entry of coupling.
-    coupling_1_5 : float or ndarray
-        Entry of coupling.
-    coupling_1_6 : float or ndarray
-        Entry of coupling.
-    coupling_2_1 : float or ndarray
-        Entry of coupling.
-    coupling_2_4 : float or ndarray
-        Entry of coupling.
-    coupling_3_1 : float or ndarray
-        Entry of coupling.
-    coupling_4_3 : float or ndarray
-        Entry of coupling.
-    centripetal_2_2 : float or ndarray
-        Entry of centripetal.
-    centripetal_2_3 : float or ndarray
-        Entry of centripetal.
-    centripetal_2_5 : float or ndarray
-        Entry of centripetal.
-    centripetal_2_6 : float or ndarray
-        Entry of centripetal.
-    centripetal_3_3 : float or ndarray
-        Entry of centripetal.
-    centripetal_3_5 : float or ndarray
-        Entry of centripetal.
-    centripetal_3_6 : float or ndarray
-        Entry of centripetal.
-    centripetal_5_6 : float or ndarray
-        Entry of centripetal.
-    stiffness_1_1 : float or ndarray
-        Entry of stiffness.
-    stiffness_1_4 : float or ndarray
-        Entry of stiffness.
-    stiffness_2_2 : float or ndarray
-        Entry of stiffness.
-    stiffness_2_3 : float or ndarray
-        Entry of stiffness.
-    stiffness_2_5 : float or ndarray
-        Entry of stiffness.
-    stiffness_3_3 : float or ndarray
-        Entry of stiffness.
-    stiffness_3_5 : float or ndarray
-        Entry of stiffness.
-    stiffness_3_6 : float or ndarray
-        Entry of stiffness.
-    geometric_0_2_2 : float or ndarray
-        Entry of geometric_0.
-    geometric_0_2_3 : float or ndarray
-        Entry of geometric_0.
-    geometric_0_2_5 : float or ndarray
-        Entry of geometric_0.
-    geometric_0_3_3 : float or ndarray
-        Entry of geometric_0.
-    geometric_0_3_5 : float or ndarray
-        Entry of geometric_0.
-    geometric_0_3_6 : float or ndarray
-        Entry of geometric_0.
-    geometric_1_2_2 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_2_3 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_2_5 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_2_6 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_3_3 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_3_5 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_3_6 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_5_6 : float or ndarray
-        Entry of geometric_1.
-    geometric_1_6_6 : float or ndarray
-        Entry of geometric_1.
-    geometric_2_2_2 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_2_3 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_2_5 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_2_6 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_3_3 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_3_5 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_3_6 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_5_6 : float or ndarray
-        Entry of geometric_2.
-    geometric_2_6_6 : float or ndarray
-        Entry of geometric_2.
-    load_1_1 : float or ndarray
-        Entry of load.
-    load_1_2 : float or ndarray
-        Entry of load.
-    load_2_3 : float or ndarray
-        Entry of load.
-    load_2_4 : float or ndarray
-        Entry of load.
-    load_3_3 : float or ndarray
-        Entry of load.
-    load_3_4 : float or ndarray
-        Entry of load.
-    load_6_3 : float or ndarray
-        Entry of load.
-    load_6_4 : float or ndarray
-        Entry of load.
-
-    Notes
-    -----
-    Aannaque (4.11)-(4.24), (4.38), (4.39), (A.3), (A.4), (A.7), (A.8).
+    length, mass_per_length, axial_stiffness, bending_stiffness, shear_stiffness, rotary_inertia : float
+    Returns float or ndarray each.
     """
     x0 = length**2
     x1 = bending_stiffness / x0
@@ -368,70 +204,14 @@ def element(
     x61 = x60 * (98 * shear_ratio + 840 * x10 + 5)
     x62 = x11 * (63 * shear_ratio + 420 * x10 + 1)
     return (
-        x2 * mass_per_length,
-        x3 * mass_per_length,
-        x12 + x9,
-        x19,
-        x21 - x9,
-        -x23,
-        x27 * rotary_inertia * (x24 + x26) + x31,
-        x23,
-        x6 * length * rotary_inertia * (720 * x10 - x32) / 30 - x33,
-        -x19,
-        -x38,
-        -x40,
-        -x42,
-        x44,
-        x38,
-        x42,
-        x40,
-        -x44,
-        x12,
-        x18,
-        x21,
-        -x22,
-        x31,
-        x22,
-        -x33,
-        -x18,
-        x45,
-        -x45,
-        x47,
-        x48,
-        -x47,
-        4 * x49 * (3 * shear_ratio + 1),
-        -x48,
-        -2 * x49 * (6 * shear_ratio - 1),
-        x52,
-        x14,
-        -x52,
-        x27 * (90 * x10 + x26),
-        -x14,
-        -x53 * x54,
-        x55,
-        x56,
-        -x55,
-        -x57,
-        x54 * (18 * shear_ratio + 180 * x10 + 1),
-        -x56,
-        -x20 * x53 / 60,
-        x57,
-        x14 * length * (60 * x10 + x58),
-        x59,
-        x61,
-        -x59,
-        -x62,
-        2 * x20 * (252 * x10 + x28) / 105,
-        -x61,
-        -(56 * shear_ratio + 336 * x10 + 1) * x60 * length,
-        x62,
-        3 * x20 * (56 * x10 + x58) / 35,
-        x2,
-        x3,
-        x37,
-        x41,
-        x39,
-        x43,
-        -x43,
-        -x39,
+        x2 * mass_per_length, x3 * mass_per_length, x12 + x9, x19, x21 - x9, -x23,
+        x27 * rotary_inertia * (x24 + x26) + x31, x23,
+        x6 * length * rotary_inertia * (720 * x10 - x32) / 30 - x33, -x19, -x38, -x40, -x42, x44,
+        x38, x42, x40, -x44, x12, x18, x21, -x22, x31, x22, -x33, -x18, x45, -x45, x47, x48, -x47,
+        4 * x49 * (3 * shear_ratio + 1), -x48, -2 * x49 * (6 * shear_ratio - 1), x52, x14, -x52,
+        x27 * (90 * x10 + x26), -x14, -x53 * x54, x55, x56, -x55, -x57,
+        x54 * (18 * shear_ratio + 180 * x10 + 1), -x56, -x20 * x53 / 60, x57,
+        x14 * length * (60 * x10 + x58), x59, x61, -x59, -x62, 2 * x20 * (252 * x10 + x28) / 105,
+        -x61, -(56 * shear_ratio + 336 * x10 + 1) * x60 * length, x62,
+        3 * x20 * (56 * x10 + x58) / 35, x2, x3, x37, x41, x39, x43, -x43, -x39,
     )

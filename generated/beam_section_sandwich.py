@@ -10,42 +10,37 @@ core_shear_modulus (1 + i core_loss), shears and carries no axial force.
 
 Cost per evaluation:
     sandwich: 58 operations
-Content hash cbaf12c66f2c28d82f6d862521ce2ce3; derived with SymPy 1.14.0.
+Content hash 7229e88a4b26da6a25c1c00cbb7a94a6; derived with SymPy 1.14.0.
 """
 
-import numpy as np
-
-__all__ = [
-    "sandwich",
-]
-
+__all__ = ["sandwich"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sandwich","mechanism":"beam_section","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "cbaf12c66f2c28d82f6d862521ce2ce3"
+CONTENT = "7229e88a4b26da6a25c1c00cbb7a94a6"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "wave_number": ("rad/m", "2 pi over the wave length of the deflection"),
+    "width": ("m", "Extent across the plane of bending"),
+    "base_modulus": ("Pa", "Young's modulus of the first layer"),
+    "base_thickness": ("m", "Thickness of the first layer"),
+    "core_shear_modulus": ("Pa", "Real part of the shear modulus"),
+    "core_loss": ("", "Imaginary part over the real part"),
+    "core_thickness": ("m", "Thickness of the core"),
+    "cover_modulus": ("Pa", "Young's modulus of the third layer"),
+    "cover_thickness": ("m", "Thickness of the third layer"),
+    "bending_stiffness": ("N m^2", "Real part of the bending stiffness"),
+    "loss_factor": ("", "Its imaginary part over its real part"),
+    "slack": ("N m^2", "Bending stiffness where the core does not resist shear"),
+    "bonded": ("N m^2", "Bending stiffness where the core is rigid in shear"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
-RETURNS = {
-    "sandwich": (
-        "bending_stiffness",
-        "loss_factor",
-        "slack",
-        "bonded",
-    ),
-}
-
-
-def _namespace(array):
-    """Return the array namespace of an argument, NumPy where it has none."""
-    if hasattr(array, "__array_namespace__"):
-        return array.__array_namespace__()
-    return np
+RETURNS = {"sandwich": ("bending_stiffness", "loss_factor", "slack", "bonded")}
 
 
 def sandwich(
@@ -54,41 +49,9 @@ def sandwich(
 ):
     """Return the bending stiffness of a sinusoidal deflection, and its loss factor.
 
-    Parameters
-    ----------
     wave_number : ndarray, shape (...)
-        2 pi over the wave length of the deflection [rad/m].
-    width : float or ndarray
-        Extent across the plane of bending [m].
-    base_modulus : float or ndarray
-        Young's modulus of the first layer [Pa].
-    base_thickness : float or ndarray
-        Thickness of the first layer [m].
-    core_shear_modulus : float or ndarray
-        Real part of the shear modulus [Pa].
-    core_loss : float or ndarray
-        Imaginary part over the real part.
-    core_thickness : float or ndarray
-        Thickness of the core [m].
-    cover_modulus : float or ndarray
-        Young's modulus of the third layer [Pa].
-    cover_thickness : float or ndarray
-        Thickness of the third layer [m].
-
-    Returns
-    -------
-    bending_stiffness : ndarray, shape (...)
-        Real part of the bending stiffness [N m^2].
-    loss_factor : ndarray, shape (...)
-        Its imaginary part over its real part.
-    slack : ndarray, shape (...)
-        Bending stiffness where the core does not resist shear [N m^2].
-    bonded : ndarray, shape (...)
-        Bending stiffness where the core is rigid in shear [N m^2].
-
-    Notes
-    -----
-    Aannaque 9.2 (laminated viscoelastic beam).
+    width to cover_thickness : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     x0 = width * (base_modulus * base_thickness**3 + cover_modulus * cover_thickness**3) / 12
     x1 = core_loss**2
@@ -108,9 +71,4 @@ def sandwich(
         cover_thickness**2 * x11 * x7
     )
     del x8, x11, x7
-    return (
-        stored,
-        lost / stored,
-        x0,
-        x0 + x10 * x6 / (4 * x9),
-    )
+    return stored, lost / stored, x0, x0 + x10 * x6 / (4 * x9)

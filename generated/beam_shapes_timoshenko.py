@@ -10,138 +10,58 @@ curvatures; node 3 is the middle.
 
 Cost per evaluation:
     shapes: 86 operations
-Content hash 8d6428531a173dbd17f91bb8ccc41cb2; derived with SymPy 1.14.0.
+Content hash 35690db0a2decaf697e9606ef80f74f7; derived with SymPy 1.14.0.
 """
 
-import numpy as np
-
-__all__ = [
-    "shapes",
-]
-
+__all__ = ["shapes"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_shapes","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "8d6428531a173dbd17f91bb8ccc41cb2"
-ARRAYS = (
-    {'shapes': {'u': ((1, 6), ((0, 0, 0), (0, 3, 1),)), 'strain': ((1, 6), ((0, 0, 2), (0, 3,
-    3),)), 'v': ((1, 6), ((0, 1, 4), (0, 2, 5), (0, 4, 6), (0, 5, 7),)), 'slope': ((1, 6), ((0, 1,
-    8), (0, 2, 9), (0, 4, 10), (0, 5, 11),)), 'curvature': ((1, 6), ((0, 1, 12), (0, 2, 13), (0, 4,
-    14), (0, 5, 15),)), 'third': ((1, 6), ((0, 1, 16), (0, 2, 17), (0, 4, 18), (0, 5, 17),)),
-    'rotation': ((1, 6), ((0, 1, 19), (0, 2, 20), (0, 4, 21), (0, 5, 22),)), 'rotation_slope': ((1,
-    6), ((0, 1, 12), (0, 2, 13), (0, 4, 14), (0, 5, 15),)), 'rotation_second': ((1, 6), ((0, 1,
-    16), (0, 2, 17), (0, 4, 18), (0, 5, 17),))}}
-)
+CONTENT = "35690db0a2decaf697e9606ef80f74f7"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "xi": ("", "Place in the element over its length, 0 to 1"),
+    "length": ("m", "Length of the element"),
+    "bending_stiffness": ("N m^2", "EI"),
+    "shear_stiffness": ("N", "k G A"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
     "shapes": (
-        "u_1_1",
-        "u_1_4",
-        "strain_1_1",
-        "strain_1_4",
-        "v_1_2",
-        "v_1_3",
-        "v_1_5",
-        "v_1_6",
-        "slope_1_2",
-        "slope_1_3",
-        "slope_1_5",
-        "slope_1_6",
-        "curvature_1_2",
-        "curvature_1_3",
-        "curvature_1_5",
-        "curvature_1_6",
-        "third_1_2",
-        "third_1_3",
-        "third_1_5",
-        "rotation_1_2",
-        "rotation_1_3",
-        "rotation_1_5",
-        "rotation_1_6",
+        "u_1_1", "u_1_4", "strain_1_1", "strain_1_4", "v_1_2", "v_1_3", "v_1_5", "v_1_6",
+        "slope_1_2", "slope_1_3", "slope_1_5", "slope_1_6", "curvature_1_2", "curvature_1_3",
+        "curvature_1_5", "curvature_1_6", "third_1_2", "third_1_3", "third_1_5", "rotation_1_2",
+        "rotation_1_3", "rotation_1_5", "rotation_1_6",
     ),
 }
 
-
-def _namespace(array):
-    """Return the array namespace of an argument, NumPy where it has none."""
-    if hasattr(array, "__array_namespace__"):
-        return array.__array_namespace__()
-    return np
+# Of each function its arrays: shape, and row, column and place among what it returns.
+ARRAYS = {
+    "shapes": {
+        "u": ((1, 6), ((0, 0, 0), (0, 3, 1))),
+        "strain": ((1, 6), ((0, 0, 2), (0, 3, 3))),
+        "v": ((1, 6), ((0, 1, 4), (0, 2, 5), (0, 4, 6), (0, 5, 7))),
+        "slope": ((1, 6), ((0, 1, 8), (0, 2, 9), (0, 4, 10), (0, 5, 11))),
+        "curvature": ((1, 6), ((0, 1, 12), (0, 2, 13), (0, 4, 14), (0, 5, 15))),
+        "third": ((1, 6), ((0, 1, 16), (0, 2, 17), (0, 4, 18), (0, 5, 17))),
+        "rotation": ((1, 6), ((0, 1, 19), (0, 2, 20), (0, 4, 21), (0, 5, 22))),
+        "rotation_slope": ((1, 6), ((0, 1, 12), (0, 2, 13), (0, 4, 14), (0, 5, 15))),
+        "rotation_second": ((1, 6), ((0, 1, 16), (0, 2, 17), (0, 4, 18), (0, 5, 17))),
+    },
+}
 
 
 def shapes(xi, length, bending_stiffness, shear_stiffness):
     """Return the shape functions and their derivatives by x.
 
-    Parameters
-    ----------
     xi : ndarray, shape (...)
-        Place in the element over its length, 0 to 1.
-    length : float
-        Length of the element [m].
-    bending_stiffness : float
-        EI [N m^2].
-    shear_stiffness : float
-        k G A [N].
-
-    Returns
-    -------
-    u_1_1 : float or ndarray
-        Entry of u.
-    u_1_4 : float or ndarray
-        Entry of u.
-    strain_1_1 : float or ndarray
-        Entry of strain.
-    strain_1_4 : float or ndarray
-        Entry of strain.
-    v_1_2 : float or ndarray
-        Entry of v.
-    v_1_3 : float or ndarray
-        Entry of v.
-    v_1_5 : float or ndarray
-        Entry of v.
-    v_1_6 : float or ndarray
-        Entry of v.
-    slope_1_2 : float or ndarray
-        Entry of slope.
-    slope_1_3 : float or ndarray
-        Entry of slope.
-    slope_1_5 : float or ndarray
-        Entry of slope.
-    slope_1_6 : float or ndarray
-        Entry of slope.
-    curvature_1_2 : float or ndarray
-        Entry of curvature.
-    curvature_1_3 : float or ndarray
-        Entry of curvature.
-    curvature_1_5 : float or ndarray
-        Entry of curvature.
-    curvature_1_6 : float or ndarray
-        Entry of curvature.
-    third_1_2 : float or ndarray
-        Entry of third.
-    third_1_3 : float or ndarray
-        Entry of third.
-    third_1_5 : float or ndarray
-        Entry of third.
-    rotation_1_2 : float or ndarray
-        Entry of rotation.
-    rotation_1_3 : float or ndarray
-        Entry of rotation.
-    rotation_1_5 : float or ndarray
-        Entry of rotation.
-    rotation_1_6 : float or ndarray
-        Entry of rotation.
-
-    Notes
-    -----
-    Aannaque (4.1)-(4.6), (A.1), (A.2), (A.5), (A.6).
+    length, bending_stiffness, shear_stiffness : float
+    Returns float or ndarray each.
     """
     x0 = 1 / length**2
     shear_ratio = x0 * bending_stiffness / shear_stiffness
@@ -171,27 +91,8 @@ def shapes(xi, length, bending_stiffness, shear_stiffness):
     x23 = 6 * x3 * x11
     del centred, x1, x11
     return (
-        -x2,
-        xi,
-        -x3,
-        x3,
-        x9 * (x4 - x5 + x6 / 2 - 1),
-        x12 * (xi - x10 - 1),
-        (x4 - x6 / 2 + x7) * x13,
-        x12 * (x10 + xi),
-        x15,
-        x8 * (3 * x6 / 4 - x16 - 1 / 4),
-        -x15,
-        x8 * (x16 + 3 * x6 / 4 - 1 / 4),
-        x18,
-        -x20 * (x10 + x19 + 2),
-        -x18,
-        x20 * (x10 + x21 - 1),
-        x22,
-        x17,
-        -x22,
-        x23,
-        x9 * (-x7 - x19),
-        -x23,
-        x13 * (x21 + x5 - 2),
+        -x2, xi, -x3, x3, x9 * (x4 - x5 + x6 / 2 - 1), x12 * (xi - x10 - 1),
+        (x4 - x6 / 2 + x7) * x13, x12 * (x10 + xi), x15, x8 * (3 * x6 / 4 - x16 - 1 / 4), -x15,
+        x8 * (x16 + 3 * x6 / 4 - 1 / 4), x18, -x20 * (x10 + x19 + 2), -x18, x20 * (x10 + x21 - 1),
+        x22, x17, -x22, x23, x9 * (-x7 - x19), -x23, x13 * (x21 + x5 - 2),
     )

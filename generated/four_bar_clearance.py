@@ -13,36 +13,41 @@ to the other assembly.
 
 Cost per evaluation:
     extremes: 125 operations
-Content hash 6a0c4bfdfb0d8c8cd858af4e0bac08b8; derived with SymPy 1.14.0.
+Content hash 2a432948082a0f65c0263624d7af1a9a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
-__all__ = [
-    "extremes",
-]
-
+__all__ = ["extremes"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"clearance","mechanism":"four_bar","mode'
     's":null,"outputs":[]}'
 )
-CONTENT = "6a0c4bfdfb0d8c8cd858af4e0bac08b8"
+CONTENT = "2a432948082a0f65c0263624d7af1a9a"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
-
-# Names of what each function returns, in order.
-RETURNS = {
-    "extremes": (
-        "angle",
-        "opened",
-        "closed",
-        "small",
-        "free",
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle"),
+    "frame": ("m", "Length of the fixed link AD"),
+    "crank": ("m", "Length of the crank AB"),
+    "turning": ("m", "Length of the link whose range is asked for"),
+    "opposite": ("m", "Length of the link whose ends have play"),
+    "play": ("m", "Sum of the radial clearances: half of the diametral ones"),
+    "angle": ("rad", "Angle between the diagonal BD and the turning link, without play"),
+    "opened": ("rad", "By how much play can open this angle"),
+    "closed": ("rad", "By how much play can close this angle"),
+    "small": (
+        "rad", "opened and closed together for a small clearance (Smith 3.3); infinite in line",
+    ),
+    "free": (
+        "m^4", "Product of the outer triangles' areas; 0 where play brings the link into line",
     ),
 }
+PARAMETERS = ()
+
+# Names of what each function returns, in order.
+RETURNS = {"extremes": ("angle", "opened", "closed", "small", "free")}
 
 
 def _namespace(array):
@@ -55,37 +60,9 @@ def _namespace(array):
 def extremes(theta2, frame, crank, turning, opposite, play):
     """Return the angle of a link from the diagonal BD, and how far play turns it.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    turning : float
-        Length of the link whose range is asked for [m].
-    opposite : float
-        Length of the link whose ends have play [m].
-    play : float
-        Sum of the radial clearances: half of the diametral ones [m].
-
-    Returns
-    -------
-    angle : ndarray, shape (...)
-        Angle between the diagonal BD and the turning link, without play [rad].
-    opened : ndarray, shape (...)
-        By how much play can open this angle [rad].
-    closed : ndarray, shape (...)
-        By how much play can close this angle [rad].
-    small : ndarray, shape (...)
-        opened and closed together for a small clearance (Smith 3.3); infinite in line [rad].
-    free : ndarray, shape (...)
-        Product of the outer triangles' areas; 0 where play brings the link into line [m^4].
-
-    Notes
-    -----
-    Smith (3.1)-(3.3).
+    frame, crank, turning, opposite, play : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -135,6 +112,5 @@ def extremes(theta2, frame, crank, turning, opposite, play):
             area_nominal + area_shorter), x16 - xp.atan2(area_shorter, diagonal2 - (folded - play)
             * (straight - play)))
         ),
-        4 * play * opposite / area_nominal,
-        area_longer * area_shorter / 16,
+        4 * play * opposite / area_nominal, area_longer * area_shorter / 16,
     )

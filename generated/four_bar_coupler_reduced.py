@@ -18,87 +18,72 @@ Cost per evaluation:
     acceleration_forcing_functions: 93 operations
     modal_matrices: 8 operations
     modal_vectors: 6 operations
-Content hash 3581f817d7223d2211e2332c2fffec24; derived with SymPy 1.14.0.
+Content hash 014f419e661093aaecbfff7fe3ae12a2; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "acceleration_forcing_functions",
-    "acceleration_functions",
-    "angle_functions",
-    "forcing_functions",
-    "modal_matrices",
-    "modal_vectors",
-    "scales",
+    "scales", "angle_functions", "acceleration_functions", "forcing_functions",
+    "acceleration_forcing_functions", "modal_matrices", "modal_vectors",
 ]
-
 FAMILY = "linear_periodic"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":["coupler"],"formulation":"reduced","mechanism":"four_bar'
     '","modes":null,"outputs":[]}'
 )
-CONTENT = "3581f817d7223d2211e2332c2fffec24"
-EXTERNAL = ()
+CONTENT = "014f419e661093aaecbfff7fe3ae12a2"
 
-# Parameters: name, unit, meaning.
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "bending_stiffness": ("N m^2", "EI of the coupler"),
+    "mass_per_length": ("kg/m", "mu of the coupler"),
+    "damping": ("N s/m^2", "Viscous damping of the coupler per length"),
+    "coupler_inertia": ("kg m^2", "I3 of the coupler about the crank pin B"),
+    "coupler_first_moment": ("kg m", "m3 r3 of the coupler about B"),
+    "follower_inertia": ("kg m^2", "I4 of the follower about D"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "theta2": ("rad", "Crank angle"),
+    "frame": ("m", "Length of the fixed link AD"),
+    "crank": ("m", "Length of the crank AB"),
+    "follower": ("m", "Length of the follower DC"),
+    "assembly": ("", "+1 for the open, -1 for the crossed assembly"),
+    "m": ("", "Mode numbers of the rows, from 1"),
+    "n": ("", "Mode numbers of the columns, from 1"),
+}
 PARAMETERS = (
-    ("bending_stiffness", "N m^2", "EI of the coupler"),
-    ("mass_per_length", "kg/m", "mu of the coupler"),
-    ("damping", "N s/m^2", "Viscous damping of the coupler per length"),
-    ("coupler_inertia", "kg m^2", "I3 of the coupler about the crank pin B"),
-    ("coupler_first_moment", "kg m", "m3 r3 of the coupler about B"),
-    ("follower_inertia", "kg m^2", "I4 of the follower about D"),
+    "bending_stiffness", "mass_per_length", "damping", "coupler_inertia", "coupler_first_moment",
+    "follower_inertia",
 )
 
 # Names of what each function returns, in order.
 RETURNS = {
     "scales": (
-        "follower_inertia_over_mass_per_length",
-        "damping_over_mass_per_length",
+        "follower_inertia_over_mass_per_length", "damping_over_mass_per_length",
         "bending_stiffness_over_mass_per_length",
     ),
-    "angle_functions": (
-        "angle_end_load_follower_inertia_speed",
-    ),
-    "acceleration_functions": (
-        "acceleration_end_load_follower_inertia_acceleration",
-    ),
-    "forcing_functions": (
-        "forcing_alpha3",
-        "forcing_sin23",
-    ),
+    "angle_functions": ("angle_end_load_follower_inertia_speed",),
+    "acceleration_functions": ("acceleration_end_load_follower_inertia_acceleration",),
+    "forcing_functions": ("forcing_alpha3", "forcing_sin23"),
     "acceleration_forcing_functions": (
-        "acceleration_forcing_omega3",
-        "acceleration_forcing_cos23",
+        "acceleration_forcing_omega3", "acceleration_forcing_cos23",
     ),
-    "modal_matrices": (
-        "modal_1",
-        "modal_2",
-        "modal_3",
-    ),
-    "modal_vectors": (
-        "modal_4",
-        "modal_5",
-    ),
+    "modal_matrices": ("modal_1", "modal_2", "modal_3"),
+    "modal_vectors": ("modal_4", "modal_5"),
 }
+EXTERNAL = ()
 
-# Separated terms: array, extra power of the crank speed, scale, function of angle, modal array.
+# Separated terms: array, extra power of the crank speed, scale, function of angle, and modal array
+# or integral over the shapes.
 TERMS = (
     ("M", 0, None, None, "modal_1"),
     (
-        "B",
-        0,
-        "follower_inertia_over_mass_per_length",
-        "angle_end_load_follower_inertia_speed",
+        "B", 0, "follower_inertia_over_mass_per_length", "angle_end_load_follower_inertia_speed",
         "modal_2",
     ),
     (
-        "S",
-        0,
-        "follower_inertia_over_mass_per_length",
-        "acceleration_end_load_follower_inertia_acceleration",
-        "modal_2",
+        "S", 0, "follower_inertia_over_mass_per_length",
+        "acceleration_end_load_follower_inertia_acceleration", "modal_2",
     ),
     ("C", 0, "damping_over_mass_per_length", None, "modal_1"),
     ("K", 0, "bending_stiffness_over_mass_per_length", None, "modal_3"),
@@ -122,66 +107,19 @@ def scales(
 ):
     """Return the factors made of parameters.
 
-    Parameters
-    ----------
-    bending_stiffness : float
-        EI of the coupler [N m^2].
-    mass_per_length : float
-        mu of the coupler [kg/m].
-    damping : float
-        Viscous damping of the coupler per length [N s/m^2].
-    coupler_inertia : float
-        I3 of the coupler about the crank pin B [kg m^2].
-    coupler_first_moment : float
-        m3 r3 of the coupler about B [kg m].
-    follower_inertia : float
-        I4 of the follower about D [kg m^2].
-    coupler : float
-        Length of the coupler BC [m].
-
-    Returns
-    -------
-    follower_inertia_over_mass_per_length : float or ndarray
-        Factor follower_inertia/mass_per_length.
-    damping_over_mass_per_length : float or ndarray
-        Factor damping/mass_per_length.
-    bending_stiffness_over_mass_per_length : float or ndarray
-        Factor bending_stiffness/(coupler**4*mass_per_length).
+    bending_stiffness to coupler : float
+    Returns float or ndarray each.
     """
     x0 = 1 / mass_per_length
-    return (
-        x0 * follower_inertia,
-        x0 * damping,
-        x0 * bending_stiffness / coupler**4,
-    )
+    return x0 * follower_inertia, x0 * damping, x0 * bending_stiffness / coupler**4
 
 
 def angle_functions(theta2, frame, crank, coupler, follower, assembly):
     """Return the functions of angle in the matrices.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-
-    Returns
-    -------
-    angle_end_load_follower_inertia_speed : ndarray, shape (...)
-        Function of angle -end_load_follower_inertia_speed/coupler**2.
-
-    Notes
-    -----
-    Smith (6.14); Smith (6.18).
+    frame, crank, coupler, follower, assembly : float
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -256,29 +194,9 @@ def angle_functions(theta2, frame, crank, coupler, follower, assembly):
 def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
     """Return the functions of angle that act while the crank accelerates.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-
-    Returns
-    -------
-    acceleration_end_load_follower_inertia_acceleration : ndarray, shape (...)
-        Function of angle -end_load_follower_inertia_acceleration/coupler**2.
-
-    Notes
-    -----
-    Smith (6.14); Smith (6.18).
+    frame, crank, coupler, follower, assembly : float
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -325,31 +243,9 @@ def acceleration_functions(theta2, frame, crank, coupler, follower, assembly):
 def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     """Return the functions of angle in the forcing.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-
-    Returns
-    -------
-    forcing_alpha3 : ndarray, shape (...)
-        Function of angle 2*alpha3.
-    forcing_sin23 : ndarray, shape (...)
-        Function of angle -2*crank*sin23/coupler.
-
-    Notes
-    -----
-    Smith (6.14); Smith (6.18).
+    frame, crank, coupler, follower, assembly : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -416,40 +312,15 @@ def forcing_functions(theta2, frame, crank, coupler, follower, assembly):
         slip4))
     )
     del x3, cos24, cos4, cosine_transmission, excess3, omega4, slip4, spread, x14, x15
-    return (
-        2 * alpha3,
-        -2 * x7 * crank * sin23,
-    )
+    return 2 * alpha3, -2 * x7 * crank * sin23
 
 
 def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, assembly):
     """Return the functions of angle in the forcing while the crank accelerates.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-
-    Returns
-    -------
-    acceleration_forcing_omega3 : ndarray, shape (...)
-        Function of angle 2*omega3.
-    acceleration_forcing_cos23 : ndarray, shape (...)
-        Function of angle 2*cos23*crank/coupler.
-
-    Notes
-    -----
-    Smith (6.14); Smith (6.18).
+    frame, crank, coupler, follower, assembly : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -499,36 +370,20 @@ def acceleration_forcing_functions(theta2, frame, crank, coupler, follower, asse
     excess3 = x6 * (sin24 - sin4) / sine_transmission
     del sin24, sin4, sine_transmission
     omega3 = reduced * excess3 + share
-    return (
-        2 * omega3,
-        2 * x6 * crank * cos23,
-    )
+    return 2 * omega3, 2 * x6 * crank * cos23
 
 
 def modal_matrices(m, n):
     """Return the modal arrays of the matrices.
 
-    Parameters
-    ----------
     m : ndarray, shape (N, 1)
-        Mode numbers of the rows, from 1.
     n : ndarray, shape (1, N)
-        Mode numbers of the columns, from 1.
-
-    Returns
-    -------
-    modal_1 : ndarray, shape (N, N)
-        Diagonal 1.
-    modal_2 : ndarray, shape (N, N)
-        Diagonal pi**2*m**2.
-    modal_3 : ndarray, shape (N, N)
-        Diagonal pi**4*m**4.
+    Returns ndarray, shape (N, N) each.
     """
     xp = _namespace(m)
     x0 = (m == n)
     return (
-        xp.asarray(x0, dtype=xp.float64),
-        xp.where(x0, 9.869604401089358 * m**2, 0),
+        xp.asarray(x0, dtype=xp.float64), xp.where(x0, 9.869604401089358 * m**2, 0),
         xp.where(x0, 97.40909103400244 * m**4, 0),
     )
 
@@ -536,21 +391,9 @@ def modal_matrices(m, n):
 def modal_vectors(m):
     """Return the modal arrays of the forcing.
 
-    Parameters
-    ----------
     m : ndarray, shape (N,)
-        Mode numbers, from 1.
-
-    Returns
-    -------
-    modal_4 : ndarray, shape (N,)
-        Entries (-1)**m/(pi*m).
-    modal_5 : ndarray, shape (N,)
-        Entries ((-1)**m - 1)/(pi*m).
+    Returns ndarray, shape (N,) each.
     """
     x0 = (1 - 2 * ((m) % 2))
     x1 = 0.3183098861837907 / m
-    return (
-        x0 * x1,
-        x1 * (x0 - 1),
-    )
+    return x0 * x1, x1 * (x0 - 1)

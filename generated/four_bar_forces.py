@@ -16,81 +16,89 @@ Cost per evaluation:
     shaking_force: 166 operations
     shaking_moment: 149 operations
     load_forces: 99 operations
-Content hash 12ba73d33f3ae10845dfd4be3da49c99; derived with SymPy 1.14.0.
+Content hash 02f2deebbac43b03c657dc5eeacd8f24; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "driving_torque",
-    "forces",
-    "load_forces",
-    "pin_forces",
-    "shaking_force",
-    "shaking_moment",
+    "forces", "pin_forces", "driving_torque", "shaking_force", "shaking_moment", "load_forces",
 ]
-
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"four_bar","modes":'
     'null,"outputs":[]}'
 )
-CONTENT = "12ba73d33f3ae10845dfd4be3da49c99"
+CONTENT = "02f2deebbac43b03c657dc5eeacd8f24"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle"),
+    "speed": ("rad/s", "Crank speed"),
+    "acceleration": ("rad/s^2", "Crank acceleration"),
+    "frame": ("m", "Length of the fixed link AD"),
+    "crank": ("m", "Length of the crank AB"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "follower": ("m", "Length of the follower DC"),
+    "assembly": ("", "+1 for the open, -1 for the crossed assembly"),
+    "mass2": ("kg", "Mass of link 2"),
+    "along2": ("kg m", "First moment along link 2"),
+    "across2": ("kg m", "First moment across link 2"),
+    "inertia2": ("kg m^2", "Inertia, about its first joint, of link 2"),
+    "mass3": ("kg", "Mass of link 3"),
+    "along3": ("kg m", "First moment along link 3"),
+    "across3": ("kg m", "First moment across link 3"),
+    "inertia3": ("kg m^2", "Inertia, about its first joint, of link 3"),
+    "mass4": ("kg", "Mass of link 4"),
+    "along4": ("kg m", "First moment along link 4"),
+    "across4": ("kg m", "First moment across link 4"),
+    "inertia4": ("kg m^2", "Inertia, about its first joint, of link 4"),
+    "x12": ("N", "Force of link 1 on link 2 along x"),
+    "y12": ("N", "Force of link 1 on link 2 along y"),
+    "x23": ("N", "Force of link 2 on link 3 along x"),
+    "y23": ("N", "Force of link 2 on link 3 along y"),
+    "x34": ("N", "Force of link 3 on link 4 along x"),
+    "y34": ("N", "Force of link 3 on link 4 along y"),
+    "x41": ("N", "Force of link 4 on link 1 along x"),
+    "y41": ("N", "Force of link 4 on link 1 along y"),
+    "torque": ("N m", "Torque of the drive on the crank, anticlockwise"),
+    "shaking_x": ("N", "Force on the frame along x"),
+    "shaking_y": ("N", "Force on the frame along y"),
+    "shaking_moment": ("N m", "Moment on the frame about A, the drive's reaction in it"),
+    "fx2": ("N", "Force along x at the first joint of link 2"),
+    "fy2": ("N", "Force along y at the first joint of link 2"),
+    "couple2": ("N m", "Couple on link 2"),
+    "fx3": ("N", "Force along x at the first joint of link 3"),
+    "fy3": ("N", "Force along y at the first joint of link 3"),
+    "couple3": ("N m", "Couple on link 3"),
+    "fx4": ("N", "Force along x at the first joint of link 4"),
+    "fy4": ("N", "Force along y at the first joint of link 4"),
+    "couple4": ("N m", "Couple on link 4"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
     "forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "torque",
-        "shaking_x",
-        "shaking_y",
+        "x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "torque", "shaking_x", "shaking_y",
         "shaking_moment",
     ),
-    "pin_forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-    ),
-    "driving_torque": (
-        "torque",
-    ),
-    "shaking_force": (
-        "shaking_x",
-        "shaking_y",
-    ),
-    "shaking_moment": (
-        "shaking_moment",
-    ),
+    "pin_forces": ("x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41"),
+    "driving_torque": ("torque",),
+    "shaking_force": ("shaking_x", "shaking_y"),
+    "shaking_moment": ("shaking_moment",),
     "load_forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "torque",
-        "shaking_x",
-        "shaking_y",
+        "x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "torque", "shaking_x", "shaking_y",
         "shaking_moment",
     ),
+}
+
+# Terms of the energies that may be left out, to the names of what then vanishes, or to the
+# separated terms that go and those that come.
+DROPS = {
+    ("across",): ("across2", "across3", "across4"),
+    ("crank_acceleration",): ("acceleration",),
+    ("across", "crank_acceleration"): ("across2", "across3", "across4", "acceleration"),
 }
 
 
@@ -107,79 +115,11 @@ def forces(
 ):
     """Return every joint force, the torque, and the force and moment on the frame.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Smith (4.1)-(4.13).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank, coupler, follower, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -296,20 +236,12 @@ def forces(
     del crank_x, crank_y, turn_th3
     x29 = 2 - slip3
     return (
-        x12,
-        y12,
-        x23,
-        y23,
-        x34,
-        y34,
-        x41,
-        y41,
+        x12, y12, x23, y23, x34, y34, x41, y41,
         (
             c10 * (x24 * w3 + x18 * x25) + c11 * (x25 * facing - x26 * w3) + push4_moment * w4 +
             x16 * w3 + x27
         ),
-        -push2_x - push3_x - push4_x,
-        -push2_y - push3_y - push4_y,
+        -push2_x - push3_x - push4_x, -push2_y - push3_y - push4_y,
         (
             -c10 * (x18 * x28 + x24 * x29) + c11 * (x26 * x29 - x28 * facing) - frame * push4_y -
             push4_moment - x16 - x27
@@ -323,71 +255,11 @@ def pin_forces(
 ):
     """Return every joint force.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-
-    Notes
-    -----
-    Smith (4.1)-(4.13).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank, coupler, follower, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -495,16 +367,7 @@ def pin_forces(
     x41 = x34 - push4_x
     y41 = y34 - push4_y
     del push2_y, push4_x, push4_y
-    return (
-        x12,
-        y12,
-        x23,
-        y23,
-        x34,
-        y34,
-        x41,
-        y41,
-    )
+    return x12, y12, x23, y23, x34, y34, x41, y41
 
 
 def driving_torque(
@@ -513,57 +376,11 @@ def driving_torque(
 ):
     """Return the torque on the crank, by virtual power.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-
-    Notes
-    -----
-    Smith (4.1)-(4.13).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank, coupler, follower, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -650,59 +467,11 @@ def shaking_force(
 ):
     """Return the force on the frame, the change of momentum.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-
-    Notes
-    -----
-    Smith (4.1)-(4.13).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank, coupler, follower, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -791,10 +560,7 @@ def shaking_force(
     del follower_x, follower_y, spin_th4, turn_th4
     push4_x = -c12 * x14 - c13 * x15
     push4_y = c13 * x14 - c12 * x15
-    return (
-        -push2_x - push3_x - push4_x,
-        -push2_y - push3_y - push4_y,
-    )
+    return -push2_x - push3_x - push4_x, -push2_y - push3_y - push4_y
 
 
 def shaking_moment(
@@ -803,57 +569,11 @@ def shaking_moment(
 ):
     """Return the moment on the frame about A, the change of moment of momentum.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Smith (4.1)-(4.13).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank, coupler, follower, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -948,69 +668,10 @@ def load_forces(
 ):
     """Return what external loads alone call forth.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    fx2 : float or ndarray
-        Force along x at the first joint of link 2 [N].
-    fy2 : float or ndarray
-        Force along y at the first joint of link 2 [N].
-    couple2 : float or ndarray
-        Couple on link 2 [N m].
-    fx3 : float or ndarray
-        Force along x at the first joint of link 3 [N].
-    fy3 : float or ndarray
-        Force along y at the first joint of link 3 [N].
-    couple3 : float or ndarray
-        Couple on link 3 [N m].
-    fx4 : float or ndarray
-        Force along x at the first joint of link 4 [N].
-    fy4 : float or ndarray
-        Force along y at the first joint of link 4 [N].
-    couple4 : float or ndarray
-        Couple on link 4 [N m].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Smith (4.1)-(4.13).
+    frame, crank, coupler, follower, assembly : float
+    fx2 to couple4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -1069,16 +730,6 @@ def load_forces(
     y41 = fy4 + y34
     c7 = -couple2 - couple3 - couple4 - fy4 * frame
     return (
-        x12,
-        y12,
-        x23,
-        y23,
-        x34,
-        y34,
-        x41,
-        y41,
-        torque,
-        fx2 + fx3 + fx4,
-        fy2 + fy3 + fy4,
+        x12, y12, x23, y23, x34, y34, x41, y41, torque, fx2 + fx3 + fx4, fy2 + fy3 + fy4,
         fy3 * crank_x - c7 - fx3 * crank_y,
     )

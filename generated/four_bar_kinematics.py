@@ -13,37 +13,41 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash 68473e93ff28470bfabbca06ef07786e; derived with SymPy 1.14.0.
+Content hash 175e4778bd977a2aa630d234f3d98e80; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
-__all__ = [
-    "motion",
-]
-
+__all__ = ["motion"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "68473e93ff28470bfabbca06ef07786e"
+CONTENT = "175e4778bd977a2aa630d234f3d98e80"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle"),
+    "frame": ("m", "Length of the fixed link AD"),
+    "crank": ("m", "Length of the crank AB"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "follower": ("m", "Length of the follower DC"),
+    "assembly": ("", "+1 for the open, -1 for the crossed assembly"),
+    "winding": ("", "1 where the crank is longer than the frame (drag link), else 0"),
+    "theta3": ("rad", "Coupler angle, continuous over any number of turns"),
+    "theta4": ("rad", "Follower angle, continuous over any number of turns"),
+    "omega3": ("", "Coupler speed over crank speed, d theta3 / d theta2"),
+    "omega4": ("", "Follower speed over crank speed, d theta4 / d theta2"),
+    "alpha3": ("", "Coupler acceleration over crank speed squared, at constant crank speed"),
+    "alpha4": ("", "Follower acceleration over crank speed squared, at constant crank speed"),
+    "transmission_angle": ("rad", "Angle between coupler and follower at C, from 0 to pi"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "motion": (
-        "theta3",
-        "theta4",
-        "omega3",
-        "omega4",
-        "alpha3",
-        "alpha4",
-        "transmission_angle",
-    ),
+    "motion": ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle"),
 }
 
 
@@ -57,43 +61,9 @@ def _namespace(array):
 def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     """Return angles, speeds and accelerations of coupler and follower.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-    winding : float
-        1 where the crank is longer than the frame (drag link), else 0.
-
-    Returns
-    -------
-    theta3 : ndarray, shape (...)
-        Coupler angle, continuous over any number of turns [rad].
-    theta4 : ndarray, shape (...)
-        Follower angle, continuous over any number of turns [rad].
-    omega3 : ndarray, shape (...)
-        Coupler speed over crank speed, d theta3 / d theta2.
-    omega4 : ndarray, shape (...)
-        Follower speed over crank speed, d theta4 / d theta2.
-    alpha3 : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, at constant crank speed.
-    alpha4 : ndarray, shape (...)
-        Follower acceleration over crank speed squared, at constant crank speed.
-    transmission_angle : ndarray, shape (...)
-        Angle between coupler and follower at C, from 0 to pi [rad].
-
-    Notes
-    -----
-    Smith (2.1)-(2.10); Smith (A.1)-(A.8).
+    frame, crank, coupler, follower, assembly, winding : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -175,11 +145,6 @@ def motion(theta2, frame, crank, coupler, follower, assembly, winding):
     )
     del sin2, x3, x4
     return (
-        phi - x24 * xp.atan2(area, -x24 * p),
-        phi - x24 * xp.atan2(area, x24 * q),
-        omega3,
-        omega4,
-        alpha3,
-        alpha4,
-        xp.atan2(x8, stretch - fold),
+        phi - x24 * xp.atan2(area, -x24 * p), phi - x24 * xp.atan2(area, x24 * q), omega3, omega4,
+        alpha3, alpha4, xp.atan2(x8, stretch - fold),
     )

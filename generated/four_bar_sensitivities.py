@@ -11,59 +11,133 @@ fifth.
 
 Cost per evaluation:
     sensitivities: 306 operations
-Content hash db54f432406dc7be09d2938391f8913f; derived with SymPy 1.14.0.
+Content hash 1044e92b3bf7551edd38acb6cbaa9d6d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
-__all__ = [
-    "sensitivities",
-]
-
+__all__ = ["sensitivities"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sensitivities","mechanism":"four_bar","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "db54f432406dc7be09d2938391f8913f"
+CONTENT = "1044e92b3bf7551edd38acb6cbaa9d6d"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle"),
+    "frame": ("m", "Length of the fixed link AD"),
+    "crank": ("m", "Length of the crank AB"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "follower": ("m", "Length of the follower DC"),
+    "assembly": ("", "+1 for the open, -1 for the crossed assembly"),
+    "theta3_by_frame": ("1/m", "Coupler angle, its derivative by the length of the frame"),
+    "theta3_by_crank": ("1/m", "Coupler angle, its derivative by the length of the crank"),
+    "theta3_by_coupler": ("1/m", "Coupler angle, its derivative by the length of the coupler"),
+    "theta3_by_follower": ("1/m", "Coupler angle, its derivative by the length of the follower"),
+    "theta3_by_theta2": ("", "Coupler angle, its derivative by the crank angle"),
+    "theta4_by_frame": ("1/m", "Follower angle, its derivative by the length of the frame"),
+    "theta4_by_crank": ("1/m", "Follower angle, its derivative by the length of the crank"),
+    "theta4_by_coupler": ("1/m", "Follower angle, its derivative by the length of the coupler"),
+    "theta4_by_follower": ("1/m", "Follower angle, its derivative by the length of the follower"),
+    "theta4_by_theta2": ("", "Follower angle, its derivative by the crank angle"),
+    "omega3_by_frame": (
+        "1/m", "Coupler speed over crank speed, its derivative by the length of the frame",
+    ),
+    "omega3_by_crank": (
+        "1/m", "Coupler speed over crank speed, its derivative by the length of the crank",
+    ),
+    "omega3_by_coupler": (
+        "1/m", "Coupler speed over crank speed, its derivative by the length of the coupler",
+    ),
+    "omega3_by_follower": (
+        "1/m", "Coupler speed over crank speed, its derivative by the length of the follower",
+    ),
+    "omega3_by_theta2": ("", "Coupler speed over crank speed, its derivative by the crank angle"),
+    "omega4_by_frame": (
+        "1/m", "Follower speed over crank speed, its derivative by the length of the frame",
+    ),
+    "omega4_by_crank": (
+        "1/m", "Follower speed over crank speed, its derivative by the length of the crank",
+    ),
+    "omega4_by_coupler": (
+        "1/m", "Follower speed over crank speed, its derivative by the length of the coupler",
+    ),
+    "omega4_by_follower": (
+        "1/m", "Follower speed over crank speed, its derivative by the length of the follower",
+    ),
+    "omega4_by_theta2": ("", "Follower speed over crank speed, its derivative by the crank angle"),
+    "alpha3_by_frame": (
+        "1/m",
+        "Coupler acceleration over crank speed squared, its derivative by the length of the frame",
+    ),
+    "alpha3_by_crank": (
+        "1/m",
+        "Coupler acceleration over crank speed squared, its derivative by the length of the crank",
+    ),
+    "alpha3_by_coupler": (
+        "1/m",
+        (
+            "Coupler acceleration over crank speed squared, its derivative by the length of the "
+            "coupler"
+        ),
+    ),
+    "alpha3_by_follower": (
+        "1/m",
+        (
+            "Coupler acceleration over crank speed squared, its derivative by the length of the "
+            "follower"
+        ),
+    ),
+    "alpha3_by_theta2": (
+        "", "Coupler acceleration over crank speed squared, its derivative by the crank angle",
+    ),
+    "alpha4_by_frame": (
+        "1/m",
+        (
+            "Follower acceleration over crank speed squared, its derivative by the length of the "
+            "frame"
+        ),
+    ),
+    "alpha4_by_crank": (
+        "1/m",
+        (
+            "Follower acceleration over crank speed squared, its derivative by the length of the "
+            "crank"
+        ),
+    ),
+    "alpha4_by_coupler": (
+        "1/m",
+        (
+            "Follower acceleration over crank speed squared, its derivative by the length of the "
+            "coupler"
+        ),
+    ),
+    "alpha4_by_follower": (
+        "1/m",
+        (
+            "Follower acceleration over crank speed squared, its derivative by the length of the "
+            "follower"
+        ),
+    ),
+    "alpha4_by_theta2": (
+        "", "Follower acceleration over crank speed squared, its derivative by the crank angle",
+    ),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
     "sensitivities": (
-        "theta3_by_frame",
-        "theta3_by_crank",
-        "theta3_by_coupler",
-        "theta3_by_follower",
-        "theta3_by_theta2",
-        "theta4_by_frame",
-        "theta4_by_crank",
-        "theta4_by_coupler",
-        "theta4_by_follower",
-        "theta4_by_theta2",
-        "omega3_by_frame",
-        "omega3_by_crank",
-        "omega3_by_coupler",
-        "omega3_by_follower",
-        "omega3_by_theta2",
-        "omega4_by_frame",
-        "omega4_by_crank",
-        "omega4_by_coupler",
-        "omega4_by_follower",
-        "omega4_by_theta2",
-        "alpha3_by_frame",
-        "alpha3_by_crank",
-        "alpha3_by_coupler",
-        "alpha3_by_follower",
-        "alpha3_by_theta2",
-        "alpha4_by_frame",
-        "alpha4_by_crank",
-        "alpha4_by_coupler",
-        "alpha4_by_follower",
-        "alpha4_by_theta2",
+        "theta3_by_frame", "theta3_by_crank", "theta3_by_coupler", "theta3_by_follower",
+        "theta3_by_theta2", "theta4_by_frame", "theta4_by_crank", "theta4_by_coupler",
+        "theta4_by_follower", "theta4_by_theta2", "omega3_by_frame", "omega3_by_crank",
+        "omega3_by_coupler", "omega3_by_follower", "omega3_by_theta2", "omega4_by_frame",
+        "omega4_by_crank", "omega4_by_coupler", "omega4_by_follower", "omega4_by_theta2",
+        "alpha3_by_frame", "alpha3_by_crank", "alpha3_by_coupler", "alpha3_by_follower",
+        "alpha3_by_theta2", "alpha4_by_frame", "alpha4_by_crank", "alpha4_by_coupler",
+        "alpha4_by_follower", "alpha4_by_theta2",
     ),
 }
 
@@ -78,95 +152,9 @@ def _namespace(array):
 def sensitivities(theta2, frame, crank, coupler, follower, assembly):
     """Return the derivatives of angles, speeds and accelerations.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle [rad].
-    frame : float
-        Length of the fixed link AD [m].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    follower : float
-        Length of the follower DC [m].
-    assembly : float
-        +1 for the open, -1 for the crossed assembly.
-
-    Returns
-    -------
-    theta3_by_frame : ndarray, shape (...)
-        Coupler angle, its derivative by the length of the frame [1/m].
-    theta3_by_crank : ndarray, shape (...)
-        Coupler angle, its derivative by the length of the crank [1/m].
-    theta3_by_coupler : ndarray, shape (...)
-        Coupler angle, its derivative by the length of the coupler [1/m].
-    theta3_by_follower : ndarray, shape (...)
-        Coupler angle, its derivative by the length of the follower [1/m].
-    theta3_by_theta2 : ndarray, shape (...)
-        Coupler angle, its derivative by the crank angle.
-    theta4_by_frame : ndarray, shape (...)
-        Follower angle, its derivative by the length of the frame [1/m].
-    theta4_by_crank : ndarray, shape (...)
-        Follower angle, its derivative by the length of the crank [1/m].
-    theta4_by_coupler : ndarray, shape (...)
-        Follower angle, its derivative by the length of the coupler [1/m].
-    theta4_by_follower : ndarray, shape (...)
-        Follower angle, its derivative by the length of the follower [1/m].
-    theta4_by_theta2 : ndarray, shape (...)
-        Follower angle, its derivative by the crank angle.
-    omega3_by_frame : ndarray, shape (...)
-        Coupler speed over crank speed, its derivative by the length of the frame [1/m].
-    omega3_by_crank : ndarray, shape (...)
-        Coupler speed over crank speed, its derivative by the length of the crank [1/m].
-    omega3_by_coupler : ndarray, shape (...)
-        Coupler speed over crank speed, its derivative by the length of the coupler [1/m].
-    omega3_by_follower : ndarray, shape (...)
-        Coupler speed over crank speed, its derivative by the length of the follower [1/m].
-    omega3_by_theta2 : ndarray, shape (...)
-        Coupler speed over crank speed, its derivative by the crank angle.
-    omega4_by_frame : ndarray, shape (...)
-        Follower speed over crank speed, its derivative by the length of the frame [1/m].
-    omega4_by_crank : ndarray, shape (...)
-        Follower speed over crank speed, its derivative by the length of the crank [1/m].
-    omega4_by_coupler : ndarray, shape (...)
-        Follower speed over crank speed, its derivative by the length of the coupler [1/m].
-    omega4_by_follower : ndarray, shape (...)
-        Follower speed over crank speed, its derivative by the length of the follower [1/m].
-    omega4_by_theta2 : ndarray, shape (...)
-        Follower speed over crank speed, its derivative by the crank angle.
-    alpha3_by_frame : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, its derivative by the length of the frame
-        [1/m].
-    alpha3_by_crank : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, its derivative by the length of the crank
-        [1/m].
-    alpha3_by_coupler : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, its derivative by the length of the coupler
-        [1/m].
-    alpha3_by_follower : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, its derivative by the length of the follower
-        [1/m].
-    alpha3_by_theta2 : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, its derivative by the crank angle.
-    alpha4_by_frame : ndarray, shape (...)
-        Follower acceleration over crank speed squared, its derivative by the length of the frame
-        [1/m].
-    alpha4_by_crank : ndarray, shape (...)
-        Follower acceleration over crank speed squared, its derivative by the length of the crank
-        [1/m].
-    alpha4_by_coupler : ndarray, shape (...)
-        Follower acceleration over crank speed squared, its derivative by the length of the coupler
-        [1/m].
-    alpha4_by_follower : ndarray, shape (...)
-        Follower acceleration over crank speed squared, its derivative by the length of the
-        follower [1/m].
-    alpha4_by_theta2 : ndarray, shape (...)
-        Follower acceleration over crank speed squared, its derivative by the crank angle.
-
-    Notes
-    -----
-    Smith (2.1), differentiated by each length.
+    frame, crank, coupler, follower, assembly : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -318,34 +306,10 @@ def sensitivities(theta2, frame, crank, coupler, follower, assembly):
     alpha4_by_theta2 = sway + x40 * (x38 * bendq2 - bendq1 + x39 * bendq3)
     del x36, x37, bendq1, bendq2, bendq3, sway, x38, x39, x40
     return (
-        theta3_by_frame,
-        theta3_by_crank,
-        theta3_by_coupler,
-        per3,
-        omega3,
-        theta4_by_frame,
-        theta4_by_crank,
-        -per4,
-        theta4_by_follower,
-        omega4,
-        omega3_by_frame,
-        omega3_by_crank,
-        omega3_by_coupler,
-        omega3_by_follower,
-        alpha3,
-        omega4_by_frame,
-        omega4_by_crank,
-        omega4_by_coupler,
-        omega4_by_follower,
-        alpha4,
-        alpha3_by_frame,
-        alpha3_by_crank,
-        alpha3_by_coupler,
-        alpha3_by_follower,
-        alpha3_by_theta2,
-        alpha4_by_frame,
-        alpha4_by_crank,
-        alpha4_by_coupler,
-        alpha4_by_follower,
-        alpha4_by_theta2,
+        theta3_by_frame, theta3_by_crank, theta3_by_coupler, per3, omega3, theta4_by_frame,
+        theta4_by_crank, -per4, theta4_by_follower, omega4, omega3_by_frame, omega3_by_crank,
+        omega3_by_coupler, omega3_by_follower, alpha3, omega4_by_frame, omega4_by_crank,
+        omega4_by_coupler, omega4_by_follower, alpha4, alpha3_by_frame, alpha3_by_crank,
+        alpha3_by_coupler, alpha3_by_follower, alpha3_by_theta2, alpha4_by_frame, alpha4_by_crank,
+        alpha4_by_coupler, alpha4_by_follower, alpha4_by_theta2,
     )

@@ -18,67 +18,65 @@ Cost per evaluation:
     four_intervals: 117 operations
     one_more_interval: 20 operations
     half_turn: 13 operations
-Content hash f2ec54224c48f08fab98fdd08a663b93; derived with SymPy 1.14.0.
+Content hash 76748b5fb25b421ee43e6e300fb99e5a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "four_intervals",
+    "interval", "two_intervals", "three_intervals", "four_intervals", "one_more_interval",
     "half_turn",
-    "interval",
-    "one_more_interval",
-    "three_intervals",
-    "two_intervals",
 ]
-
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"meissner","mechanism":"hill","modes":nu'
     'll,"outputs":[]}'
 )
-CONTENT = "f2ec54224c48f08fab98fdd08a663b93"
+CONTENT = "76748b5fb25b421ee43e6e300fb99e5a"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "level": ("", "Coefficient q = v^2 of y, of either sign"),
+    "length": ("rad", "Length t of the interval"),
+    "cosine": ("", "cos v t, the hyperbolic one where the level is negative"),
+    "sine": ("", "sin(v t) / v, likewise; t where the level is zero"),
+    "c1": ("", "cos v t of interval 1"),
+    "s1": ("", "sin(v t) / v of interval 1"),
+    "q1": ("", "Level v^2 of interval 1"),
+    "c2": ("", "cos v t of interval 2"),
+    "s2": ("", "sin(v t) / v of interval 2"),
+    "q2": ("", "Level v^2 of interval 2"),
+    "half_trace": ("", "Half the sum of the diagonal: J of Meissner"),
+    "half_difference": ("", "Half the difference of the diagonal, first entry less second"),
+    "upper": ("", "Entry above the diagonal: y from y'"),
+    "lower": ("", "Entry below the diagonal: y' from y"),
+    "c3": ("", "cos v t of interval 3"),
+    "s3": ("", "sin(v t) / v of interval 3"),
+    "q3": ("", "Level v^2 of interval 3"),
+    "c4": ("", "cos v t of interval 4"),
+    "s4": ("", "sin(v t) / v of interval 4"),
+    "q4": ("", "Level v^2 of interval 4"),
+    "half_trace_before": ("", "Before it, half the sum of the diagonal: J of Meissner"),
+    "half_difference_before": (
+        "", "Before it, half the difference of the diagonal, first entry less second",
+    ),
+    "upper_before": ("", "Before it, entry above the diagonal: y from y'"),
+    "lower_before": ("", "Before it, entry below the diagonal: y' from y"),
+    "y1": ("", "The solution that starts as (1, 0)"),
+    "y2": ("", "The solution that starts as (0, 1)"),
+    "y1_slope": ("", "Slope of y1"),
+    "y2_slope": ("", "Slope of y2"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "interval": (
-        "cosine",
-        "sine",
-    ),
-    "two_intervals": (
-        "half_trace",
-        "half_difference",
-        "upper",
-        "lower",
-    ),
-    "three_intervals": (
-        "half_trace",
-        "half_difference",
-        "upper",
-        "lower",
-    ),
-    "four_intervals": (
-        "half_trace",
-        "half_difference",
-        "upper",
-        "lower",
-    ),
-    "one_more_interval": (
-        "half_trace",
-        "half_difference",
-        "upper",
-        "lower",
-    ),
-    "half_turn": (
-        "y1",
-        "y2",
-        "y1_slope",
-        "y2_slope",
-    ),
+    "interval": ("cosine", "sine"),
+    "two_intervals": ("half_trace", "half_difference", "upper", "lower"),
+    "three_intervals": ("half_trace", "half_difference", "upper", "lower"),
+    "four_intervals": ("half_trace", "half_difference", "upper", "lower"),
+    "one_more_interval": ("half_trace", "half_difference", "upper", "lower"),
+    "half_turn": ("y1", "y2", "y1_slope", "y2_slope"),
 }
 
 
@@ -92,23 +90,8 @@ def _namespace(array):
 def interval(level, length):
     """Return cos v t and sin(v t) / v of an interval of length t with level v^2.
 
-    Parameters
-    ----------
-    level : ndarray, shape (...)
-        Coefficient q = v^2 of y, of either sign.
-    length : ndarray, shape (...)
-        Length t of the interval [rad].
-
-    Returns
-    -------
-    cosine : ndarray, shape (...)
-        cos v t, the hyperbolic one where the level is negative.
-    sine : ndarray, shape (...)
-        sin(v t) / v, likewise; t where the level is zero.
-
-    Notes
-    -----
-    Aannaque (7.9); Aannaque (7.11).
+    level, length : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(level)
     x0 = level / 2
@@ -129,85 +112,20 @@ def interval(level, length):
 def two_intervals(c1, s1, q1, c2, s2, q2):
     """Return J_2 and the other parts of the matrix over 2 intervals.
 
-    Parameters
-    ----------
-    c1 : ndarray, shape (...)
-        cos v t of interval 1.
-    s1 : ndarray, shape (...)
-        sin(v t) / v of interval 1.
-    q1 : ndarray, shape (...)
-        Level v^2 of interval 1.
-    c2 : ndarray, shape (...)
-        cos v t of interval 2.
-    s2 : ndarray, shape (...)
-        sin(v t) / v of interval 2.
-    q2 : ndarray, shape (...)
-        Level v^2 of interval 2.
-
-    Returns
-    -------
-    half_trace : ndarray, shape (...)
-        Half the sum of the diagonal: J of Meissner.
-    half_difference : ndarray, shape (...)
-        Half the difference of the diagonal, first entry less second.
-    upper : ndarray, shape (...)
-        Entry above the diagonal: y from y'.
-    lower : ndarray, shape (...)
-        Entry below the diagonal: y' from y.
-
-    Notes
-    -----
-    Aannaque (7.9); Aannaque (7.11).
+    c1, s1, q1, c2, s2, q2 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = s1 * s2 / 2
     x1 = c1 * s2
     x2 = c2 * s1
-    return (
-        c1 * c2 - x0 * (q1 + q2),
-        x0 * (q2 - q1),
-        x1 + x2,
-        -x2 * q1 - x1 * q2,
-    )
+    return c1 * c2 - x0 * (q1 + q2), x0 * (q2 - q1), x1 + x2, -x2 * q1 - x1 * q2
 
 
 def three_intervals(c1, s1, q1, c2, s2, q2, c3, s3, q3):
     """Return J_3 and the other parts of the matrix over 3 intervals.
 
-    Parameters
-    ----------
-    c1 : ndarray, shape (...)
-        cos v t of interval 1.
-    s1 : ndarray, shape (...)
-        sin(v t) / v of interval 1.
-    q1 : ndarray, shape (...)
-        Level v^2 of interval 1.
-    c2 : ndarray, shape (...)
-        cos v t of interval 2.
-    s2 : ndarray, shape (...)
-        sin(v t) / v of interval 2.
-    q2 : ndarray, shape (...)
-        Level v^2 of interval 2.
-    c3 : ndarray, shape (...)
-        cos v t of interval 3.
-    s3 : ndarray, shape (...)
-        sin(v t) / v of interval 3.
-    q3 : ndarray, shape (...)
-        Level v^2 of interval 3.
-
-    Returns
-    -------
-    half_trace : ndarray, shape (...)
-        Half the sum of the diagonal: J of Meissner.
-    half_difference : ndarray, shape (...)
-        Half the difference of the diagonal, first entry less second.
-    upper : ndarray, shape (...)
-        Entry above the diagonal: y from y'.
-    lower : ndarray, shape (...)
-        Entry below the diagonal: y' from y.
-
-    Notes
-    -----
-    Aannaque (7.9); Aannaque (7.11).
+    c1 to q3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = c1 * s2
     x1 = s3 / 2
@@ -222,8 +140,7 @@ def three_intervals(c1, s1, q1, c2, s2, q2, c3, s3, q3):
     del x1, x0, x3
     return (
         c1 * c2 * c3 - x2 * (q2 + q3) - x4 * (q1 + q3) - x6 * (q1 + q2),
-        x2 * (q3 - q2) + x4 * (q3 - q1) + x6 * (q2 - q1),
-        x10 - x5 * q2 * s3 + x8 + x9,
+        x2 * (q3 - q2) + x4 * (q3 - q1) + x6 * (q2 - q1), x10 - x5 * q2 * s3 + x8 + x9,
         q1 * q3 * s1 * s2 * s3 - x10 * q1 - x9 * q2 - x8 * q3,
     )
 
@@ -231,47 +148,8 @@ def three_intervals(c1, s1, q1, c2, s2, q2, c3, s3, q3):
 def four_intervals(c1, s1, q1, c2, s2, q2, c3, s3, q3, c4, s4, q4):
     """Return J_4 and the other parts of the matrix over 4 intervals.
 
-    Parameters
-    ----------
-    c1 : ndarray, shape (...)
-        cos v t of interval 1.
-    s1 : ndarray, shape (...)
-        sin(v t) / v of interval 1.
-    q1 : ndarray, shape (...)
-        Level v^2 of interval 1.
-    c2 : ndarray, shape (...)
-        cos v t of interval 2.
-    s2 : ndarray, shape (...)
-        sin(v t) / v of interval 2.
-    q2 : ndarray, shape (...)
-        Level v^2 of interval 2.
-    c3 : ndarray, shape (...)
-        cos v t of interval 3.
-    s3 : ndarray, shape (...)
-        sin(v t) / v of interval 3.
-    q3 : ndarray, shape (...)
-        Level v^2 of interval 3.
-    c4 : ndarray, shape (...)
-        cos v t of interval 4.
-    s4 : ndarray, shape (...)
-        sin(v t) / v of interval 4.
-    q4 : ndarray, shape (...)
-        Level v^2 of interval 4.
-
-    Returns
-    -------
-    half_trace : ndarray, shape (...)
-        Half the sum of the diagonal: J of Meissner.
-    half_difference : ndarray, shape (...)
-        Half the difference of the diagonal, first entry less second.
-    upper : ndarray, shape (...)
-        Entry above the diagonal: y from y'.
-    lower : ndarray, shape (...)
-        Entry below the diagonal: y' from y.
-
-    Notes
-    -----
-    Aannaque (7.9); Aannaque (7.11).
+    c1 to q4 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = c1 * c2
     x1 = s3 * s4
@@ -321,37 +199,8 @@ def one_more_interval(
 ):
     """Return the parts of a matrix after one more interval.
 
-    Parameters
-    ----------
-    half_trace_before : ndarray, shape (...)
-        Before it, half the sum of the diagonal: J of Meissner.
-    half_difference_before : ndarray, shape (...)
-        Before it, half the difference of the diagonal, first entry less second.
-    upper_before : ndarray, shape (...)
-        Before it, entry above the diagonal: y from y'.
-    lower_before : ndarray, shape (...)
-        Before it, entry below the diagonal: y' from y.
-    c1 : ndarray, shape (...)
-        cos v t of interval 1.
-    s1 : ndarray, shape (...)
-        sin(v t) / v of interval 1.
-    q1 : ndarray, shape (...)
-        Level v^2 of interval 1.
-
-    Returns
-    -------
-    half_trace : ndarray, shape (...)
-        Half the sum of the diagonal: J of Meissner.
-    half_difference : ndarray, shape (...)
-        Half the difference of the diagonal, first entry less second.
-    upper : ndarray, shape (...)
-        Entry above the diagonal: y from y'.
-    lower : ndarray, shape (...)
-        Entry below the diagonal: y' from y.
-
-    Notes
-    -----
-    Aannaque (7.9); Aannaque (7.11).
+    half_trace_before to q1 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = s1 / 2
     x1 = x0 * lower_before
@@ -359,53 +208,19 @@ def one_more_interval(
     x3 = half_trace_before * s1
     x4 = half_difference_before * s1
     return (
-        c1 * half_trace_before + x1 - x2,
-        c1 * half_difference_before + x1 + x2,
-        c1 * upper_before + x3 - x4,
-        c1 * lower_before - x3 * q1 - x4 * q1,
+        c1 * half_trace_before + x1 - x2, c1 * half_difference_before + x1 + x2,
+        c1 * upper_before + x3 - x4, c1 * lower_before - x3 * q1 - x4 * q1,
     )
 
 
 def half_turn(c1, s1, q1, c2, s2, q2):
     """Return the normalised solutions half a turn from the middle of the first of two intervals.
 
-    Parameters
-    ----------
-    c1 : ndarray, shape (...)
-        cos v t of interval 1.
-    s1 : ndarray, shape (...)
-        sin(v t) / v of interval 1.
-    q1 : ndarray, shape (...)
-        Level v^2 of interval 1.
-    c2 : ndarray, shape (...)
-        cos v t of interval 2.
-    s2 : ndarray, shape (...)
-        sin(v t) / v of interval 2.
-    q2 : ndarray, shape (...)
-        Level v^2 of interval 2.
-
-    Returns
-    -------
-    y1 : ndarray, shape (...)
-        The solution that starts as (1, 0).
-    y2 : ndarray, shape (...)
-        The solution that starts as (0, 1).
-    y1_slope : ndarray, shape (...)
-        Slope of y1.
-    y2_slope : ndarray, shape (...)
-        Slope of y2.
-
-    Notes
-    -----
-    Aannaque (7.9); Aannaque (7.11).
+    c1, s1, q1, c2, s2, q2 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = c1 * c2
     x1 = s1 * s2
     x2 = c1 * s2
     x3 = c2 * s1
-    return (
-        x0 - x1 * q1,
-        x2 + x3,
-        -x3 * q1 - x2 * q2,
-        x0 - x1 * q2,
-    )
+    return x0 - x1 * q1, x2 + x3, -x3 * q1 - x2 * q2, x0 - x1 * q2

@@ -34,90 +34,52 @@ Cost per evaluation:
     order_8: 80 operations
     order_9: 99 operations
     order_10: 120 operations
-Content hash d074eaaf47b4136a486e52e9be0904e9; derived with SymPy 1.14.0.
+Content hash 67e5dfb9373b540dde09a0ed389fcef9; derived with SymPy 1.14.0.
 """
 
 __all__ = [
-    "order_1",
-    "order_10",
-    "order_2",
-    "order_3",
-    "order_4",
-    "order_5",
-    "order_6",
-    "order_7",
-    "order_8",
-    "order_9",
+    "order_1", "order_2", "order_3", "order_4", "order_5", "order_6", "order_7", "order_8",
+    "order_9", "order_10",
 ]
-
 FAMILY = "recursion"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"recursion","mechanism":"hill","modes":n'
     'ull,"outputs":[]}'
 )
-CONTENT = "d074eaaf47b4136a486e52e9be0904e9"
+CONTENT = "67e5dfb9373b540dde09a0ed389fcef9"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "start": ("", "The resonant states, ``Omega_0``"),
+    "act": ("", "Applies V to a column, whose order rises by one"),
+    "resolve": ("", "Applies R to a column"),
+    "project": ("", "Takes P of a column, an effective operator"),
+    "combine": ("", "Multiplies ``Omega_j`` by ``h_i``"),
+    "effective": ("", "``h_1`` and on, each as ``project`` gives it"),
+    "wave": ("", "``Omega_1`` and on, each as ``resolve`` gives it"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "order_1": (
-        "effective",
-        "wave",
-    ),
-    "order_2": (
-        "effective",
-        "wave",
-    ),
-    "order_3": (
-        "effective",
-        "wave",
-    ),
-    "order_4": (
-        "effective",
-        "wave",
-    ),
-    "order_5": (
-        "effective",
-        "wave",
-    ),
-    "order_6": (
-        "effective",
-        "wave",
-    ),
-    "order_7": (
-        "effective",
-        "wave",
-    ),
-    "order_8": (
-        "effective",
-        "wave",
-    ),
-    "order_9": (
-        "effective",
-        "wave",
-    ),
-    "order_10": (
-        "effective",
-        "wave",
-    ),
+    "order_1": ("effective", "wave"),
+    "order_2": ("effective", "wave"),
+    "order_3": ("effective", "wave"),
+    "order_4": ("effective", "wave"),
+    "order_5": ("effective", "wave"),
+    "order_6": ("effective", "wave"),
+    "order_7": ("effective", "wave"),
+    "order_8": ("effective", "wave"),
+    "order_9": ("effective", "wave"),
+    "order_10": ("effective", "wave"),
 }
 
-# The effective operator written out: order, then coefficient and word of each term.  Between two
-# V stands P, or a power of R.
+# The effective operator written out: order, then coefficient and word of each term.  Between two V
+# stands P, or a power of R.
 WORDS = {
-    1: (
-        (1, "P V P"),
-    ),
-    2: (
-        (1, "P V R V P"),
-    ),
-    3: (
-        (-1, "P V R^2 V P V P"),
-        (1, "P V R V R V P"),
-    ),
+    1: ((1, "P V P"),),
+    2: ((1, "P V R V P"),),
+    3: ((-1, "P V R^2 V P V P"), (1, "P V R V R V P")),
     4: (
         (1, "P V R^3 V P V P V P"),
         (-1, "P V R^2 V P V R V P"),
@@ -191,57 +153,22 @@ WORDS = {
 def order_1(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 1.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 1
-        ``h_1``, each as ``project`` gives it.
-    wave : tuple of 1
-        ``Omega_1``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 1 each.
     """
     v1 = act(start)
     h1 = project(v1)
     omega1 = resolve(v1)
-    return (
-        (h1,),
-        (omega1,),
-    )
+    return (h1,), (omega1,)
 
 
 def order_2(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 2.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 2
-        ``h_1`` to ``h_2``, each as ``project`` gives it.
-    wave : tuple of 2
-        ``Omega_1`` to ``Omega_2``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 2 each.
     """
     effective, wave = order_1(start, act, resolve, project, combine)
     (h1,) = effective
@@ -249,34 +176,15 @@ def order_2(start, act, resolve, project, combine):
     v2 = act(omega1)
     h2 = project(v2)
     omega2 = resolve(v2 - combine(omega1, h1))
-    return (
-        (*effective, h2),
-        (*wave, omega2),
-    )
+    return (*effective, h2), (*wave, omega2)
 
 
 def order_3(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 3.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 3
-        ``h_1`` to ``h_3``, each as ``project`` gives it.
-    wave : tuple of 3
-        ``Omega_1`` to ``Omega_3``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 3 each.
     """
     effective, wave = order_2(start, act, resolve, project, combine)
     h1, h2 = effective
@@ -284,34 +192,15 @@ def order_3(start, act, resolve, project, combine):
     v3 = act(omega2)
     h3 = project(v3)
     omega3 = resolve(v3 - combine(omega1, h2) - combine(omega2, h1))
-    return (
-        (*effective, h3),
-        (*wave, omega3),
-    )
+    return (*effective, h3), (*wave, omega3)
 
 
 def order_4(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 4.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 4
-        ``h_1`` to ``h_4``, each as ``project`` gives it.
-    wave : tuple of 4
-        ``Omega_1`` to ``Omega_4``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 4 each.
     """
     effective, wave = order_3(start, act, resolve, project, combine)
     h1, h2, h3 = effective
@@ -319,34 +208,15 @@ def order_4(start, act, resolve, project, combine):
     v4 = act(omega3)
     h4 = project(v4)
     omega4 = resolve(v4 - combine(omega1, h3) - combine(omega2, h2) - combine(omega3, h1))
-    return (
-        (*effective, h4),
-        (*wave, omega4),
-    )
+    return (*effective, h4), (*wave, omega4)
 
 
 def order_5(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 5.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 5
-        ``h_1`` to ``h_5``, each as ``project`` gives it.
-    wave : tuple of 5
-        ``Omega_1`` to ``Omega_5``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 5 each.
     """
     effective, wave = order_4(start, act, resolve, project, combine)
     h1, h2, h3, h4 = effective
@@ -357,34 +227,15 @@ def order_5(start, act, resolve, project, combine):
         resolve(v5 - combine(omega1, h4) - combine(omega2, h3) - combine(omega3, h2)
         - combine(omega4, h1))
     )
-    return (
-        (*effective, h5),
-        (*wave, omega5),
-    )
+    return (*effective, h5), (*wave, omega5)
 
 
 def order_6(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 6.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 6
-        ``h_1`` to ``h_6``, each as ``project`` gives it.
-    wave : tuple of 6
-        ``Omega_1`` to ``Omega_6``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 6 each.
     """
     effective, wave = order_5(start, act, resolve, project, combine)
     h1, h2, h3, h4, h5 = effective
@@ -395,34 +246,15 @@ def order_6(start, act, resolve, project, combine):
         resolve(v6 - combine(omega1, h5) - combine(omega2, h4) - combine(omega3, h3)
         - combine(omega4, h2) - combine(omega5, h1))
     )
-    return (
-        (*effective, h6),
-        (*wave, omega6),
-    )
+    return (*effective, h6), (*wave, omega6)
 
 
 def order_7(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 7.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 7
-        ``h_1`` to ``h_7``, each as ``project`` gives it.
-    wave : tuple of 7
-        ``Omega_1`` to ``Omega_7``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 7 each.
     """
     effective, wave = order_6(start, act, resolve, project, combine)
     h1, h2, h3, h4, h5, h6 = effective
@@ -433,34 +265,15 @@ def order_7(start, act, resolve, project, combine):
         resolve(v7 - combine(omega1, h6) - combine(omega2, h5) - combine(omega3, h4)
         - combine(omega4, h3) - combine(omega5, h2) - combine(omega6, h1))
     )
-    return (
-        (*effective, h7),
-        (*wave, omega7),
-    )
+    return (*effective, h7), (*wave, omega7)
 
 
 def order_8(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 8.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 8
-        ``h_1`` to ``h_8``, each as ``project`` gives it.
-    wave : tuple of 8
-        ``Omega_1`` to ``Omega_8``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 8 each.
     """
     effective, wave = order_7(start, act, resolve, project, combine)
     h1, h2, h3, h4, h5, h6, h7 = effective
@@ -471,34 +284,15 @@ def order_8(start, act, resolve, project, combine):
         resolve(v8 - combine(omega1, h7) - combine(omega2, h6) - combine(omega3, h5)
         - combine(omega4, h4) - combine(omega5, h3) - combine(omega6, h2) - combine(omega7, h1))
     )
-    return (
-        (*effective, h8),
-        (*wave, omega8),
-    )
+    return (*effective, h8), (*wave, omega8)
 
 
 def order_9(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 9.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 9
-        ``h_1`` to ``h_9``, each as ``project`` gives it.
-    wave : tuple of 9
-        ``Omega_1`` to ``Omega_9``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 9 each.
     """
     effective, wave = order_8(start, act, resolve, project, combine)
     h1, h2, h3, h4, h5, h6, h7, h8 = effective
@@ -510,34 +304,15 @@ def order_9(start, act, resolve, project, combine):
         - combine(omega4, h5) - combine(omega5, h4) - combine(omega6, h3) - combine(omega7, h2)
         - combine(omega8, h1))
     )
-    return (
-        (*effective, h9),
-        (*wave, omega9),
-    )
+    return (*effective, h9), (*wave, omega9)
 
 
 def order_10(start, act, resolve, project, combine):
     """Return the effective operators and the columns up to order 10.
 
-    Parameters
-    ----------
     start : column
-        The resonant states, ``Omega_0``.
-    act : callable
-        Applies V to a column, whose order rises by one.
-    resolve : callable
-        Applies R to a column.
-    project : callable
-        Takes P of a column, an effective operator.
-    combine : callable
-        Multiplies ``Omega_j`` by ``h_i``.
-
-    Returns
-    -------
-    effective : tuple of 10
-        ``h_1`` to ``h_10``, each as ``project`` gives it.
-    wave : tuple of 10
-        ``Omega_1`` to ``Omega_10``, each as ``resolve`` gives it.
+    act, resolve, project, combine : callable
+    Returns tuple of 10 each.
     """
     effective, wave = order_9(start, act, resolve, project, combine)
     h1, h2, h3, h4, h5, h6, h7, h8, h9 = effective
@@ -549,7 +324,4 @@ def order_10(start, act, resolve, project, combine):
         - combine(omega4, h6) - combine(omega5, h5) - combine(omega6, h4) - combine(omega7, h3)
         - combine(omega8, h2) - combine(omega9, h1))
     )
-    return (
-        (*effective, h10),
-        (*wave, omega10),
-    )
+    return (*effective, h10), (*wave, omega10)

@@ -16,84 +16,87 @@ Cost per evaluation:
     shaking_force: 86 operations
     shaking_moment: 88 operations
     load_forces: 59 operations
-Content hash 5f3ba56fca42c20bcadc919b2111c40b; derived with SymPy 1.14.0.
+Content hash f457938480db39eb4e0b01cb10bb3980; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "driving_torque",
-    "forces",
-    "load_forces",
-    "pin_forces",
-    "shaking_force",
-    "shaking_moment",
+    "forces", "pin_forces", "driving_torque", "shaking_force", "shaking_moment", "load_forces",
 ]
-
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"quick_return","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "5f3ba56fca42c20bcadc919b2111c40b"
+CONTENT = "f457938480db39eb4e0b01cb10bb3980"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle from the line DA"),
+    "speed": ("rad/s", "Crank speed"),
+    "acceleration": ("rad/s^2", "Crank acceleration"),
+    "frame": ("m", "Distance DA of the rod's pivot from the crank's"),
+    "crank": ("m", "Length of the crank AB"),
+    "mass2": ("kg", "Mass of link 2"),
+    "along2": ("kg m", "First moment along link 2"),
+    "across2": ("kg m", "First moment across link 2"),
+    "inertia2": ("kg m^2", "Inertia, about its first joint, of link 2"),
+    "mass3": ("kg", "Mass of link 3"),
+    "along3": ("kg m", "First moment along link 3"),
+    "across3": ("kg m", "First moment across link 3"),
+    "inertia3": ("kg m^2", "Inertia, about its first joint, of link 3"),
+    "mass4": ("kg", "Mass of link 4"),
+    "along4": ("kg m", "First moment along link 4"),
+    "across4": ("kg m", "First moment across link 4"),
+    "inertia4": ("kg m^2", "Inertia, about its first joint, of link 4"),
+    "x12": ("N", "Force of link 1 on link 2 along x"),
+    "y12": ("N", "Force of link 1 on link 2 along y"),
+    "x23": ("N", "Force of link 2 on link 3 along x"),
+    "y23": ("N", "Force of link 2 on link 3 along y"),
+    "x34": ("N", "Force of link 3 on link 4 along x"),
+    "y34": ("N", "Force of link 3 on link 4 along y"),
+    "x41": ("N", "Force of link 4 on link 1 along x"),
+    "y41": ("N", "Force of link 4 on link 1 along y"),
+    "couple34": ("N m", "Couple of link 3 on link 4"),
+    "torque": ("N m", "Torque of the drive on the crank, anticlockwise"),
+    "shaking_x": ("N", "Force on the frame along x"),
+    "shaking_y": ("N", "Force on the frame along y"),
+    "shaking_moment": ("N m", "Moment on the frame about A, the drive's reaction in it"),
+    "fx2": ("N", "Force along x at the first joint of link 2"),
+    "fy2": ("N", "Force along y at the first joint of link 2"),
+    "couple2": ("N m", "Couple on link 2"),
+    "fx3": ("N", "Force along x at the first joint of link 3"),
+    "fy3": ("N", "Force along y at the first joint of link 3"),
+    "couple3": ("N m", "Couple on link 3"),
+    "fx4": ("N", "Force along x at the first joint of link 4"),
+    "fy4": ("N", "Force along y at the first joint of link 4"),
+    "couple4": ("N m", "Couple on link 4"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
     "forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "couple34",
-        "torque",
-        "shaking_x",
-        "shaking_y",
-        "shaking_moment",
+        "x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "couple34", "torque", "shaking_x",
+        "shaking_y", "shaking_moment",
     ),
-    "pin_forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "couple34",
-    ),
-    "driving_torque": (
-        "torque",
-    ),
-    "shaking_force": (
-        "shaking_x",
-        "shaking_y",
-    ),
-    "shaking_moment": (
-        "shaking_moment",
-    ),
+    "pin_forces": ("x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "couple34"),
+    "driving_torque": ("torque",),
+    "shaking_force": ("shaking_x", "shaking_y"),
+    "shaking_moment": ("shaking_moment",),
     "load_forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "couple34",
-        "torque",
-        "shaking_x",
-        "shaking_y",
-        "shaking_moment",
+        "x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "couple34", "torque", "shaking_x",
+        "shaking_y", "shaking_moment",
     ),
+}
+
+# Terms of the energies that may be left out, to the names of what then vanishes, or to the
+# separated terms that go and those that come.
+DROPS = {
+    ("across",): ("across2", "across3", "across4"),
+    ("crank_acceleration",): ("acceleration",),
+    ("across", "crank_acceleration"): ("across2", "across3", "across4", "acceleration"),
 }
 
 
@@ -110,75 +113,11 @@ def forces(
 ):
     """Return every joint force, the torque, and the force and moment on the frame.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    couple34 : ndarray, shape (...)
-        Couple of link 3 on link 4 [N m].
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -254,21 +193,12 @@ def forces(
     x24 = acceleration + turn_th4
     x25 = 2 - slip4
     return (
-        x12,
-        y12,
-        x23,
-        y23,
-        -x18,
-        x19,
-        x41,
-        y41,
-        -push3_moment,
+        x12, y12, x23, y23, -x18, x19, x41, y41, -push3_moment,
         (
             c4 * (x21 * sin24 + x16 * x20) + c5 * (x21 * cos24 - x17 * x20) + omega4 * push4_moment
             + x15 * omega4 + x22
         ),
-        -push2_x - push3_x - push4_x,
-        -push2_y - push3_y - push4_y,
+        -push2_x - push3_x - push4_x, -push2_y - push3_y - push4_y,
         (
             -c4 * (x24 * sin24 + x16 * x25 * slip4) + c5 * (square * x25 * sin24 * slip4 - x24 *
             cos24) + frame * push4_y - push4_moment - x15 - x22
@@ -282,67 +212,11 @@ def pin_forces(
 ):
     """Return every joint force.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    couple34 : ndarray, shape (...)
-        Couple of link 3 on link 4 [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -410,17 +284,7 @@ def pin_forces(
     x41 = -push4_x - x14
     del push3_y, push2_y, push4_x
     y41 = x15 - push4_y
-    return (
-        x12,
-        y12,
-        x23,
-        y23,
-        -x14,
-        x15,
-        x41,
-        y41,
-        -push3_moment,
-    )
+    return x12, y12, x23, y23, -x14, x15, x41, y41, -push3_moment
 
 
 def driving_torque(
@@ -429,51 +293,11 @@ def driving_torque(
 ):
     """Return the torque on the crank, by virtual power.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -528,53 +352,11 @@ def shaking_force(
 ):
     """Return the force on the frame, the change of momentum.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -618,10 +400,7 @@ def shaking_force(
     push4_x = -across4 * x9 - along4 * x8
     push4_y = along4 * x9 - across4 * x8
     del x7, x6, x8, x9
-    return (
-        -push2_x - push3_x - push4_x,
-        -push2_y - push3_y - push4_y,
-    )
+    return -push2_x - push3_x - push4_x, -push2_y - push3_y - push4_y
 
 
 def shaking_moment(
@@ -630,51 +409,11 @@ def shaking_moment(
 ):
     """Return the moment on the frame about A, the change of moment of momentum.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    frame, crank : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -732,65 +471,10 @@ def shaking_moment(
 def load_forces(theta2, frame, crank, fx2, fy2, couple2, fx3, fy3, couple3, fx4, fy4, couple4):
     """Return what external loads alone call forth.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    fx2 : float or ndarray
-        Force along x at the first joint of link 2 [N].
-    fy2 : float or ndarray
-        Force along y at the first joint of link 2 [N].
-    couple2 : float or ndarray
-        Couple on link 2 [N m].
-    fx3 : float or ndarray
-        Force along x at the first joint of link 3 [N].
-    fy3 : float or ndarray
-        Force along y at the first joint of link 3 [N].
-    couple3 : float or ndarray
-        Couple on link 3 [N m].
-    fx4 : float or ndarray
-        Force along x at the first joint of link 4 [N].
-    fy4 : float or ndarray
-        Force along y at the first joint of link 4 [N].
-    couple4 : float or ndarray
-        Couple on link 4 [N m].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    couple34 : ndarray, shape (...)
-        Couple of link 3 on link 4 [N m].
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    frame, crank : float
+    fx2 to couple4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -829,17 +513,6 @@ def load_forces(theta2, frame, crank, fx2, fy2, couple2, fx3, fy3, couple3, fx4,
     c4 = -fy3 * crank
     c5 = fy4 * frame - couple2 - x5
     return (
-        x12,
-        y12,
-        x23,
-        y23,
-        -x6,
-        x7,
-        x41,
-        y41,
-        couple3,
-        torque,
-        fx2 + fx3 + fx4,
-        fy2 + fy3 + fy4,
+        x12, y12, x23, y23, -x6, x7, x41, y41, couple3, torque, fx2 + fx3 + fx4, fy2 + fy3 + fy4,
         c3 * sin2 - c4 * cos2 - c5,
     )

@@ -13,36 +13,37 @@ At theta2 = 0 the rod's angle is 0.
 
 Cost per evaluation:
     motion: 48 operations
-Content hash ae3752500fa4eeb63d7207912aef153d; derived with SymPy 1.14.0.
+Content hash 18b088022299bcb954c3584b76fe4a00; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
-__all__ = [
-    "motion",
-]
-
+__all__ = ["motion"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"quick_return",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "ae3752500fa4eeb63d7207912aef153d"
+CONTENT = "18b088022299bcb954c3584b76fe4a00"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle from the line DA"),
+    "frame": ("m", "Distance DA of the rod's pivot from the crank's"),
+    "crank": ("m", "Length of the crank AB"),
+    "winding": ("", "1 where the crank is longer than the frame (the rod turns), else 0"),
+    "theta4": ("rad", "Rod angle from D to B, continuous over any number of turns"),
+    "slide": ("m", "Distance DB of the block along the rod"),
+    "omega4": ("", "Rod speed over crank speed, d theta4 / d theta2"),
+    "alpha4": ("", "Rod acceleration over crank speed squared, at constant crank speed"),
+    "slide_velocity": ("m", "Velocity of the block along the rod over crank speed"),
+    "slide_acceleration": ("m", "Second derivative of slide by the crank angle"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "motion": (
-        "theta4",
-        "slide",
-        "omega4",
-        "alpha4",
-        "slide_velocity",
-        "slide_acceleration",
-    ),
+    "motion": ("theta4", "slide", "omega4", "alpha4", "slide_velocity", "slide_acceleration"),
 }
 
 
@@ -56,35 +57,9 @@ def _namespace(array):
 def motion(theta2, frame, crank, winding):
     """Return angle, speed and acceleration of the rod, and the block's slide along it.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    winding : float
-        1 where the crank is longer than the frame (the rod turns), else 0.
-
-    Returns
-    -------
-    theta4 : ndarray, shape (...)
-        Rod angle from D to B, continuous over any number of turns [rad].
-    slide : ndarray, shape (...)
-        Distance DB of the block along the rod [m].
-    omega4 : ndarray, shape (...)
-        Rod speed over crank speed, d theta4 / d theta2.
-    alpha4 : ndarray, shape (...)
-        Rod acceleration over crank speed squared, at constant crank speed.
-    slide_velocity : ndarray, shape (...)
-        Velocity of the block along the rod over crank speed [m].
-    slide_acceleration : ndarray, shape (...)
-        Second derivative of slide by the crank angle [m].
-
-    Notes
-    -----
-    closure of the loop DA + AB = DB.
+    frame, crank, winding : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -114,9 +89,5 @@ def motion(theta2, frame, crank, winding):
             winding * theta2 + xp.atan2(x8 * (crank * (1 - winding) + winding * frame) * sin2, x3 +
             x8 * x4)
         ),
-        slide,
-        omega4,
-        alpha4,
-        slide_velocity,
-        slide_acceleration,
+        slide, omega4, alpha4, slide_velocity, slide_acceleration,
     )

@@ -18,100 +18,107 @@ Cost per evaluation:
     drift_beyond: 251 operations
     pair_integrals: 72 operations
     own_integrals: 127 operations
-Content hash 084b2e0f8156953e0f28d1e9997e6a6a; derived with SymPy 1.14.0.
+Content hash 2a6742eebc45f63025a05a0f4b69f581; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "characteristic",
-    "drift_before",
-    "drift_beyond",
-    "end_values",
-    "modes_before",
-    "modes_beyond",
-    "own_integrals",
-    "pair_integrals",
+    "characteristic", "end_values", "modes_before", "drift_before", "modes_beyond", "drift_beyond",
+    "pair_integrals", "own_integrals",
 ]
-
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"overhang_modes","mechanism":"quick_retu'
     'rn","modes":null,"outputs":[]}'
 )
-CONTENT = "084b2e0f8156953e0f28d1e9997e6a6a"
+CONTENT = "2a6742eebc45f63025a05a0f4b69f581"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "beta": ("", "Root: the mode solves e'''' = beta^4 e"),
+    "place": ("", "Place xi of the support, in lengths from the pin; above 0, to 1"),
+    "residual": ("", "Vanishes on a root, and changes its sign there"),
+    "residual_slope": ("", "Its derivative by beta"),
+    "left_amplitude": ("", "Factor of the wave between pin and support"),
+    "right_amplitude": ("", "Factor of the shape beyond the support"),
+    "left_growth": ("", "Derivative of the left amplitude by xi, over it"),
+    "right_growth": ("", "Derivative of the right amplitude by xi, over it"),
+    "rate": ("", "Derivative of beta by xi, over beta"),
+    "span_rate": ("", "Derivative of beta xi by xi"),
+    "hang_rate": ("", "Derivative of beta (1 - xi) by xi"),
+    "root_slope": ("", "e' at the pin"),
+    "root_shear": ("", "e''' at the pin"),
+    "slope": ("", "e' at the support"),
+    "moment": ("", "e'' at the support"),
+    "shear": ("", "e''' before the support"),
+    "reaction": ("", "Jump of e''' at the support, beyond less before"),
+    "tip": ("", "e at the tip"),
+    "tip_slope": ("", "e' at the tip"),
+    "root_slope_drift": ("", "de'/dxi at the pin"),
+    "root_shear_drift": ("", "de'''/dxi at the pin"),
+    "slope_drift": ("", "de'/dxi at the support, eta fixed"),
+    "moment_drift": ("", "de''/dxi before the support, eta fixed"),
+    "shear_drift": ("", "de'''/dxi before the support, eta fixed"),
+    "reaction_drift": ("", "Jump of de'''/dxi at the support, eta fixed, beyond less before"),
+    "tip_drift": ("", "de/dxi at the tip"),
+    "tip_slope_drift": ("", "de'/dxi at the tip"),
+    "eta": ("", "Place of a point along the beam, in lengths from the pin"),
+    "value": ("", "e, of unit square over the beam, positive at the tip"),
+    "slope_along": ("", "e'"),
+    "curvature": ("", "e''"),
+    "third": ("", "e'''"),
+    "drift": ("", "de/dxi at a fixed point"),
+    "drift_slope": ("", "Its first derivative along the beam"),
+    "drift_curvature": ("", "Its second derivative along the beam"),
+    "beta_1": ("", "Of mode 1: Root: the mode solves e'''' = beta^4 e"),
+    "slope_1": ("", "Of mode 1: e' at the support"),
+    "moment_1": ("", "Of mode 1: e'' at the support"),
+    "reaction_1": ("", "Of mode 1: Jump of e''' at the support, beyond less before"),
+    "tip_1": ("", "Of mode 1: e at the tip"),
+    "slope_drift_1": ("", "Of mode 1: de'/dxi at the support, eta fixed"),
+    "reaction_drift_1": (
+        "", "Of mode 1: Jump of de'''/dxi at the support, eta fixed, beyond less before",
+    ),
+    "beta_2": ("", "Of mode 2: Root: the mode solves e'''' = beta^4 e"),
+    "slope_2": ("", "Of mode 2: e' at the support"),
+    "moment_2": ("", "Of mode 2: e'' at the support"),
+    "reaction_2": ("", "Of mode 2: Jump of e''' at the support, beyond less before"),
+    "tip_2": ("", "Of mode 2: e at the tip"),
+    "slope_drift_2": ("", "Of mode 2: de'/dxi at the support, eta fixed"),
+    "reaction_drift_2": (
+        "", "Of mode 2: Jump of de'''/dxi at the support, eta fixed, beyond less before",
+    ),
+    "drift_12": ("", "int e_1 de_2/dxi; with the modes exchanged, its negative"),
+    "drift_drift_12": ("", "int de_1/dxi de_2/dxi"),
+    "bending_drift_12": ("", "int e_1'' de_2''/dxi; with the modes exchanged, its negative"),
+    "tension_12": ("", "int (1 - eta^2)/2 e_1' e_2'"),
+    "drift_rate_12": ("", "Derivative of drift_12 by xi"),
+    "drift_drift": ("", "int (de/dxi)^2"),
+    "bending_drift": ("", "int e'' de''/dxi"),
+    "tension": ("", "int (1 - eta^2)/2 e'^2"),
+    "moment_integral": ("", "int eta e"),
+    "mean": ("", "int e"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "characteristic": (
-        "residual",
-        "residual_slope",
-    ),
+    "characteristic": ("residual", "residual_slope"),
     "end_values": (
-        "left_amplitude",
-        "right_amplitude",
-        "left_growth",
-        "right_growth",
-        "rate",
-        "span_rate",
-        "hang_rate",
-        "root_slope",
-        "root_shear",
-        "slope",
-        "moment",
-        "shear",
-        "reaction",
-        "tip",
-        "tip_slope",
-        "root_slope_drift",
-        "root_shear_drift",
-        "slope_drift",
-        "moment_drift",
-        "shear_drift",
-        "reaction_drift",
-        "tip_drift",
-        "tip_slope_drift",
+        "left_amplitude", "right_amplitude", "left_growth", "right_growth", "rate", "span_rate",
+        "hang_rate", "root_slope", "root_shear", "slope", "moment", "shear", "reaction", "tip",
+        "tip_slope", "root_slope_drift", "root_shear_drift", "slope_drift", "moment_drift",
+        "shear_drift", "reaction_drift", "tip_drift", "tip_slope_drift",
     ),
-    "modes_before": (
-        "value",
-        "slope_along",
-        "curvature",
-        "third",
-    ),
-    "drift_before": (
-        "drift",
-        "drift_slope",
-        "drift_curvature",
-    ),
-    "modes_beyond": (
-        "value",
-        "slope_along",
-        "curvature",
-        "third",
-    ),
-    "drift_beyond": (
-        "drift",
-        "drift_slope",
-        "drift_curvature",
-    ),
+    "modes_before": ("value", "slope_along", "curvature", "third"),
+    "drift_before": ("drift", "drift_slope", "drift_curvature"),
+    "modes_beyond": ("value", "slope_along", "curvature", "third"),
+    "drift_beyond": ("drift", "drift_slope", "drift_curvature"),
     "pair_integrals": (
-        "drift_12",
-        "drift_drift_12",
-        "bending_drift_12",
-        "tension_12",
-        "drift_rate_12",
+        "drift_12", "drift_drift_12", "bending_drift_12", "tension_12", "drift_rate_12",
     ),
-    "own_integrals": (
-        "drift_drift",
-        "bending_drift",
-        "tension",
-        "moment_integral",
-        "mean",
-    ),
+    "own_integrals": ("drift_drift", "bending_drift", "tension", "moment_integral", "mean"),
 }
 
 
@@ -125,23 +132,8 @@ def _namespace(array):
 def characteristic(beta, place):
     """Return what vanishes on a root, over growing factors, and its slope along beta.
 
-    Parameters
-    ----------
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-
-    Returns
-    -------
-    residual : ndarray, shape (...)
-        Vanishes on a root, and changes its sign there.
-    residual_slope : ndarray, shape (...)
-        Its derivative by beta.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    beta, place : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(beta)
     span = beta * place
@@ -201,65 +193,8 @@ def characteristic(beta, place):
 def end_values(beta, place):
     """Return amplitudes of modes of unit square, their growth, and values at the ends.
 
-    Parameters
-    ----------
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-
-    Returns
-    -------
-    left_amplitude : ndarray, shape (...)
-        Factor of the wave between pin and support.
-    right_amplitude : ndarray, shape (...)
-        Factor of the shape beyond the support.
-    left_growth : ndarray, shape (...)
-        Derivative of the left amplitude by xi, over it.
-    right_growth : ndarray, shape (...)
-        Derivative of the right amplitude by xi, over it.
-    rate : ndarray, shape (...)
-        Derivative of beta by xi, over beta.
-    span_rate : ndarray, shape (...)
-        Derivative of beta xi by xi.
-    hang_rate : ndarray, shape (...)
-        Derivative of beta (1 - xi) by xi.
-    root_slope : ndarray, shape (...)
-        e' at the pin.
-    root_shear : ndarray, shape (...)
-        e''' at the pin.
-    slope : ndarray, shape (...)
-        e' at the support.
-    moment : ndarray, shape (...)
-        e'' at the support.
-    shear : ndarray, shape (...)
-        e''' before the support.
-    reaction : ndarray, shape (...)
-        Jump of e''' at the support, beyond less before.
-    tip : ndarray, shape (...)
-        e at the tip.
-    tip_slope : ndarray, shape (...)
-        e' at the tip.
-    root_slope_drift : ndarray, shape (...)
-        de'/dxi at the pin.
-    root_shear_drift : ndarray, shape (...)
-        de'''/dxi at the pin.
-    slope_drift : ndarray, shape (...)
-        de'/dxi at the support, eta fixed.
-    moment_drift : ndarray, shape (...)
-        de''/dxi before the support, eta fixed.
-    shear_drift : ndarray, shape (...)
-        de'''/dxi before the support, eta fixed.
-    reaction_drift : ndarray, shape (...)
-        Jump of de'''/dxi at the support, eta fixed, beyond less before.
-    tip_drift : ndarray, shape (...)
-        de/dxi at the tip.
-    tip_slope_drift : ndarray, shape (...)
-        de'/dxi at the tip.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    beta, place : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(beta)
     span = beta * place
@@ -414,28 +349,9 @@ def end_values(beta, place):
     tip_slope_drift = (-x15 - x47) * x40 * hang_rate + rate * tip_slope + right_growth * tip_slope
     del x46, x15, x40, x47
     return (
-        left_amplitude,
-        right_amplitude,
-        left_growth,
-        right_growth,
-        rate,
-        span_rate,
-        hang_rate,
-        root_slope,
-        root_shear,
-        slope,
-        moment,
-        shear,
-        reaction,
-        tip,
-        tip_slope,
-        root_slope_drift,
-        root_shear_drift,
-        slope_drift,
-        moment_drift,
-        shear_drift,
-        reaction_drift,
-        tip_drift,
+        left_amplitude, right_amplitude, left_growth, right_growth, rate, span_rate, hang_rate,
+        root_slope, root_shear, slope, moment, shear, reaction, tip, tip_slope, root_slope_drift,
+        root_shear_drift, slope_drift, moment_drift, shear_drift, reaction_drift, tip_drift,
         tip_slope_drift,
     )
 
@@ -443,31 +359,8 @@ def end_values(beta, place):
 def modes_before(beta, eta, place, left_amplitude):
     """Return modes up to the support and their derivatives along eta.
 
-    Parameters
-    ----------
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    eta : ndarray, shape (...)
-        Place of a point along the beam, in lengths from the pin.
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-    left_amplitude : ndarray, shape (...)
-        Factor of the wave between pin and support.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        e, of unit square over the beam, positive at the tip.
-    slope_along : ndarray, shape (...)
-        e'.
-    curvature : ndarray, shape (...)
-        e''.
-    third : ndarray, shape (...)
-        e'''.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    beta, eta, place, left_amplitude : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(beta)
     run = beta * eta
@@ -513,35 +406,8 @@ def modes_before(beta, eta, place, left_amplitude):
 def drift_before(beta, eta, place, left_amplitude, left_growth, rate, span_rate):
     """Return the derivatives of modes up to the support along the support's place xi.
 
-    Parameters
-    ----------
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    eta : ndarray, shape (...)
-        Place of a point along the beam, in lengths from the pin.
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-    left_amplitude : ndarray, shape (...)
-        Factor of the wave between pin and support.
-    left_growth : ndarray, shape (...)
-        Derivative of the left amplitude by xi, over it.
-    rate : ndarray, shape (...)
-        Derivative of beta by xi, over beta.
-    span_rate : ndarray, shape (...)
-        Derivative of beta xi by xi.
-
-    Returns
-    -------
-    drift : ndarray, shape (...)
-        de/dxi at a fixed point.
-    drift_slope : ndarray, shape (...)
-        Its first derivative along the beam.
-    drift_curvature : ndarray, shape (...)
-        Its second derivative along the beam.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    beta to span_rate : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(beta)
     x0 = beta * eta
@@ -604,31 +470,8 @@ def drift_before(beta, eta, place, left_amplitude, left_growth, rate, span_rate)
 def modes_beyond(beta, eta, place, right_amplitude):
     """Return modes beyond the support and their derivatives along eta.
 
-    Parameters
-    ----------
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    eta : ndarray, shape (...)
-        Place of a point along the beam, in lengths from the pin.
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-    right_amplitude : ndarray, shape (...)
-        Factor of the shape beyond the support.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        e, of unit square over the beam, positive at the tip.
-    slope_along : ndarray, shape (...)
-        e'.
-    curvature : ndarray, shape (...)
-        e''.
-    third : ndarray, shape (...)
-        e'''.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    beta, eta, place, right_amplitude : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(beta)
     rest = beta * (1 - eta)
@@ -720,35 +563,8 @@ def modes_beyond(beta, eta, place, right_amplitude):
 def drift_beyond(beta, eta, place, right_amplitude, right_growth, rate, hang_rate):
     """Return the derivatives of modes beyond the support along the support's place xi.
 
-    Parameters
-    ----------
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    eta : ndarray, shape (...)
-        Place of a point along the beam, in lengths from the pin.
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-    right_amplitude : ndarray, shape (...)
-        Factor of the shape beyond the support.
-    right_growth : ndarray, shape (...)
-        Derivative of the right amplitude by xi, over it.
-    rate : ndarray, shape (...)
-        Derivative of beta by xi, over beta.
-    hang_rate : ndarray, shape (...)
-        Derivative of beta (1 - xi) by xi.
-
-    Returns
-    -------
-    drift : ndarray, shape (...)
-        de/dxi at a fixed point.
-    drift_slope : ndarray, shape (...)
-        Its first derivative along the beam.
-    drift_curvature : ndarray, shape (...)
-        Its second derivative along the beam.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    beta to hang_rate : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(beta)
     rest = beta * (1 - eta)
@@ -869,55 +685,8 @@ def pair_integrals(
 ):
     """Return integrals over two different modes.
 
-    Parameters
-    ----------
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-    beta_1 : ndarray, shape (...)
-        Of mode 1: Root: the mode solves e'''' = beta^4 e.
-    slope_1 : ndarray, shape (...)
-        Of mode 1: e' at the support.
-    moment_1 : ndarray, shape (...)
-        Of mode 1: e'' at the support.
-    reaction_1 : ndarray, shape (...)
-        Of mode 1: Jump of e''' at the support, beyond less before.
-    tip_1 : ndarray, shape (...)
-        Of mode 1: e at the tip.
-    slope_drift_1 : ndarray, shape (...)
-        Of mode 1: de'/dxi at the support, eta fixed.
-    reaction_drift_1 : ndarray, shape (...)
-        Of mode 1: Jump of de'''/dxi at the support, eta fixed, beyond less before.
-    beta_2 : ndarray, shape (...)
-        Of mode 2: Root: the mode solves e'''' = beta^4 e.
-    slope_2 : ndarray, shape (...)
-        Of mode 2: e' at the support.
-    moment_2 : ndarray, shape (...)
-        Of mode 2: e'' at the support.
-    reaction_2 : ndarray, shape (...)
-        Of mode 2: Jump of e''' at the support, beyond less before.
-    tip_2 : ndarray, shape (...)
-        Of mode 2: e at the tip.
-    slope_drift_2 : ndarray, shape (...)
-        Of mode 2: de'/dxi at the support, eta fixed.
-    reaction_drift_2 : ndarray, shape (...)
-        Of mode 2: Jump of de'''/dxi at the support, eta fixed, beyond less before.
-
-    Returns
-    -------
-    drift_12 : ndarray, shape (...)
-        int e_1 de_2/dxi; with the modes exchanged, its negative.
-    drift_drift_12 : ndarray, shape (...)
-        int de_1/dxi de_2/dxi.
-    bending_drift_12 : ndarray, shape (...)
-        int e_1'' de_2''/dxi; with the modes exchanged, its negative.
-    tension_12 : ndarray, shape (...)
-        int (1 - eta^2)/2 e_1' e_2'.
-    drift_rate_12 : ndarray, shape (...)
-        Derivative of drift_12 by xi.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    place to reaction_drift_2 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     gap = (beta_1 + beta_2) * (beta_1 - beta_2) * (beta_1**2 + beta_2**2)
     x0 = 1 / gap
@@ -957,55 +726,8 @@ def own_integrals(
 ):
     """Return integrals over one mode, and over one mode and itself.
 
-    Parameters
-    ----------
-    place : ndarray, shape (...)
-        Place xi of the support, in lengths from the pin; above 0, to 1.
-    beta : ndarray, shape (...)
-        Root: the mode solves e'''' = beta^4 e.
-    root_shear : ndarray, shape (...)
-        e''' at the pin.
-    slope : ndarray, shape (...)
-        e' at the support.
-    moment : ndarray, shape (...)
-        e'' at the support.
-    shear : ndarray, shape (...)
-        e''' before the support.
-    reaction : ndarray, shape (...)
-        Jump of e''' at the support, beyond less before.
-    tip : ndarray, shape (...)
-        e at the tip.
-    tip_slope : ndarray, shape (...)
-        e' at the tip.
-    slope_drift : ndarray, shape (...)
-        de'/dxi at the support, eta fixed.
-    moment_drift : ndarray, shape (...)
-        de''/dxi before the support, eta fixed.
-    reaction_drift : ndarray, shape (...)
-        Jump of de'''/dxi at the support, eta fixed, beyond less before.
-    tip_drift : ndarray, shape (...)
-        de/dxi at the tip.
-    tip_slope_drift : ndarray, shape (...)
-        de'/dxi at the tip.
-    rate : ndarray, shape (...)
-        Derivative of beta by xi, over beta.
-
-    Returns
-    -------
-    drift_drift : ndarray, shape (...)
-        int (de/dxi)^2.
-    bending_drift : ndarray, shape (...)
-        int e'' de''/dxi.
-    tension : ndarray, shape (...)
-        int (1 - eta^2)/2 e'^2.
-    moment_integral : ndarray, shape (...)
-        int eta e.
-    mean : ndarray, shape (...)
-        int e.
-
-    Notes
-    -----
-    Beale & Scott (3)-(6); Beale & Scott (8)-(11).
+    place to rate : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = rate / 4
     x1 = rate**2
@@ -1039,6 +761,5 @@ def own_integrals(
             5 * x2 / 16 + x3 + x4 * (moment * reaction / 8 - x14 * place - x6 * place / 8 + x15 *
             reaction * shear / 12 - x12 * x7 / 8 + x15 * x8 / 24 - x9 / 8)
         ),
-        -x10 * x4,
-        x4 * (-reaction - root_shear),
+        -x10 * x4, x4 * (-reaction - root_shear),
     )

@@ -14,58 +14,54 @@ Cost per evaluation:
     forcing_functions: 22 operations
     acceleration_forcing_functions: 18 operations
     place: 15 operations
-Content hash 634abe6a2d167771cb6d142b23383b55; derived with SymPy 1.14.0.
+    basis_products: 11 operations
+Content hash eb186bfbb05d735ec4eaa83da9f60f53; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "acceleration_forcing_functions",
-    "angle_functions",
-    "forcing_functions",
-    "place",
-    "scales",
+    "scales", "angle_functions", "forcing_functions", "acceleration_forcing_functions", "place",
+    "basis_products",
 ]
-
 FAMILY = "linear_periodic"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":["rod"],"formulation":"moving_basis","mechanism":"quick_r'
     'eturn","modes":null,"outputs":[]}'
 )
-CONTENT = "634abe6a2d167771cb6d142b23383b55"
-EXTERNAL = ()
+CONTENT = "eb186bfbb05d735ec4eaa83da9f60f53"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-    ("bending_stiffness", "N m^2", "EI of the rod"),
-    ("mass_per_length", "kg/m", "m of the rod"),
-    ("damping", "N s/m^2", "Viscous damping of the rod per length"),
-    ("internal_damping", "N m^2 s", "Moment per rate of curvature (Kelvin-Voigt)"),
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "bending_stiffness": ("N m^2", "EI of the rod"),
+    "mass_per_length": ("kg/m", "m of the rod"),
+    "damping": ("N s/m^2", "Viscous damping of the rod per length"),
+    "internal_damping": ("N m^2 s", "Moment per rate of curvature (Kelvin-Voigt)"),
+    "length": ("m", "Length of the rod from D to its tip"),
+    "theta2": ("rad", "Crank angle from the line DA"),
+    "frame": ("m", "Distance DA of the rod's pivot from the crank's"),
+    "crank": ("m", "Length of the crank AB"),
+    "place": ("", "Place of the support as a fraction of the length"),
+    "mean_row": ("", "The vector mean, along the rows"),
+    "moment_row": ("", "The vector moment, along the rows"),
+    "mean_column": ("", "The vector mean, along the columns"),
+    "moment_column": ("", "The vector moment, along the columns"),
+}
+PARAMETERS = ("bending_stiffness", "mass_per_length", "damping", "internal_damping")
 
 # Names of what each function returns, in order.
 RETURNS = {
     "scales": (
-        "damping_over_mass_per_length",
-        "internal_damping_over_length_mass_per_length",
+        "damping_over_mass_per_length", "internal_damping_over_length_mass_per_length",
         "bending_stiffness_over_length_mass_per_length",
     ),
-    "angle_functions": (
-        "angle_sliding",
-        "angle_omega4",
-        "angle_sliding_3",
-        "angle_omega4_4",
-    ),
-    "forcing_functions": (
-        "forcing_alpha4",
-    ),
-    "acceleration_forcing_functions": (
-        "acceleration_forcing_omega4",
-    ),
-    "place": (
-        "place",
-    ),
+    "angle_functions": ("angle_sliding", "angle_omega4", "angle_sliding_3", "angle_omega4_4"),
+    "forcing_functions": ("forcing_alpha4",),
+    "acceleration_forcing_functions": ("acceleration_forcing_omega4",),
+    "place": ("place",),
+    "basis_products": ("frame",),
 }
+EXTERNAL = ()
 
 # Integrals over shapes e_i(eta; xi) that are passed in: name, coefficients of the weight by powers
 # of eta, derivatives by eta and xi of the first and of the second factor, and the eta of a value
@@ -78,10 +74,11 @@ BASIS = (
     ("bending", (1.0,), (2, 0), (2, 0), None),
     ("bending_drift", (1.0,), (2, 0), (2, 1), None),
     ("moment", (0.0, 1.0), (0, 0), None, None),
+    ("mean", (1.0,), (0, 0), None, None),
 )
 
-# Separated terms: array, extra power of the crank speed, scale, function of angle, modal array or
-# integral over the shapes.
+# Separated terms: array, extra power of the crank speed, scale, function of angle, and modal array
+# or integral over the shapes.
 TERMS = (
     ("M", 0, None, None, "overlap"),
     ("A", 0, None, "angle_sliding", "drift"),
@@ -97,6 +94,16 @@ TERMS = (
     ("g", 0, None, "acceleration_forcing_omega4", "moment"),
 )
 
+# Terms of the energies that may be left out, to the names of what then vanishes, or to the
+# separated terms that go and those that come.
+DROPS = {
+    ("frame",): ((), (("B", 0, None, "angle_omega4_4", "frame"),)),
+    ("tension",): (
+        (("B", 0, None, "angle_omega4_4", "tension"),), (("B", 0, None, "angle_omega4", "frame"),),
+    ),
+    ("frame", "tension"): ((("B", 0, None, "angle_omega4_4", "tension"),), ()),
+}
+
 
 def _namespace(array):
     """Return the array namespace of an argument, NumPy where it has none."""
@@ -108,65 +115,20 @@ def _namespace(array):
 def scales(bending_stiffness, mass_per_length, damping, internal_damping, length):
     """Return the factors made of parameters.
 
-    Parameters
-    ----------
-    bending_stiffness : float
-        EI of the rod [N m^2].
-    mass_per_length : float
-        m of the rod [kg/m].
-    damping : float
-        Viscous damping of the rod per length [N s/m^2].
-    internal_damping : float
-        Moment per rate of curvature (Kelvin-Voigt) [N m^2 s].
-    length : float
-        Length of the rod from D to its tip [m].
-
-    Returns
-    -------
-    damping_over_mass_per_length : float or ndarray
-        Factor damping/mass_per_length.
-    internal_damping_over_length_mass_per_length : float or ndarray
-        Factor internal_damping/(length**4*mass_per_length).
-    bending_stiffness_over_length_mass_per_length : float or ndarray
-        Factor bending_stiffness/(length**4*mass_per_length).
+    bending_stiffness, mass_per_length, damping, internal_damping, length : float
+    Returns float or ndarray each.
     """
     x0 = 1 / mass_per_length
     x1 = x0 / length**4
-    return (
-        x0 * damping,
-        x1 * internal_damping,
-        x1 * bending_stiffness,
-    )
+    return x0 * damping, x1 * internal_damping, x1 * bending_stiffness
 
 
 def angle_functions(theta2, frame, crank, length):
     """Return the functions of angle in the matrices.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    length : float
-        Length of the rod from D to its tip [m].
-
-    Returns
-    -------
-    angle_sliding : ndarray, shape (...)
-        Function of angle sliding.
-    angle_omega4 : ndarray, shape (...)
-        Function of angle omega4**2.
-    angle_sliding_3 : ndarray, shape (...)
-        Function of angle sliding**2.
-    angle_omega4_4 : ndarray, shape (...)
-        Function of angle -omega4**2.
-
-    Notes
-    -----
-    Beale & Scott (1)-(4); Beale & Scott (16); Beale & Scott (18).
+    frame, crank, length : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -186,34 +148,15 @@ def angle_functions(theta2, frame, crank, length):
     sliding = slide_velocity / length
     del sin2, slide, slide_velocity
     x3 = omega4**2
-    return (
-        sliding,
-        x3,
-        sliding**2,
-        -x3,
-    )
+    return sliding, x3, sliding**2, -x3
 
 
 def forcing_functions(theta2, frame, crank):
     """Return the functions of angle in the forcing.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-
-    Returns
-    -------
-    forcing_alpha4 : ndarray, shape (...)
-        Function of angle -alpha4.
-
-    Notes
-    -----
-    Beale & Scott (1)-(4); Beale & Scott (16); Beale & Scott (18).
+    frame, crank : float
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -231,23 +174,9 @@ def forcing_functions(theta2, frame, crank):
 def acceleration_forcing_functions(theta2, frame, crank):
     """Return the functions of angle in the forcing while the crank accelerates.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-
-    Returns
-    -------
-    acceleration_forcing_omega4 : ndarray, shape (...)
-        Function of angle -omega4.
-
-    Notes
-    -----
-    Beale & Scott (1)-(4); Beale & Scott (16); Beale & Scott (18).
+    frame, crank : float
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -267,21 +196,9 @@ def acceleration_forcing_functions(theta2, frame, crank):
 def place(theta2, frame, crank, length):
     """Return the place of the support, on which the shapes depend.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the line DA [rad].
-    frame : float
-        Distance DA of the rod's pivot from the crank's [m].
-    crank : float
-        Length of the crank AB [m].
-    length : float
-        Length of the rod from D to its tip [m].
-
-    Returns
-    -------
-    place : ndarray, shape (...)
-        Place of the support as a fraction of the length.
+    frame, crank, length : float
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     near = frame - crank
@@ -294,3 +211,16 @@ def place(theta2, frame, crank, length):
     slide = xp.sqrt(slide2)
     place = slide / length
     return place
+
+
+def basis_products(mean_row, moment_row, mean_column, moment_column):
+    """Return the matrices that are made of products of integrals.
+
+    mean_row, moment_row : ndarray, shape (..., N, 1)
+    mean_column, moment_column : ndarray, shape (..., 1, N)
+    Returns ndarray, shape (..., N, N).
+    """
+    return (
+        12 * mean_column * mean_row - 18 * mean_column * moment_row - 18 * mean_row * moment_column
+        + 24 * moment_column * moment_row
+    )

@@ -18,127 +18,57 @@ Cost per evaluation:
     turn_tail: 28 operations
     bubble_bay: 65 operations
     bubble_tail: 46 operations
-Content hash c2285774d56fe29e2c58fa590c390f10; derived with SymPy 1.14.0.
+Content hash 920537093d60860061f8a7d0059367ee; derived with SymPy 1.14.0.
 """
 
-import numpy as np
-
-__all__ = [
-    "bubble_bay",
-    "bubble_tail",
-    "through_bay",
-    "through_tail",
-    "turn_bay",
-    "turn_tail",
-]
-
+__all__ = ["through_bay", "through_tail", "turn_bay", "turn_tail", "bubble_bay", "bubble_tail"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"rod_polynomials","mechanism":"quick_ret'
     'urn","modes":null,"outputs":[]}'
 )
-CONTENT = "c2285774d56fe29e2c58fa590c390f10"
+CONTENT = "920537093d60860061f8a7d0059367ee"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "eta": ("", "Place on the rod over its length, from the pin"),
+    "gap": ("", "eta - xi, without cancellation"),
+    "p": ("", "Polynomial in eta"),
+    "p_d1": ("", "Derivative 1 of p by eta"),
+    "p_d2": ("", "Derivative 2 of p by eta"),
+    "p_d3": ("", "Derivative 3 of p by eta"),
+    "value": ("", "Shape e"),
+    "slope": ("", "First derivative by eta"),
+    "curvature": ("", "Second derivative by eta"),
+    "shear": ("", "Third derivative by eta"),
+    "drift": ("", "Derivative by xi at fixed eta"),
+    "drift_curvature": ("", "Second derivative by eta of the derivative by xi"),
+    "xi": ("", "The block's place over the rod's length"),
+    "s": ("", "Local coordinate of the side, 0 to 1 away from the pin"),
+    "length": ("", "Length of the side over the rod's"),
+    "j": ("", "Polynomial in s"),
+    "j_d1": ("", "Derivative 1 of j by s"),
+    "j_d2": ("", "Derivative 2 of j by s"),
+    "j_d3": ("", "Derivative 3 of j by s"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
-    "through_bay": (
-        "value",
-        "slope",
-        "curvature",
-        "shear",
-        "drift",
-        "drift_curvature",
-    ),
-    "through_tail": (
-        "value",
-        "slope",
-        "curvature",
-        "shear",
-        "drift",
-        "drift_curvature",
-    ),
-    "turn_bay": (
-        "value",
-        "slope",
-        "curvature",
-        "shear",
-        "drift",
-        "drift_curvature",
-    ),
-    "turn_tail": (
-        "value",
-        "slope",
-        "curvature",
-        "shear",
-        "drift",
-        "drift_curvature",
-    ),
-    "bubble_bay": (
-        "value",
-        "slope",
-        "curvature",
-        "shear",
-        "drift",
-        "drift_curvature",
-    ),
-    "bubble_tail": (
-        "value",
-        "slope",
-        "curvature",
-        "shear",
-        "drift",
-        "drift_curvature",
-    ),
+    "through_bay": ("value", "slope", "curvature", "shear", "drift", "drift_curvature"),
+    "through_tail": ("value", "slope", "curvature", "shear", "drift", "drift_curvature"),
+    "turn_bay": ("value", "slope", "curvature", "shear", "drift", "drift_curvature"),
+    "turn_tail": ("value", "slope", "curvature", "shear", "drift", "drift_curvature"),
+    "bubble_bay": ("value", "slope", "curvature", "shear", "drift", "drift_curvature"),
+    "bubble_tail": ("value", "slope", "curvature", "shear", "drift", "drift_curvature"),
 }
-
-
-def _namespace(array):
-    """Return the array namespace of an argument, NumPy where it has none."""
-    if hasattr(array, "__array_namespace__"):
-        return array.__array_namespace__()
-    return np
 
 
 def through_bay(eta, gap, p, p_d1, p_d2, p_d3):
     """Return modes eta (eta - xi) p(eta) between pin and block, and their derivatives.
 
-    Parameters
-    ----------
-    eta : ndarray, shape (...)
-        Place on the rod over its length, from the pin.
-    gap : ndarray, shape (...)
-        eta - xi, without cancellation.
-    p : ndarray, shape (...)
-        Polynomial in eta.
-    p_d1 : ndarray, shape (...)
-        Derivative 1 of p by eta.
-    p_d2 : ndarray, shape (...)
-        Derivative 2 of p by eta.
-    p_d3 : ndarray, shape (...)
-        Derivative 3 of p by eta.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        Shape e.
-    slope : ndarray, shape (...)
-        First derivative by eta.
-    curvature : ndarray, shape (...)
-        Second derivative by eta.
-    shear : ndarray, shape (...)
-        Third derivative by eta.
-    drift : ndarray, shape (...)
-        Derivative by xi at fixed eta.
-    drift_curvature : ndarray, shape (...)
-        Second derivative by eta of the derivative by xi.
-
-    Notes
-    -----
-    Beale & Scott (12)-(14); the same with one polynomial on each side.
+    eta, gap, p, p_d1, p_d2, p_d3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = p * eta
     x1 = eta * gap
@@ -146,62 +76,23 @@ def through_bay(eta, gap, p, p_d1, p_d2, p_d3):
     x3 = p_d2 * eta
     x4 = 2 * p_d1
     return (
-        x0 * gap,
-        p * x2 + p_d1 * x1,
-        x3 * gap + 2 * p + x2 * x4,
-        6 * p_d1 + 3 * p_d2 * x2 + p_d3 * x1,
-        -x0,
-        -x3 - x4,
+        x0 * gap, p * x2 + p_d1 * x1, x3 * gap + 2 * p + x2 * x4,
+        6 * p_d1 + 3 * p_d2 * x2 + p_d3 * x1, -x0, -x3 - x4,
     )
 
 
 def through_tail(gap, xi, p, p_d1, p_d2, p_d3):
     """Return modes xi (eta - xi) p(eta) beyond, and their derivatives.
 
-    Parameters
-    ----------
-    gap : ndarray, shape (...)
-        eta - xi, without cancellation.
-    xi : ndarray, shape (...)
-        The block's place over the rod's length.
-    p : ndarray, shape (...)
-        Polynomial in eta.
-    p_d1 : ndarray, shape (...)
-        Derivative 1 of p by eta.
-    p_d2 : ndarray, shape (...)
-        Derivative 2 of p by eta.
-    p_d3 : ndarray, shape (...)
-        Derivative 3 of p by eta.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        Shape e.
-    slope : ndarray, shape (...)
-        First derivative by eta.
-    curvature : ndarray, shape (...)
-        Second derivative by eta.
-    shear : ndarray, shape (...)
-        Third derivative by eta.
-    drift : ndarray, shape (...)
-        Derivative by xi at fixed eta.
-    drift_curvature : ndarray, shape (...)
-        Second derivative by eta of the derivative by xi.
-
-    Notes
-    -----
-    Beale & Scott (12)-(14); the same with one polynomial on each side.
+    gap, xi, p, p_d1, p_d2, p_d3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = p * xi
     x1 = gap * xi
     x2 = 2 * p_d1
     x3 = gap - xi
     return (
-        x0 * gap,
-        p_d1 * x1 + x0,
-        p_d2 * x1 + x2 * xi,
-        3 * p_d2 * xi + p_d3 * x1,
-        p * x3,
+        x0 * gap, p_d1 * x1 + x0, p_d2 * x1 + x2 * xi, 3 * p_d2 * xi + p_d3 * x1, p * x3,
         p_d2 * x3 + x2,
     )
 
@@ -209,39 +100,8 @@ def through_tail(gap, xi, p, p_d1, p_d2, p_d3):
 def turn_bay(s, length, j, j_d1, j_d2, j_d3):
     """Return shapes length s*(s - 1) j(s) of the bay, and their derivatives.
 
-    Parameters
-    ----------
-    s : ndarray, shape (...)
-        Local coordinate of the side, 0 to 1 away from the pin.
-    length : ndarray, shape (...)
-        Length of the side over the rod's.
-    j : ndarray, shape (...)
-        Polynomial in s.
-    j_d1 : ndarray, shape (...)
-        Derivative 1 of j by s.
-    j_d2 : ndarray, shape (...)
-        Derivative 2 of j by s.
-    j_d3 : ndarray, shape (...)
-        Derivative 3 of j by s.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        Shape e.
-    slope : ndarray, shape (...)
-        First derivative by eta.
-    curvature : ndarray, shape (...)
-        Second derivative by eta.
-    shear : ndarray, shape (...)
-        Third derivative by eta.
-    drift : ndarray, shape (...)
-        Derivative by xi at fixed eta.
-    drift_curvature : ndarray, shape (...)
-        Second derivative by eta of the derivative by xi.
-
-    Notes
-    -----
-    Beale & Scott (12)-(14); the same with one polynomial on each side.
+    s, length, j, j_d1, j_d2, j_d3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = s - 1
     x1 = x0 * s
@@ -255,11 +115,8 @@ def turn_bay(s, length, j, j_d1, j_d2, j_d3):
     x9 = j_d2 * x6
     x10 = s**2
     return (
-        j * x1 * length,
-        j * x3 + x2 * s,
-        2 * j_d1 * x3 * x4 + j_d2 * x1 * x4 + x4 * x5,
-        x1 * x8 + 3 * x3 * x9 + 6 * x7,
-        -j * x10 - x10 * x2,
+        j * x1 * length, j * x3 + x2 * s, 2 * j_d1 * x3 * x4 + j_d2 * x1 * x4 + x4 * x5,
+        x1 * x8 + 3 * x3 * x9 + 6 * x7, -j * x10 - x10 * x2,
         (4 - 7 * s) * x9 * s - x0 * x10 * x8 - x5 * x6 - 2 * x7 * (5 * s - 1),
     )
 
@@ -267,39 +124,8 @@ def turn_bay(s, length, j, j_d1, j_d2, j_d3):
 def turn_tail(s, length, j, j_d1, j_d2, j_d3):
     """Return shapes length s j(s) of the tail, and their derivatives.
 
-    Parameters
-    ----------
-    s : ndarray, shape (...)
-        Local coordinate of the side, 0 to 1 away from the pin.
-    length : ndarray, shape (...)
-        Length of the side over the rod's.
-    j : ndarray, shape (...)
-        Polynomial in s.
-    j_d1 : ndarray, shape (...)
-        Derivative 1 of j by s.
-    j_d2 : ndarray, shape (...)
-        Derivative 2 of j by s.
-    j_d3 : ndarray, shape (...)
-        Derivative 3 of j by s.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        Shape e.
-    slope : ndarray, shape (...)
-        First derivative by eta.
-    curvature : ndarray, shape (...)
-        Second derivative by eta.
-    shear : ndarray, shape (...)
-        Third derivative by eta.
-    drift : ndarray, shape (...)
-        Derivative by xi at fixed eta.
-    drift_curvature : ndarray, shape (...)
-        Second derivative by eta of the derivative by xi.
-
-    Notes
-    -----
-    Beale & Scott (12)-(14); the same with one polynomial on each side.
+    s, length, j, j_d1, j_d2, j_d3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = 1 / length
     x1 = 2 * j_d1
@@ -308,11 +134,7 @@ def turn_tail(s, length, j, j_d1, j_d2, j_d3):
     x4 = j_d3 * x2 * s
     x5 = s - 1
     return (
-        j * length * s,
-        j + j_d1 * s,
-        j_d2 * x0 * s + x0 * x1,
-        3 * x3 + x4,
-        j_d1 * x5 * s - j,
+        j * length * s, j + j_d1 * s, j_d2 * x0 * s + x0 * x1, 3 * x3 + x4, j_d1 * x5 * s - j,
         x1 * x2 + x3 * (4 * s - 3) + x4 * x5,
     )
 
@@ -320,39 +142,8 @@ def turn_tail(s, length, j, j_d1, j_d2, j_d3):
 def bubble_bay(s, length, j, j_d1, j_d2, j_d3):
     """Return shapes length s*(1 - s)**2 j(s) of the bay, and their derivatives.
 
-    Parameters
-    ----------
-    s : ndarray, shape (...)
-        Local coordinate of the side, 0 to 1 away from the pin.
-    length : ndarray, shape (...)
-        Length of the side over the rod's.
-    j : ndarray, shape (...)
-        Polynomial in s.
-    j_d1 : ndarray, shape (...)
-        Derivative 1 of j by s.
-    j_d2 : ndarray, shape (...)
-        Derivative 2 of j by s.
-    j_d3 : ndarray, shape (...)
-        Derivative 3 of j by s.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        Shape e.
-    slope : ndarray, shape (...)
-        First derivative by eta.
-    curvature : ndarray, shape (...)
-        Second derivative by eta.
-    shear : ndarray, shape (...)
-        Third derivative by eta.
-    drift : ndarray, shape (...)
-        Derivative by xi at fixed eta.
-    drift_curvature : ndarray, shape (...)
-        Second derivative by eta of the derivative by xi.
-
-    Notes
-    -----
-    Beale & Scott (12)-(14); the same with one polynomial on each side.
+    s, length, j, j_d1, j_d2, j_d3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = s - 1
     x1 = x0**2
@@ -372,11 +163,8 @@ def bubble_bay(s, length, j, j_d1, j_d2, j_d3):
     x15 = s**2
     x16 = 2 * x10
     return (
-        j * x2 * length,
-        x3 * s + x5 * x6,
-        j * x7 * x9 + j_d1 * x0 * x5 * x9 + j_d2 * x2 * x8,
-        j * x11 + j_d1 * x11 * x7 + x12 * x2 + 3 * x13 * x14,
-        -2 * x15 * x6 - x15 * x3,
+        j * x2 * length, x3 * s + x5 * x6, j * x7 * x9 + j_d1 * x0 * x5 * x9 + j_d2 * x2 * x8,
+        j * x11 + j_d1 * x11 * x7 + x12 * x2 + 3 * x13 * x14, -2 * x15 * x6 - x15 * x3,
         (
             (10 * s - 12 * x15 - 1) * j_d1 * x16 - 4 * j * x13 - x14 * x16 * s * (5 * s - 2) - x1 *
             x12 * x15
@@ -387,39 +175,8 @@ def bubble_bay(s, length, j, j_d1, j_d2, j_d3):
 def bubble_tail(s, length, j, j_d1, j_d2, j_d3):
     """Return shapes length s**2 j(s) of the tail, and their derivatives.
 
-    Parameters
-    ----------
-    s : ndarray, shape (...)
-        Local coordinate of the side, 0 to 1 away from the pin.
-    length : ndarray, shape (...)
-        Length of the side over the rod's.
-    j : ndarray, shape (...)
-        Polynomial in s.
-    j_d1 : ndarray, shape (...)
-        Derivative 1 of j by s.
-    j_d2 : ndarray, shape (...)
-        Derivative 2 of j by s.
-    j_d3 : ndarray, shape (...)
-        Derivative 3 of j by s.
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        Shape e.
-    slope : ndarray, shape (...)
-        First derivative by eta.
-    curvature : ndarray, shape (...)
-        Second derivative by eta.
-    shear : ndarray, shape (...)
-        Third derivative by eta.
-    drift : ndarray, shape (...)
-        Derivative by xi at fixed eta.
-    drift_curvature : ndarray, shape (...)
-        Second derivative by eta of the derivative by xi.
-
-    Notes
-    -----
-    Beale & Scott (12)-(14); the same with one polynomial on each side.
+    s, length, j, j_d1, j_d2, j_d3 : ndarray, shape (...)
+    Returns ndarray, shape (...) each.
     """
     x0 = s**2
     x1 = 2 * j
@@ -431,10 +188,7 @@ def bubble_tail(s, length, j, j_d1, j_d2, j_d3):
     x7 = j_d3 * x0 * x4
     x8 = s - 1
     return (
-        j * x0 * length,
-        x1 * s + x2,
-        4 * j_d1 * x3 * s + j_d2 * x0 * x3 + x1 * x3,
-        j_d1 * x5 + x5 * x6 + x7,
-        j * s * (s - 2) + x2 * x8,
+        j * x0 * length, x1 * s + x2, 4 * j_d1 * x3 * s + j_d2 * x0 * x3 + x1 * x3,
+        j_d1 * x5 + x5 * x6 + x7, j * s * (s - 2) + x2 * x8,
         2 * j_d1 * x4 * (5 * s - 3) + x1 * x4 + x4 * x6 * (7 * s - 6) + x7 * x8,
     )

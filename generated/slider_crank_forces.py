@@ -16,84 +16,89 @@ Cost per evaluation:
     shaking_force: 115 operations
     shaking_moment: 137 operations
     load_forces: 75 operations
-Content hash a920bcfe8cdc990847c488503af297fc; derived with SymPy 1.14.0.
+Content hash d94e762684c7b3a431b431f76394248b; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
 __all__ = [
-    "driving_torque",
-    "forces",
-    "load_forces",
-    "pin_forces",
-    "shaking_force",
-    "shaking_moment",
+    "forces", "pin_forces", "driving_torque", "shaking_force", "shaking_moment", "load_forces",
 ]
-
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"slider_crank","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "a920bcfe8cdc990847c488503af297fc"
+CONTENT = "d94e762684c7b3a431b431f76394248b"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle from the guide"),
+    "speed": ("rad/s", "Crank speed"),
+    "acceleration": ("rad/s^2", "Crank acceleration"),
+    "crank": ("m", "Length of the crank AB"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "offset": ("m", "Height of the guide over the crank's pivot A"),
+    "assembly": ("", "+1 where the slider is right of B (open), -1 left"),
+    "mass2": ("kg", "Mass of link 2"),
+    "along2": ("kg m", "First moment along link 2"),
+    "across2": ("kg m", "First moment across link 2"),
+    "inertia2": ("kg m^2", "Inertia, about its first joint, of link 2"),
+    "mass3": ("kg", "Mass of link 3"),
+    "along3": ("kg m", "First moment along link 3"),
+    "across3": ("kg m", "First moment across link 3"),
+    "inertia3": ("kg m^2", "Inertia, about its first joint, of link 3"),
+    "mass4": ("kg", "Mass of link 4"),
+    "along4": ("kg m", "First moment along link 4"),
+    "across4": ("kg m", "First moment across link 4"),
+    "inertia4": ("kg m^2", "Inertia, about its first joint, of link 4"),
+    "x12": ("N", "Force of link 1 on link 2 along x"),
+    "y12": ("N", "Force of link 1 on link 2 along y"),
+    "x23": ("N", "Force of link 2 on link 3 along x"),
+    "y23": ("N", "Force of link 2 on link 3 along y"),
+    "x34": ("N", "Force of link 3 on link 4 along x"),
+    "y34": ("N", "Force of link 3 on link 4 along y"),
+    "x41": ("N", "Force of link 4 on link 1 along x"),
+    "y41": ("N", "Force of link 4 on link 1 along y"),
+    "couple41": ("N m", "Couple of link 4 on link 1"),
+    "torque": ("N m", "Torque of the drive on the crank, anticlockwise"),
+    "shaking_x": ("N", "Force on the frame along x"),
+    "shaking_y": ("N", "Force on the frame along y"),
+    "shaking_moment": ("N m", "Moment on the frame about A, the drive's reaction in it"),
+    "fx2": ("N", "Force along x at the first joint of link 2"),
+    "fy2": ("N", "Force along y at the first joint of link 2"),
+    "couple2": ("N m", "Couple on link 2"),
+    "fx3": ("N", "Force along x at the first joint of link 3"),
+    "fy3": ("N", "Force along y at the first joint of link 3"),
+    "couple3": ("N m", "Couple on link 3"),
+    "fx4": ("N", "Force along x at the first joint of link 4"),
+    "fy4": ("N", "Force along y at the first joint of link 4"),
+    "couple4": ("N m", "Couple on link 4"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
     "forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "couple41",
-        "torque",
-        "shaking_x",
-        "shaking_y",
-        "shaking_moment",
+        "x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "couple41", "torque", "shaking_x",
+        "shaking_y", "shaking_moment",
     ),
-    "pin_forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "couple41",
-    ),
-    "driving_torque": (
-        "torque",
-    ),
-    "shaking_force": (
-        "shaking_x",
-        "shaking_y",
-    ),
-    "shaking_moment": (
-        "shaking_moment",
-    ),
+    "pin_forces": ("x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "couple41"),
+    "driving_torque": ("torque",),
+    "shaking_force": ("shaking_x", "shaking_y"),
+    "shaking_moment": ("shaking_moment",),
     "load_forces": (
-        "x12",
-        "y12",
-        "x23",
-        "y23",
-        "x34",
-        "y34",
-        "x41",
-        "y41",
-        "couple41",
-        "torque",
-        "shaking_x",
-        "shaking_y",
-        "shaking_moment",
+        "x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "couple41", "torque", "shaking_x",
+        "shaking_y", "shaking_moment",
     ),
+}
+
+# Terms of the energies that may be left out, to the names of what then vanishes, or to the
+# separated terms that go and those that come.
+DROPS = {
+    ("across",): ("across2", "across3", "across4"),
+    ("crank_acceleration",): ("acceleration",),
+    ("across", "crank_acceleration"): ("across2", "across3", "across4", "acceleration"),
 }
 
 
@@ -110,79 +115,11 @@ def forces(
 ):
     """Return every joint force, the torque, and the force and moment on the frame.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    couple41 : ndarray, shape (...)
-        Couple of link 4 on link 1 [N m].
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    crank, coupler, offset, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -282,21 +219,12 @@ def forces(
     x34 = c16 * x30 - c17 * x32 - x15 * cos23 - x8 * turn_th3 + x15 * x9
     del turn_th3, x15, x30, x32, x8, x9
     return (
-        x12,
-        y12,
-        x23,
-        y23,
-        push4_x,
-        y34,
-        0,
-        y34,
-        -push4_moment,
+        x12, y12, x23, y23, push4_x, y34, 0, y34, -push4_moment,
         (
             c14 * (x22 * omega3 + x16 * sin23 + x34) + c15 * (x16 * cos23 - x25 * omega3 + x33) +
             x21 * omega3 + push2_moment + x27 * slider_velocity + x31
         ),
-        -push2_x - x29,
-        -push2_y - push3_y,
+        -push2_x - x29, -push2_y - push3_y,
         (
             -c14 * (x24 + x34) + (-c15 * (x26 + x33)) + c19 * turn_place - push2_moment - x21 + x28
             - x31
@@ -310,71 +238,11 @@ def pin_forces(
 ):
     """Return every joint force.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    couple41 : ndarray, shape (...)
-        Couple of link 4 on link 1 [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    crank, coupler, offset, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -454,17 +322,7 @@ def pin_forces(
     del push3_moment, sin3, x9
     y23 = push3_y + y34
     y12 = push2_y + y23
-    return (
-        x12,
-        y12,
-        x23,
-        y23,
-        push4_x,
-        y34,
-        0,
-        y34,
-        -push4_moment,
-    )
+    return x12, y12, x23, y23, push4_x, y34, 0, y34, -push4_moment
 
 
 def driving_torque(
@@ -473,55 +331,11 @@ def driving_torque(
 ):
     """Return the torque on the crank, by virtual power.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    crank, coupler, offset, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -602,57 +416,11 @@ def shaking_force(
 ):
     """Return the force on the frame, the change of momentum.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    crank, coupler, offset, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -717,10 +485,7 @@ def shaking_force(
     push3_y = c11 * x11 - across3 * x14 - c13 * x11
     del x13, x11, x14
     push4_x = mass4 * turn_place
-    return (
-        -push2_x - push3_x - push4_x,
-        -push2_y - push3_y,
-    )
+    return -push2_x - push3_x - push4_x, -push2_y - push3_y
 
 
 def shaking_moment(
@@ -729,55 +494,11 @@ def shaking_moment(
 ):
     """Return the moment on the frame about A, the change of moment of momentum.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    speed : float or ndarray, shape (...)
-        Crank speed [rad/s].
-    acceleration : float or ndarray, shape (...)
-        Crank acceleration [rad/s^2].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-
-    Returns
-    -------
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    speed, acceleration : float or ndarray, shape (...)
+    crank, coupler, offset, assembly : float
+    mass2 to inertia4 : float or ndarray
+    Returns ndarray, shape (...).
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -855,69 +576,10 @@ def load_forces(
 ):
     """Return what external loads alone call forth.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-    fx2 : float or ndarray
-        Force along x at the first joint of link 2 [N].
-    fy2 : float or ndarray
-        Force along y at the first joint of link 2 [N].
-    couple2 : float or ndarray
-        Couple on link 2 [N m].
-    fx3 : float or ndarray
-        Force along x at the first joint of link 3 [N].
-    fy3 : float or ndarray
-        Force along y at the first joint of link 3 [N].
-    couple3 : float or ndarray
-        Couple on link 3 [N m].
-    fx4 : float or ndarray
-        Force along x at the first joint of link 4 [N].
-    fy4 : float or ndarray
-        Force along y at the first joint of link 4 [N].
-    couple4 : float or ndarray
-        Couple on link 4 [N m].
-
-    Returns
-    -------
-    x12 : ndarray, shape (...)
-        Force of link 1 on link 2 along x [N].
-    y12 : ndarray, shape (...)
-        Force of link 1 on link 2 along y [N].
-    x23 : ndarray, shape (...)
-        Force of link 2 on link 3 along x [N].
-    y23 : ndarray, shape (...)
-        Force of link 2 on link 3 along y [N].
-    x34 : ndarray, shape (...)
-        Force of link 3 on link 4 along x [N].
-    y34 : ndarray, shape (...)
-        Force of link 3 on link 4 along y [N].
-    x41 : ndarray, shape (...)
-        Force of link 4 on link 1 along x [N].
-    y41 : ndarray, shape (...)
-        Force of link 4 on link 1 along y [N].
-    couple41 : ndarray, shape (...)
-        Couple of link 4 on link 1 [N m].
-    torque : ndarray, shape (...)
-        Torque of the drive on the crank, anticlockwise [N m].
-    shaking_x : ndarray, shape (...)
-        Force on the frame along x [N].
-    shaking_y : ndarray, shape (...)
-        Force on the frame along y [N].
-    shaking_moment : ndarray, shape (...)
-        Moment on the frame about A, the drive's reaction in it [N m].
-
-    Notes
-    -----
-    Newton and Euler's, as Smith (4.4)-(4.6).
+    crank, coupler, offset, assembly : float
+    fx2 to couple4 : float or ndarray
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -961,17 +623,6 @@ def load_forces(
     c9 = -fy3 * crank
     c10 = fx4 * offset - couple2 - couple3 - couple4
     return (
-        x12,
-        y12,
-        x23,
-        y23,
-        -fx4,
-        y34,
-        0,
-        normal41,
-        couple4,
-        torque,
-        fx2 + x4,
-        fy2 + fy3 + fy4,
+        x12, y12, x23, y23, -fx4, y34, 0, normal41, couple4, torque, fx2 + x4, fy2 + fy3 + fy4,
         c8 * sin2 - c10 - c9 * cos2 + fy4 * position,
     )

@@ -11,35 +11,42 @@ the guide.
 
 Cost per evaluation:
     motion: 78 operations
-Content hash e7bd73022f5a1f5f5cae5e710a0fbde6; derived with SymPy 1.14.0.
+Content hash 4bf36299c20b0937fcf3b097d416270a; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
-__all__ = [
-    "motion",
-]
-
+__all__ = ["motion"]
 FAMILY = "closed_form"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"slider_crank",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "e7bd73022f5a1f5f5cae5e710a0fbde6"
+CONTENT = "4bf36299c20b0937fcf3b097d416270a"
 
-# Parameters: name, unit, meaning.
-PARAMETERS = (
-)
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "theta2": ("rad", "Crank angle from the guide"),
+    "crank": ("m", "Length of the crank AB"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "offset": ("m", "Height of the guide over the crank's pivot A"),
+    "assembly": ("", "+1 where the slider is right of B (open), -1 left"),
+    "theta3": ("rad", "Coupler angle from B to C; open -pi/2 to pi/2, crossed pi/2 to 3 pi/2"),
+    "position": ("m", "Place of the slider's pin C along the guide, from A"),
+    "omega3": ("", "Coupler speed over crank speed, d theta3 / d theta2"),
+    "alpha3": ("", "Coupler acceleration over crank speed squared, at constant crank speed"),
+    "slider_velocity": ("m", "Slider velocity over crank speed"),
+    "slider_acceleration": (
+        "m", "Slider acceleration over crank speed squared, at constant crank speed",
+    ),
+    "transmission_angle": ("rad", "Angle between coupler and the normal of the guide, 0 to pi"),
+}
+PARAMETERS = ()
 
 # Names of what each function returns, in order.
 RETURNS = {
     "motion": (
-        "theta3",
-        "position",
-        "omega3",
-        "alpha3",
-        "slider_velocity",
-        "slider_acceleration",
+        "theta3", "position", "omega3", "alpha3", "slider_velocity", "slider_acceleration",
         "transmission_angle",
     ),
 }
@@ -55,39 +62,9 @@ def _namespace(array):
 def motion(theta2, crank, coupler, offset, assembly):
     """Return angles and places, speeds and accelerations of coupler and slider.
 
-    Parameters
-    ----------
     theta2 : ndarray or float, shape (...)
-        Crank angle from the guide [rad].
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    assembly : float
-        +1 where the slider is right of B (open), -1 left.
-
-    Returns
-    -------
-    theta3 : ndarray, shape (...)
-        Coupler angle from B to C; open -pi/2 to pi/2, crossed pi/2 to 3 pi/2 [rad].
-    position : ndarray, shape (...)
-        Place of the slider's pin C along the guide, from A [m].
-    omega3 : ndarray, shape (...)
-        Coupler speed over crank speed, d theta3 / d theta2.
-    alpha3 : ndarray, shape (...)
-        Coupler acceleration over crank speed squared, at constant crank speed.
-    slider_velocity : ndarray, shape (...)
-        Slider velocity over crank speed [m].
-    slider_acceleration : ndarray, shape (...)
-        Slider acceleration over crank speed squared, at constant crank speed [m].
-    transmission_angle : ndarray, shape (...)
-        Angle between coupler and the normal of the guide, 0 to pi [rad].
-
-    Notes
-    -----
-    closure of the loop AB + BC = AC.
+    crank, coupler, offset, assembly : float
+    Returns ndarray, shape (...) each.
     """
     xp = _namespace(theta2)
     reach = coupler - crank
@@ -130,10 +107,5 @@ def motion(theta2, crank, coupler, offset, assembly):
     x11 = assembly * cos3
     return (
         (1.5707963267948966 - 1.5707963267948966 * assembly) + xp.atan2(assembly * sin3, x11),
-        position,
-        omega3,
-        alpha3,
-        slider_velocity,
-        slider_acceleration,
-        xp.atan2(x11, sin3),
+        position, omega3, alpha3, slider_velocity, slider_acceleration, xp.atan2(x11, sin3),
     )

@@ -6,134 +6,147 @@ Model: mechanism slider_crank, formulation multibody.
 Equations: Smith (4.4)-(4.6), by Lagrange's equations.
 
 Multipliers xij, yij, couple are the force and couple of link i on link j; that of the drive is the
-torque.
+torque, as couple2 is.
 
 Cost per evaluation:
     constraints: 22 operations
     dynamics: 69 operations
-Content hash 80433c01ef614ff4522fa40275a0aee2; derived with SymPy 1.14.0.
+Content hash c78f146f185563a16fe86be5181ac458; derived with SymPy 1.14.0.
 """
 
 import numpy as np
 
-__all__ = [
-    "constraints",
-    "dynamics",
-]
-
+__all__ = ["constraints", "dynamics"]
 FAMILY = "constrained"
 SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"multibody","mechanism":"slider_crank","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "80433c01ef614ff4522fa40275a0aee2"
-COORDINATES = ('x2', 'y2', 'angle2', 'x3', 'y3', 'angle3', 'x4', 'y4', 'angle4')
-MULTIPLIERS = ('x12', 'y12', 'x23', 'y23', 'x34', 'y34', 'normal41', 'couple41', 'torque')
-EXTERNAL = ('drive', 'drive_d1', 'drive_d2')
-ARRAYS = (
-    {'constraints': {'constraints': ((9, 1), ((0, 0, 0), (1, 0, 1), (2, 0, 2), (3, 0, 3), (4, 0,
-    4), (5, 0, 5), (6, 0, 6), (7, 0, 7), (8, 0, 8),)), 'jacobian': ((9, 9), ((0, 0, 9), (1, 1, 9),
-    (2, 0, 10), (2, 2, 11), (2, 3, 9), (3, 1, 10), (3, 2, 12), (3, 4, 9), (4, 3, 10), (4, 5, 13),
-    (4, 6, 9), (5, 4, 10), (5, 5, 14), (5, 7, 9), (6, 7, 10), (7, 8, 10), (8, 2, 9),))},
-    'dynamics': {'mass': ((9, 9), ((0, 0, 0), (0, 2, 1), (1, 1, 0), (1, 2, 2), (2, 0, 1), (2, 1,
-    2), (2, 2, 3), (3, 3, 4), (3, 5, 5), (4, 4, 4), (4, 5, 6), (5, 3, 5), (5, 4, 6), (5, 5, 7), (6,
-    6, 8), (6, 8, 9), (7, 7, 8), (7, 8, 10), (8, 6, 9), (8, 7, 10), (8, 8, 11),)), 'rest': ((9, 1),
-    ((0, 0, 12), (1, 0, 13), (3, 0, 14), (4, 0, 15), (6, 0, 16), (7, 0, 17),)), 'forces': ((9, 1),
-    ((0, 0, 18), (1, 0, 19), (2, 0, 20), (3, 0, 21), (4, 0, 22), (5, 0, 23), (6, 0, 24), (7, 0,
-    25), (8, 0, 26),)), 'jacobian': ((9, 9), ((0, 0, 27), (1, 1, 27), (2, 0, 28), (2, 2, 29), (2,
-    3, 27), (3, 1, 28), (3, 2, 30), (3, 4, 27), (4, 3, 28), (4, 5, 31), (4, 6, 27), (5, 4, 28), (5,
-    5, 32), (5, 7, 27), (6, 7, 28), (7, 8, 28), (8, 2, 27),)), 'velocity_rhs': ((9, 1), ((8, 0,
-    33),)), 'gamma': ((9, 1), ((2, 0, 34), (3, 0, 35), (4, 0, 36), (5, 0, 37), (8, 0, 38),))}}
-)
+CONTENT = "c78f146f185563a16fe86be5181ac458"
 
-# Parameters: name, unit, meaning.
+# Unit and meaning of arguments and results.
+QUANTITIES = {
+    "crank": ("m", "Length of the crank AB"),
+    "coupler": ("m", "Length of the coupler BC"),
+    "offset": ("m", "Height of the guide over the crank's pivot A"),
+    "mass2": ("kg", "Mass of link 2"),
+    "along2": ("kg m", "First moment along link 2"),
+    "across2": ("kg m", "First moment across link 2"),
+    "inertia2": ("kg m^2", "Inertia, about its first joint, of link 2"),
+    "fx2": ("N", "Force along x at the first joint of link 2"),
+    "fy2": ("N", "Force along y at the first joint of link 2"),
+    "couple2": ("N m", "Couple on link 2"),
+    "mass3": ("kg", "Mass of link 3"),
+    "along3": ("kg m", "First moment along link 3"),
+    "across3": ("kg m", "First moment across link 3"),
+    "inertia3": ("kg m^2", "Inertia, about its first joint, of link 3"),
+    "fx3": ("N", "Force along x at the first joint of link 3"),
+    "fy3": ("N", "Force along y at the first joint of link 3"),
+    "couple3": ("N m", "Couple on link 3"),
+    "mass4": ("kg", "Mass of link 4"),
+    "along4": ("kg m", "First moment along link 4"),
+    "across4": ("kg m", "First moment across link 4"),
+    "inertia4": ("kg m^2", "Inertia, about its first joint, of link 4"),
+    "fx4": ("N", "Force along x at the first joint of link 4"),
+    "fy4": ("N", "Force along y at the first joint of link 4"),
+    "couple4": ("N m", "Couple on link 4"),
+    "x2": ("m", "Place of the first joint along x, of the crank"),
+    "y2": ("m", "Place of the first joint along y, of the crank"),
+    "angle2": ("rad", "Angle of the crank"),
+    "x3": ("m", "Place of the first joint along x, of the coupler"),
+    "y3": ("m", "Place of the first joint along y, of the coupler"),
+    "angle3": ("rad", "Angle of the coupler"),
+    "x4": ("m", "Place of the first joint along x, of the slider"),
+    "y4": ("m", "Place of the first joint along y, of the slider"),
+    "angle4": ("rad", "Angle of the slider"),
+    "t": ("", "Time"),
+    "drive": ("", "Passed in"),
+    "drive_d1": ("", "Passed in"),
+    "drive_d2": ("", "Passed in"),
+}
 PARAMETERS = (
-    ("crank", "m", "Length of the crank AB"),
-    ("coupler", "m", "Length of the coupler BC"),
-    ("offset", "m", "Height of the guide over the crank's pivot A"),
-    ("mass2", "kg", "Mass of link 2"),
-    ("along2", "kg m", "First moment along link 2"),
-    ("across2", "kg m", "First moment across link 2"),
-    ("inertia2", "kg m^2", "Inertia, about its first joint, of link 2"),
-    ("fx2", "N", "Force along x at the first joint of link 2"),
-    ("fy2", "N", "Force along y at the first joint of link 2"),
-    ("couple2", "N m", "Couple on link 2"),
-    ("mass3", "kg", "Mass of link 3"),
-    ("along3", "kg m", "First moment along link 3"),
-    ("across3", "kg m", "First moment across link 3"),
-    ("inertia3", "kg m^2", "Inertia, about its first joint, of link 3"),
-    ("fx3", "N", "Force along x at the first joint of link 3"),
-    ("fy3", "N", "Force along y at the first joint of link 3"),
-    ("couple3", "N m", "Couple on link 3"),
-    ("mass4", "kg", "Mass of link 4"),
-    ("along4", "kg m", "First moment along link 4"),
-    ("across4", "kg m", "First moment across link 4"),
-    ("inertia4", "kg m^2", "Inertia, about its first joint, of link 4"),
-    ("fx4", "N", "Force along x at the first joint of link 4"),
-    ("fy4", "N", "Force along y at the first joint of link 4"),
-    ("couple4", "N m", "Couple on link 4"),
+    "crank", "coupler", "offset", "mass2", "along2", "across2", "inertia2", "fx2", "fy2",
+    "couple2", "mass3", "along3", "across3", "inertia3", "fx3", "fy3", "couple3", "mass4",
+    "along4", "across4", "inertia4", "fx4", "fy4", "couple4",
 )
 
 # Names of what each function returns, in order.
 RETURNS = {
     "constraints": (
-        "constraints_1_1",
-        "constraints_2_1",
-        "constraints_3_1",
-        "constraints_4_1",
-        "constraints_5_1",
-        "constraints_6_1",
-        "constraints_7_1",
-        "constraints_8_1",
-        "constraints_9_1",
-        "jacobian_1_1",
-        "jacobian_3_1",
-        "jacobian_3_3",
-        "jacobian_4_3",
-        "jacobian_5_6",
-        "jacobian_6_6",
+        "constraints_1_1", "constraints_2_1", "constraints_3_1", "constraints_4_1",
+        "constraints_5_1", "constraints_6_1", "constraints_7_1", "constraints_8_1",
+        "constraints_9_1", "jacobian_1_1", "jacobian_3_1", "jacobian_3_3", "jacobian_4_3",
+        "jacobian_5_6", "jacobian_6_6",
     ),
     "dynamics": (
-        "mass_1_1",
-        "mass_1_3",
-        "mass_2_3",
-        "mass_3_3",
-        "mass_4_4",
-        "mass_4_6",
-        "mass_5_6",
-        "mass_6_6",
-        "mass_7_7",
-        "mass_7_9",
-        "mass_8_9",
-        "mass_9_9",
-        "rest_1_1",
-        "rest_2_1",
-        "rest_4_1",
-        "rest_5_1",
-        "rest_7_1",
-        "rest_8_1",
-        "forces_1_1",
-        "forces_2_1",
-        "forces_3_1",
-        "forces_4_1",
-        "forces_5_1",
-        "forces_6_1",
-        "forces_7_1",
-        "forces_8_1",
-        "forces_9_1",
-        "jacobian_1_1",
-        "jacobian_3_1",
-        "jacobian_3_3",
-        "jacobian_4_3",
-        "jacobian_5_6",
-        "jacobian_6_6",
-        "velocity_rhs_9_1",
-        "gamma_3_1",
-        "gamma_4_1",
-        "gamma_5_1",
-        "gamma_6_1",
+        "mass_1_1", "mass_1_3", "mass_2_3", "mass_3_3", "mass_4_4", "mass_4_6", "mass_5_6",
+        "mass_6_6", "mass_7_7", "mass_7_9", "mass_8_9", "mass_9_9", "rest_1_1", "rest_2_1",
+        "rest_4_1", "rest_5_1", "rest_7_1", "rest_8_1", "forces_1_1", "forces_2_1", "forces_3_1",
+        "forces_4_1", "forces_5_1", "forces_6_1", "forces_7_1", "forces_8_1", "forces_9_1",
+        "jacobian_1_1", "jacobian_3_1", "jacobian_3_3", "jacobian_4_3", "jacobian_5_6",
+        "jacobian_6_6", "velocity_rhs_9_1", "gamma_3_1", "gamma_4_1", "gamma_5_1", "gamma_6_1",
         "gamma_9_1",
     ),
+}
+COORDINATES = ("x2", "y2", "angle2", "x3", "y3", "angle3", "x4", "y4", "angle4")
+MULTIPLIERS = ("x12", "y12", "x23", "y23", "x34", "y34", "normal41", "couple41", "torque")
+EXTERNAL = ("drive", "drive_d1", "drive_d2")
+
+# Terms of the energies that may be left out, to the names of what then vanishes, or to the
+# separated terms that go and those that come.
+DROPS = {
+    ("across",): ("across2", "across3", "across4"),
+    ("drive",): ("torque",),
+    ("across", "drive"): ("across2", "across3", "across4", "torque"),
+}
+
+# Of each function its arrays: shape, and row, column and place among what it returns.
+ARRAYS = {
+    "constraints": {
+        "constraints": (
+            (9, 1),
+            (
+                (0, 0, 0), (1, 0, 1), (2, 0, 2), (3, 0, 3), (4, 0, 4), (5, 0, 5), (6, 0, 6),
+                (7, 0, 7), (8, 0, 8),
+            ),
+        ),
+        "jacobian": (
+            (9, 9),
+            (
+                (0, 0, 9), (1, 1, 9), (2, 0, 10), (2, 2, 11), (2, 3, 9), (3, 1, 10), (3, 2, 12),
+                (3, 4, 9), (4, 3, 10), (4, 5, 13), (4, 6, 9), (5, 4, 10), (5, 5, 14), (5, 7, 9),
+                (6, 7, 10), (7, 8, 10), (8, 2, 9),
+            ),
+        ),
+    },
+    "dynamics": {
+        "mass": (
+            (9, 9),
+            (
+                (0, 0, 0), (0, 2, 1), (1, 1, 0), (1, 2, 2), (2, 0, 1), (2, 1, 2), (2, 2, 3),
+                (3, 3, 4), (3, 5, 5), (4, 4, 4), (4, 5, 6), (5, 3, 5), (5, 4, 6), (5, 5, 7),
+                (6, 6, 8), (6, 8, 9), (7, 7, 8), (7, 8, 10), (8, 6, 9), (8, 7, 10), (8, 8, 11),
+            ),
+        ),
+        "rest": ((9, 1), ((0, 0, 12), (1, 0, 13), (3, 0, 14), (4, 0, 15), (6, 0, 16), (7, 0, 17))),
+        "forces": (
+            (9, 1),
+            (
+                (0, 0, 18), (1, 0, 19), (2, 0, 20), (3, 0, 21), (4, 0, 22), (5, 0, 23), (6, 0, 24),
+                (7, 0, 25), (8, 0, 26),
+            ),
+        ),
+        "jacobian": (
+            (9, 9),
+            (
+                (0, 0, 27), (1, 1, 27), (2, 0, 28), (2, 2, 29), (2, 3, 27), (3, 1, 28), (3, 2, 30),
+                (3, 4, 27), (4, 3, 28), (4, 5, 31), (4, 6, 27), (5, 4, 28), (5, 5, 32), (5, 7, 27),
+                (6, 7, 28), (7, 8, 28), (8, 2, 27),
+            ),
+        ),
+        "velocity_rhs": ((9, 1), ((8, 0, 33),)),
+        "gamma": ((9, 1), ((2, 0, 34), (3, 0, 35), (4, 0, 36), (5, 0, 37), (8, 0, 38))),
+    },
 }
 
 
@@ -151,119 +164,10 @@ def constraints(
 ):
     """Return the constraints and their Jacobian.
 
-    Parameters
-    ----------
-    x2 : float or ndarray, shape (...)
-        Place of the first joint along x, of the crank [m].
-    y2 : float or ndarray, shape (...)
-        Place of the first joint along y, of the crank [m].
-    angle2 : float or ndarray, shape (...)
-        Angle of the crank [rad].
-    x3 : float or ndarray, shape (...)
-        Place of the first joint along x, of the coupler [m].
-    y3 : float or ndarray, shape (...)
-        Place of the first joint along y, of the coupler [m].
-    angle3 : float or ndarray, shape (...)
-        Angle of the coupler [rad].
-    x4 : float or ndarray, shape (...)
-        Place of the first joint along x, of the slider [m].
-    y4 : float or ndarray, shape (...)
-        Place of the first joint along y, of the slider [m].
-    angle4 : float or ndarray, shape (...)
-        Angle of the slider [rad].
-    t : float or ndarray, shape (...)
-        Time t.
-    drive : float or ndarray, shape (...)
-        Passed in drive.
-    drive_d1 : float or ndarray, shape (...)
-        Passed in drive_d1.
-    drive_d2 : float or ndarray, shape (...)
-        Passed in drive_d2.
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    fx2 : float or ndarray
-        Force along x at the first joint of link 2 [N].
-    fy2 : float or ndarray
-        Force along y at the first joint of link 2 [N].
-    couple2 : float or ndarray
-        Couple on link 2 [N m].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    fx3 : float or ndarray
-        Force along x at the first joint of link 3 [N].
-    fy3 : float or ndarray
-        Force along y at the first joint of link 3 [N].
-    couple3 : float or ndarray
-        Couple on link 3 [N m].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-    fx4 : float or ndarray
-        Force along x at the first joint of link 4 [N].
-    fy4 : float or ndarray
-        Force along y at the first joint of link 4 [N].
-    couple4 : float or ndarray
-        Couple on link 4 [N m].
-
-    Returns
-    -------
-    constraints_1_1 : float or ndarray
-        Entry of constraints.
-    constraints_2_1 : float or ndarray
-        Entry of constraints.
-    constraints_3_1 : float or ndarray
-        Entry of constraints.
-    constraints_4_1 : float or ndarray
-        Entry of constraints.
-    constraints_5_1 : float or ndarray
-        Entry of constraints.
-    constraints_6_1 : float or ndarray
-        Entry of constraints.
-    constraints_7_1 : float or ndarray
-        Entry of constraints.
-    constraints_8_1 : float or ndarray
-        Entry of constraints.
-    constraints_9_1 : float or ndarray
-        Entry of constraints.
-    jacobian_1_1 : float or ndarray
-        Entry of jacobian.
-    jacobian_3_1 : float or ndarray
-        Entry of jacobian.
-    jacobian_3_3 : float or ndarray
-        Entry of jacobian.
-    jacobian_4_3 : float or ndarray
-        Entry of jacobian.
-    jacobian_5_6 : float or ndarray
-        Entry of jacobian.
-    jacobian_6_6 : float or ndarray
-        Entry of jacobian.
-
-    Notes
-    -----
-    Smith (4.4)-(4.6), by Lagrange's equations.
+    x2 to drive_d2 : float or ndarray, shape (...)
+    crank, coupler, offset : float
+    mass2 to couple4 : float or ndarray
+    Returns float or ndarray each.
     """
     xp = _namespace(x2)
     x0 = crank * xp.cos(angle2)
@@ -271,21 +175,8 @@ def constraints(
     x5 = coupler * xp.cos(angle3)
     x7 = coupler * xp.sin(angle3)
     return (
-        x2,
-        y2,
-        x3 - x0 - x2,
-        y3 - x1 - y2,
-        x4 - x3 - x5,
-        y4 - x7 - y3,
-        offset - y4,
-        -angle4,
-        angle2 - drive,
-        1,
-        -1,
-        x1,
-        -x0,
-        x7,
-        -x5,
+        x2, y2, x3 - x0 - x2, y3 - x1 - y2, x4 - x3 - x5, y4 - x7 - y3, offset - y4, -angle4,
+        angle2 - drive, 1, -1, x1, -x0, x7, -x5,
     )
 
 
@@ -297,185 +188,10 @@ def dynamics(
 ):
     """Return everything in the equations of motion at acceleration level.
 
-    Parameters
-    ----------
-    x2 : float or ndarray, shape (...)
-        Place of the first joint along x, of the crank [m].
-    y2 : float or ndarray, shape (...)
-        Place of the first joint along y, of the crank [m].
-    angle2 : float or ndarray, shape (...)
-        Angle of the crank [rad].
-    x3 : float or ndarray, shape (...)
-        Place of the first joint along x, of the coupler [m].
-    y3 : float or ndarray, shape (...)
-        Place of the first joint along y, of the coupler [m].
-    angle3 : float or ndarray, shape (...)
-        Angle of the coupler [rad].
-    x4 : float or ndarray, shape (...)
-        Place of the first joint along x, of the slider [m].
-    y4 : float or ndarray, shape (...)
-        Place of the first joint along y, of the slider [m].
-    angle4 : float or ndarray, shape (...)
-        Angle of the slider [rad].
-    x2_dot : float or ndarray, shape (...)
-        Velocity x2_dot.
-    y2_dot : float or ndarray, shape (...)
-        Velocity y2_dot.
-    angle2_dot : float or ndarray, shape (...)
-        Velocity angle2_dot.
-    x3_dot : float or ndarray, shape (...)
-        Velocity x3_dot.
-    y3_dot : float or ndarray, shape (...)
-        Velocity y3_dot.
-    angle3_dot : float or ndarray, shape (...)
-        Velocity angle3_dot.
-    x4_dot : float or ndarray, shape (...)
-        Velocity x4_dot.
-    y4_dot : float or ndarray, shape (...)
-        Velocity y4_dot.
-    angle4_dot : float or ndarray, shape (...)
-        Velocity angle4_dot.
-    t : float or ndarray, shape (...)
-        Time t.
-    drive : float or ndarray, shape (...)
-        Passed in drive.
-    drive_d1 : float or ndarray, shape (...)
-        Passed in drive_d1.
-    drive_d2 : float or ndarray, shape (...)
-        Passed in drive_d2.
-    crank : float
-        Length of the crank AB [m].
-    coupler : float
-        Length of the coupler BC [m].
-    offset : float
-        Height of the guide over the crank's pivot A [m].
-    mass2 : float or ndarray
-        Mass of link 2 [kg].
-    along2 : float or ndarray
-        First moment along link 2 [kg m].
-    across2 : float or ndarray
-        First moment across link 2 [kg m].
-    inertia2 : float or ndarray
-        Inertia, about its first joint, of link 2 [kg m^2].
-    fx2 : float or ndarray
-        Force along x at the first joint of link 2 [N].
-    fy2 : float or ndarray
-        Force along y at the first joint of link 2 [N].
-    couple2 : float or ndarray
-        Couple on link 2 [N m].
-    mass3 : float or ndarray
-        Mass of link 3 [kg].
-    along3 : float or ndarray
-        First moment along link 3 [kg m].
-    across3 : float or ndarray
-        First moment across link 3 [kg m].
-    inertia3 : float or ndarray
-        Inertia, about its first joint, of link 3 [kg m^2].
-    fx3 : float or ndarray
-        Force along x at the first joint of link 3 [N].
-    fy3 : float or ndarray
-        Force along y at the first joint of link 3 [N].
-    couple3 : float or ndarray
-        Couple on link 3 [N m].
-    mass4 : float or ndarray
-        Mass of link 4 [kg].
-    along4 : float or ndarray
-        First moment along link 4 [kg m].
-    across4 : float or ndarray
-        First moment across link 4 [kg m].
-    inertia4 : float or ndarray
-        Inertia, about its first joint, of link 4 [kg m^2].
-    fx4 : float or ndarray
-        Force along x at the first joint of link 4 [N].
-    fy4 : float or ndarray
-        Force along y at the first joint of link 4 [N].
-    couple4 : float or ndarray
-        Couple on link 4 [N m].
-
-    Returns
-    -------
-    mass_1_1 : float or ndarray
-        Entry of mass.
-    mass_1_3 : float or ndarray
-        Entry of mass.
-    mass_2_3 : float or ndarray
-        Entry of mass.
-    mass_3_3 : float or ndarray
-        Entry of mass.
-    mass_4_4 : float or ndarray
-        Entry of mass.
-    mass_4_6 : float or ndarray
-        Entry of mass.
-    mass_5_6 : float or ndarray
-        Entry of mass.
-    mass_6_6 : float or ndarray
-        Entry of mass.
-    mass_7_7 : float or ndarray
-        Entry of mass.
-    mass_7_9 : float or ndarray
-        Entry of mass.
-    mass_8_9 : float or ndarray
-        Entry of mass.
-    mass_9_9 : float or ndarray
-        Entry of mass.
-    rest_1_1 : float or ndarray
-        Entry of rest.
-    rest_2_1 : float or ndarray
-        Entry of rest.
-    rest_4_1 : float or ndarray
-        Entry of rest.
-    rest_5_1 : float or ndarray
-        Entry of rest.
-    rest_7_1 : float or ndarray
-        Entry of rest.
-    rest_8_1 : float or ndarray
-        Entry of rest.
-    forces_1_1 : float or ndarray
-        Entry of forces.
-    forces_2_1 : float or ndarray
-        Entry of forces.
-    forces_3_1 : float or ndarray
-        Entry of forces.
-    forces_4_1 : float or ndarray
-        Entry of forces.
-    forces_5_1 : float or ndarray
-        Entry of forces.
-    forces_6_1 : float or ndarray
-        Entry of forces.
-    forces_7_1 : float or ndarray
-        Entry of forces.
-    forces_8_1 : float or ndarray
-        Entry of forces.
-    forces_9_1 : float or ndarray
-        Entry of forces.
-    jacobian_1_1 : float or ndarray
-        Entry of jacobian.
-    jacobian_3_1 : float or ndarray
-        Entry of jacobian.
-    jacobian_3_3 : float or ndarray
-        Entry of jacobian.
-    jacobian_4_3 : float or ndarray
-        Entry of jacobian.
-    jacobian_5_6 : float or ndarray
-        Entry of jacobian.
-    jacobian_6_6 : float or ndarray
-        Entry of jacobian.
-    velocity_rhs_9_1 : float or ndarray
-        Entry of velocity_rhs.
-    gamma_3_1 : float or ndarray
-        Entry of gamma.
-    gamma_4_1 : float or ndarray
-        Entry of gamma.
-    gamma_5_1 : float or ndarray
-        Entry of gamma.
-    gamma_6_1 : float or ndarray
-        Entry of gamma.
-    gamma_9_1 : float or ndarray
-        Entry of gamma.
-
-    Notes
-    -----
-    Smith (4.4)-(4.6), by Lagrange's equations.
+    x2 to drive_d2 : float or ndarray, shape (...)
+    crank, coupler, offset : float
+    mass2 to couple4 : float or ndarray
+    Returns float or ndarray each.
     """
     xp = _namespace(x2)
     x0 = xp.cos(angle2)
@@ -501,43 +217,10 @@ def dynamics(
     x20 = x7 * coupler
     x21 = x5 * coupler
     return (
-        mass2,
-        -x1 - x3,
-        x0 * along2 - x4,
-        inertia2,
-        mass3,
-        -x6 - x8,
-        x5 * along3 - x9,
-        inertia3,
-        mass4,
-        -x11 - x13,
-        x10 * along4 - x14,
-        inertia4,
-        x15 * x4 - x0 * x15 * along2,
-        -x1 * x15 - x15 * x3,
-        x16 * x9 - x16 * x5 * along3,
-        -x16 * x6 - x16 * x8,
-        x14 * x17 - x10 * x17 * along4,
-        -x11 * x17 - x13 * x17,
-        fx2,
-        fy2,
-        couple2,
-        fx3,
-        fy3,
-        couple3,
-        fx4,
-        fy4,
-        couple4,
-        1,
-        -1,
-        x18,
-        -x19,
-        x20,
-        -x21,
-        drive_d1,
-        -x15 * x19,
-        -x15 * x18,
-        -x16 * x21,
-        -x16 * x20,
-        drive_d2,
+        mass2, -x1 - x3, x0 * along2 - x4, inertia2, mass3, -x6 - x8, x5 * along3 - x9, inertia3,
+        mass4, -x11 - x13, x10 * along4 - x14, inertia4, x15 * x4 - x0 * x15 * along2,
+        -x1 * x15 - x15 * x3, x16 * x9 - x16 * x5 * along3, -x16 * x6 - x16 * x8,
+        x14 * x17 - x10 * x17 * along4, -x11 * x17 - x13 * x17, fx2, fy2, couple2, fx3, fy3,
+        couple3, fx4, fy4, couple4, 1, -1, x18, -x19, x20, -x21, drive_d1, -x15 * x19, -x15 * x18,
+        -x16 * x21, -x16 * x20, drive_d2,
     )

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms

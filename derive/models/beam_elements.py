@@ -7,12 +7,13 @@ which follow from the mass matrix and the nodal values of the rigid acceleration
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import sympy as sp
 
 from ..arrays import CrankMotion, DiscreteSystem
-from ..describe import Description
 from ..entries import MatrixForm
-from ..ir import Argument
+from ..ir import Argument, Description
 from ..lagrange import quadratic_form
 from ..pipeline import Model
 from ..projection.assumed_modes import assumed_shapes
@@ -127,6 +128,7 @@ def element_matrices(system: DiscreteSystem) -> tuple[tuple[str, sp.ImmutableDen
     )
 
 
+@lru_cache(maxsize=512)
 def _by_inertia(entry: sp.Expr) -> sp.Expr:
     """Return an entry with what each inertia contributes in a factored term of its own."""
     inertial = [sp.diff(entry, inertia) * inertia for inertia in (density, rotary)]

@@ -8,12 +8,13 @@ quadratic in the functions themselves; near zero, where that cancels, a power se
 from __future__ import annotations
 
 import itertools
+import math
 from functools import lru_cache
 
 import sympy as sp
 
 from ..safe import UnsafeRewriting
-from ..series import taylor
+from ..series import series_terms, taylor
 from ..staged import ClosedForm, Step, Steps
 from .beam_frequency_problem import HALF, B, Z, half_problem
 from .overhang_waves import SWITCH, Wave, without_square
@@ -117,7 +118,7 @@ def scaled(expression: sp.Expr, wave: Wave) -> sp.Expr:
     UnsafeRewriting
         If terms that cancel at small phases are not one of the differences that keep their digits.
     """
-    v, own = wave.phase, sp.Symbol("own", positive=True)
+    v = wave.phase
     plain = sp.expand(expression.subs(Z, v if wave is FULL else 2 * v))
     waves = (sp.sin, sp.cos, sp.sinh, sp.cosh)
     factor, rest = sp.factor_terms(plain).as_independent(*waves, as_Add=False)
@@ -125,8 +126,8 @@ def scaled(expression: sp.Expr, wave: Wave) -> sp.Expr:
     order = [_leading(term, v) for term in (rest, *sp.Add.make_args(rest))]
     if order[0] == min(order[1:]):
         return sp.expand(factor * sp.expand(2 * wave.fade * wave.by_size(rest)))
-    ratio = sp.simplify((rest / lag(v)).subs(v, own))
-    if not ratio.free_symbols:
+    ratio = rest.coeff(sp.sin(v) * sp.cosh(v))
+    if ratio != 0 and sp.expand(rest - ratio * lag(v)) == 0:
         return factor * ratio * LAGS[wave]
     form = sp.expand(2 * wave.fade * wave.by_excess(rest))
     # Two terms of one sign or a single one remain where the difference itself was named.
@@ -267,18 +268,21 @@ def nested(
     value : Expr
         The rest, in ``power``.
     """
-    terms = 2
-    while True:
-        found = taylor(expression, variable, terms)
-        ratio = (found.remainder / found.value).subs(variable, switch)
-        if abs(ratio) < _LEFT_OUT:
+    found: list[tuple[int, sp.Expr]] = []
+    total = sp.S.Zero
+    for order, coefficient in series_terms(expression, variable):
+        reached = coefficient * switch**order
+        if len(found) > 1 and abs(reached / total) < _LEFT_OUT:
             break
-        terms += 1
-    polynomial = sp.Poly(found.value, variable)
+        found.append((order, coefficient))
+        total += reached
+    start, last = found[0][0], found[-1][0]
+    table = dict(found)
+    step = math.gcd(*(order - start for order, _ in found))
     value = sp.S.Zero
-    for _, coefficient in polynomial.terms():  # from the last one on
-        value = sp.Float(coefficient, 40) + power * value
-    return min(polynomial.monoms())[0], value
+    for order in range(last, start - 1, -step):
+        value = sp.Float(table.get(order, 0), 40) + power * value
+    return start, value
 
 
 @lru_cache(maxsize=1)
@@ -352,10 +356,10 @@ def axial() -> tuple[Steps, dict[str, sp.Expr], dict[str, sp.Expr]]:
         function = sp.cancel(_whole_angle(total / 2) / divisor)
         functions_[name] = function.xreplace(values)
         # b times the rate, over the squared sine: an entire function that begins with b^3.
-        slope = sp.simplify(-sp.diff(function, B) * sp.sin(B) ** 2 / 2)
+        slope = sp.expand(-sp.diff(function, B) * sp.sin(B) ** 2 / 2)
         slope = sp.expand(slope.subs(sp.cos(B) ** 2, 1 - sp.sin(B) ** 2))
-        if sp.simplify(slope / (B * sp.sin(B) ** 2) + sp.diff(function, B) / (2 * B)) != 0:
-            raise UnsafeRewriting(f"{slope} is not the rate of {function}")
+        if slope.has(1 / sp.sin(B)):
+            raise UnsafeRewriting(f"{slope} is not entire")
         start, series = nested(slope, B, _AXIAL_SWITCH, square)
         if start != 3:
             raise UnsafeRewriting(f"{slope} begins with power {start}")

@@ -49,7 +49,7 @@ def wave_numbers(equations: FieldEquations, frequency: sp.Expr) -> tuple[sp.Expr
     (field,) = equations.action.fields
     trial = sp.exp(_RATE * X) * sp.cos(_OMEGA * TIME)
     expression = equations.equations[field].subs(field, trial).doit()
-    polynomial = sp.Poly(sp.expand(sp.simplify(expression / trial)), _RATE)
+    polynomial = sp.Poly(sp.expand(expression / trial), _RATE)
     found = sp.roots(polynomial.as_expr().subs(_OMEGA, frequency), _RATE)
     return tuple(sorted((sp.simplify(r) for r in found), key=sp.default_sort_key))
 

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..integrals import definite
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
-from ..projection.integrals import definite
 from ..records import ActionDensity
 from ..spec import ModelSpec
 from ..staged import ClosedForm, Steps

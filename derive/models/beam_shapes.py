@@ -6,14 +6,15 @@ Timoshenko's beam solves its static equations without load, which keeps it free 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
 
 import sympy as sp
 
-from ..describe import Description
 from ..entries import MatrixForm
-from ..ir import Argument
+from ..ir import Argument, Description
 from ..pipeline import Model
 from ..records import ActionDensity
 from ..spec import ModelSpec
@@ -66,7 +67,8 @@ def nodal_values(kind: str) -> tuple[Condition, ...]:
     return tuple(found)
 
 
-def field_shapes(kind: str) -> dict[sp.Expr, tuple[sp.Expr, ...]]:
+@cache
+def field_shapes(kind: str) -> Mapping[sp.Expr, tuple[sp.Expr, ...]]:
     """Return for each field its shape functions of x, one per nodal value.
 
     Parameters
@@ -76,7 +78,7 @@ def field_shapes(kind: str) -> dict[sp.Expr, tuple[sp.Expr, ...]]:
 
     Returns
     -------
-    dict
+    mapping
         u and v, and for Timoshenko's beam psi, to as many shapes as there are nodal values; these
         contain ``shear_ratio``.
     """
@@ -99,7 +101,7 @@ def field_shapes(kind: str) -> dict[sp.Expr, tuple[sp.Expr, ...]]:
             for item in group:
                 shape = general[item].xreplace(found).subs(bending, by_ratio())
                 shapes[item][place] = sp.cancel(shape)
-    return {item: tuple(listed) for item, listed in shapes.items()}
+    return MappingProxyType({item: tuple(listed) for item, listed in shapes.items()})
 
 
 def by_ratio() -> sp.Expr:

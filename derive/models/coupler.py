@@ -19,11 +19,12 @@ reduced
 
 from __future__ import annotations
 
+from functools import cache
+
 import sympy as sp
 from sympy.simplify.fu import TR8
 
-from ..describe import Description
-from ..ir import Argument
+from ..ir import Argument, Description
 from ..lagrange import euler_lagrange
 from ..pipeline import Model
 from ..projection.galerkin import project, sine_basis
@@ -106,6 +107,7 @@ def action(spec: ModelSpec) -> ActionDensity:
     )
 
 
+@cache
 def pin_force(spec: ModelSpec) -> tuple[sp.Expr, sp.Expr]:
     """Return the force of the follower on the coupler at C, along and across BC (Smith 6.14).
 

@@ -23,15 +23,15 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument
+from ..integrals import definite
+from ..ir import Argument, Description
 from ..jets import JetSpace, linear_jets, quadratic_jets
 from ..pipeline import Model
-from ..projection.integrals import definite
 from ..projection.moving_basis import Moments, MovingShapes, project_moving
 from ..records import (
     ActionDensity,
     CrankMotion,
+    DiscreteSystem,
     Essential,
     FieldEquations,
     Support,
@@ -197,14 +197,31 @@ def discretise(spec: ModelSpec, equations: FieldEquations) -> StagedSystem:
     The arrays are divided by m L^3, so that the mass matrix is the overlap of the shapes.
     """
     k = quick_return.kinematics()
+    dropped = {}
+    if not spec.drop:
+        for terms in (*((term,) for term in TERMS), TERMS):
+            left = spec.with_(drop=terms)
+            dropped[left.drop] = _projected(left, hamilton(action(left)), k)
+    return StagedSystem(
+        _projected(spec, equations, k),
+        k.steps.then((place, k.slide / length), (sliding, k.v3 / length)),
+        (stiffness, density, damping, internal, length),
+        (theta2, frame, crank, length),
+        place=place,
+        dropped=dropped,
+    )
+
+
+def _projected(
+    spec: ModelSpec, equations: FieldEquations, k: quick_return.Kinematics
+) -> DiscreteSystem:
     chain = {theta4: k.w4, k.w4: k.a4, place: sliding}
-    motion = CrankMotion(theta2, rate, acceleration, chain)
     given, moments = quadratic(spec, equations)
     system = project_moving(
         given,
         v,
         MovingShapes(length, place, eta),
-        motion,
+        CrankMotion(theta2, rate, acceleration, chain),
         followers={phi: theta4, block: length * place},
         moments=moments,
     )
@@ -212,14 +229,7 @@ def discretise(spec: ModelSpec, equations: FieldEquations) -> StagedSystem:
     arrays = {
         name: entry.map(lambda e: sp.expand(e / mass)) for name, entry in system.arrays.items()
     }
-    steps = k.steps.then((place, k.slide / length), (sliding, k.v3 / length))
-    return StagedSystem(
-        system.with_(arrays=arrays),
-        steps,
-        (stiffness, density, damping, internal, length),
-        (theta2, frame, crank, length),
-        place=place,
-    )
+    return system.with_(arrays=arrays)
 
 
 def _describe(spec: ModelSpec) -> Description:

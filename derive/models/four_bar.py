@@ -8,11 +8,11 @@ DC, anticlockwise from the frame AD.  Derivatives are with respect to the crank 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import sympy as sp
 
-from ..describe import Description, array_results
-from ..ir import Argument
+from ..ir import Argument, Description, array_results
 from ..pipeline import Model
 from ..rigid.closure import SolvedLoop
 from ..safe import bernstein_in_cosine, root_of_parts, solve_cosine_sine
@@ -125,6 +125,7 @@ _T = sp.Symbol("t", real=True)
 _ANGLES = tuple(sp.Function(f"th{link}")(_T) for link in (2, 3, 4))
 
 
+@cache
 def kinematics() -> Kinematics:
     """Solve the loop closure AB + BC = AD + DC (Smith 2.1) for both moving links.
 

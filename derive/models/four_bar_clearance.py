@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..safe import UnsafeRewriting, bernstein_in_cosine
 from ..spec import ModelSpec

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..describe import Description
+from ..ir import Description
 from ..pipeline import Model
-from ..rigid.forces import CHOICES, SolvedMotion, forces, moments_of
+from ..rigid.forces import CHOICES, SolvedMotion, description, forces, moments_of
+from ..rigid.multibody import multibody_model
 from ..rigid.planar import Body, Pin, PlanarLinkage
-from ..rigid.words import description
 from ..spec import ModelSpec
 from ..staged import KernelForms
 from .four_bar import ARGUMENTS, coupler, crank, follower, frame, theta2
@@ -83,3 +83,4 @@ MODEL = Model(
     describe=_describe,
     choices=CHOICES,
 )
+MULTIBODY = multibody_model("four_bar", "the rigid four-bar linkage", linkage, ARGUMENTS[1:-1])

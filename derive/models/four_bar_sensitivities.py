@@ -11,8 +11,7 @@ from collections.abc import Iterator, Mapping
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Result
+from ..ir import Description, Result
 from ..pipeline import Model
 from ..safe import UnsafeRewriting
 from ..spec import ModelSpec

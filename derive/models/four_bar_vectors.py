@@ -8,6 +8,7 @@ operations on arrays than the kinematics module and no inverse function.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cache
 
 import sympy as sp
 
@@ -124,6 +125,7 @@ class LinkVectors:
         }
 
 
+@cache
 def link_vectors() -> LinkVectors:
     """Solve the loop closure AB + BC = AD + DC (Smith 2.1), and differentiate it twice.
 

@@ -12,11 +12,10 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..projection.greens_identity import integral, primitive
-from ..safe import UnsafeRewriting
+from ..safe import UnsafeRewriting, vanishes
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms, Steps
 
@@ -162,7 +161,7 @@ def verify() -> None:
             "end slope": end_slope(_B, sp.Integer(parity)) - slope,
         }
         for name, difference in checks.items():
-            if sp.simplify(sp.expand(difference).rewrite(sp.exp)) != 0:
+            if not vanishes(difference):
                 raise UnsafeRewriting(f"{name} of parity {parity}: {difference} is not 0")
 
 
@@ -193,6 +192,37 @@ def slope_integral(power: int, same: bool) -> sp.Expr:
     roots = (ROOT, OTHER)
     values = {constant: root**4 for constant, root in zip(_CONSTANTS, roots, strict=True)}
     return sp.factor_terms(sp.factor(found).subs(values))
+
+
+@lru_cache(maxsize=1)
+def shortening() -> dict[str, sp.Expr]:
+    """Return ``int s alpha ds`` (inward) and ``alpha(-1/2)`` (retreat) for ``alpha' = -w / 2``.
+
+    In the integrals ``w_0, w_1, w_2`` of w against 1, s and s^2, alpha without mean.  By parts,
+    ``int alpha = [s alpha] - int s alpha' = 0`` gives the mean of the end values, ``int alpha'``
+    their difference.
+    """
+    left, right = sp.symbols("left right")
+    rate = [-HALF * sp.Symbol(f"w_{power}") for power in range(3)]
+    by_parts = HALF * right + HALF * left - rate[1]
+    (ends,) = sp.linsolve([right - left - rate[0], by_parts], left, right)
+    first = (HALF**2 * ends[1] - HALF**2 * ends[0] - rate[2]) / 2
+    return {"inward": sp.expand(first), "retreat": sp.expand(ends[0])}
+
+
+def shortening_number(name: str, same: bool) -> sp.Expr:
+    """Return what a product of two modes' slopes adds to the foreshortening.
+
+    Parameters
+    ----------
+    name : str
+        ``inward`` or ``retreat``.
+    same : bool
+        True for a mode with itself.
+    """
+    slopes = {sp.Symbol(f"w_{power}"): slope_integral(power, same) for power in range(3)}
+    value = shortening()[name].subs(slopes)
+    return sp.factor_terms(sp.factor(value)) if name == "inward" or same else value
 
 
 def _modes() -> KernelForm:
@@ -243,6 +273,7 @@ def _forms(spec: ModelSpec) -> KernelForms:
             for power, name in enumerate(("plain", "first", "second"))
             if (value := slope_integral(power, same)) != 0
         )
+        + tuple((name, shortening_number(name, same)) for name in shortening())
         for same in (False, True)
     )
     return KernelForms(
@@ -293,7 +324,7 @@ _RESULTS: Mapping[str, str] = {
     "defect_slope": "Its derivative with respect to the offset",
     "amplitude": "Modulus of the wave in a mode",
     "weight": "Factor of the parts that decay from the ends",
-    "end_slope": "psi' at the right end; psi itself is 2 there and 2 parity at the left end",
+    "end_slope": "psi' of the mode at the right end",
     "value": "psi, of unit square over the beam",
     "slope": "psi'",
     "curvature": "psi''",
@@ -301,6 +332,8 @@ _RESULTS: Mapping[str, str] = {
     "plain": "int psi_i' psi_j' ds over -1/2 < s < 1/2",
     "first": "int s psi_i' psi_j' ds",
     "second": "int s^2 psi_i' psi_j' ds",
+    "inward": "int s alpha ds of the foreshortening alpha' = -psi_i' psi_j' / 2 without mean",
+    "retreat": "alpha at the left end",
 }
 
 

@@ -8,92 +8,34 @@ centrifugal tension, is a term that a spec may leave out.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache
+from functools import cache
 
 import sympy as sp
 
-from ..describe import Description
 from ..entries import ConstrainedSystem
-from ..ir import Argument
-from ..lagrange import variational_equations
+from ..ir import Argument, Description
+from ..lagrange import euler_lagrange, variational_equations
+from ..modal import COUNTED_MODES, EACH_MODE, Modes, closed_in_modes
 from ..pipeline import Model
 from ..projection.greens_identity import integral, primitive
 from ..records import EquationsOfMotion, Lagrangian
+from ..safe import UnsafeRewriting
 from ..spec import Choices, ModelSpec
-from ..staged import Steps
+from ..staged import vanishing
 from . import free_free_modes as ff
-from .block_sums import with_block_sums
 
 TENSION = "tension"
-_DIGITS = 40
+MODES = Modes("f", "psi", 4, ("left", "stiffness"), ("inward", "retreat"))
 _T = sp.Symbol("t", real=True)
 _LENGTH, _MASS, _STIFFNESS = sp.symbols("length mass_per_length bending_stiffness", positive=True)
 _CRANK, _FRAME, _SPEED = sp.symbols("crank frame speed", positive=True)
 _R1, _R2, _GAMMA = (sp.Function(name)(_T) for name in ("R1", "R2", "gamma"))
 _THETA = sp.Function("theta")(_T)
 _S = ff.MIDDLE
+_BENT, _SHORTENED = (sp.Function(name)(_S, _T) for name in ("u", "a"))
 _ENDS = (-ff.HALF, ff.HALF)
 _ALONG = sp.Matrix([sp.cos(_GAMMA), sp.sin(_GAMMA)])
 _ACROSS = sp.Matrix([-sp.sin(_GAMMA), sp.cos(_GAMMA)])
-
-
-def amplitudes(modes: int) -> tuple[sp.Expr, ...]:
-    """Return the coordinates of the modes, functions of time."""
-    return tuple(sp.Function(f"f{i}")(_T) for i in range(1, modes + 1))
-
-
-@lru_cache(maxsize=16)
-def root(mode: int) -> sp.Float:
-    """Return the root of a mode (1, 2, ...), from the characteristic function."""
-    start = ((mode + sp.Rational(1, 2)) * sp.pi).evalf(_DIGITS)
-    stable = ff.characteristic()
-    (b,) = stable.free_symbols
-    return sp.Float(sp.nsolve(stable, b, start, prec=_DIGITS + 10), _DIGITS + 5)
-
-
-def parity(mode: int) -> int:
-    """Return 1 for a mode that is even about the middle, -1 for an odd one."""
-    return 1 if mode % 2 else -1
-
-
-@lru_cache(maxsize=64)
-def slope_integral(power: int, i: int, j: int) -> sp.Expr:
-    """Return ``int s^power psi_i' psi_j' ds`` as a number; 0 exactly where the parities say so."""
-    values = {
-        ff.PARITY: sp.Integer(parity(i)),
-        ff.OTHER_PARITY: sp.Integer(parity(j)),
-    }
-    form = ff.slope_integral(power, i == j).subs(values)
-    if form == 0:  # no term at all
-        return sp.S.Zero
-    ends = {
-        ff.SLOPE: ff.end_slope(ff.ROOT, sp.Integer(parity(i))),
-        ff.OTHER_SLOPE: ff.end_slope(ff.OTHER, sp.Integer(parity(j))),
-    }
-    value = form.subs(ends).subs({ff.ROOT: root(i), ff.OTHER: root(j)})
-    return sp.Float(value.evalf(_DIGITS + 5), _DIGITS)
-
-
-@lru_cache(maxsize=1)
-def shortening() -> tuple[sp.Expr, sp.Expr]:
-    """Return ``int s alpha ds`` and ``alpha(-1/2)`` for ``alpha' = -w / 2`` and no mean.
-
-    In the integrals ``w_0, w_1, w_2`` of w against 1, s and s^2.  By parts, ``int alpha = [s alpha]
-    - int s alpha' = 0`` gives the mean of the end values, ``int alpha'`` their difference.
-    """
-    left, right = sp.symbols("left right")
-    rate = [-ff.HALF * sp.Symbol(f"w_{power}") for power in range(3)]
-    by_parts = _ENDS[1] * right - _ENDS[0] * left - rate[1]
-    (ends,) = sp.linsolve([right - left - rate[0], by_parts], left, right)
-    first = (_ENDS[1] ** 2 * ends[1] - _ENDS[0] ** 2 * ends[0] - rate[2]) / 2
-    return sp.expand(first), sp.expand(ends[0])
-
-
-@lru_cache(maxsize=64)
-def _shortening_number(which: int, i: int, j: int) -> sp.Expr:
-    values = {sp.Symbol(f"w_{power}"): slope_integral(power, i, j) for power in range(3)}
-    return shortening()[which].subs(values).evalf(_DIGITS)
 
 
 class Moments:
@@ -105,7 +47,8 @@ class Moments:
 
     def __init__(self, modes: int, tension: bool) -> None:
         """Choose the number of modes and whether the rod shortens."""
-        self.f = amplitudes(modes)
+        self.indices = range(1, modes + 1)
+        self.f = tuple(sp.Function(f"f{i}")(_T) for i in self.indices)
         self.tension = tension
 
     def of_modes(self, weight: sp.Expr) -> sp.Expr:
@@ -122,43 +65,31 @@ class Moments:
 
     def bending(self) -> sp.Expr:
         """Return the integral of the squared curvature: by parts twice, of psi_i and psi_j'''' ."""
-        scaled = tuple(sp.Symbol(f"stiffness_{i}") * f for i, f in enumerate(self.f, start=1))
+        scaled = tuple(_number("stiffness", i) * self.f[i - 1] for i in self.indices)
         return self.of_products(self.f, scaled)
 
-    def shortened(self, which: int) -> sp.Expr:
-        """Return ``int s alpha ds`` (0) or alpha at the left end (1), summed over the modes."""
+    def left(self) -> sp.Expr:
+        """Return the deflection of the left end over the length."""
+        return sp.Add(*(_number("left", i) * self.f[i - 1] for i in self.indices))
+
+    def shortened(self, name: str) -> sp.Expr:
+        """Return ``int s alpha ds`` (inward) or alpha at the left end (retreat) over the modes."""
+        if not self.tension:
+            return sp.S.Zero
         return sp.Add(
             *(
-                (1 if i == j else 2) * name * self.f[i - 1] * self.f[j - 1]
-                for (i, j), name in self._pairs(which)
+                _number(name, *sorted((i, j))) * self.f[i - 1] * self.f[j - 1]
+                for i in self.indices
+                for j in self.indices
             )
         )
 
-    def _pairs(self, which: int) -> list[tuple[tuple[int, int], sp.Symbol]]:
-        """Return which products of amplitudes shorten the rod, with the names of their factors."""
-        if not self.tension:
-            return []
-        word = ("inward", "retreat")[which]
-        indices = range(1, len(self.f) + 1)
-        return [
-            ((i, j), sp.Symbol(f"{word}_{i}_{j}"))
-            for i in indices
-            for j in indices
-            if i <= j and _shortening_number(which, i, j) != 0
-        ]
 
-    def numbers(self) -> Steps:
-        """Return the numbers that the names stand for."""
-        steps = [(sp.Symbol(f"stiffness_{i}"), root(i) ** 4) for i in range(1, len(self.f) + 1)]
-        steps += [
-            (name, _shortening_number(which, *pair))
-            for which in (0, 1)
-            for pair, name in self._pairs(which)
-        ]
-        return Steps(tuple(steps))
+def _number(name: str, *indices: int) -> sp.Symbol:
+    return sp.Symbol("_".join([name, *map(str, indices)]))
 
 
-@lru_cache(maxsize=1)
+@cache
 def _mixed_square() -> sp.Expr:
     """Return ``int psi_i psi_j ds`` of two different modes."""
     constants = sp.symbols("b4 c4", positive=True)
@@ -174,17 +105,21 @@ def _free_end(mode: int, order: int, end: sp.Expr) -> sp.Expr:
 def kinetic_energy(moments: Moments) -> sp.Expr:
     """Return the kinetic energy to second order in the amplitudes, Beale & Scott (32)-(37).
 
-    Squared velocity of ``r = R + (x + a) f1 + u f2``, in fields, then integrated term by term.
+    Squared velocity of ``r = R + (x + a) f1 + u f2``, integrated term by term.
     """
-    u, a = (sp.Function(name)(_S, _T) for name in ("u", "a"))
+    total = sum(_integrated(term, moments) for term in sp.Add.make_args(_squared_velocity()))
+    return sp.expand(_MASS * _LENGTH / 2 * total)
+
+
+@cache
+def _squared_velocity() -> sp.Expr:
+    """Return the squared velocity of a point to second order in the fields."""
     small = sp.Symbol("small")
     place = sp.Matrix([_R1, _R2])
-    place += _LENGTH * ((_S + small**2 * a) * _ALONG + small * u * _ACROSS)
+    place += _LENGTH * ((_S + small**2 * _SHORTENED) * _ALONG + small * _BENT * _ACROSS)
     velocity = place.diff(_T)
     squared = sp.expand(velocity.dot(velocity))
-    squared = _on_circle(sum(squared.coeff(small, order) for order in range(3)))
-    total = sum(_integrated(term, u, a, moments) for term in sp.Add.make_args(squared))
-    return sp.expand(_MASS * _LENGTH / 2 * total)
+    return _on_circle(sum(squared.coeff(small, order) for order in range(3)))
 
 
 def _on_circle(expression: sp.Expr) -> sp.Expr:
@@ -193,8 +128,9 @@ def _on_circle(expression: sp.Expr) -> sp.Expr:
     return sp.expand(sp.expand(expression).subs(sine**2, 1 - cosine**2))
 
 
-def _integrated(term: sp.Expr, u: sp.Expr, a: sp.Expr, moments: Moments) -> sp.Expr:
+def _integrated(term: sp.Expr, moments: Moments) -> sp.Expr:
     """Return the integral over s of one product of s, u, a, their rates, and functions of time."""
+    u, a = _BENT, _SHORTENED
     fields = (u, u.diff(_T), a, a.diff(_T))
     factor, parts = term.as_independent(_S, *fields, as_Add=False)
     powers = parts.as_powers_dict()
@@ -211,7 +147,7 @@ def _integrated(term: sp.Expr, u: sp.Expr, a: sp.Expr, moments: Moments) -> sp.E
         if weight == 1:
             return factor * moments.of_products(*sums)
     if found == [a] or found == [fields[3]]:
-        first = {0: sp.S.Zero, 1: moments.shortened(0)}[sp.degree(weight, _S)]
+        first = {0: sp.S.Zero, 1: moments.shortened("inward")}[sp.degree(weight, _S)]
         return factor * (first if found == [a] else first.diff(_T))
     raise ValueError(f"no moment for {term}")
 
@@ -224,15 +160,10 @@ def place_of_block() -> sp.Expr:
 def constraints(moments: Moments) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """Return the pin's two conditions and the block's, Beale & Scott (41)-(45)."""
     centre = sp.Matrix([_R1, _R2])
-    left = moments.shortened(1)
-
-    def deflection(value: Callable[[int], sp.Expr]) -> sp.Expr:
-        return sp.Add(*(f * value(i) for i, f in enumerate(moments.f, start=1)))
-
-    pinned = deflection(lambda i: parity(i) * ff.end_value())
-    pin = centre + _LENGTH * ((-ff.HALF + left) * _ALONG + pinned * _ACROSS)
+    along = -ff.HALF + moments.shortened("retreat")
+    pin = centre + _LENGTH * (along * _ALONG + moments.left() * _ACROSS)
     place = place_of_block() / _LENGTH
-    held = deflection(lambda i: sp.Function(f"psi_{i}")(place))
+    held = sp.Add(*(f * sp.Function(f"psi_{i}")(place) for i, f in enumerate(moments.f, start=1)))
     turn = sp.Symbol("turn")  # gamma - theta
     crank = [sp.expand_trig(f(_GAMMA - turn)) for f in (sp.cos, sp.sin)]
     block = sp.Matrix([_CRANK * crank[0] + _FRAME, _CRANK * crank[1]])
@@ -242,10 +173,9 @@ def constraints(moments: Moments) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     return first, second, third
 
 
-def _energies(spec: ModelSpec) -> Lagrangian:
-    if spec.modes is None:
-        raise ValueError("modes: found None; expected a whole number from 1")
-    moments = Moments(spec.modes, TENSION not in spec.drop)
+def lagrangian(modes: int, tension: bool = True) -> Lagrangian:
+    """Return energies and constraints of the rod with a number of modes."""
+    moments = Moments(modes, tension)
     bending = _STIFFNESS / (2 * _LENGTH) * moments.bending()
     return Lagrangian(
         coordinates=(_R1, _R2, _GAMMA, *moments.f),
@@ -256,30 +186,52 @@ def _energies(spec: ModelSpec) -> Lagrangian:
     )
 
 
+def _energies(spec: ModelSpec) -> Lagrangian:
+    return lagrangian(1, TENSION not in spec.drop)
+
+
 def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSystem:
-    modes = spec.modes or 0
-    numbers = Moments(modes, TENSION not in spec.drop).numbers()
-    return with_block_sums(equations, variational_equations(equations), numbers, modes)
+    two = euler_lagrange(lagrangian(2, TENSION not in spec.drop))
+    one = (equations, variational_equations(equations))
+    closed, variations, steps = closed_in_modes(MODES, one, (two, variational_equations(two)))
+    dropped = {}
+    if TENSION not in spec.drop:
+        _verify_tension(equations)
+        dropped = vanishing({TENSION: MODES.matrices})
+    return ConstrainedSystem(closed, variations, steps, MODES, dropped)
+
+
+def _verify_tension(one: EquationsOfMotion) -> None:
+    """Verify that without the numbers of the foreshortening the rod is the one without tension."""
+    rigid = euler_lagrange(lagrangian(1, tension=False))
+    none = {sp.Symbol(f"{name}_1_1"): 0 for name in MODES.matrices}
+    for name, matrix in vars(one).items():
+        if isinstance(matrix, sp.ImmutableDenseMatrix):
+            left = matrix.xreplace(none) - getattr(rigid, name)
+            if any(sp.expand(entry) != 0 for entry in left):
+                raise UnsafeRewriting(f"{name}: the tension does more than the foreshortening")
 
 
 def _describe(spec: ModelSpec) -> Description:
     shape = "float or ndarray, shape (...)"
-    count = spec.modes or 0
+    each, pairs = f"{EACH_MODE}, each {shape}", "N by N floats"
     arguments = [
         Argument("R1", shape, "m", "Mean position of the rod along the frame"),
         Argument("R2", shape, "m", "Mean position of the rod across the frame"),
         Argument("gamma", shape, "rad", "Mean direction of the rod"),
+        Argument("f", each, "", "Amplitudes of the modes, in lengths"),
         Argument("t", shape, "s", "Time; the crank angle is speed t"),
+        *(
+            Argument(name, each, "", f"{words} of the modes at the block")
+            for name, words in zip(MODES.external, ("psi", "psi'", "psi''", "psi'''"), strict=True)
+        ),
+        Argument("left", f"{EACH_MODE} floats", "", "psi of the modes at the pin"),
+        Argument("stiffness", f"{EACH_MODE} floats", "", "Fourth powers of the modes' roots"),
+        Argument("inward", pairs, "", "int s alpha_ij ds of pairs of modes"),
+        Argument("retreat", pairs, "", "alpha_ij of pairs of modes at the pin"),
     ]
-    words = {"": "psi", "_d1": "psi'", "_d2": "psi''", "_d3": "psi'''"}
-    for i in range(1, count + 1):
-        arguments.append(Argument(f"f{i}", shape, "", f"Amplitude of mode {i}, in lengths"))
-        arguments += [
-            Argument(f"psi_{i}{end}", shape, "", f"{word} of mode {i} at the block")
-            for end, word in words.items()
-        ]
     return Description(
-        title=f"Quick-return mechanism, flexible rod in Buckens' frame, {count} free-free modes",
+        title="Quick-return mechanism, flexible rod in Buckens' frame, free-free modes",
         references=tuple(f"Beale & Scott ({r})" for r in ("29)-(33", "37)-(38", "40)-(49")),
         arguments=tuple(arguments),
         parameters=tuple(
@@ -296,9 +248,12 @@ def _describe(spec: ModelSpec) -> Description:
         notes=(
             "The displacement across the mean direction is L sum f_i psi_i, with modes of unit "
             "square over unit length; they are passed in at the place of the block, "
-            "(crank cos(gamma - speed t) + frame cos(gamma)) / length from the pin.",
+            "(crank cos(gamma - speed t) + frame cos(gamma)) / length from the pin.  The "
+            "foreshortening is L sum f_i f_j alpha_ij with alpha_ij' = -psi_i' psi_j' / 2 and no "
+            "mean, s from the middle.",
             "Multipliers: force of the pin along and across the rod, force of the block, up to "
             "the signs that the constraints give them.",
+            f"Operations are those with {COUNTED_MODES} modes.",
         ),
     )
 
@@ -309,5 +264,6 @@ MODEL = Model(
     energies=_energies,
     describe=_describe,
     discretise=_discretise,
+    closed_in_modes=True,
     choices=Choices(flexible=("rod",), drop=(TENSION,)),
 )

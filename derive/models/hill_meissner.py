@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..projection import piecewise
 from ..spec import ModelSpec

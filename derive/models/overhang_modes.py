@@ -10,8 +10,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from ..describe import Description
-from ..ir import Argument, Result
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms, Steps

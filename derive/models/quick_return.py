@@ -13,8 +13,7 @@ from functools import cache
 
 import sympy as sp
 
-from ..describe import Description, array_results
-from ..ir import Argument
+from ..ir import Argument, Description, array_results
 from ..pipeline import Model
 from ..rigid.closure import SolvedLoop, closure_rates
 from ..safe import UnsafeRewriting, bernstein_in_cosine

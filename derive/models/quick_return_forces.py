@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..describe import Description
+from ..ir import Description
 from ..pipeline import Model
-from ..rigid.forces import CHOICES, SolvedMotion, forces, moments_of
+from ..rigid.forces import CHOICES, SolvedMotion, description, forces, moments_of
+from ..rigid.multibody import multibody_model
 from ..rigid.planar import Body, Pin, PlanarLinkage, Slide
-from ..rigid.words import description
 from ..spec import ModelSpec
 from ..staged import KernelForms
 from . import quick_return
@@ -87,4 +87,7 @@ MODEL = Model(
     energies=_forces,
     describe=_describe,
     choices=CHOICES,
+)
+MULTIBODY = multibody_model(
+    "quick_return", "the rigid quick-return mechanism", linkage, ARGUMENTS[1:]
 )

@@ -10,9 +10,8 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from ..describe import Description
 from ..external import external_values
-from ..ir import Argument, Result
+from ..ir import Argument, Description, Result
 from ..pipeline import Model
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms, Steps

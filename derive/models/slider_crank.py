@@ -8,11 +8,11 @@ Derivatives are with respect to the crank angle, as in the four-bar linkage.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import sympy as sp
 
-from ..describe import Description, array_results
-from ..ir import Argument
+from ..ir import Argument, Description, array_results
 from ..pipeline import Model
 from ..rigid.closure import SolvedLoop, closure_rates
 from ..safe import UnsafeRewriting, root_of_parts
@@ -102,6 +102,7 @@ _LOOP = (
 )
 
 
+@cache
 def kinematics() -> Kinematics:
     """Solve the loop closure AB + BC = AC for coupler and slider.
 

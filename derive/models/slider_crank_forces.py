@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ..describe import Description
+from ..ir import Description
 from ..pipeline import Model
-from ..rigid.forces import CHOICES, SolvedMotion, forces, moments_of, rate_symbols
+from ..rigid.forces import CHOICES, SolvedMotion, description, forces, moments_of, rate_symbols
+from ..rigid.multibody import multibody_model
 from ..rigid.planar import Body, Pin, PlanarLinkage, Slide
-from ..rigid.words import description
 from ..spec import ModelSpec
 from ..staged import KernelForms
 from . import slider_crank
@@ -86,3 +86,4 @@ MODEL = Model(
     describe=_describe,
     choices=CHOICES,
 )
+MULTIBODY = multibody_model("slider_crank", "the rigid slider-crank", linkage, ARGUMENTS[1:-1])

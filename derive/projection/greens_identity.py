@@ -8,6 +8,7 @@ polynomial coefficients; the form is found by linear algebra, and its end values
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from itertools import product
 from types import MappingProxyType
 
@@ -22,6 +23,7 @@ class NoPrimitive(ValueError):  # noqa: N818 - reads as what it is
     """No form in the jets has the wanted derivative."""
 
 
+@cache
 def primitive(
     weight: sp.Expr, x: sp.Symbol, orders: tuple[int, ...], constants: tuple[sp.Symbol, ...]
 ) -> Mapping[Place, sp.Expr]:
@@ -98,6 +100,14 @@ def _raising(places: list[Place], constants: tuple[sp.Symbol, ...]) -> sp.Matrix
     return matrix
 
 
+@cache
+def _lowering(constants: tuple[sp.Symbol, ...]) -> DomainMatrix:
+    """Return the inverse of the product rule."""
+    places = list(product(_JET, repeat=len(constants)))
+    domain = sp.QQ.frac_field(*dict.fromkeys(constants))
+    return DomainMatrix.from_Matrix(_raising(places, constants)).convert_to(domain).inv()
+
+
 def _solve_by_parts(
     weight: sp.Poly,
     x: sp.Symbol,
@@ -106,11 +116,10 @@ def _solve_by_parts(
     constants: tuple[sp.Symbol, ...],
 ) -> dict[Place, sp.Expr]:
     """Integrate by parts until the polynomial is gone: ``sum (-1)^k N^-(k+1) w^(k)``."""
-    domain = sp.QQ.frac_field(*dict.fromkeys(constants))
-    inverse = DomainMatrix.from_Matrix(_raising(places, constants)).convert_to(domain).inv()
+    inverse = _lowering(constants)
     unit = sp.zeros(len(places), 1)
     unit[places.index(orders)] = 1
-    column = DomainMatrix.from_Matrix(unit).convert_to(domain)
+    column = DomainMatrix.from_Matrix(unit).convert_to(inverse.domain)
     total, sign = sp.zeros(len(places), 1), 1
     while not weight.is_zero:
         column = inverse * column

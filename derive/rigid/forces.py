@@ -7,15 +7,16 @@ that it does not need.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 import sympy as sp
 
-from ..ir import Argument
+from ..ir import Argument, Description, Result, array_results
 from ..spec import Choices, ModelSpec
-from ..staged import ClosedForm, KernelForm, KernelForms, Step, Steps
+from ..staged import ClosedForm, KernelForm, KernelForms, Step, Steps, vanishing
 from .newton_euler import (
     TORQUE,
     balances,
@@ -26,9 +27,9 @@ from .newton_euler import (
     virtual_power,
     wrench_symbols,
 )
-from .planar import Body, MassMoments, PlanarLinkage, Slide, inertia_wrench
+from .planar import STRAIGHT, Body, MassMoments, PlanarLinkage, Slide, inertia_wrench
 
-STEADY, STRAIGHT = "crank_acceleration", "across"
+STEADY = "crank_acceleration"
 CHOICES = Choices(drop=(STRAIGHT, STEADY))
 speed, acceleration = sp.symbols("speed acceleration", real=True)
 _SQUARE = sp.Symbol("square", real=True)
@@ -82,7 +83,7 @@ class SolvedMotion:
 
     def named(self, expression: sp.Expr) -> sp.Expr:
         """Return an expression in the coordinates by the steps' symbols."""
-        result = sp.expand(sp.sympify(expression).subs(self.names))
+        result = sp.expand(sp.sympify(expression).xreplace(self.names))
         for product, value in self.differences.items():
             result = sp.expand(result.subs(product, value))
         return result
@@ -104,11 +105,20 @@ class _Forces:
         """Return the kinematics, and what the motion of each link takes."""
         steps = [(_SQUARE, speed**2), *self._scaled(), *self._rates()]
         for body, push in zip(self.linkage.bodies, wrench_symbols(self.linkage), strict=True):
-            taken = inertia_wrench(body, self.linkage.t)
-            for symbol, part in zip(push, taken, strict=True):
-                value = self._in_steps(part)
-                steps.append((symbol, self._by_moments([body], value, sp.factor_terms)))
+            for symbol in push:
+                value = self._by_moments([body], self._pushes[symbol], sp.factor_terms)
+                steps.append((symbol, value))
         return self.motion.steps.then(*steps)
+
+    @cached_property
+    def _pushes(self) -> dict[sp.Symbol, sp.Expr]:
+        """What the motion of each link takes, by the steps."""
+        links = zip(self.linkage.bodies, wrench_symbols(self.linkage), strict=True)
+        return {
+            symbol: self._in_steps(part)
+            for body, push in links
+            for symbol, part in zip(push, inertia_wrench(body, self.linkage.t), strict=True)
+        }
 
     def load_steps(self) -> Steps:
         """Return the kinematics, and the loads in place of what the motion takes."""
@@ -218,8 +228,7 @@ class _Forces:
         for body, push in zip(self.linkage.bodies, wrench_symbols(self.linkage), strict=True):
             if sp.Matrix(body.origin).has(t):
                 carried.append(body)
-                pairs = zip(push, inertia_wrench(body, t), strict=True)
-                pushes |= {symbol: self._in_steps(part) for symbol, part in pairs}
+                pushes |= {symbol: self._pushes[symbol] for symbol in push}
         value = self.motion.named(sp.expand(total).subs(pushes)).subs(spins)
         return self._by_moments(carried, value, self._without_slips)
 
@@ -279,6 +288,10 @@ def forces(spec: ModelSpec, linkage: PlanarLinkage, motion: SolvedMotion) -> Ker
         closed = ClosedForm(of, steps.needed(outputs.values()), tuple(outputs.items()))
         return KernelForm(name, _SUMMARIES[name], closed)
 
+    dropped = {}
+    if not spec.drop:
+        across = tuple(moment.name for moment in masses if moment.name.startswith(STRAIGHT))
+        dropped = vanishing({STRAIGHT: across, STEADY: (acceleration.name,)})
     frame_moment = {name: momenta[name] for name in _SHAKING[2:]}
     frame_force = {name: momenta[name] for name in _SHAKING[:2]}
     return KernelForms(
@@ -289,7 +302,8 @@ def forces(spec: ModelSpec, linkage: PlanarLinkage, motion: SolvedMotion) -> Ker
             form("shaking_force", inertia, frame_force),
             form("shaking_moment", inertia, frame_moment),
             form("load_forces", loaded, loads, (motion.theta2, *geometry, *wrenches)),
-        )
+        ),
+        dropped,
     )
 
 
@@ -301,3 +315,90 @@ _SUMMARIES = {
     "shaking_moment": "Return the moment on the frame about A, the change of moment of momentum",
     "load_forces": "Return what external loads alone call forth",
 }
+
+
+_DRIVE = (
+    Argument("speed", "float or ndarray, shape (...)", "rad/s", "Crank speed"),
+    Argument("acceleration", "float or ndarray, shape (...)", "rad/s^2", "Crank acceleration"),
+)
+MOMENT_WORDS = (
+    ("mass", "kg", "Mass of link"),
+    ("along", "kg m", "First moment along link"),
+    ("across", "kg m", "First moment across link"),
+    ("inertia", "kg m^2", "Inertia, about its first joint, of link"),
+)
+LOAD_WORDS = (
+    ("fx", "N", "Force along x at the first joint of link"),
+    ("fy", "N", "Force along y at the first joint of link"),
+    ("couple", "N m", "Couple on link"),
+)
+
+
+def description(
+    spec: ModelSpec,
+    mechanism: str,
+    theta2: Argument,
+    geometry: Sequence[Argument],
+    references: tuple[str, ...],
+    sliding: str = "",
+) -> Description:
+    """Return the words of a module of forces.
+
+    Parameters
+    ----------
+    spec : ModelSpec
+        What the module is.
+    mechanism : str
+        Its linkage, in words.
+    theta2 : Argument
+        Crank angle.
+    geometry : sequence of Argument
+        Lengths and assembly.
+    references : tuple of str
+        Equations of the documents.
+    sliding : str
+        The pair of links of a sliding joint, if there is one.
+    """
+    arguments = [theta2, *_DRIVE, *geometry]
+    for words in (MOMENT_WORDS, LOAD_WORDS):
+        arguments += [
+            Argument(f"{name}{n}", "float or ndarray", unit, f"{meaning} {n}")
+            for n in (2, 3, 4)
+            for name, unit, meaning in words
+        ]
+    restrictions = [words for key, words in _RESTRICTIONS if key in spec.drop]
+    return Description(
+        title=f"Forces of {mechanism} in closed form",
+        references=references,
+        arguments=tuple(arguments),
+        results=_results(sliding),
+        notes=(
+            "Link 1 is the frame, 2 the crank; each moving link has axes of its own from its first "
+            "joint along the link.  The forces are linear in masses, moments and inertias: at unit "
+            "values of one of these they are the derivatives by it.",
+            *restrictions,
+        ),
+    )
+
+
+def _results(sliding: str) -> dict[str, Result]:
+    """Return the words of everything that the functions return."""
+    found: dict[str, tuple[str, str]] = {}
+    for pair in ("12", "23", "34", "41"):
+        for axis in ("x", "y"):
+            found[axis + pair] = "N", f"Force of link {pair[0]} on link {pair[1]} along {axis}"
+    if sliding:
+        found[f"couple{sliding}"] = "N m", f"Couple of link {sliding[0]} on link {sliding[1]}"
+    found |= {
+        "torque": ("N m", "Torque of the drive on the crank, anticlockwise"),
+        "shaking_x": ("N", "Force on the frame along x"),
+        "shaking_y": ("N", "Force on the frame along y"),
+        "shaking_moment": ("N m", "Moment on the frame about A, the drive's reaction in it"),
+    }
+    return array_results(found)
+
+
+_RESTRICTIONS = (
+    ("crank_acceleration", "For a crank of constant speed."),
+    ("across", "For links whose masses lie along their lines."),
+)

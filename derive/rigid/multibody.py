@@ -13,18 +13,18 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ..describe import Description
 from ..entries import ConstrainedSystem
-from ..ir import Argument
+from ..ir import Argument, Description
 from ..pipeline import Model
 from ..records import EquationsOfMotion, Lagrangian
 from ..spec import Choices, ModelSpec
+from ..staged import vanishing
+from .forces import LOAD_WORDS, MOMENT_WORDS
 from .newton_euler import TORQUE
-from .planar import FRAME, Body, Pin, PlanarLinkage, Slide, kinetic_energy
-from .words import LOAD_WORDS, MOMENT_WORDS
+from .planar import FRAME, STRAIGHT, Body, Pin, PlanarLinkage, Slide, kinetic_energy
 
 DRIVE = "drive"
-CHOICES = Choices(drop=("across", DRIVE))
+CHOICES = Choices(drop=(STRAIGHT, DRIVE))
 
 
 def free_bodies(linkage: PlanarLinkage) -> PlanarLinkage:
@@ -123,7 +123,7 @@ def _description(
         parameters += [
             Argument(f"{name}{number}", "float or ndarray", unit, f"{meaning} {number}")
             for name, unit, meaning in (*MOMENT_WORDS, *LOAD_WORDS)
-            if not (name == "across" and name in spec.drop)
+            if not (name == STRAIGHT and name in spec.drop)
         ]
     if DRIVE in spec.drop:
         parameters.append(Argument("torque", "float or ndarray", "N m", "Torque on the crank"))
@@ -134,7 +134,7 @@ def _description(
         parameters=tuple(parameters),
         notes=(
             "Multipliers xij, yij, couple are the force and couple of link i on link j"
-            + ("." if DRIVE in spec.drop else "; that of the drive is the torque."),
+            + ("." if DRIVE in spec.drop else "; that of the drive is the torque, as couple2 is."),
         ),
     )
 
@@ -169,4 +169,9 @@ def multibody_model(
 def _discretise(spec: ModelSpec, equations: EquationsOfMotion) -> ConstrainedSystem:
     """Multiply the velocity terms out: in the moments about the first joints nothing is left."""
     rest = sp.ImmutableDenseMatrix(equations.rest.applyfunc(sp.expand))
-    return ConstrainedSystem(replace(equations, rest=rest))
+    dropped = {}
+    if not spec.drop:
+        moments = equations.mass.free_symbols
+        across = sorted(symbol.name for symbol in moments if symbol.name.startswith(STRAIGHT))
+        dropped = vanishing({STRAIGHT: across, DRIVE: (TORQUE.name,)})
+    return ConstrainedSystem(replace(equations, rest=rest), dropped=dropped)

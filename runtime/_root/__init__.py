@@ -83,7 +83,6 @@ _PUBLIC = {
     "mobility": "linkages",
     "monodromy": "periodic",
     "natural_frequencies": "frequencies",
-    "newmark_regions": "integrators.newmark_stability",
     "orbit_multipliers": "constrained",
     "periodic_orbit": "constrained",
     "perturbation_boundaries": "hill",

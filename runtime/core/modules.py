@@ -21,15 +21,29 @@ from .errors import bad
 
 @dataclass(frozen=True)
 class EmittedModule:
-    """A loaded module with what its manifest says of it."""
+    """A loaded module with what its manifest says of it.
+
+    Attributes
+    ----------
+    entry : Entry
+        Of the manifest.
+    folder : Path
+        Where the module lies.
+    module : module
+        Emitted.
+    dropped : tuple of str
+        Terms that the wanted model leaves out and the module still has: its ``DROPS`` says what
+        has to vanish.
+    """
 
     entry: Entry
     folder: Path
     module: ModuleType
+    dropped: tuple[str, ...] = ()
 
     def __reduce__(self) -> tuple[object, ...]:
         """Make pickled and copied ones load the module, which is no value itself."""
-        return _loaded, (self.entry, self.folder)
+        return _loaded, (self.entry, self.folder, self.dropped)
 
     @property
     def provenance(self) -> dict[str, str]:
@@ -37,8 +51,8 @@ class EmittedModule:
         return {"module": self.entry.module, "module_hash": self.entry.content}
 
 
-def _loaded(entry: Entry, folder: Path) -> EmittedModule:
-    return EmittedModule(entry, folder, _load(folder, entry))
+def _loaded(entry: Entry, folder: Path, dropped: tuple[str, ...]) -> EmittedModule:
+    return EmittedModule(entry, folder, _load(folder, entry), dropped)
 
 
 def search_path(folders: Sequence[str | Path] = ()) -> Iterator[Path]:
@@ -56,7 +70,8 @@ def search_path(folders: Sequence[str | Path] = ()) -> Iterator[Path]:
 def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedModule:
     """Return the emitted module of a spec.
 
-    A module for the spec's own number of modes is preferred to one for any number.  Outside the
+    A module for the spec's own number of modes is preferred to one for any number, and one without
+    the terms that the spec drops to a general one that can leave them out.  Outside the
     packaged modules, one that today's sources would emit differently counts as missing, so that a
     cache that an older version filled is never used by mistake.
 
@@ -75,17 +90,21 @@ def find_module(spec: ModelSpec, folders: Sequence[str | Path] = ()) -> EmittedM
     """
     candidates = (spec, spec.with_(modes=None)) if spec.modes is not None else (spec,)
     outdated = ""
-    for folder in search_path(folders):
-        known = read_manifest(folder)
-        for candidate in candidates:
-            entry = known.get(candidate.key())
-            if entry is None or not (folder / f"{entry.module}.py").is_file():
-                continue
-            if _outdated(folder, entry):
-                outdated = f", only an outdated one in {folder}"
-                continue
-            _refuse_edited(folder, entry)
-            return EmittedModule(entry, folder, _load(folder, entry))
+    manifests = {folder: read_manifest(folder) for folder in search_path(folders)}
+    for dropped in ((), spec.drop) if spec.drop else ((),):
+        for folder, known in manifests.items():
+            for candidate in candidates:
+                wanted = candidate.with_(drop=()) if dropped else candidate
+                entry = known.get(wanted.key())
+                if entry is None or not (folder / f"{entry.module}.py").is_file():
+                    continue
+                if _outdated(folder, entry):
+                    outdated = f", only an outdated one in {folder}"
+                    continue
+                _refuse_edited(folder, entry)
+                module = _load(folder, entry)
+                if not dropped or dropped in getattr(module, "DROPS", {}):
+                    return EmittedModule(entry, folder, module, dropped)
     found = f"no emitted module {spec.name()}{outdated}"
     raise bad("model", found, "one listed in a manifest", f"run: {_command(spec, folders)}")
 

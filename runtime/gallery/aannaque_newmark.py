@@ -50,7 +50,7 @@ def figure_6_1(axes: Sequence[Axes]) -> Drawn:
 
 def _least_beta(gamma: float) -> float:
     """Return the least beta that is stable at every step."""
-    from ..integrators.newmark_stability import newmark_limit
+    from .newmark_stability import newmark_limit
 
     low, high = 0.0, 1.0
     while high - low > 1e-9:
@@ -61,7 +61,7 @@ def _least_beta(gamma: float) -> float:
 
 def _misjudged() -> int:
     """Return at how many points the multipliers are not those of the region drawn."""
-    from ..integrators.newmark_stability import newmark_regions
+    from .newmark_stability import newmark_regions
 
     # Between the lines, on which the regions meet.
     gamma, beta = np.meshgrid(np.arange(0.013, 1.2, 0.04), np.arange(0.003, 0.8, 0.04))
@@ -71,7 +71,7 @@ def _misjudged() -> int:
 
 
 def _newmark_rows() -> list[Quoted]:
-    from ..integrators.newmark_stability import newmark_limit
+    from .newmark_stability import newmark_limit
 
     limits = newmark_limit(np.array([0.49, 0.5, 0.51]), 0.25)
     return [

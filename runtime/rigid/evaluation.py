@@ -1,4 +1,4 @@
-"""The emitted functions of forces at many angles: the smallest that serve, block by block."""
+"""The emitted functions of forces at many angles, block by block."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ _SAFE_EXPONENT = 60
 
 
 @cache
-def force_kernels(mechanism: str, drop: tuple[str, ...] = ()) -> Any:
-    """Return the emitted module of a mechanism's forces, without the terms that are dropped."""
-    name = ModelSpec(mechanism, "forces", drop=drop).name()
+def force_kernels(mechanism: str) -> Any:
+    """Return the emitted module of a mechanism's forces."""
+    name = ModelSpec(mechanism, "forces").name()
     return import_module(f"...generated.{name}", __package__)
 
 
@@ -66,11 +66,7 @@ class Evaluation:
         longest = max(abs(size) for size in machine.linkage.lengths.values())
         exponent = int(np.frexp(longest)[1])
         self.exponent = exponent if abs(exponent) > _SAFE_EXPONENT else 0
-        drop: tuple[str, ...] = ()
-        if not np.any(acceleration):
-            straight = all(mass.across == 0.0 for mass in machine.masses.values())
-            drop = ("across", "crank_acceleration") if straight else ("crank_acceleration",)
-        self.kernels = force_kernels(machine.linkage.mechanism, drop)
+        self.kernels = force_kernels(machine.linkage.mechanism)
         self.numbers = self._numbers(speed, acceleration)
 
     def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:

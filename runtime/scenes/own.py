@@ -39,7 +39,7 @@ def own_system(scene: Scene) -> LinearPeriodic:
 
     emitted = find_module(scene.model_spec())
     numbers = _numbers(scene)
-    parameters = [name for name, _, _ in emitted.module.PARAMETERS]
+    parameters = list(emitted.module.PARAMETERS)
     arguments = _arguments(emitted.module) - set(parameters) - set(emitted.module.EXTERNAL)
     missing = sorted((set(parameters) | arguments) - set(numbers))
     if missing:
@@ -51,6 +51,7 @@ def own_system(scene: Scene) -> LinearPeriodic:
         geometry={name: numbers[name] for name in sorted(arguments)},
         parameters={name: numbers[name] for name in parameters},
         modes=scene.model.get("modes"),
+        drop=emitted.dropped,
         provenance={"scene": scene.name, "scene_digest": scene.digest(), **emitted.provenance},
     )
 

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from copy import copy
 from functools import partial
 from types import ModuleType
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import MATRICES, LinearPeriodic, Term
-from ..core.families.emitted import check_module
+from ..core.families.emitted import check_module, dropped_names
 
 Array = NDArray[np.float64]
 
+_Row: TypeAlias = tuple[str, int, str | None, str | None, str]
 _ROUND = 8.0 * float(np.finfo(float).eps)
 
 
@@ -41,6 +42,7 @@ def assemble(
     external: Mapping[str, Callable[[Array], Array]] | None = None,
     basis: BasisArrays | None = None,
     forcing: bool = True,
+    drop: Collection[str] = (),
     **attributes: Any,
 ) -> LinearPeriodic:
     """Return the linear-periodic system of an emitted module.
@@ -62,23 +64,27 @@ def assemble(
         number, its ``array(name, place)`` gives the integrals that the module's ``BASIS`` defines.
     forcing : bool
         Whether the forcing terms are taken along.
+    drop : collection of str
+        Terms of the energies to leave out (of the module's ``DROPS``).
     **attributes
         Further attributes of :class:`~elastolink.runtime.core.families.LinearPeriodic`.
 
     Raises
     ------
     BadInput
-        If the module is of another family, or a parameter, argument, function or basis is missing.
+        If the module is of another family, if a parameter, argument, function or basis is missing,
+        or if the module cannot leave out a term.
     """
     check_module(module, "linear_periodic", parameters)
     missing = sorted(set(module.EXTERNAL) - set(external or {}))
     if missing:
         raise bad("external", f"none for {missing}", "a function of angle each", "pass them")
-    integrals = _integrals(module, geometry, basis)
-    modal = _modal_arrays(module, modes, integrals)
+    rows = _rows(module, drop)
+    integrals = _integrals(module, geometry, basis, rows)
+    modal = _modal_arrays(module, modes, integrals, rows)
     shared = _angle_kernels(module, geometry, external or {})
     terms = []
-    for array, power, scale, angle, mode in module.TERMS:
+    for array, power, scale, angle, mode in rows:
         if array in MATRICES or forcing:
             function = _function(angle, modal[mode], shared, external or {})
             terms.append(Term(array, scale, function, power))
@@ -97,6 +103,15 @@ def assemble(
     return LinearPeriodic(
         size=size, terms=tuple(terms), parameters=dict(parameters), scales=scales, **attributes
     )
+
+
+def _rows(module: ModuleType, drop: Collection[str]) -> tuple[_Row, ...]:
+    """Return the separated terms, without those of the terms of the energies that are left out."""
+    rows: tuple[_Row, ...] = module.TERMS
+    if not drop:
+        return rows
+    gone, come = dropped_names(module, drop)
+    return (*(row for row in rows if row not in gone), *come)
 
 
 # Functions with some arguments given, and no module among them, so that systems can be pickled.
@@ -121,7 +136,7 @@ def _scales(
 
 
 def _modal_arrays(
-    module: ModuleType, modes: int | None, integrals: _Integrals | None
+    module: ModuleType, modes: int | None, integrals: _Integrals | None, rows: Iterable[_Row]
 ) -> dict[str, Array | Callable[[Array], Array]]:
     arrays: dict[str, Array | Callable[[Array], Array]] = {}
     if integrals is not None:
@@ -144,14 +159,17 @@ def _modal_arrays(
             name: np.array(np.broadcast_to(value, shape), dtype=float)
             for name, value in zip(names, result, strict=True)
         }
-    for _, _, _, _, name in module.TERMS:
+    for _, _, _, _, name in rows:
         if name not in arrays:
             arrays[name] = np.array(getattr(module, name.upper()))
     return arrays
 
 
 def _integrals(
-    module: ModuleType, geometry: Mapping[str, float], basis: BasisArrays | None
+    module: ModuleType,
+    geometry: Mapping[str, float],
+    basis: BasisArrays | None,
+    rows: Iterable[_Row],
 ) -> _Integrals | None:
     if not hasattr(module, "BASIS"):
         return None
@@ -161,19 +179,24 @@ def _integrals(
     missing = sorted(set(wanted) - set(geometry))
     if missing:
         raise bad("geometry", f"none for {missing}", "a value each", "supply them")
-    return _Integrals(module, basis, {name: geometry[name] for name in wanted})
+    names = {row[4] for row in rows}
+    return _Integrals(module, basis, {name: geometry[name] for name in wanted}, names)
 
 
 class _Integrals:
     """Integrals over shapes that follow a support, computed once for all terms."""
 
     def __init__(
-        self, module: ModuleType, basis: BasisArrays, geometry: Mapping[str, float]
+        self,
+        module: ModuleType,
+        basis: BasisArrays,
+        geometry: Mapping[str, float],
+        names: Collection[str],
     ) -> None:
         self._place, self._basis, self._geometry = module.place, basis, geometry
         self._products: tuple[str, ...] = module.RETURNS.get("basis_products", ())
         self._multiply: Callable[..., Any] = getattr(module, "basis_products", tuple)
-        self.names = {mode for *_, mode in module.TERMS}
+        self.names = names
         self._last: tuple[Array, Array, dict[str, Array]] | None = None
 
     def __call__(self, name: str, theta: Array) -> Array:

@@ -9,10 +9,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation.surd import ExactHarmonics, combine
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries
 from omitted_orders import Curve
+from smith_chapter_8.surd import ExactHarmonics, combine
 
 ORDERS = (1, 2, 3, 4, 5, 6)
 REGIONS = (1, 2, 3, 4, 5, 6)

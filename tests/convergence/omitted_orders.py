@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cache
 
 from boundary_truth import DIGITS, MP, boundary
-from elastolink.derive.perturbation.exact import exact_operator
+from smith_chapter_8.exact import exact_operator
 
 ZERO = Fraction(0)
 FORMS = ("series", "uniform")

@@ -26,10 +26,10 @@ from boundary_cases import (
     whole,
 )
 from boundary_truth import MP
-from elastolink.derive.perturbation.exact import exact_series
-from elastolink.derive.perturbation.strained import strained_boundaries
-from elastolink.derive.perturbation.surd import ExactHarmonics, Surd, combine
 from omitted_orders import FORMS, Curve, real
+from smith_chapter_8.exact import exact_series
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import ExactHarmonics, Surd, combine
 
 # So small that the next power changes a slope by 1e-5 at most, near critical damping too.
 SMALL = Fraction(1, 2**20)

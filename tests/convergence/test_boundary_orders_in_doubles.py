@@ -25,11 +25,11 @@ from boundary_cases import (
     whole,
 )
 from boundary_truth import MP
-from elastolink.derive.perturbation.exact import exact_operator
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.hill import boundary_series, perturbation_boundaries
 from elastolink.runtime.hill.bloch import effective_operator
 from omitted_orders import FORMS, real
+from smith_chapter_8.exact import exact_operator
 
 EPS = float(np.finfo(float).eps)
 POINTS = tuple(Fraction(1, 2**k) for k in (3, 4, 5, 6, 7, 8, 10, 12, 15, 20))

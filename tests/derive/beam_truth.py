@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at
+from judging import Exact, Point, exact_at
 
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 MODULES = (*(f"beam_element_{kind}" for kind in KINDS), *(f"beam_shapes_{kind}" for kind in KINDS))

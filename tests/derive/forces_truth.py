@@ -12,13 +12,12 @@ import linkage_truth
 import mpmath
 import numpy as np
 import sliding_truth
-from elastolink.derive.checks import Exact, Point, exact_at
+from judging import Point, exact_at
 from linkage_truth import solve
 
 MECHANISMS = ("four_bar", "slider_crank", "quick_return")
 MOMENTS = tuple(f"{name}{n}" for n in (2, 3, 4) for name in ("mass", "along", "across", "inertia"))
 LOADS = tuple(f"{name}{n}" for n in (2, 3, 4) for name in ("fx", "fy", "couple"))
-VARIANTS = ("", "_without_crank_acceleration", "_without_across_without_crank_acceleration")
 _GEOMETRY = {
     "four_bar": ("frame", "crank", "coupler", "follower", "assembly"),
     "slider_crank": ("crank", "coupler", "offset", "assembly"),
@@ -172,12 +171,10 @@ def _poses(mechanism):
     return sliding_truth.random_rods(80, seed=33) + sliding_truth.nasty_rods()[::3]
 
 
-def points(mechanism, variant, *, loaded=False):
+def points(mechanism, *, loaded=False):
     """Return poses with masses or loads: all at random, or one of them alone."""
     random = np.random.default_rng(34)
     names = list(LOADS if loaded else MOMENTS)
-    if "without_across" in variant:
-        names = [name for name in names if not name.startswith("across")]
     found = []
     for i, pose in enumerate(_poses(mechanism)):
         drawn = {
@@ -191,8 +188,7 @@ def points(mechanism, variant, *, loaded=False):
             words = f", {only} alone"
         if not loaded:
             drawn["speed"] = float(10.0 ** random.uniform(-1, 2))
-            if not variant:
-                drawn["acceleration"] = float(random.choice([0.0, 1.0, -30.0]))
+            drawn["acceleration"] = float(random.choice([0.0, 1.0, -30.0]))
         fixed = {k: v for k, v in pose.fixed.items() if k != "winding"}
         found.append(Point(pose.name + words, {**pose.inputs, **drawn}, fixed))
     return found
@@ -201,17 +197,11 @@ def points(mechanism, variant, *, loaded=False):
 @lru_cache(maxsize=32)
 def exact_points(module, function):
     """Return exact forces at all points of one emitted function."""
-    mechanism, variant = module.split("_forces")
+    mechanism = module.split("_forces")[0]
     if function == "load_forces":
-        if variant:
-            return exact_points(f"{mechanism}_forces", function)
-        made, reference = points(mechanism, "", loaded=True), loads(mechanism)
+        made, reference = points(mechanism, loaded=True), loads(mechanism)
+    elif function != "forces":
+        return exact_points(module, "forces")
     else:
-        if function != "forces":
-            return exact_points(module, "forces")
-        made, reference = points(mechanism, variant), forces(mechanism)
-    return tuple(_exact(reference, point) for point in made)
-
-
-def _exact(reference, point) -> Exact:
-    return exact_at(reference, point)
+        made, reference = points(mechanism), forces(mechanism)
+    return tuple(exact_at(reference, point) for point in made)

@@ -16,10 +16,10 @@ from functools import lru_cache
 import mpmath
 import numpy as np
 from elastolink import generated
-from elastolink.derive.checks import Exact, Point
+from judging import Exact, Point
 
 MODES_MODULE = "beam_free_free_modes"
-ROD_MODULES = "quick_return_rod_free_free_"
+ROD_MODULE = "quick_return_rod_free_free"
 DIGITS = 140
 ROD_DIGITS = 320  # third differences take 180 of them
 STEP = mpmath.mpf(10) ** -60
@@ -135,7 +135,8 @@ def _at_modes(function: str):
                 }
                 yield Point(f"mode {i}", {"root": float(b)}, fixed), values
             elif function == "slope_squares":
-                values = {"plain": integral(0, i, i, (1, 1)), "second": integral(2, i, i, (1, 1))}
+                whole = [integral(k, i, i, (1, 1)) for k in range(3)]
+                values = {"plain": whole[0], "second": whole[2], **_shortening(whole)}
                 slope = float(mode(i, mpmath.mpf(1) / 2, 1))
                 yield Point(f"mode {i}", {"end_slope": slope}), values
             else:
@@ -161,6 +162,12 @@ def _rise(b, p: int):
     return mpmath.cosh(b / 2) if p > 0 else mpmath.sinh(b / 2)
 
 
+def _shortening(w) -> dict:
+    """Return int s alpha ds and alpha(-1/2) for alpha' = -w/2 without mean, w by its moments."""
+    with mpmath.workdps(DIGITS):
+        return {"inward": w[2] / 4 - w[0] / 16, "retreat": w[0] / 4 - w[1] / 2}
+
+
 def _pairs():
     names = ("plain", "first", "second")
     for i, j in itertools.permutations((1, 2, 3, 4, 11, 30, 59, 60), 2):
@@ -171,7 +178,8 @@ def _pairs():
             "other_end_slope": float(mode(j, mpmath.mpf(1) / 2, 1)),
         }
         fixed = {"parity": float(parity(i)), "other_parity": float(parity(j))}
-        values = {name: integral(k, i, j, (1, 1)) for k, name in enumerate(names)}
+        whole = [integral(k, i, j, (1, 1)) for k in range(3)]
+        values = dict(zip(names, whole, strict=True)) | _shortening(whole)
         # Zero by symmetry, but for the last of these digits.
         chopped = {name: v if abs(v) > mpmath.mpf(10) ** -100 else 0 for name, v in values.items()}
         yield Point(f"modes {i}, {j}", inputs, fixed), chopped
@@ -183,22 +191,20 @@ def _pairs():
 class Rod:
     """The rod by hand at one point: energies and constraints of numbers."""
 
-    def __init__(self, numbers: dict, count: int, tension: bool) -> None:
+    def __init__(self, numbers: dict, count: int) -> None:
         self.n, self.count = numbers, count
         every = range(1, count + 1)
-        zero = mpmath.mpf(0)
 
-        def tensions(weights) -> list[list]:
+        def pairs(name: str) -> list[list]:
             return [
-                [sum(w * integral(k, i, j, (1, 1)) for k, w in enumerate(weights)) for j in every]
-                for i in every
+                [numbers["_".join([name, *map(str, sorted((i, j)))])] for j in every] for i in every
             ]
 
-        eighth, quarter = mpmath.mpf(1) / 8, mpmath.mpf(1) / 4
-        none = [[zero] * count for _ in every]
         # int (1/4 - s^2)/2 psi' psi', and the pin's approach (1/2) int (1/2 - s) psi' psi'
-        self.pull = tensions((eighth, zero, -mpmath.mpf(1) / 2)) if tension else none
-        self.approach = tensions((quarter, -mpmath.mpf(1) / 2, zero)) if tension else none
+        self.pull = [[-2 * value for value in row] for row in pairs("inward")]
+        self.approach = pairs("retreat")
+        self.left = [numbers[f"left_{i}"] for i in every]
+        self.stiffness = [numbers[f"stiffness_{i}"] for i in every]
         self.home = self._place(numbers["gamma"], numbers["t"])
 
     def _place(self, gamma, t):
@@ -212,7 +218,7 @@ class Rod:
         r1, r2, gamma, *f = q
         cos, sin = mpmath.cos(gamma), mpmath.sin(gamma)
         moved = self._place(gamma, t) - self.home
-        left = sum(2 * parity(i + 1) * a for i, a in enumerate(f))
+        left = sum(value * a for value, a in zip(self.left, f, strict=True))
         held = mpmath.mpf(0)
         for i, a in enumerate(f, start=1):
             terms = [n[f"psi_{i}" + (f"_d{k}" if k else "")] for k in range(4)]
@@ -244,8 +250,8 @@ class Rod:
         coriolis = 2 * m * length**3 * turning * sum(a * b for a, b in zip(fd, bent, strict=True))
         elastic = self.n["bending_stiffness"] / length
         own = [
-            elastic * root(i) ** 4 * a - m * length**3 * turning**2 * b
-            for i, (a, b) in enumerate(zip(f, bent, strict=True), start=1)
+            elastic * value * a - m * length**3 * turning**2 * b
+            for value, a, b in zip(self.stiffness, f, bent, strict=True)
         ]
         return [mpmath.mpf(0)] * 2 + [coriolis] + own
 
@@ -286,9 +292,9 @@ def _entries(name: str, columns) -> dict:
     }
 
 
-def rod_arrays(numbers: dict, count: int, tension: bool) -> dict:
+def rod_arrays(numbers: dict, count: int) -> dict:
     """Return every array of the three emitted functions, entry by entry."""
-    rod = Rod(numbers, count, tension)
+    rod = Rod(numbers, count)
     names = ["R1", "R2", "gamma", *(f"f{i}" for i in range(1, count + 1))]
     q, qd, qdd = ([numbers[f"{name}{end}"] for name in names] for end in ("", "_dot", "_ddot"))
     lam, t = [numbers[f"lam_{k}"] for k in (1, 2, 3)], numbers["t"]
@@ -311,37 +317,117 @@ def rod_arrays(numbers: dict, count: int, tension: bool) -> dict:
     return found
 
 
-@lru_cache(maxsize=16)
-def _rod_points(module: str) -> tuple[tuple[Point, dict], ...]:
-    count = int(module.removeprefix(ROD_MODULES).split("_")[0])
-    tension = not module.endswith("without_tension")
-    emitted = importlib.import_module(f"{generated.__name__}.{module}")
+class WithModes:
+    """A function of the emitted rod for a number of modes, in scalars: entry by entry."""
+
+    def __init__(self, function: str, count: int) -> None:
+        self.module = importlib.import_module(f"{generated.__name__}.{ROD_MODULE}")
+        self.function, self.count = getattr(self.module, function), count
+        self.arrays = self.module.ARRAYS[function]
+        names = self._scalars(inspect.signature(self.function).parameters)
+        kind = inspect.Parameter.KEYWORD_ONLY
+        self.__signature__ = inspect.Signature([inspect.Parameter(n, kind) for n in names])
+        made = self(**dict.fromkeys(names, 1.0))
+        self.names = tuple(name for name, _ in self._entries(self._called))
+        assert len(made) == len(self.names)
+
+    def _scalars(self, parameters) -> list[str]:
+        every = range(1, self.count + 1)
+        names = []
+        for name in parameters:
+            if name in ("inward", "retreat"):
+                names += [f"{name}_{i}_{j}" for i in every for j in every if i <= j]
+            elif name in ("left", "stiffness"):
+                names += [f"{name}_{i}" for i in every]
+            elif name.startswith("psi"):
+                names += [f"psi_{i}{name.removeprefix('psi')}" for i in every]
+            elif name == "f" or name.startswith("f_"):
+                names += [f"f{i}{name.removeprefix('f')}" for i in every]
+            else:
+                names.append(name)
+        return names
+
+    def __call__(self, **given: float) -> tuple[float, ...]:
+        every = range(1, self.count + 1)
+        taken = {}
+        for name in inspect.signature(self.function).parameters:
+            own = self._scalars([name])
+            values = [given.get(n, 0.0) for n in own]
+            if name in ("inward", "retreat"):
+                pairs = dict(zip(own, values, strict=True))
+                taken[name] = [
+                    [pairs["_".join([name, *map(str, sorted((i, j)))])] for j in every]
+                    for i in every
+                ]
+            else:
+                taken[name] = values if own != [name] else values[0]
+        self._taken = taken
+        self._called = self.function(**taken)
+        return tuple(value for _, value in self._entries(self._called))
+
+    def _entries(self, returned):
+        """Yield the name and the value of each entry that is not zero by form."""
+        last = len(self.module.COORDINATES) - 1
+        every = range(self.count)
+        for array, (shape, filled) in self.arrays.items():
+            block: dict[tuple[int, int], float] = {}
+            for i, j, at, *kind in filled:
+                value = returned[at]
+                if kind:
+                    matrix = self._taken.get(kind[0])
+                    for k, m in itertools.product(every, every):
+                        factor = float(k == m)
+                        if kind[0] in ("inward", "retreat"):
+                            factor = matrix[k][m]
+                        elif kind[0] != "identity":
+                            factor *= matrix[k]
+                        place = (last + k, last + m)
+                        block[place] = block.get(place, 0.0) + value * factor
+                elif isinstance(value, list):
+                    for k, entry in enumerate(value):
+                        moved = (i + k, j) if i == last < shape[0] else (i, j + k)
+                        yield f"{array}_{moved[0] + 1}_{moved[1] + 1}", entry
+                else:
+                    yield f"{array}_{i + 1}_{j + 1}", value
+            for (i, j), value in block.items():
+                if i == j or array == "stiffness":
+                    yield f"{array}_{i + 1}_{j + 1}", value
+
+
+@lru_cache(maxsize=4)
+def _rod_points(count: int) -> tuple[tuple[Point, dict], ...]:
+    names = inspect.signature(WithModes("variations", count)).parameters
+    parameters = importlib.import_module(f"{generated.__name__}.{ROD_MODULE}").PARAMETERS
     random = np.random.default_rng(57 + count)
-    names = dict.fromkeys((*inspect.signature(emitted.variations).parameters,))
     made = []
     for k in range(3):
         inputs = {}
         for name in names:
-            positive = any(name == parameter for parameter, _, _ in emitted.PARAMETERS)
             size = 10.0 ** random.uniform(-2, 2)
+            positive = name in parameters
             inputs[name] = float(size if positive else random.choice((-1, 1)) * size)
         if k == 0:  # the rod undeformed and at rest in itself
             inputs |= {name: 0.0 for name in names if name.startswith("f") and name[1:2].isdigit()}
         with mpmath.workdps(ROD_DIGITS):
-            exact = rod_arrays({n: mpmath.mpf(v) for n, v in inputs.items()}, count, tension)
+            exact = rod_arrays({n: mpmath.mpf(v) for n, v in inputs.items()}, count)
         made.append((Point("undeformed" if k == 0 else f"random {k}", inputs), exact))
     return tuple(made)
 
 
-def exact_free_free(module: str, function: str) -> tuple[Exact, ...]:
-    """Return exact values of one emitted function of the modes or of a rod."""
-    emitted = importlib.import_module(f"{generated.__name__}.{module}")
-    names = emitted.RETURNS[function]
-    if module != MODES_MODULE:
-        points = _rod_points(module)
-    elif function == "slope_products":
-        points = tuple(_pairs())
-    else:
-        points = tuple(_at_modes(function))
-    called = getattr(emitted, function)
-    return tuple(Exact(p, values, fair(called, names, p)) for p, values in points)
+def exact_modes(function: str) -> tuple[Exact, ...]:
+    """Return exact values of one emitted function of the modes."""
+    emitted = importlib.import_module(f"{generated.__name__}.{MODES_MODULE}")
+    points = tuple(_pairs() if function == "slope_products" else _at_modes(function))
+    return _judged_by(getattr(emitted, function), emitted.RETURNS[function], points)
+
+
+def exact_rod(function: WithModes) -> tuple[Exact, ...]:
+    """Return exact values of one emitted function of the rod."""
+    return _judged_by(function, function.names, _rod_points(function.count))
+
+
+def _judged_by(called: Callable, names: tuple[str, ...], points) -> tuple[Exact, ...]:
+    def compute(point: Point, values: dict) -> Callable:
+        return lambda: (values, fair(called, names, point))
+
+    return tuple(Exact(point, compute(point, values)) for point, values in points)

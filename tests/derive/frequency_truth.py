@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point
+from judging import Exact, Point, exact_at
 
 MODULE = "beam_dynamic_stiffness"
 DIGITS = 260  # of the smallest phases 1e-6, differences take 150 of them
@@ -153,16 +153,4 @@ def _points(function: str) -> Iterator[Point]:
 @lru_cache(maxsize=16)
 def exact_frequency_functions(function: str) -> tuple[Exact, ...]:
     """Return exact values, and the sizes that roundings of the inputs justify."""
-    reference, found = _FUNCTIONS[function], []
-    with mpmath.workdps(DIGITS):
-        step = mpmath.mpf(10) ** -40
-        for point in _points(function):
-            numbers = {key: mpmath.mpf(value) for key, value in point.arguments.items()}
-            values = reference(numbers)
-            fair = {key: abs(value) for key, value in values.items()}
-            for name in point.inputs:
-                moved = reference({**numbers, name: numbers[name] * (1 + step)})
-                for key, value in values.items():
-                    fair[key] += abs(moved[key] - value) / step
-            found.append(Exact(point, values, fair))
-    return tuple(found)
+    return tuple(exact_at(_FUNCTIONS[function], point, DIGITS) for point in _points(function))

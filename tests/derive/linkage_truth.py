@@ -12,8 +12,8 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at
 from elastolink.generated import four_bar_kinematics
+from judging import Exact, Point, exact_at
 
 LENGTHS = ("frame", "crank", "coupler", "follower")
 OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")

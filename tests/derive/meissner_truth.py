@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at
+from judging import Exact, Point, exact_at
 
 COUNTS = {"two_intervals": 2, "three_intervals": 3, "four_intervals": 4}
 _BEFORE = ("half_trace_before", "half_difference_before", "upper_before", "lower_before")

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at
+from judging import Exact, Point, exact_at
 
 LENGTHS = {
     "four_bar": ("frame", "crank", "coupler", "follower"),
@@ -58,7 +58,7 @@ def _slopes(mechanism, numbers, q):
     return columns
 
 
-def arrays(mechanism, free):
+def arrays(mechanism):
     """Return the emitted arrays of a linkage as a function of mpmath numbers by name."""
 
     def reference(numbers):
@@ -87,14 +87,11 @@ def arrays(mechanism, free):
         bent = _curvature(mechanism, numbers, q, qd)
         rates = [zero] * len(held)
         gamma = [-value for value in bent]
-        if free:
-            found["forces_3_1"] += numbers["torque"]
-        else:
-            held.append(q[2] - numbers["drive"])
-            for i, column in enumerate(columns):
-                column.append(mpmath.mpf(i == 2))
-            rates.append(numbers["drive_d1"])
-            gamma.append(numbers["drive_d2"])
+        held.append(q[2] - numbers["drive"])
+        for i, column in enumerate(columns):
+            column.append(mpmath.mpf(i == 2))
+        rates.append(numbers["drive_d1"])
+        gamma.append(numbers["drive_d2"])
         for row, value in enumerate(held):
             found[f"constraints_{row + 1}_1"] = value
             found[f"gamma_{row + 1}_1"] = gamma[row]
@@ -121,12 +118,11 @@ def _curvature(mechanism, numbers, q, qd):
 def exact_points(module) -> tuple[Exact, ...]:
     """Return exact arrays at random states: coordinates of any size, joints open."""
     mechanism = module.split("_multibody")[0]
-    free = module.endswith("without_drive")
     random = np.random.default_rng(41)
     names = [f"{name}{n}{dot}" for dot in ("", "_dot") for n in (2, 3, 4) for name in BODY]
     names += LENGTHS[mechanism]
     names += [f"{name}{n}" for n in (2, 3, 4) for name in (*MOMENTS, *LOADS)]
-    names += ["torque"] if free else ["drive", "drive_d1", "drive_d2"]
+    names += ["drive", "drive_d1", "drive_d2"]
     found = []
     for i in range(12):
         inputs = {
@@ -134,7 +130,7 @@ def exact_points(module) -> tuple[Exact, ...]:
             for name in names
         }
         point = Point(f"random state {i}", inputs, {"t": 0.0})
-        found.append(exact_at(arrays(mechanism, free), point))
+        found.append(exact_at(arrays(mechanism), point))
     return tuple(found)
 
 

@@ -13,10 +13,10 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at, reference_of
 from elastolink.derive.models import overhang_modes
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import quick_return_overhang_modes as emitted
+from judging import Exact, Point, exact_at, reference_of
 
 DIGITS = 320
 _STEP = mpmath.mpf(10) ** -60

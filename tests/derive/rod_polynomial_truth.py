@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at
+from judging import Exact, Point, exact_at
 
 MODULE = "quick_return_rod_polynomials"
 # Which derivatives by (eta, xi) each output is.

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import mpmath
-from elastolink.derive.checks import Exact, Point, exact_at
+from judging import Exact, Point, exact_at
 from linkage_truth import LENGTHS, motion, nasty_points, random_points
 
 QUANTITIES = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")

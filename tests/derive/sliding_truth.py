@@ -14,8 +14,8 @@ from itertools import product
 
 import mpmath
 import numpy as np
-from elastolink.derive.checks import Exact, Point, exact_at
 from elastolink.generated import quick_return_kinematics, slider_crank_kinematics
+from judging import Exact, Point, exact_at
 from linkage_truth import _ANGLES, TURN, solve
 
 # Half of 5e-324 is 0, and an angle that is proportional to it has no digits that could be kept.

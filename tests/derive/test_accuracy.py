@@ -11,7 +11,18 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.checks import (
+from elastolink.derive.staged import Steps
+from emitted_accuracy import (
+    EXCEPTIONS,
+    PAGE,
+    bound,
+    cosine_moment,
+    emitted_functions,
+    page_bounds,
+    rows,
+)
+from free_free_truth import ROD_MODULE
+from judging import (
     ALLOWED,
     ROUNDOFF,
     Judgement,
@@ -21,31 +32,32 @@ from elastolink.derive.checks import (
     reference_of,
     worst,
 )
-from elastolink.derive.staged import Steps
-from emitted_accuracy import EXCEPTIONS, PAGE, cosine_moment, emitted_functions, page_rows, rows
 from linkage_truth import OUTPUTS, Linkage, angles, exact_points, motion
 
+QUICK = 8  # points of a function in the first stage
 
-@pytest.mark.parametrize("module, function", sorted(emitted_functions()))
-def test_every_output_is_within_the_measure(module, function):
-    found = [row for row in rows() if (row.module, row.function) == (module, function)]
-    assert [row.judgement.output for row in found] == list(emitted_functions()[module, function])
-    beyond = {row.key: row.judgement for row in found if not row.judgement.passed}
+
+@pytest.mark.parametrize("most", [QUICK, pytest.param(None, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("module", emitted_functions())
+def test_every_output_is_within_the_measure(module, most):
+    """And within twice what docs/accuracy.md states, which is rounded up to a power of two."""
+    found = {row.key: row.judgement for row in rows(module, most)}
+    if module != ROD_MODULE:  # whose entries are as many as the modes say
+        names = emitted_functions()[module].items()
+        assert set(found) == {(module, f, name) for f, returned in names for name in returned}
+    beyond = {key: judgement for key, judgement in found.items() if not judgement.passed}
     assert set(beyond) <= set(EXCEPTIONS), beyond
+    worst_kept = max(j.measure for key, j in found.items() if key not in EXCEPTIONS)
+    stated = page_bounds(PAGE.read_text())[module]
+    assert worst_kept <= 2 * stated, "run: python tests/derive/emitted_accuracy.py"
+    if most is None:
+        assert bound(worst_kept) >= stated / 2, "run: python tests/derive/emitted_accuracy.py"
+        needed = {key for key in EXCEPTIONS if key[0] == module}
+        assert needed <= set(beyond)
 
 
-def test_every_exception_is_still_needed():
-    beyond = {row.key for row in rows() if not row.judgement.passed}
-    assert set(EXCEPTIONS) <= beyond
-
-
-def test_the_page_is_current():
-    """Rows alike, and the worst measures within what another mathematics library changes."""
-    stated = page_rows(PAGE.read_text())
-    found = {row.key: row.judgement.measure for row in rows()}
-    assert set(stated) == set(found), "run: python tests/derive/emitted_accuracy.py"
-    apart = {k: (w, found[k]) for k, w in stated.items() if not abs(w - found[k]) <= 0.1 + found[k]}
-    assert not apart, "run: python tests/derive/emitted_accuracy.py"
+def test_the_page_lists_every_module():
+    assert set(page_bounds(PAGE.read_text())) == set(emitted_functions())
 
 
 # ---------------------------------------------------------------- the truth itself
@@ -159,8 +171,11 @@ GEOMETRY = {"frame": 5.0, "crank": 1.0, "coupler": 4.5, "follower": 2.0}
 ANY = {**GEOMETRY, "offset": 0.5, "assembly": -1.0, "winding": 0.0}
 
 
+PAIRS = [(module, f) for module, functions in emitted_functions().items() for f in functions]
+
+
 @pytest.mark.parametrize("shared", [True, False], ids=["first is an array", "all are arrays"])
-@pytest.mark.parametrize("module, function", sorted(emitted_functions()))
+@pytest.mark.parametrize("module, function", [p for p in PAIRS if p[0] != ROD_MODULE])
 def test_every_function_runs_in_any_array_namespace(module, function, shared):
     """The same numbers as with NumPy, from arrays that cannot be written to.
 

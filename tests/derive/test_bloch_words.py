@@ -8,8 +8,8 @@ from math import comb
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation import bloch, printing, words
-from elastolink.derive.perturbation.words import Element, H, P, R, V, effective_words, wave_words
+from elastolink.derive import bloch, latex
+from elastolink.derive.bloch import Element, H, P, R, V, effective_words, wave_words
 
 ORDERS = range(1, 8)
 
@@ -26,9 +26,9 @@ def test_the_rules_are_those_of_a_projector_and_its_resolvent():
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_words_solve_the_equation_of_their_order(order):
-    assert words.remainder(0) == words.ZERO
-    assert words.remainder(order) == words.ZERO
-    assert P @ wave_words(order) == words.ZERO  # P Omega = P
+    assert bloch.remainder(0) == bloch.ZERO
+    assert bloch.remainder(order) == bloch.ZERO
+    assert P @ wave_words(order) == bloch.ZERO  # P Omega = P
     assert wave_words(order) @ P == wave_words(order)
 
 
@@ -42,9 +42,9 @@ def test_no_other_sign_of_a_word_would_do(order):
             def values(letter, kind=kind, spoiled=spoiled):
                 if letter == (kind, order):
                     return spoiled
-                return words._earlier(letter)
+                return bloch._earlier(letter)
 
-            assert words.equation(order).put(values)
+            assert bloch.equation(order).put(values)
 
 
 @pytest.mark.parametrize("order", range(1, 9))
@@ -92,7 +92,7 @@ def test_with_matrices_the_equation_holds_to_the_order():
 
 
 def test_an_unknown_is_found_only_where_it_stands_alone():
-    unknown = words.letter_of(("O", 2))
+    unknown = bloch.letter_of(("O", 2))
     assert (unknown + unknown + V).solved_for(("O", 2)) == Element({("V",): Fraction(-1, 2)})
     for bad in (V, unknown + V @ unknown):
         with pytest.raises(ValueError, match="does not determine"):
@@ -118,24 +118,24 @@ def test_assignments_count_and_refuse():
 
 
 def test_words_as_text_and_as_latex():
-    assert words.word_text(("P", "V", "R", "R", "V", ("O", 3))) == "P V R^2 V O_3"
+    assert bloch.word_text(("P", "V", "R", "R", "V", ("O", 3))) == "P V R^2 V O_3"
     assert repr(V @ R @ R - P) == "-1 P + 1 V R^2"
-    assert repr(words.ZERO) == "0"
-    assert printing.element_latex(words.ZERO) == ["0"]
-    assert printing.element_latex(Element({("V",): Fraction(-3, 2), ("V", "V"): 2, (): 1})) == [
+    assert repr(bloch.ZERO) == "0"
+    assert latex.element_latex(bloch.ZERO) == ["0"]
+    assert latex.element_latex(Element({("V",): Fraction(-3, 2), ("V", "V"): 2, (): 1})) == [
         "1",
         r"- \frac{3}{2} V",
         "+ 2 V^{2}",
     ]
-    assert printing.word_latex(("H", ("O", 2), ("h", 1))) == r"H_{0} \Omega_{2} h_{1}"
+    assert latex.word_latex(("H", ("O", 2), ("h", 1))) == r"H_{0} \Omega_{2} h_{1}"
 
 
 def test_latex_lines_of_the_recursion():
     system = bloch.Recursion((1, 2), 2)
-    assert list(printing.recursion_lines(system)) == [
+    assert list(latex.recursion_lines(system)) == [
         ("h_{1}", ["P V P"]),
         (r"\Omega_{1}", ["R V P"]),
         ("h_{2}", [r"P V \Omega_{1}"]),
         (r"\Omega_{2}", [r"R V \Omega_{1}", r"- R \Omega_{1} h_{1}"]),
     ]
-    assert list(printing.word_lines(system)) == [("h_{1}", ["P V P"]), ("h_{2}", ["P V R V P"])]
+    assert list(latex.word_lines(system)) == [("h_{1}", ["P V P"]), ("h_{2}", ["P V R V P"])]

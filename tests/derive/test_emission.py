@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from elastolink.derive import emission
 from elastolink.derive.emission import TemplateKeys, emit
-from elastolink.derive.ir import Argument, Kernel, ModuleSpec, Result, Statement, TermRow
+from elastolink.derive.ir import Argument, Kernel, ModuleSpec, Result, Statement, Table
 from elastolink.derive.spec import ModelSpec
 
 WORDS = "a quantity whose meaning takes very many words to explain, " * 3 + "at last"
@@ -32,7 +32,6 @@ KERNEL = Kernel(
         Statement("x1", " + ".join(f"length_{i} * x0**{i}" for i in range(12))),
     ),
     returns=("x0", " - ".join(["x1", *(f"length_{i} * theta" for i in range(12))])),
-    references=("Smith (6.6)",),
     operations=42,
 )
 LINEAR = ModuleSpec(
@@ -42,14 +41,21 @@ LINEAR = ModuleSpec(
     notes=(WORDS,),
     references=("Nobody (1.1)",) * 12,
     kernels=(KERNEL,),
-    terms=(
-        TermRow("K", 0, None, "first", "modal_1"),
-        TermRow("B", 2, "inertia_" * 9, "second_" * 9, "modal_" * 6),
-    ),
     parameters=(Argument("inertia", "float", "kg m^2", 'The "big" one'),),
-    tables=(("MODAL_1", "(" + ", ".join(["1.0"] * 60) + ",)"),),
+    tables=(
+        Table(
+            "TERMS",
+            (
+                ("K", 0, None, "first", "modal_1"),
+                ("B", 2, "inertia_" * 9, "second_" * 9, "modal_" * 6),
+            ),
+            WORDS,
+        ),
+        Table("MODAL_1", (1.0,) * 60),
+        Table("PLACES", {"mass": ((2, 2), ((0, 0, 0), (1, 1, 1)))}),
+    ),
 )
-CLOSED = replace(LINEAR, family="closed_form", terms=(), tables=(), parameters=())
+CLOSED = replace(LINEAR, family="closed_form", tables=(), parameters=())
 CONTENT = "0123456789abcdef" * 2
 
 
@@ -84,12 +90,19 @@ def test_the_text_is_a_module_that_says_what_the_records_say(module):
         assert part in " ".join(header.split())
 
 
-def test_the_tables_of_a_linear_periodic_module_are_the_rows():
+def test_tables_and_meanings_stand_in_the_text():
     space = load(emit(LINEAR, CONTENT))
-    rows = tuple((t.array, t.power, t.scale, t.angle, t.modal) for t in LINEAR.terms)
-    assert space["TERMS"] == rows
-    assert space["PARAMETERS"] == (("inertia", "kg m^2", 'The "big" one'),)
-    assert space["MODAL_1"] == (1.0,) * 60
+    for table in LINEAR.tables:
+        assert space[table.name] == table.value
+    assert space["PARAMETERS"] == ("inertia",)
+    assert space["QUANTITIES"]["inertia"] == ("kg m^2", 'The "big" one')
+    assert space["QUANTITIES"]["second"] == ("m", "Short")
+
+
+def test_a_name_with_two_meanings_is_refused():
+    other = replace(KERNEL, name="other", results=(Result("second", "float", "s", "A time"),))
+    with pytest.raises(ValueError, match="second stands for"):
+        emit(replace(CLOSED, kernels=(KERNEL, other)), CONTENT)
 
 
 def test_the_function_computes_what_the_statements_say():
@@ -112,23 +125,23 @@ def test_lines_fit_and_end_cleanly(module):
 
 
 def test_a_key_that_the_template_does_not_use_is_an_error(templates):
-    base = templates / "base.py.j2"
+    base = templates / "module.py.j2"
     base.write_text(base.read_text().replace("{{ title }}", "Title"))
     with pytest.raises(TemplateKeys, match=r"not used \['title'\]"):
         emit(CLOSED, CONTENT)
 
 
 def test_a_key_that_is_not_supplied_is_an_error(templates):
-    child = templates / "closed_form.py.j2"
-    child.write_text(child.read_text() + "{% block declarations %}{{ colour }}{% endblock %}")
+    base = templates / "module.py.j2"
+    base.write_text(base.read_text() + "{{ colour }}")
     with pytest.raises(TemplateKeys, match=r"not supplied \['colour'\]"):
         emit(CLOSED, CONTENT)
 
 
 def test_an_attribute_that_does_not_exist_is_an_error(templates):
-    base = templates / "base.py.j2"
-    base.write_text(base.read_text().replace("{{ kernel.summary }}", "{{ kernel.sumary }}"))
-    with pytest.raises(jinja2.UndefinedError, match="sumary"):
+    base = templates / "module.py.j2"
+    base.write_text(base.read_text().replace("{{ kernel.docstring }}", "{{ kernel.docsting }}"))
+    with pytest.raises(jinja2.UndefinedError, match="docsting"):
         emit(CLOSED, CONTENT)
 
 

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 import sympy as sp
 from elastolink import generated
-from elastolink.derive.folding import fold_scalars
 from elastolink.derive.ir import Argument, Result
-from elastolink.derive.lowering import lower_kernel, to_line
+from elastolink.derive.lowering import fold_scalars, lower_kernel, to_line
 from elastolink.derive.staged import Steps
 from emitted_accuracy import MANIFEST
 

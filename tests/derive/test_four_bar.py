@@ -7,12 +7,12 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.checks import Point, exact_at, reference_of
 from elastolink.derive.models import four_bar
 from elastolink.derive.models.four_bar import MODEL, coupler, crank, follower, frame, theta2
 from elastolink.derive.pipeline import lower
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import four_bar_kinematics
+from judging import Point, exact_at, reference_of
 from linkage_truth import OUTPUTS, Linkage, random_points
 
 SPEC = ModelSpec("four_bar", "kinematics")

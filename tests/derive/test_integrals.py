@@ -8,7 +8,7 @@ import random
 import mpmath
 import pytest
 import sympy as sp
-from elastolink.derive.projection.integrals import (
+from elastolink.derive.integrals import (
     UnknownIntegrand,
     antiderivative,
     definite,

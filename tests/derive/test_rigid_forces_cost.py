@@ -1,4 +1,4 @@
-"""What the emitted forces cost, and that specialised modules return the same."""
+"""What the emitted forces cost, and that they are linear in the moments."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from elastolink.derive.catalogue import find
 from elastolink.derive.spec import ModelSpec
 from force_machines import call, emitted, random_machine
-from forces_truth import MECHANISMS, MOMENTS, VARIANTS
+from forces_truth import MECHANISMS, MOMENTS
 
 
 class _Counted:
@@ -37,48 +37,25 @@ def array_operations(module, function):
     return _Counted.count
 
 
-def test_operations_on_arrays_of_the_straight_four_bar_at_constant_speed():
-    """What decides the run time at many angles, signs counted too: 127 when this was written."""
-    module = emitted(f"four_bar_forces{VARIANTS[2]}")
+def test_operations_on_arrays_of_the_four_bar():
+    """What decides the run time at many angles, signs counted too: as when this was written.
+
+    Without moments across the links and at constant speed it would be 127: 29 % less.
+    """
+    module = emitted("four_bar_forces")
     counts = {name: array_operations(module, name) for name in module.RETURNS}
-    assert counts["forces"] <= 127
-    assert max(counts["driving_torque"], counts["shaking_moment"]) <= 77
-    assert max(counts["shaking_force"], counts["load_forces"]) <= 89
+    assert counts["forces"] <= 180
+    assert max(counts["driving_torque"], counts["shaking_moment"]) <= 102
+    assert max(counts["shaking_force"], counts["load_forces"]) <= 115
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS)
 def test_asking_for_less_costs_less(mechanism):
-    every, steady, straight = (emitted(f"{mechanism}_forces{v}") for v in VARIANTS)
-    for module in (every, steady, straight):
-        counts = {name: array_operations(module, name) for name in module.RETURNS}
-        parts = ("driving_torque", "shaking_force", "shaking_moment")
-        assert all(counts[name] < counts["pin_forces"] < counts["forces"] for name in parts)
-        assert counts["load_forces"] < counts["pin_forces"]
-    for name in every.RETURNS:
-        costs = [array_operations(module, name) for module in (every, steady, straight)]
-        if name == "load_forces":
-            assert len(set(costs)) == 1
-        else:
-            assert costs[0] > costs[1] > costs[2] or name == "shaking_force"
-            assert costs[0] > costs[2]
-    signature = straight.forces.__code__.co_varnames
-    assert "acceleration" not in signature and "across3" not in signature
-
-
-@pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_specialised_modules_return_the_same(mechanism):
-    random = np.random.default_rng(11)
-    every, steady, straight = (emitted(f"{mechanism}_forces{v}") for v in VARIANTS)
-    for _ in range(20):
-        numbers = random_machine(mechanism, random) | {"acceleration": 0.0}
-        general = call(every, "forces", numbers)
-        size = max(abs(value) for value in general.values())
-        for name, value in call(steady, "forces", numbers).items():
-            assert abs(value - general[name]) < 1e-12 * size
-        numbers |= {f"across{n}": 0.0 for n in (2, 3, 4)}
-        general = call(every, "forces", numbers)
-        for name, value in call(straight, "forces", numbers).items():
-            assert abs(value - general[name]) < 1e-12 * size
+    module = emitted(f"{mechanism}_forces")
+    counts = {name: array_operations(module, name) for name in module.RETURNS}
+    parts = ("driving_torque", "shaking_force", "shaking_moment")
+    assert all(counts[name] < counts["pin_forces"] < counts["forces"] for name in parts)
+    assert counts["load_forces"] < counts["pin_forces"]
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS)
@@ -98,9 +75,8 @@ def test_forces_are_linear_in_the_moments(mechanism):
 
 def test_no_angle_is_taken_back_from_its_sine():
     for mechanism in MECHANISMS:
-        for variant in VARIANTS:
-            names = emitted(f"{mechanism}_forces{variant}").forces.__code__.co_names
-            assert set(names) <= {"_namespace", "sin", "cos", "tan", "sqrt"}
+        names = emitted(f"{mechanism}_forces").forces.__code__.co_names
+        assert set(names) <= {"_namespace", "sin", "cos", "tan", "sqrt"}
 
 
 def test_the_catalogue_finds_every_formulation():

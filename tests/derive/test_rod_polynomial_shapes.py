@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.checks import judge, worst
 from elastolink.derive.models.rod_polynomials import MODEL
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import quick_return_rod_polynomials as emitted
+from judging import judge, worst
 from rod_polynomial_truth import exact_polynomials
 
 eta, xi = sp.symbols("eta xi", positive=True)

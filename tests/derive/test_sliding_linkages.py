@@ -8,12 +8,12 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.checks import Point, exact_at, reference_of
 from elastolink.derive.models import quick_return, slider_crank
 from elastolink.derive.pipeline import lower
 from elastolink.derive.safe import UnsafeRewriting
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import quick_return_kinematics, slider_crank_kinematics
+from judging import Point, exact_at, reference_of
 from sliding_truth import (
     ROD,
     SLIDER,

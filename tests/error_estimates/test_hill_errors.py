@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation.exact import exact_operator, exact_series
-from elastolink.derive.perturbation.surd import ExactHarmonics
+from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.surd import ExactHarmonics
 from half_trace_truth import half_traces
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (

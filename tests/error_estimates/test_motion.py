@@ -5,9 +5,9 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from elastolink.derive.checks import Point
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar
+from judging import Point
 from linkage_truth import LENGTHS, angles, nasty_points, random_points
 
 

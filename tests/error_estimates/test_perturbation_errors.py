@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 from boundary_truth import MP, boundary
-from elastolink.derive.perturbation.surd import ExactHarmonics
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries, perturbation_boundaries
+from smith_chapter_8.surd import ExactHarmonics
 
 SCENES = 60
 POINTS = 6

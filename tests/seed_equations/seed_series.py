@@ -6,7 +6,7 @@ from functools import cache
 from itertools import product
 
 import sympy as sp
-from elastolink.derive.perturbation.surd import ExactHarmonics
+from smith_chapter_8.surd import ExactHarmonics
 
 theta = sp.Symbol("theta", real=True)
 n = sp.Symbol("n", integer=True, positive=True)

@@ -2,12 +2,12 @@
 
 from functools import cache
 
+import newmark_scheme as newmark
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.models import newmark
+from elastolink.runtime.gallery.newmark_stability import margins, newmark_limit
 from elastolink.runtime.integrators.newmark import newmark_rule, step_maps
-from elastolink.runtime.integrators.newmark_stability import newmark_limit
 from seed_ledger import establishes
 
 h, tau = newmark.step, newmark.place
@@ -277,3 +277,20 @@ def test_limits_of_stability():
     assert limits[0] == 0.0 and limits[best] == pytest.approx(3.01, abs=0.01)
     assert ratios[best] == pytest.approx(0.15, abs=0.01) and limits[-1] < limits[best]
     np.testing.assert_allclose(newmark_limit(0.5, 0.1, ratios), newmark_limit(0.5, 0.1))
+
+
+def test_the_margins_of_the_gallery_are_the_derived_ones():
+    found = newmark.margins()
+    z = newmark.damping
+    parts = (found.growth, found.flip, found.static, found.turning / found.denominator)
+    exact = sp.lambdify((g, b, z, x), [part / found.denominator for part in parts])
+    numbers = np.random.default_rng(1).uniform(0.0, 2.0, (4, 200))
+    for value, wanted in zip(margins(*numbers), exact(*numbers), strict=True):
+        np.testing.assert_allclose(value, wanted, rtol=1e-12, atol=1e-13)
+
+
+def test_a_change_of_the_interpolation_moves_the_scheme():
+    # With all of the new end, the implicit scheme of first order.
+    assert sp.expand(newmark.velocity_weights().value.subs(g, 1) - h * newmark.new) == 0
+    assert newmark.velocity_weights().remainder.subs(g, sp.Rational(1, 2)) == 0
+    assert newmark.displacement_weights().remainder.subs(b, sp.Rational(1, 6)) == 0

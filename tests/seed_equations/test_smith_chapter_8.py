@@ -5,9 +5,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.perturbation.modified import common_solution_condition, modified_method
-from elastolink.derive.perturbation.strained import strained_boundaries
-from elastolink.derive.perturbation.surd import ExactHarmonics, combine
 from seed_ledger import establishes
 from seed_series import (
     TWO_FUNCTIONS,
@@ -24,6 +21,9 @@ from seed_series import (
     theta,
 )
 from seed_truth import CRANK_ROCKERS, RIGS, boundaries, coupler_functions, fourier, motion
+from smith_chapter_8.modified import common_solution_condition, modified_method
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import ExactHarmonics, combine
 
 A, B = sp.symbols("A_00 B_00", real=True)
 an, bn, cn, dn = sp.symbols("a_n b_n c_n d_n", real=True)

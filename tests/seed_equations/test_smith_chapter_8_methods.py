@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.perturbation.modified import alternative_method
-from elastolink.derive.perturbation.strained import strained_boundaries
-from elastolink.derive.perturbation.surd import combine
 from seed_ledger import establishes
 from seed_series import TWO_FUNCTIONS, eps, psi, resonant, theta
 from seed_truth import CRANK_ROCKERS, RIGS, TURN, boundaries, coupler_functions, fourier, motion
+from smith_chapter_8.modified import alternative_method
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import combine
 
 F = Fraction
 A, B = sp.symbols("A B", real=True)

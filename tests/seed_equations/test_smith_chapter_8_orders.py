@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.perturbation.modified import modified_formulas, modified_method
 from seed_ledger import establishes
 from seed_series import (
     TWO_FUNCTIONS,
@@ -18,6 +17,7 @@ from seed_series import (
     rows,
     theta,
 )
+from smith_chapter_8.modified import modified_formulas, modified_method
 
 ONE, TWO = TWO_FUNCTIONS
 bar1, bar2 = function("fbar1"), function("fbar2")

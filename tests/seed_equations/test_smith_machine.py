@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import seed_machine as machine
 import sympy as sp
-from elastolink.generated import four_bar_kinematics, hill_boundaries_first_order
+from elastolink.generated import four_bar_kinematics
 from seed_derivations import (
     EI,
     alpha3,
@@ -31,6 +31,7 @@ from seed_truth import (
     motion,
     pin_force_on_coupler,
 )
+from smith_chapter_8.first_order import boundaries as first_order_boundaries
 
 
 def test_field_equation_and_tension():
@@ -95,9 +96,7 @@ def test_emitted_first_order_boundaries():
     for n in (1, 2):
         an, bn = 2 * c[n].real, -2 * c[n].imag
         for mu_value in (1e-3, 1e-4):
-            centre, square = hill_boundaries_first_order.first_order(
-                n, mu_value, c[0].real, an, bn, 0.0
-            )
+            centre, square = first_order_boundaries()(n, mu_value, c[0].real, an, bn, 0.0)
             found = centre + np.sqrt(square) * np.array([-1.0, 1.0])
             exact = boundaries(mu_value * samples, n)
             assert np.allclose(found, exact, rtol=0, atol=2 * mu_value**2)

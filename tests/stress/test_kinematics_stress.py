@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.derive.checks import judge, worst
 from elastolink.generated import four_bar_coupler_complete, four_bar_kinematics
 from elastolink.runtime.linkages import FourBar
+from judging import judge, worst
 from linkage_truth import OUTPUTS, Linkage, exact_near
 
 TURN = 2.0 * np.pi

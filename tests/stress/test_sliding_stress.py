@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.derive.checks import exact_at, judge, worst
 from elastolink.generated import quick_return_kinematics, slider_crank_kinematics
 from elastolink.runtime.linkages import QuickReturn, SliderCrank
+from judging import exact_at, judge, worst
 from sliding_truth import ROD, SLIDER, Slider, rod_motion, rod_point, slider_motion
 
 TURN = 2.0 * np.pi

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
@@ -12,7 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from .emitted import Places, Values, array_function, parameter_values
+from .emitted import (
+    Places,
+    Values,
+    array_function,
+    dropped_names,
+    parameter_values,
+    stacked,
+)
 from .linear_periodic import Array
 from .multipliers import solve_multipliers
 
@@ -92,6 +99,8 @@ class Constrained:
         parameters: Values,
         *,
         external: Mapping[str, External] | None = None,
+        modes: Values | None = None,
+        drop: Collection[str] = (),
         provenance: Mapping[str, str] | None = None,
     ) -> Constrained:
         """Return the system of an emitted module at given parameter values.
@@ -104,31 +113,55 @@ class Constrained:
             Its parameters, in SI units; arrays broadcast with the state.
         external : mapping, optional
             What the module wants passed in, by argument name (its ``EXTERNAL``): functions of
-            ``q (*batch, n)`` and ``t`` that return shape ``batch``.
+            ``q (*batch, n)`` and ``t`` that return shape ``batch``, or ``(*batch, N)`` where the
+            module has one of each of N modes.
+        modes : mapping, optional
+            Numbers of the modes ``(N,)`` and of pairs of them ``(N, N)`` by name, for a module
+            that serves any number of modes (its ``MODES``).
+        drop : collection of str
+            Terms to leave out (of the module's ``DROPS``): numbers of modes that vanish,
+            constraints that are released.
         provenance : mapping, optional
             Where the module comes from.
 
         Raises
         ------
         BadInput
-            If the module is of another family, or a parameter or external function is missing.
+            If the module is of another family, if a parameter, external function or number of
+            modes is missing, or if the module cannot drop a term.
         """
         values = parameter_values(module, "constrained", parameters)
+        dropped = dropped_names(module, drop)
+        values |= {name: 0.0 for name in dropped if name in values}
         given = dict(external or {})
         missing = sorted(set(module.EXTERNAL) - set(given))
         if missing:
             raise bad("external", f"none for {missing}", "a function of q and t each", "pass them")
 
-        def at(name: str) -> _AtState:
-            return _AtState(module, name, given, values)
+        kept = [i for i, name in enumerate(module.MULTIPLIERS) if name not in dropped]
+        if hasattr(module, "MODES"):
+            numbers = _mode_numbers(module, modes or {}, dropped)
+            count = len(numbers[module.MODES[1][0]])
+            labels = (
+                *module.COORDINATES[:-1],
+                *(f"{module.MODES[0]}{i + 1}" for i in range(count)),
+            )
+        else:
+            numbers, labels = {}, module.COORDINATES
+
+        def at(name: str) -> Callable[..., Mapping[str, Array]]:
+            if numbers:
+                return _AtModalState(module, name, given, values, numbers)
+            state = _AtState(module, name, given, values)
+            return state if len(kept) == len(module.MULTIPLIERS) else _Released(state, tuple(kept))
 
         return cls(
-            len(module.COORDINATES),
-            len(module.MULTIPLIERS),
+            len(labels),
+            len(kept),
             at("dynamics"),
             at("constraints"),
             at("variations") if "variations" in module.ARRAYS else None,
-            labels=module.COORDINATES,
+            labels=labels,
             provenance=dict(provenance or {}),
         )
 
@@ -201,6 +234,138 @@ class _AtState:
                 pass  # plain floats refuse what arrays return as infinite
         columns = [vector[..., i] for vector in vectors for i in range(vector.shape[-1])]
         return self._batched(*columns, time, **passed, **self.values)
+
+
+_OF_CONSTRAINTS = ("constraints", "velocity_rhs", "gamma")
+
+
+@dataclass(frozen=True)
+class _Released:
+    """An emitted function of a state without the constraints that are left out."""
+
+    state: _AtState
+    kept: tuple[int, ...]
+
+    def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
+        rows = list(self.kept)
+        return {
+            name: array[..., rows, :]
+            if name in _OF_CONSTRAINTS or name.startswith("jacobian")
+            else array
+            for name, array in self.state(*arguments).items()
+        }
+
+
+def _mode_numbers(module: ModuleType, given: Values, dropped: Collection[str]) -> dict[str, Array]:
+    """Return the numbers of modes and pairs, those of dropped terms being zero."""
+    missing = sorted(set(module.MODES[1]) - set(given))
+    if missing:
+        raise bad("modes", f"none for {missing}", "numbers of each mode", "pass them")
+    arrays = {name: np.asarray(given[name], dtype=float) for name in module.MODES[1]}
+    return {name: array * (name not in dropped) for name, array in arrays.items()}
+
+
+@dataclass(frozen=True)
+class _AtModalState:
+    """An emitted function for any number of modes, whose last coordinate is one of each mode."""
+
+    module: ModuleType
+    name: str
+    given: Mapping[str, External]
+    values: Mapping[str, ArrayLike]
+    numbers: Mapping[str, Array]
+
+    @cached_property
+    def _layout(self) -> tuple[Places, _Places, tuple[tuple[str, int, Array], ...]]:
+        """Where the numbers go with all modes written out, and those that multiply matrices."""
+        first = len(self.module.COORDINATES) - 1
+        matrices = {name: n if n.ndim == 2 else np.diag(n) for name, n in self.numbers.items()}
+        count = len(next(iter(matrices.values())))
+        arrays = self.module.ARRAYS[self.name]
+        # What is returned is written out in one row: a sequence has a place for each mode.
+        sequences = {
+            at
+            for shape, filled in arrays.values()
+            for i, j, at, *kind in filled
+            if not kind and (first in (i, j) and first < shape[0 if i == first else 1])
+        }
+        size = 1 + max((at for _, filled in arrays.values() for _, _, at, *_ in filled), default=-1)
+        starts = np.cumsum([0] + [count if at in sequences else 1 for at in range(size)])
+        written: dict[str, Any] = {}
+        blocks = []
+        for name, (shape, filled) in arrays.items():
+            entries: list[tuple[int, int, int]] = []
+            for i, j, at, *kind in filled:
+                start = int(starts[at])
+                if kind and kind[0] != "identity":
+                    blocks.append((name, start, matrices[kind[0]]))
+                elif kind:
+                    entries += [(first + k, first + k, start) for k in range(count)]
+                elif at in sequences:
+                    rows = i == first < shape[0]
+                    entries += [(i + k * rows, j + k * (not rows), start + k) for k in range(count)]
+                else:
+                    entries.append((i, j, start))
+            full = tuple(n + count - 1 if n > first else n for n in shape)
+            written[name] = (full, tuple(entries))
+        return written, _places(written), tuple(blocks)
+
+    def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
+        """Evaluate at coordinates, more vectors, and time last."""
+        *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
+        written, places, blocks = self._layout
+        first = len(self.module.COORDINATES) - 1
+        alone = time.ndim == 0 and all(vector.ndim == 1 for vector in vectors)
+        if alone and all(isinstance(value, float) for value in self.values.values()):
+            try:  # plain floats are several times faster than arrays of no dimension
+                row = self._row(vectors, time, np.ndarray.tolist)
+                arrays = places.fill(row)
+            except (OverflowError, ZeroDivisionError):
+                row = self._row(vectors, time, _columns)  # plain floats refuse what is infinite
+                arrays = stacked(written, row)
+        else:
+            batch = np.broadcast_shapes(time.shape, *(vector.shape[:-1] for vector in vectors))
+            row = self._row(vectors, time, _columns)
+            arrays = stacked(written, row, batch)
+        for name, start, matrix in blocks:
+            factor = np.asarray(row[start])[..., None, None]
+            arrays[name][..., first:, first:] += factor * matrix
+        return arrays
+
+    def _row(
+        self, vectors: list[Array], time: Array, listed: Callable[[Array], list[Any]]
+    ) -> tuple[Any, ...]:
+        """Call the function with vectors as lists of components, and write out what it returns."""
+        first = len(self.module.COORDINATES) - 1
+        taken: list[Any] = []
+        for vector in vectors[:_OF_COORDINATES]:
+            components = listed(vector)
+            taken += [*components[:first], components[first:]]
+        for vector in vectors[_OF_COORDINATES:]:
+            taken += listed(vector)
+        taken.append(time[()] if time.ndim else float(time))
+        for name in self.module.EXTERNAL:
+            taken.append(listed(np.asarray(self.given[name](vectors[0], time))))
+        function = getattr(self.module, self.name)
+        row: list[Any] = []
+        for value in function(*taken, *self.values.values(), *self._number_lists):
+            if isinstance(value, list):
+                row += value
+            else:
+                row.append(value)
+        return tuple(row)
+
+    @cached_property
+    def _number_lists(self) -> list[Any]:
+        return [array.tolist() for array in self.numbers.values()]
+
+
+_OF_COORDINATES = 3  # vectors: coordinates, their rates, their accelerations; multipliers follow
+
+
+def _columns(vectors: Array) -> list[Any]:
+    """Return the components of vectors, each an array over the batch."""
+    return [vectors[..., i] for i in range(vectors.shape[-1])]
 
 
 @dataclass(frozen=True)

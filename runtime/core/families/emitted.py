@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from types import ModuleType
 from typing import Any, TypeAlias
 
@@ -36,7 +36,7 @@ def check_module(module: ModuleType, family: str, given: Values) -> tuple[str, .
     found = getattr(module, "FAMILY", None)
     if found != family:
         raise bad(module.__name__, f"family {found}", family, "ask for a model of that family")
-    names = tuple(name for name, _, _ in module.PARAMETERS)
+    names: tuple[str, ...] = module.PARAMETERS
     missing = sorted(set(names) - set(given))
     if missing:
         raise bad("parameters", f"none for {missing}", "a value each", "supply them")
@@ -54,6 +54,31 @@ def parameter_values(module: ModuleType, family: str, given: Values) -> dict[str
     names = check_module(module, family, given)
     arrays = {name: np.asarray(given[name], dtype=float) for name in names}
     return {name: value if value.ndim else float(value) for name, value in arrays.items()}
+
+
+def dropped_names(module: ModuleType, drop: Collection[str]) -> tuple[Any, ...]:
+    """Return what vanishes or changes in a general module where terms are left out.
+
+    Parameters
+    ----------
+    module : module
+        Emitted for all terms, with the table ``DROPS``.
+    drop : collection of str
+        Terms to leave out.
+
+    Raises
+    ------
+    BadInput
+        If the module cannot leave them out.
+    """
+    if not drop:
+        return ()
+    known = getattr(module, "DROPS", {})
+    terms = tuple(sorted(drop))
+    if terms not in known:
+        raise bad("drop", terms, f"one of {sorted(known)}", "ask for a module without these terms")
+    entry: tuple[Any, ...] = known[terms]
+    return entry
 
 
 def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Array]]:

@@ -18,7 +18,7 @@ from .basis import require_drop, require_numbers, require_points
 from .free_free import FreeFreeModes
 
 DROPPED = ("tension",)
-_DERIVATIVES = ("", "_d1", "_d2", "_d3")
+_DERIVATIVES = ("psi", "psi_d1", "psi_d2", "psi_d3")
 # Deflections over the length beyond which the equations mean nothing any more.
 _BENT = 0.5
 _STATIONS = np.linspace(0.0, 1.0, 21)
@@ -164,7 +164,7 @@ def free_free_rod(
     Parameters
     ----------
     modes : int
-        Number N of elastic free-free modes; modules for 1 to 5 are packaged.
+        Number N of elastic free-free modes.
     crank_ratio : float
         Crank length over base length G/a_x, positive; not 1.
     frame : float
@@ -191,8 +191,8 @@ def free_free_rod(
     Raises
     ------
     BadInput
-        If a number is not usable, a term to drop is unknown, the crank cannot turn fully with the
-        block on the rod, or no module was emitted for so many modes.
+        If a number is not usable, a term to drop is unknown, or the crank cannot turn fully with
+        the block on the rod.
 
     Notes
     -----
@@ -251,13 +251,20 @@ def _equations(
     """Return the equations of the emitted module for so many modes."""
     emitted = find_module(ModelSpec("quick_return", "free_free", ("rod",), modes.size, dropped))
     at_block = _AtBlock(modes, linkage, float(parameters["speed"]))
-    external = {
-        f"psi_{i + 1}{derivative}": at_block.mode(order, i)
-        for order, derivative in enumerate(_DERIVATIVES)
-        for i in range(modes.size)
-    }
-    origin = {**origin, **emitted.provenance}
-    return Constrained.from_module(emitted.module, parameters, external=external, provenance=origin)
+    inward, retreat = modes.shortening
+    return Constrained.from_module(
+        emitted.module,
+        parameters,
+        external={name: at_block.modes(order) for order, name in enumerate(_DERIVATIVES)},
+        modes={
+            "left": modes.left_values,
+            "stiffness": modes.roots**4,
+            "inward": inward,
+            "retreat": retreat,
+        },
+        drop=emitted.dropped,
+        provenance={**origin, **emitted.provenance},
+    )
 
 
 class _AtBlock:
@@ -266,26 +273,26 @@ class _AtBlock:
     def __init__(self, modes: FreeFreeModes, linkage: QuickReturn, speed: float) -> None:
         self._modes, self._speed = modes, speed
         self._crank, self._frame = linkage.crank / linkage.rod, linkage.frame / linkage.rod
-        self._last: tuple[float, float, tuple[list[float], ...]] | None = None
+        self._last: tuple[float, float, tuple[Array, ...]] | None = None
         self._last_batch: tuple[object, tuple[Array, ...]] | None = None
 
-    def mode(self, order: int, index: int) -> Callable[[Array, Array], ArrayLike]:
-        """Return a derivative of one mode as a function of coordinates and time."""
+    def modes(self, order: int) -> Callable[[Array, Array], ArrayLike]:
+        """Return a derivative of the modes as a function of coordinates and time."""
 
-        def value(q: Array, t: Array) -> ArrayLike:
+        def values(q: Array, t: Array) -> ArrayLike:
             if q.ndim == 1 and (isinstance(t, float) or t.ndim == 0):
-                return self._single(float(q[2]), float(t))[order][index]
-            return self._batch(q[..., 2], t)[order][..., index]
+                return self._single(float(q[2]), float(t))[order]
+            return self._batch(q[..., 2], t)[order]
 
-        return value
+        return values
 
-    def _single(self, gamma: float, t: float) -> tuple[list[float], ...]:
+    def _single(self, gamma: float, t: float) -> tuple[Array, ...]:
         last = self._last
         if last is None or last[0] != gamma or last[1] != t:
             # Plain floats are several times faster than arrays of no dimension.
             turned = math.cos(gamma - t * self._speed)
             rows = self._modes.at(self._crank * turned + self._frame * math.cos(gamma))
-            self._last = last = (gamma, t, tuple(row.tolist() for row in rows))
+            self._last = last = (gamma, t, rows)
         return last[2]
 
     def _batch(self, gamma: Array, t: Array) -> tuple[Array, ...]:

@@ -156,23 +156,35 @@ class FreeFreeModes:
         phase, amplitude, weight, _ = self._constants
         return _modes(eta, self.roots, phase, self.parity, amplitude, weight)  # type: ignore[return-value]
 
-    @cached_property
+    @property
     def slope_integrals(self) -> tuple[Array, Array, Array]:
         """``int s^k psi_i' psi_j' ds`` for k = 0, 1, 2, s from the middle; ``(size, size)`` each.
 
         By Green's identity from the end values, no quadrature.
         """
+        return self._of_slopes["plain"], self._of_slopes["first"], self._of_slopes["second"]
+
+    @cached_property
+    def _of_slopes(self) -> dict[str, Array]:
         b, p, ends = self.roots, self.parity, self.end_slopes
         rows, columns = np.triu_indices(self.size, 1)
         pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
-        across = _slope_products(*pairs)
-        plain, second = _slope_squares(ends)
-        integrals = []
-        for products, squares in zip(across, (plain, np.zeros(self.size), second), strict=True):
-            whole = np.diag(squares)
-            whole[rows, columns] = whole[columns, rows] = products
-            integrals.append(whole)
-        return integrals[0], integrals[1], integrals[2]
+        products = dict(zip(emitted.RETURNS["slope_products"], _slope_products(*pairs), strict=True))
+        squares = dict(zip(emitted.RETURNS["slope_squares"], _slope_squares(ends), strict=True))
+        integrals = {}
+        for name, values in products.items():
+            integrals[name] = np.diag(squares.get(name, np.zeros(self.size)))
+            integrals[name][rows, columns] = integrals[name][columns, rows] = values
+        return integrals
+
+    @property
+    def shortening(self) -> tuple[Array, Array]:
+        """What products of two modes add to the foreshortening, ``(size, size)`` each.
+
+        ``int s alpha ds`` and alpha at the left end, where ``alpha' = -psi_i' psi_j' / 2`` has no
+        mean.
+        """
+        return self._of_slopes["inward"], self._of_slopes["retreat"]
 
     def tension(self) -> Array:
         """Return ``int (1 - eta^2)/2 psi_i' psi_j'``, the tension of a rod that turns about a pin.

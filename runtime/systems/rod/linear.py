@@ -122,6 +122,7 @@ def _assembled(
         geometry={**linkage.geometry, "length": length},
         parameters=parameters,
         basis=basis,
+        drop=emitted.dropped,
         labels=basis.labels,
         reference_length=length,
         provenance={**origin, **emitted.provenance},

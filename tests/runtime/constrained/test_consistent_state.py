@@ -67,7 +67,7 @@ LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
 
 def four_bar(turning=0.0, mass: float = 1.0):
     """The four-bar with a driven crank: as many constraints as coordinates."""
-    values = dict.fromkeys((name for name, _, _ in multibody.PARAMETERS), 0.0) | LENGTHS
+    values = dict.fromkeys(multibody.PARAMETERS, 0.0) | LENGTHS
     for n, length in ((2, 0.3), (3, 0.9), (4, 0.8)):
         values[f"mass{n}"] = mass * length
         values[f"along{n}"] = mass * length**2 / 2

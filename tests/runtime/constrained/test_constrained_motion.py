@@ -174,7 +174,7 @@ SPEED = 6.0
 
 
 def driven_four_bar() -> Constrained:
-    values = dict.fromkeys((name for name, _, _ in multibody.PARAMETERS), 0.0) | LENGTHS
+    values = dict.fromkeys(multibody.PARAMETERS, 0.0) | LENGTHS
     for n, length in ((2, 0.3), (3, 0.9), (4, 0.8)):
         values[f"mass{n}"] = length
         values[f"along{n}"] = length**2 / 2

@@ -273,10 +273,10 @@ def test_assembled_module_takes_functions_of_angle():
 def test_what_an_assembled_module_lacks_is_named():
     with pytest.raises(BadInput, match="damping"):
         assemble(hill_plain, geometry={}, parameters={"lam2": 1.0, "mu": 1.0})
-    numbers = {name: 1.0 for name, _, _ in hill_plain.PARAMETERS}
+    numbers = dict.fromkeys(hill_plain.PARAMETERS, 1.0)
     with pytest.raises(BadInput, match=r"none for \['f'\]"):
         assemble(hill_plain, geometry={}, parameters=numbers)
-    numbers = {name: 1.0 for name, _, _ in four_bar_coupler_complete.PARAMETERS}
+    numbers = dict.fromkeys(four_bar_coupler_complete.PARAMETERS, 1.0)
     with pytest.raises(BadInput, match="follower"):
         assemble(
             four_bar_coupler_complete,

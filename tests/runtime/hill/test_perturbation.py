@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from elastolink.derive.perturbation.exact import exact_operator
-from elastolink.derive.perturbation.surd import ExactHarmonics
+from smith_chapter_8.exact import exact_operator
+from smith_chapter_8.surd import ExactHarmonics
 from elastolink.generated import hill_recursion
 from hill_functions import functions
 from elastolink.runtime.core.errors import BadInput

@@ -11,9 +11,9 @@ import elastolink as el
 import numpy as np
 import pytest
 from boundary_truth import MP, boundary
-from elastolink.derive.perturbation.exact import exact_operator, exact_series
-from elastolink.derive.perturbation.strained import strained_boundaries
-from elastolink.derive.perturbation.surd import ExactHarmonics
+from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import ExactHarmonics
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_series, perturbation_boundaries

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.gallery.newmark_stability import newmark_limit, newmark_regions
 from elastolink.runtime.integrators.newmark import (
     generalized_alpha_rule,
     newmark_rule,
     step_maps,
 )
-from elastolink.runtime.integrators.newmark_stability import newmark_limit, newmark_regions
 
 
 def _growth(rule, phase, damping=0.0):

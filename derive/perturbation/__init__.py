@@ -1,1 +1,0 @@
-"""Stability boundaries of Hill's equation by perturbation, derived by machine to any order."""

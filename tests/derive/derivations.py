@@ -1,0 +1,59 @@
+"""Derivations that several tests look at, each made once in a process."""
+
+from functools import cache
+
+from elastolink.derive.catalogue import CATALOGUE
+from elastolink.derive.emission import emit
+from elastolink.derive.jobs import jobs_of
+from elastolink.derive.pipeline import equations_of_motion, lower, only_wanted
+from elastolink.derive.spec import ModelSpec
+
+CONTENT = "0" * 32
+# One spec for each formulation, with everything in it.
+WHOLE = [spec for entry in CATALOGUE for spec in entry.specs]
+# Within half a second each.
+QUICK = {
+    "beam_shapes_cubic",
+    "four_bar_coupler_reduced",
+    "hill_plain",
+    "hill_recursion",
+    "quick_return_kinematics",
+    "quick_return_multibody",
+    "quick_return_rod_moving_basis",
+    "slider_crank_kinematics",
+}
+
+
+@cache
+def model_of(spec: ModelSpec):
+    """Return the model that derives a spec."""
+    (job,) = jobs_of([], [], [spec.canonical()], None)
+    return job.model()
+
+
+@cache
+def system_of(spec: ModelSpec):
+    """Return the derived system of a spec."""
+    model = model_of(spec)
+    return model.discretise(spec, equations_of_motion(model.energies(spec)))
+
+
+@cache
+def lowered(spec: ModelSpec, derived: ModelSpec | None = None):
+    """Return the intermediate representation of a spec, its system derived for another one."""
+    system = only_wanted(spec, system_of(derived or spec))
+    return lower(spec, system, model_of(spec).describe(spec))
+
+
+@cache
+def text_of(spec: ModelSpec) -> str:
+    """Return the emitted text of a spec."""
+    return emit(lowered(spec), CONTENT)
+
+
+@cache
+def namespace_of(spec: ModelSpec) -> dict:
+    """Return what the emitted text of a spec defines."""
+    space: dict = {}
+    exec(compile(text_of(spec), spec.name(), "exec"), space)
+    return space

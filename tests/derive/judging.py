@@ -1,0 +1,232 @@
+"""Numeric proof of emitted functions: their error at 50 digits, over the error that inputs justify.
+
+A function evaluated in double precision may be off by the rounding of its result and by what a
+rounding of its inputs would do.  The measure of an output f at a point x is
+
+    |error| / (u (|f| + sum_i |x_i df/dx_i|)),    u = 2^-53,
+
+with the exact value and its gradient in many digits at the doubles that were passed in.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import mpmath
+import sympy as sp
+from elastolink.derive.staged import Steps
+
+DIGITS = 80
+ROUNDOFF = 2.0**-53
+ALLOWED = 32.0
+
+Numbers: TypeAlias = Mapping[str, Any]
+Reference: TypeAlias = Callable[[Numbers], Numbers]
+
+
+@dataclass(frozen=True)
+class Point:
+    """Arguments of an emitted function at which it is judged.
+
+    Attributes
+    ----------
+    name : str
+        What is special about it.
+    inputs : mapping
+        Argument name to double; taken as exact.
+    fixed : mapping
+        Arguments that only choose a branch or count something, and so have no error of their own.
+    """
+
+    name: str
+    inputs: Mapping[str, float]
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def arguments(self) -> dict[str, float]:
+        """All arguments by name."""
+        return {**self.inputs, **self.fixed}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Error of one output at one point.
+
+    Attributes
+    ----------
+    output : str
+        Name of the output.
+    point : Point
+        Where.
+    value : float
+        What the emitted function returned.
+    error : float
+        Its absolute error.
+    fair : float
+        ``|f| + sum_i |x_i df/dx_i|``.
+    """
+
+    output: str
+    point: Point
+    value: float
+    error: float
+    fair: float
+
+    @property
+    def measure(self) -> float:
+        """Error over ``u`` times the fair size; infinite where there is no finite one."""
+        if self.error == 0.0:
+            return 0.0
+        ratio = self.error / (ROUNDOFF * self.fair) if self.fair else math.inf
+        return math.inf if math.isnan(ratio) else ratio
+
+    @property
+    def passed(self) -> bool:
+        """True where the measure is a number within 32."""
+        return self.measure <= ALLOWED
+
+
+def reference_of(
+    inputs: Sequence[sp.Symbol],
+    outputs: Sequence[tuple[str, sp.Expr]],
+    steps: Steps | None = None,
+) -> Reference:
+    """Return a function that evaluates expressions before any lowering, in many digits.
+
+    Parameters
+    ----------
+    inputs : sequence of Symbol
+        Arguments; their names are the keys of the numbers that the reference takes.
+    outputs : sequence of (str, Expr)
+        What it returns, by name.
+    steps : Steps, optional
+        Named intermediate quantities.
+    """
+    chain = [] if steps is None else list(steps.needed(e for _, e in outputs).steps)
+    known = list(inputs)
+    stages = []
+    for symbol, expression in chain:
+        stages.append((symbol.name, sp.lambdify(list(known), expression, modules="mpmath")))
+        known.append(symbol)
+    final = sp.lambdify(known, [sp.sympify(e) for _, e in outputs], modules="mpmath")
+    names = [name for name, _ in outputs]
+
+    def evaluate(numbers: Numbers) -> Numbers:
+        values = [numbers[symbol.name] for symbol in inputs]
+        for _, stage in stages:
+            values.append(stage(*values))
+        return dict(zip(names, final(*values), strict=True))
+
+    return evaluate
+
+
+@dataclass(frozen=True)
+class Exact:
+    """Exact outputs at one point, computed when they are looked at.
+
+    Attributes
+    ----------
+    point : Point
+        Where.
+    compute : callable
+        Returns the values, mpmath numbers by output name, and their ``|f| + sum_i |x_i df/dx_i|``.
+    """
+
+    point: Point
+    compute: Callable[[], tuple[Numbers, Numbers]]
+
+    @cached_property
+    def _both(self) -> tuple[Numbers, Numbers]:
+        return self.compute()
+
+    @property
+    def values(self) -> Numbers:
+        """Exact values by output name."""
+        return self._both[0]
+
+    @property
+    def fair(self) -> Numbers:
+        """``|f| + sum_i |x_i df/dx_i|`` by output name."""
+        return self._both[1]
+
+
+def exact_at(reference: Reference, point: Point, digits: int = DIGITS) -> Exact:
+    """Return the values of a reference and of its gradient at a point.
+
+    Parameters
+    ----------
+    reference : callable
+        Exact values by name from mpmath numbers by name.
+    point : Point
+        Where.
+    digits : int
+        Decimal digits; the gradient is a forward difference with a relative step of
+        ``10**(-0.4 digits)``, so that it keeps as many digits itself.
+    """
+
+    def compute() -> tuple[Numbers, Numbers]:
+        with mpmath.workdps(digits):
+            numbers = {name: mpmath.mpf(value) for name, value in point.arguments.items()}
+            values = dict(reference(numbers))
+            step = mpmath.mpf(10) ** (-(2 * digits) // 5)
+            fair = {name: abs(value) for name, value in values.items()}
+            for name in point.inputs:
+                if numbers[name] == 0:
+                    continue
+                moved = reference({**numbers, name: numbers[name] * (1 + step)})
+                for key, value in values.items():
+                    fair[key] += abs((moved[key] - value) / step)
+            return values, fair
+
+    return Exact(point, compute)
+
+
+def judge(function: Callable[..., Any], names: Sequence[str], exact: Exact) -> list[Judgement]:
+    """Compare one call of an emitted function with exact values.
+
+    Parameters
+    ----------
+    function : callable
+        Emitted; called with those of the point's arguments that it takes, by name.
+    names : sequence of str
+        Names of what it returns, in order.
+    exact : Exact
+        Values of at least these names.
+
+    Raises
+    ------
+    ValueError
+        If the function does not return what ``names`` says.
+    """
+    taken = inspect.signature(function).parameters
+    arguments = {name: value for name, value in exact.point.arguments.items() if name in taken}
+    returned = function(**arguments)
+    values = returned if isinstance(returned, tuple) else (returned,)
+    if len(values) != len(names):
+        raise ValueError(f"{len(values)} values returned for {len(names)} names {list(names)}")
+    with mpmath.workdps(DIGITS):
+        return [
+            Judgement(
+                output=name,
+                point=exact.point,
+                value=float(value),
+                error=float(abs(mpmath.mpf(float(value)) - exact.values[name])),
+                fair=float(exact.fair[name]),
+            )
+            for name, value in zip(names, values, strict=True)
+        ]
+
+
+def worst(judgements: Iterable[Judgement]) -> dict[str, Judgement]:
+    """Return, for each output, the judgement with the largest measure."""
+    found: dict[str, Judgement] = {}
+    for judgement in judgements:
+        known = found.get(judgement.output)
+        if known is None or judgement.measure > known.measure:
+            found[judgement.output] = judgement
+    return found

@@ -3,8 +3,6 @@
 import sys
 from pathlib import Path
 
-import pytest
-
 for _folder in ("derive", "convergence", "seed_equations"):
     _helpers = str(Path(__file__).resolve().parent / _folder)
     if _helpers not in sys.path:

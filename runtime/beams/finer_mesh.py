@@ -154,8 +154,8 @@ def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> 
         Even crank angles.
     """
     # Loaded here: the response knows frequencies, and these know beams.
-    from ..floquet.first_order import canonical_form
     from ..core.trigonometric import differentiated
+    from ..floquet.first_order import canonical_form
     from ..response.collocation import points, ring_motion
 
     form = canonical_form(system, speed, {}, forcing=True)

@@ -19,7 +19,6 @@ from ..periodic.stresses import stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:
-    
     from matplotlib.axes import Axes
 
 
@@ -203,9 +202,7 @@ def _curves(
     rtol: float,
     angles: Array | None,
 ) -> StressEffect:
-    curves = [
-        stress_curve(one, speeds, rtol=rtol, stability=False) for one in systems
-    ]
+    curves = [stress_curve(one, speeds, rtol=rtol, stability=False) for one in systems]
     errors = np.array([curve.error for curve in curves])
     return StressEffect(
         method=curves[0].method,

@@ -19,7 +19,6 @@ from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array
 
 if TYPE_CHECKING:
-    
     from matplotlib.axes import Axes
 
 # Damping ratios that are tried, over the system's own, and lengths over the design's.

@@ -19,7 +19,6 @@ from ..periodic.stresses import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:
-    
     from matplotlib.axes import Axes
 
 # Speeds at which the stresses are found, unless the caller gives them.

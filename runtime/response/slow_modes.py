@@ -120,8 +120,8 @@ def slow_modes(
 
 def _basis(period: float, m: int, mass: Array, squares: Array, shapes: Array) -> tuple[Array, ...]:
     """Return Phi, its two derivatives and the flexibility of the others; empty if mirrored."""
-    from ..periodic.moving_basis import StillModes, carried_basis
     from ..core.trigonometric import differentiated
+    from ..periodic.moving_basis import StillModes, carried_basis
 
     still = StillModes(even_angles(period, len(mass)), squares, shapes, mass)
     try:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries
+from hill_functions import functions
 from omitted_orders import Curve
 from smith_chapter_8.surd import ExactHarmonics, combine
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.systems.geometry_series import taylor_in_geometry
 

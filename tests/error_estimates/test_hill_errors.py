@@ -6,9 +6,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from smith_chapter_8.exact import exact_operator, exact_series
-from smith_chapter_8.surd import ExactHarmonics
-from half_trace_truth import half_traces
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
     boundary_derivatives,
@@ -18,7 +15,10 @@ from elastolink.runtime.hill import (
     discriminant,
     hill_boundaries,
 )
+from half_trace_truth import half_traces
 from honesty import verdict
+from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.surd import ExactHarmonics
 
 scenes = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 extended = pytest.mark.skipif(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -308,7 +308,7 @@ class _AtModalState:
                     entries.append((i, j, start))
             full = tuple(n + count - 1 if n > first else n for n in shape)
             written[name] = (full, tuple(entries))
-        return written, _places(written), tuple(blocks)
+        return written, _Places.of(written), tuple(blocks)
 
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
@@ -319,7 +319,7 @@ class _AtModalState:
         if alone and all(isinstance(value, float) for value in self.values.values()):
             try:  # plain floats are several times faster than arrays of no dimension
                 row = self._row(vectors, time, np.ndarray.tolist)
-                arrays = places.fill(row)
+                arrays = places.filled(row)
             except (OverflowError, ZeroDivisionError):
                 row = self._row(vectors, time, _columns)  # plain floats refuse what is infinite
                 arrays = stacked(written, row)

@@ -169,7 +169,9 @@ class FreeFreeModes:
         b, p, ends = self.roots, self.parity, self.end_slopes
         rows, columns = np.triu_indices(self.size, 1)
         pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
-        products = dict(zip(emitted.RETURNS["slope_products"], _slope_products(*pairs), strict=True))
+        products = dict(
+            zip(emitted.RETURNS["slope_products"], _slope_products(*pairs), strict=True)
+        )
         squares = dict(zip(emitted.RETURNS["slope_squares"], _slope_squares(ends), strict=True))
         integrals = {}
         for name, values in products.items():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from boundary_cases import closing_damping
-from hill_functions import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
@@ -15,6 +14,7 @@ from elastolink.runtime.hill import (
     perturbation_boundaries,
 )
 from elastolink.runtime.hill.boundaries import half_trace_check
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from boundary_cases import closing_damping, rough
-from hill_functions import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
@@ -25,6 +24,7 @@ from elastolink.runtime.hill.certified import (
     wave,
 )
 from elastolink.runtime.hill.fourier_matrix import banded, exponentials, layout, stacked, truncation
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,6 +7,7 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import characteristic_exponents, discriminant, hill_boundaries
+from hill_functions import functions
 
 FUNCTIONS = functions()
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from boundary_cases import rough
-from hill_functions import functions
-from half_trace_truth import half_traces
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
+from half_trace_truth import half_traces
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,10 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from smith_chapter_8.exact import exact_operator
-from smith_chapter_8.surd import ExactHarmonics
 from elastolink.generated import hill_recursion
-from hill_functions import functions
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import (
@@ -20,8 +17,11 @@ from elastolink.runtime.hill import (
     perturbation_boundaries,
 )
 from elastolink.runtime.hill.bloch import effective_operator, wave_columns
+from hill_functions import functions
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from smith_chapter_8.exact import exact_operator
+from smith_chapter_8.surd import ExactHarmonics
 
 FUNCTIONS = functions()
 

@@ -11,14 +11,14 @@ import elastolink as el
 import numpy as np
 import pytest
 from boundary_truth import MP, boundary
-from smith_chapter_8.exact import exact_operator, exact_series
-from smith_chapter_8.strained import strained_boundaries
-from smith_chapter_8.surd import ExactHarmonics
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_series, perturbation_boundaries
 from elastolink.runtime.hill.bloch import effective_operator, wave_columns
 from elastolink.runtime.hill.series import HIGHEST_FORMULA, boundary_latex, solution_latex
+from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import ExactHarmonics
 from strained_truth import PUBLISHED, published
 
 MIXED = el.PeriodicFunction(a=[0.1, 1.0, 0.4, 0.15], b=[0.0, 0.3, -0.2, 0.1])

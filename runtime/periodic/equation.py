@@ -255,7 +255,7 @@ class Equation:
             return np.zeros((len(angles), self.size, self.size))
         value = replace(field, constant=None).at(turned, angles)[0]
         unit = self.scale[0]
-        return value * (unit[:, None] * unit)
+        return np.asarray(value * (unit[:, None] * unit))
 
     def mean(self, name: str) -> Array:
         """Return the mean of a field in scaled coordinates, ``(nb, n, n)``; zeros without it."""
@@ -278,7 +278,7 @@ class Equation:
         if not gap <= 1e-10 * np.max(np.abs(mass), initial=0.0):
             raise _bad_mass(f"asymmetry {gap:.3g}")
         try:
-            return np.linalg.cholesky(mass)
+            return np.asarray(np.linalg.cholesky(mass), dtype=np.float64)
         except np.linalg.LinAlgError:
             lowest = float(np.min(np.linalg.eigvalsh(mass)))
             raise _bad_mass(f"smallest eigenvalue {lowest:.3g}") from None

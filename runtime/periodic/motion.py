@@ -334,7 +334,7 @@ def _divisions(equation: Equation, grid: _Grid, count: int, fineness: float) -> 
             f"{_MOST_DIVISIONS} steps at most between two given angles",
             "raise the speed or samples, or leave out the highest modes",
         )
-    return parts.astype(np.intp)
+    return np.asarray(parts, dtype=np.intp)
 
 
 def _march(

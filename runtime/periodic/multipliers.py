@@ -255,9 +255,11 @@ def floquet_multipliers(
     vectors = np.take_along_axis(vectors, order[:, None, :], axis=-1)
     with np.errstate(over="ignore"):
         modulus, absolute = np.exp(logarithm), np.exp(error)
-    turning = np.cos(angle) + 1j * np.where(np.abs(angle) == np.pi, 0.0, np.sin(angle))
+    turning: ComplexArray = np.cos(angle) + 1j * np.where(
+        np.abs(angle) == np.pi, 0.0, np.sin(angle)
+    )
     finite = np.isfinite(modulus)
-    values = np.where(finite, np.where(finite, modulus, 0.0) * turning, np.inf)
+    values: ComplexArray = np.where(finite, np.where(finite, modulus, 0.0) * turning, np.inf)
     signs = np.zeros(values.shape, dtype=np.int8)
     if not equation.damped:
         signs = signatures_of(vectors, values, absolute)
@@ -321,7 +323,7 @@ def _checked(rtol: float, parameters: Mapping[str, ArrayLike]) -> Mapping[str, A
 def _matrices(way: Method, equation: Equation, segments: int) -> tuple[Array, ...]:
     """Return scaled monodromy matrices, the powers of two taken out of them, and round-off."""
     matrix, exponent = product(segments_of(equation, segments, way).maps)
-    return matrix, exponent, rounding_error(equation, segments)
+    return matrix, exponent.astype(float), rounding_error(equation, segments)
 
 
 def _gap(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
@@ -363,7 +365,7 @@ def _spectra(way: Method, equation: Equation, segments: int) -> tuple[Array, ...
 def conditions(vectors: ComplexArray) -> Array:
     """Return the condition number of each eigenvalue; inf where eigenvectors coincide."""
     try:
-        return np.linalg.norm(np.linalg.inv(vectors), axis=-1)
+        return np.asarray(np.linalg.norm(np.linalg.inv(vectors), axis=-1))
     except np.linalg.LinAlgError:
         if len(vectors) == 1:
             return np.full(vectors.shape[:2], np.inf)

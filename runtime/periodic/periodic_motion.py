@@ -289,7 +289,9 @@ def steady_state(
         theta=theta,
         q=q.reshape(*batch, samples, n),
         qd=(slope * equation.speed[:, None, None]).reshape(*batch, samples, n),
-        **{name: later.later(name) for name in _LATER},
+        multipliers=later.later("multipliers"),
+        stable=later.later("stable"),
+        distance=later.later("distance"),
         sensitivity=sensitivity.reshape(batch),
         period=equation.period,
         labels=system.labels,
@@ -320,7 +322,7 @@ def _ring_motion(way: Method, samples: int, equation: Equation, count: int) -> t
     flow, load = segments.maps[..., : 2 * n, : 2 * n], segments.maps[..., : 2 * n, 2 * n]
     nodes, sensitivity = solve_ring(flow, load)
     whole = np.concatenate([nodes, np.ones((*nodes.shape[:2], 1))], axis=-1)
-    slopes = (segments.slopes @ whole[:, :, None, :, None])[..., 0]  # type: ignore[operator]
+    slopes = (segments.slopes @ whole[:, :, None, :, None])[..., 0]
     q, slope = along_segments(way, equation.period, nodes[..., :n], slopes, samples)
     unit = equation.scale[:, None, :]
     return q * unit, slope * unit, sensitivity

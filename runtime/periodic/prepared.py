@@ -220,7 +220,9 @@ class Prepared:
             theta=self.theta,
             q=q.reshape(*batch, -1, n),
             qd=(flat[:, None, None] * slope).reshape(*batch, -1, n),
-            **{name: later.later(name) for name in ("multipliers", "stable", "distance")},
+            multipliers=later.later("multipliers"),
+            stable=later.later("stable"),
+            distance=later.later("distance"),
             sensitivity=sensitivity.reshape(batch),
             period=self.system.period,
             labels=self.system.labels,
@@ -478,7 +480,7 @@ class TableMaker:
         n, unit = self.middle.size, self.middle.scale[0]
         rows = self.middle.generator(theta)[0, :, :n]
         rows = np.broadcast_to(rows, (len(theta), *rows.shape[1:]))
-        return rows * unit[:, None]
+        return np.asarray(rows * unit[:, None])
 
 
 def closed(flows: Array, whole: Array, unit: float) -> tuple[Array, Array, Array]:

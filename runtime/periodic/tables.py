@@ -147,7 +147,7 @@ def table_of(
             )
         if half:
             h = equation.period / count
-            maps = segments_from(equation, h * np.arange(count // 2), h, way).maps
+            maps = segments_from(equation, h * np.arange(0.5 * count), h, way).maps
         else:
             maps = segments_of(equation, count, way).maps
         tail = _tail(maps)

@@ -48,7 +48,7 @@ _BLOCK = 4_000_000
 
 def rung(level: int) -> int:
     """Return the number of segments on a rung of the ladder: 8, 12, 16, 24, 32, 48 ..."""
-    return (2 + level % 2) * 2 ** (level // 2 + 2)
+    return int((2 + level % 2) << (level // 2 + 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ class Method:
 def method(kind: str, stages: int) -> Method:
     """Return collocation at Gauss's or Radau's points, ``kind`` "gauss" or "radau"."""
     tableau = gauss_tableau(stages) if kind == "gauss" else radau_tableau(stages)
-    inverse = np.linalg.inv(tableau.a)
+    inverse: Array = np.asarray(np.linalg.inv(tableau.a), dtype=np.float64)
     inverse.flags.writeable = False
     return Method(stages, tableau.order, tableau.c, tableau.b, tableau.a, inverse, kind == "radau")
 
@@ -223,7 +223,7 @@ def _solved(
     maps[..., :n, :n] += np.eye(n)
     if force is not None:
         maps[..., 2 * n, 2 * n] = 1.0
-    return Segments(maps, unknown if slopes else None)
+    return Segments(maps, np.asarray(unknown, dtype=np.float64) if slopes else None)
 
 
 def product(maps: Array) -> tuple[Array, Whole]:
@@ -339,7 +339,7 @@ def levels_for(
             f"at most about {4.0 * _MOST_SEGMENTS:.3g} rad",
             "raise the speed or leave out the highest modes",
         )
-    return 1 + np.argmax(enough, axis=1)
+    return np.asarray(1 + np.argmax(enough, axis=1), dtype=np.intp)
 
 
 def refined(

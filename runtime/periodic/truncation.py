@@ -53,7 +53,7 @@ class TruncatedSystem(LinearPeriodic):
         F there, shape ``(nt, n, n)``.
     arrays : mapping of (str, int) to ndarray
         The arrays of the full system there, by name and power of the speed in its force.
-    kept, left_out : float
+    highest_kept, lowest_left_out : float
         Highest frequency that is kept and lowest that is left out, at any angle [rad/s].
     """
 
@@ -62,8 +62,8 @@ class TruncatedSystem(LinearPeriodic):
     modes: Array = field(default_factory=partial(np.zeros, 0))
     flexibility: Array = field(default_factory=partial(np.zeros, 0))
     arrays: Mapping[tuple[str, int], Array] = field(default_factory=dict)
-    kept: float = np.inf
-    left_out: float = np.inf
+    highest_kept: float = np.inf
+    lowest_left_out: float = np.inf
 
     def lift(self, z: Array, speed: ArrayLike) -> tuple[Array, Array]:
         """Return periodic motions of the whole system.
@@ -200,7 +200,9 @@ def truncated_on(
     )
     across = np.swapaxes(phi, -1, -2)
     held = across @ stiffness @ phi
-    flexibility = np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across)
+    flexibility: Array = np.asarray(
+        np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across), dtype=np.float64
+    )
     sums: dict[tuple[str, int], Array] = {}
     for (array, power), values in arrays.items():
         for name, part in _projections(array, values, phi, slope):
@@ -235,8 +237,8 @@ def truncated_on(
         modes=phi,
         flexibility=flexibility,
         arrays=arrays,
-        kept=float(np.max(basis.kept)),
-        left_out=float(np.min(basis.left_out)),
+        highest_kept=float(np.max(basis.kept)),
+        lowest_left_out=float(np.min(basis.left_out)),
     )
 
 
@@ -374,7 +376,8 @@ def _followed(
 
 
 def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:
-    return np.asarray(system.shapes(x, theta) @ basis(theta))
+    shapes = system.shapes(x, theta)
+    return np.zeros(0) if shapes is None else np.asarray(shapes @ basis(theta))
 
 
 def _deflections(full: Callable[[Array], Array], basis: MovingBasis, theta: Array) -> Array:

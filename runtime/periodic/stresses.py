@@ -375,7 +375,7 @@ class _Work:
     def range_of(self, speeds: Array) -> _Range:
         """Return what one range of rising speeds gives."""
         low, high = float(speeds[0]), float(speeds[-1])
-        few, many = self._trials(np.unique(speeds[[0, (len(speeds) - 1) // 2, -1]]))
+        few, many = self._trials(np.unique(speeds[[len(speeds) // 2, -1]]))
         change = np.max(np.abs(few.size / many.size - 1.0), axis=1)
         shift = np.abs(few.growth.modulus - many.growth.modulus)
         defect = float(np.max(shift / many.growth.condition))

@@ -27,8 +27,8 @@ from .truncation import TruncatedSystem, arrays_at, modes_offered, smooth_basis,
 
 Array = NDArray[np.float64]
 
-# Ratio of the ends of a range of speeds: tables of 24 to 36 nodes follow it to ten digits.
-_RATIO = 1.4
+# Ratio of the ends of a range of speeds: tables of 16 nodes follow it to 1e-8.
+_RATIO = 2.0
 # Nodes of a table to begin with: at errors of 1e-7 most ranges need no more.
 _NODES = 16
 # Speeds whose motions are lifted together.

@@ -177,7 +177,7 @@ def boundary_units(
 
     Boundaries between which a real multiplier stays off the circle make a group.  A group of two
     is a region; in a larger one, where regions lie within each other, those belong together whose
-    motion is mostly of one mode.
+    motion is mostly of one mode.  Boundaries that coincide within a region are one of their own.
 
     Parameters
     ----------
@@ -212,9 +212,15 @@ def boundary_units(
         # Regions too narrow to show growth.
         narrow = np.concatenate([[False], np.diff(speed) <= _BESIDE * speed[1:], [False]])
         linked = (off | narrow)[1:-1]
-        mine: list[Unit] = []
-        for group in np.split(own, np.flatnonzero(~linked) + 1):
-            at_end = bool(group[0] == own[0] and off[0]), bool(group[-1] == own[-1] and off[-1])
+        touching = _touching(found, own, count, narrow)
+        mine: list[Unit] = [(int(own[i]), int(own[i + 1])) for i in touching]
+        alone = np.concatenate([own[touching], own[touching + 1]])
+        for members in np.split(own, np.flatnonzero(~linked) + 1):
+            first, last = members[0] == own[0], members[-1] == own[-1]
+            at_end = bool(first and off[0]), bool(last and off[-1])
+            group = members[~np.isin(members, alone)]
+            if not len(group):
+                continue
             if np.all(np.isfinite(modes.turns[group])) or any(at_end):
                 mine.extend(_units(group, owner[group], at_end))
             else:
@@ -225,6 +231,24 @@ def boundary_units(
             mine = _nested(own, count, narrow) or mine
         units.extend(mine)
     return units
+
+
+def _touching(
+    found: SpeedBoundaries,
+    own: NDArray[np.intp],
+    count: NDArray[np.intp],
+    narrow: NDArray[np.bool_],
+) -> NDArray[np.intp]:
+    """Return the first of each two boundaries that coincide to their errors and change nothing.
+
+    At a double boundary two multipliers touch +-1 and go back: a closed region.  Its two motions
+    span a plane in which only rounding chooses, so that modes do not tell what belongs together.
+    """
+    apart = np.diff(found.speed[own])
+    same = apart <= found.error[own][1:] + found.error[own][:-1]
+    beside = ~narrow[:-2] & ~narrow[2:] & (count[:-2] == count[2:])
+    value: NDArray[np.intp] = np.flatnonzero(same & narrow[1:-1] & beside)
+    return value
 
 
 def _covering(units: list[Unit], own: NDArray[np.intp]) -> Whole:

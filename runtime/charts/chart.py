@@ -179,7 +179,7 @@ def stability_chart(
     StabilityChart
         ``error``: largest error of an invariant, over the larger of 1 and its size, estimated
         from the tail of the series and the samples.  Check ``spot check``: five points beside
-        :func:`~.monodromy_matrix.floquet_multipliers`.
+        :func:`floquet_multipliers`.
 
     Raises
     ------

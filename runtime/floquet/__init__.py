@@ -1,4 +1,4 @@
-"""Floquet analysis of linear periodic systems: monodromy, multipliers, critical speeds.
+"""Floquet analysis of linear periodic systems: boundaries, unstable bands, critical speeds.
 
 The names load on first use: one needs little of what the others need.
 """
@@ -29,21 +29,10 @@ if TYPE_CHECKING:
     from .edges.over_parameter import TongueTrace, trace_tongue
     from .edges.tracing import StabilityEdges, stability_edges
     from .krein import KreinSignatures, krein_signatures
-    from .monodromy_matrix import (
-        FloquetMultipliers,
-        Monodromy,
-        floquet_multipliers,
-        monodromy,
-        relative_multipliers,
-    )
-    from .namespace_monodromy import MonodromyMatrices, monodromy_matrices
 
 _PUBLIC = {
-    "FloquetMultipliers": "monodromy_matrix",
     "KreinSignatures": "krein",
     "MarkedSpeeds": "critical",
-    "Monodromy": "monodromy_matrix",
-    "MonodromyMatrices": "namespace_monodromy",
     "SlowMultipliers": "decoupled",
     "SlowSystem": "decoupled",
     "SpeedBoundaries": "boundary_speeds",
@@ -51,15 +40,11 @@ _PUBLIC = {
     "TongueCurves": "edges.over_geometry",
     "TongueTrace": "edges.over_parameter",
     "characteristic_exponents": "decoupled",
-    "floquet_multipliers": "monodromy_matrix",
     "krein_signatures": "krein",
     "mean_frequency_speeds": "critical",
     "meissner_function": "critical",
     "meissner_speeds": "critical",
-    "monodromy": "monodromy_matrix",
-    "monodromy_matrices": "namespace_monodromy",
     "multiplier_maxima": "critical",
-    "relative_multipliers": "monodromy_matrix",
     "slow_system": "decoupled",
     "speed_boundaries": "boundary_speeds",
     "stability_edges": "edges.tracing",
@@ -69,11 +54,8 @@ _PUBLIC = {
 }
 
 __all__ = [
-    "FloquetMultipliers",
     "KreinSignatures",
     "MarkedSpeeds",
-    "Monodromy",
-    "MonodromyMatrices",
     "SlowMultipliers",
     "SlowSystem",
     "SpeedBoundaries",
@@ -81,15 +63,11 @@ __all__ = [
     "TongueCurves",
     "TongueTrace",
     "characteristic_exponents",
-    "floquet_multipliers",
     "krein_signatures",
     "mean_frequency_speeds",
     "meissner_function",
     "meissner_speeds",
-    "monodromy",
-    "monodromy_matrices",
     "multiplier_maxima",
-    "relative_multipliers",
     "slow_system",
     "speed_boundaries",
     "stability_edges",

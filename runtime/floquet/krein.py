@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.results import Check, Result
-from .eigenvalues import conditions, multiplier_order
+from ..periodic.multipliers import conditions, multiplier_order
+from ..periodic.signatures import form_matrix
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -39,7 +40,7 @@ class KreinSignatures(Result):
     Attributes
     ----------
     multipliers : ndarray of complex
-        Shape ``(*batch, 2n)``, in the order of :func:`~.monodromy_matrix.floquet_multipliers`.
+        Shape ``(*batch, 2n)``, in the order of :func:`floquet_multipliers`.
     signatures : ndarray of int8
         Shape ``(*batch, 2n)``: +1 or -1; 0 where the multiplier is off the circle, where it is
         multiple and the form indefinite (always at +-1), or where errors leave the sign open.
@@ -168,66 +169,6 @@ def _relative(error: ArrayLike | None, batch: tuple[int, ...]) -> Array:
         raise bad(
             "error", f"shape {given.shape}", f"a shape that broadcasts to {batch}", "correct it"
         ) from mismatch
-
-
-class SignatureSource:
-    """What the signatures of multipliers are made of when they are first looked at.
-
-    Parameters
-    ----------
-    matrices : ndarray or None
-        Scaled monodromy matrices, shape ``(*batch, 2n, 2n)``; None where the system is not
-        conservative.
-    error : ndarray
-        Relative error of each, shape ``batch``.
-    """
-
-    def __init__(self, matrices: Array | None, error: Array) -> None:
-        self._matrices, self._error = matrices, error
-        self._made: Signs | None = None
-
-    @property
-    def matrices(self) -> Array | None:
-        """The scaled monodromy matrices."""
-        return self._matrices
-
-    @property
-    def error(self) -> Array:
-        """Relative error of each."""
-        return self._error
-
-    def signs(self, multipliers: ComplexArray) -> Signs:
-        """Return the signature of each multiplier, shape ``(*batch, 2n)``; 0 where undefined."""
-        if self._made is None:
-            self._made = self._signs(multipliers)
-        return self._made
-
-    def _signs(self, multipliers: ComplexArray) -> Signs:
-        out = np.zeros(multipliers.shape, dtype=np.int8)
-        if self._matrices is None or not out.size:
-            return out
-        # Where growth has left an overflow or hides the symplectic form, nothing is known.
-        with np.errstate(over="ignore", invalid="ignore"):
-            usable = np.all(np.isfinite(self._matrices), axis=(-2, -1))
-            usable &= np.max(np.abs(self._matrices), axis=(-2, -1)) < _LARGEST
-        usable &= ~np.isnan(self._error)
-        usable &= np.all(np.isfinite(multipliers), axis=-1)
-        if not np.any(usable):
-            return out
-        found = krein_signatures(self._matrices[usable], self._error[usable])
-        wanted = multipliers[usable]
-        nearest = np.argmin(np.abs(wanted[..., :, None] - found.multipliers[..., None, :]), axis=-1)
-        out[usable] = np.take_along_axis(found.signatures, nearest, axis=-1)
-        return out
-
-
-def form_matrix(vectors: ComplexArray) -> ComplexArray:
-    """Return ``-i X^H J X`` of columns ``(..., 2n, k)``, Hermitian, shape ``(..., k, k)``."""
-    n = vectors.shape[-2] // 2
-    upper, lower = vectors[..., :n, :], vectors[..., n:, :]
-    product = np.swapaxes(upper.conj(), -1, -2) @ lower
-    value: ComplexArray = -1j * (product - np.swapaxes(product.conj(), -1, -2))
-    return value
 
 
 def _defect(matrices: Array) -> Array:

@@ -12,7 +12,6 @@ from ..core.families import LinearPeriodic
 from ..periodic import monodromy
 from .decoupled.frames import held_modes
 from .first_order import canonical_form, even_angles
-from .speed_tables import tabulated
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -30,7 +29,7 @@ class SweptModes:
     Attributes
     ----------
     system : LinearPeriodic
-        On its lowest natural modes, with tables over the speed.
+        On its lowest natural modes.
     highest : float
         Highest speed [rad/s].
     """
@@ -135,7 +134,5 @@ def swept_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -
             reduced = reduced_system(system, kept)
         except BadInput:
             continue
-        # Frequencies are told by speeds beside.
-        wide = span[0] * (1 - 2 * _STEP), span[1] * (1 + 2 * _STEP)
-        return SweptModes(tabulated(reduced, wide), span[1])
+        return SweptModes(reduced, span[1])
     return None

@@ -48,7 +48,7 @@ def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
 
     With one damping ratio they follow one another as the modes do, but where two pairs meet.
     """
-    from ..floquet import floquet_multipliers
+    from ..periodic import floquet_multipliers
     from ..periodic.reduced import reduced_system
 
     system = reduced_system(beams(1, drop), _MODES)

@@ -12,7 +12,7 @@ from ..core.errors import LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
 from ..floquet.first_order import CanonicalForm
-from ..floquet.monodromy_matrix import FloquetMultipliers
+from ..periodic import FloquetMultipliers
 from ..simulation.trajectory import LINEAR_RANGE
 from .request import Found
 

@@ -12,7 +12,7 @@ from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.results import Check
 from ..floquet.first_order import CanonicalForm
-from ..floquet.monodromy_matrix import FloquetMultipliers
+from ..periodic import FloquetMultipliers
 
 Array = NDArray[np.float64]
 

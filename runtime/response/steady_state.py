@@ -18,7 +18,7 @@ from ..core.progress import bar
 from ..core.results import Check, provenance
 from ..floquet.decoupled.exponents import SlowMultipliers, characteristic_exponents
 from ..floquet.first_order import CanonicalForm, canonical_form, numbers
-from ..floquet.monodromy_matrix import FloquetMultipliers, floquet_multipliers
+from ..periodic import FloquetMultipliers, floquet_multipliers
 from ..simulation.trajectory import LINEAR_RANGE
 from .checks import (
     check_forcing,

@@ -13,7 +13,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, numbers
 from ..floquet.first_order import SPEED_POWER, canonical_form, even_angles
-from ..floquet.krein import form_matrix
+from ..periodic.signatures import form_matrix
 
 Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]

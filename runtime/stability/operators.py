@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..floquet.first_order import SPEED_POWER, even_angles
-from ..floquet.krein import form_matrix
 from ..hill.bloch import degree_of, monomials, product_table, recursion
+from ..periodic.signatures import form_matrix
 from .meetings import IMAGINARY, Resonance
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.benchmarking.curve_rivals import SecondOrder, collocated
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.reduction import moving_basis, reduced_system
+from elastolink.runtime.periodic import moving_basis, reduced_system
 from elastolink.runtime.reduction.balance import balance, samples_table
 from elastolink.runtime.reduction.condensed import condense
 from elastolink.runtime.reduction.residuals import corrected_motion, motion_of

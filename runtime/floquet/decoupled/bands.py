@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ...core.errors import bad
 from ...core.families import DAMPING, LinearPeriodic
 from ...core.results import Check, provenance
+from ...periodic import floquet_multipliers
 from ..boundary_speeds import speed_span
 from ..edges.checks import contradictions, edge_checks
 from ..edges.damped_edges import damped_regions
@@ -19,8 +20,6 @@ from ..edges.pair_roots import Edges, PairFunction, refined_edges
 from ..edges.phase_events import Events, meetings, sampled_phases
 from ..edges.regions import Regions, joined
 from ..edges.tracing import StabilityEdges, combined_regions
-from ..monodromy_matrix import floquet_multipliers
-from ..speed_tables import tabulated
 from .reduced import SlowSystem, slow_system
 from .shares import held_modes_at, pair_shares
 
@@ -97,9 +96,7 @@ def unstable_bands(
     span = max(span[0], slow.speed_range[0]), min(span[1], slow.speed_range[1])
     own = slow.system
     damped = own.is_damped()
-    # Thousands of matrices are asked for.
-    sharp = tabulated(own.without(*DAMPING), span)
-    own = tabulated(own, span) if damped else sharp
+    sharp = own.without(*DAMPING)
     pairs = _Pairs(sharp, span, rtol)
     regions = pairs.regions()
     if damped:

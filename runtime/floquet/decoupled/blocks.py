@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..first_order import CanonicalForm
-from ..monodromy_matrix import symplectic_unit
 from .frames import Frames, angle_slope, stiffness_in
 
 Array = NDArray[np.float64]
@@ -188,6 +187,11 @@ def _one(
         rounding,
         passes,
     )
+
+
+def symplectic_unit(n: int) -> Array:
+    """Return J = [[0, I], [-I, 0]], shape ``(2n, 2n)``."""
+    return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
 
 
 def _hamiltonian(generator: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,12 +13,12 @@ from ...core.errors import BadInput, bad
 from ...core.families import LinearPeriodic
 from ...core.results import Check, provenance
 from ...integrators.gauss_legendre import gauss_maps
-from ..eigenvalues import conditions, spectrum
+from ...periodic import FloquetMultipliers
+from ...periodic.multipliers import conditions
+from ...periodic.transition import product
 from ..first_order import CanonicalForm, at_geometry, canonical_form, even_angles
 from ..krein import krein_signatures
-from ..monodromy_matrix import FloquetMultipliers, symplectic_unit
-from ..period_products import STAGES, ordered_product
-from .blocks import Slow, slow_part
+from .blocks import Slow, slow_part, symplectic_unit
 from .fourier import PeriodicSeries
 from .frames import Frames, gap_choices, held_modes, moving_frames
 
@@ -30,6 +30,8 @@ _EPS = float(np.finfo(float).eps)
 # Gap above the slow modes, in turns a period, from which decoupling is worth a try.
 _WORTH = 20.0
 _PHASE = 3.0
+# Nodes of the collocation.
+_STAGES = 8
 _STATIONS = 16
 _MOST_SEGMENTS = 2**16
 _BLOCK_FLOATS = 4_000_000
@@ -60,17 +62,6 @@ class SlowMultipliers(FloquetMultipliers):
     retained: Whole
 
     exported: ClassVar[tuple[str, ...]] = ("stable", "growth")
-
-
-class _Known:
-    """Signatures that are known already."""
-
-    def __init__(self, signs: NDArray[np.int8]) -> None:
-        self._signs = signs
-
-    def signs(self, multipliers: ComplexArray) -> NDArray[np.int8]:
-        """Return them."""
-        return self._signs.reshape(multipliers.shape)
 
 
 def characteristic_exponents(
@@ -173,7 +164,7 @@ class SlowModes:
         logarithm, angle, error, level, signs = columns
         turning = np.where(np.abs(angle) == np.pi, 0.0, np.sin(angle))
         return SlowMultipliers(
-            method=f"slow modes decoupled, Gauss-Legendre collocation of order {2 * STAGES}",
+            method=f"slow modes decoupled, Gauss-Legendre collocation of order {2 * _STAGES}",
             error=error,
             error_norm="absolute, of each multiplier",
             checks=_checks(found, rtol, form.conservative),
@@ -182,7 +173,7 @@ class SlowModes:
             multipliers=np.exp(logarithm) * (np.cos(angle) + 1j * turning),
             exponents=logarithm + 1j * angle,
             period=system.period,
-            source=_known(signs),
+            signatures=signs.astype(np.int8),
             mode=np.broadcast_to(np.arange(m) // 2 + 1, (*shape, m)),
             frequency=level * form.speed.reshape(*shape, 1),
             retained=np.array([one.modes for one in found], dtype=np.int64).reshape(shape),
@@ -213,10 +204,6 @@ class SlowModes:
             for row in range(len(form.speed))
             if self._store is not None
         ]
-
-
-def _known(signs: Array) -> Any:
-    return _Known(signs.astype(np.int8))
 
 
 @dataclass(frozen=True)
@@ -402,17 +389,38 @@ def _stations(series: PeriodicSeries, segments: int, period: float) -> Array:
     def generator(theta: Array) -> Array:
         return series(theta)[None]
 
-    stretch = max(1, _BLOCK_FLOATS // (STAGES * m) ** 2)
+    stretch = max(1, _BLOCK_FLOATS // (_STAGES * m) ** 2)
     whole = np.eye(m)
     rows = [whole]
     for station in range(_STATIONS):
         for left in range(0, each, stretch):
             first = station * each + left
             angles = step * np.arange(first, first + min(stretch, each - left), dtype=float)
-            product, power = ordered_product(gauss_maps(STAGES, generator, angles, step))
-            whole = np.ldexp(product[0], power[0]) @ whole
+            turned, power = product(gauss_maps(_STAGES, generator, angles, step))
+            whole = np.ldexp(turned[0], power[0]) @ whole
         rows.append(whole)
     return np.stack(rows)
+
+
+def _spectrum(matrices: Array, error: Array) -> tuple[Array, Array, Array]:
+    """Return log modulus, argument and log error of the eigenvalues of matrices."""
+    m = matrices.shape[-1]
+    values, vectors = np.linalg.eig(matrices)
+    values = values.astype(complex)
+    condition = conditions(vectors)
+    norm = np.linalg.norm(matrices, axis=(-2, -1))[:, None]
+    top = np.max(np.abs(matrices), axis=(-2, -1))[:, None]
+    shift = m * error[:, None] * top + 4 * m * _EPS * norm
+    # Near a double eigenvalue the condition number explodes and the square root holds; near an
+    # r-fold one the r-th root.
+    radius = 2 * np.sqrt(norm * shift)
+    distance = np.abs(values[:, :, None] - values[:, None, :])
+    near = np.sum(distance <= radius[..., None], axis=-1)
+    root = 2 * norm * (shift / norm) ** (1 / np.maximum(near, 2))
+    uncertain = np.minimum(condition * shift, root)
+    with np.errstate(divide="ignore"):
+        logarithm = np.log(np.abs(values))
+    return logarithm, np.angle(values), np.log(uncertain)
 
 
 def _lowest(
@@ -420,9 +428,7 @@ def _lowest(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Return logarithm, argument, error, level and signature of the lowest modes' multipliers."""
     matrix = one.matrix[None]
-    logarithm, angle, error = (
-        values[0] for values in spectrum(matrix, np.zeros(1, dtype=np.int64), np.array([one.error]))
-    )
+    logarithm, angle, error = (values[0] for values in _spectrum(matrix, np.array([one.error])))
     values, vectors = np.linalg.eig(one.matrix)
     motion = one.stations @ vectors
     motion = motion / np.linalg.norm(motion, axis=1, keepdims=True)

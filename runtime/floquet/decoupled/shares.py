@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
+from ...periodic import monodromy
 from ..edges.mode_labels import Modes
 from ..first_order import canonical_form, even_angles
-from ..monodromy_matrix import monodromy
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
 from ...periodic import monodromy
-from ..eigenvalues import conditions
+from ...periodic.multipliers import conditions
 from .pair_roots import bracketed_roots, perturbation_size
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
 from ...periodic import monodromy
-from ..eigenvalues import conditions
+from ...periodic.multipliers import conditions
 from .crossings import Crossings, Span
 from .pair_roots import perturbation_size
 from .phase_events import phase_grid

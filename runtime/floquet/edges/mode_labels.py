@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
 from ...periodic import floquet_multipliers
+from ...periodic.signatures import form_matrix
 from ..boundary_speeds import SpeedBoundaries
 from ..first_order import canonical_form
-from ..krein import form_matrix
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from ...core.families import LinearPeriodic
 from ...periodic import monodromy
-from ..eigenvalues import conditions
-from ..krein import form_matrix
+from ...periodic.multipliers import conditions
+from ...periodic.signatures import form_matrix
 from .phase_events import Events
 
 Array = NDArray[np.float64]

@@ -8,11 +8,12 @@ import scipy.linalg
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.krein import krein_signatures
-from elastolink.runtime.periodic.multipliers import (
-    floquet_multipliers,
-    monodromy,
-    symplectic_unit,
-)
+from elastolink.runtime.periodic import floquet_multipliers, monodromy
+
+
+def symplectic_unit(n):
+    """Return J = [[0, I], [-I, 0]]."""
+    return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(n))
 
 
 def _scales(values):

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..floquet.first_order import CanonicalForm
 from ..integrators.gauss_legendre import gauss_maps
+from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
 
 STAGES = 8

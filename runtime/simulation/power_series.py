@@ -13,7 +13,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import CanonicalForm
+from ..periodic.first_order import CanonicalForm
 from ..periodic.transition import product as ordered_product
 from ..stretches import stretch_maps
 from ..stretches.power_series import MOST_TERMS

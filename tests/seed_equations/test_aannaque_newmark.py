@@ -2,7 +2,6 @@
 
 from functools import cache
 
-import newmark_scheme as newmark
 import numpy as np
 import pytest
 import sympy as sp

@@ -6,12 +6,12 @@ import elastolink as el
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.charts.characteristic import weighed_characteristic
-from elastolink.runtime.charts.invariants import instability_kind, largest_modulus
-from elastolink.runtime.charts.lines import Lines
-from elastolink.runtime.charts.sampling import Sampler, Series
-from elastolink.runtime.charts.verdict import undecided, verdict
 from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.stability.charts.characteristic import weighed_characteristic
+from elastolink.runtime.stability.charts.invariants import instability_kind, largest_modulus
+from elastolink.runtime.stability.charts.lines import Lines
+from elastolink.runtime.stability.charts.sampling import Sampler, Series
+from elastolink.runtime.stability.charts.verdict import undecided, verdict
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 
 

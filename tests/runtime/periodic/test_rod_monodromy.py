@@ -5,10 +5,10 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.charts.invariants import characteristic, from_sum, in_sum
 from elastolink.runtime.core.families import Term
-from elastolink.runtime.floquet.first_order import canonical_form
-from elastolink.runtime.floquet.turn_series import Turn, mirrored_sums
+from elastolink.runtime.periodic.first_order import canonical_form
+from elastolink.runtime.stability.charts.invariants import characteristic, from_sum, in_sum
+from elastolink.runtime.stability.charts.turn_series import Turn, mirrored_sums
 from elastolink.runtime.systems.rod import (
     FreeFreeBasis,
     OverhangBasis,

@@ -3,13 +3,10 @@
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.floquet import (
-    characteristic_exponents,
-    multiplier_maxima,
-    slow_system,
-    unstable_bands,
-)
+from elastolink.runtime.frequencies.marked_speeds import multiplier_maxima
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, reduced_system
+from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
+from elastolink.runtime.stability import unstable_bands
 
 SPAN = (71.0, 74.0)
 # The widest band below 75 rad/s: the first mode with itself.

@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.krein import krein_signatures
 from elastolink.runtime.periodic import floquet_multipliers, monodromy
+from elastolink.runtime.stability.krein import krein_signatures
 
 
 def symplectic_unit(n):

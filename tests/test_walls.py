@@ -155,7 +155,7 @@ def test_the_scan_of_imports_sees_what_it_has_to(tmp_path, monkeypatch):
         "elastolink.derive": True,
         "elastolink.derive.pipeline": True,
         "elastolink.runtime": True,
-        "elastolink.runtime.stability.charts": True,
+        "elastolink.runtime.hill": True,
         "runtime.hill": True,
         "scipy.linalg": True,
         "matplotlib.pyplot": False,

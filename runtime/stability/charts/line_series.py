@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 
 from ...core import chebyshev
 from ...core.families import Array
 from ...core.progress import bar
-from .lines import Line, Lines, State
+from .lines import Line, Lines
 from .sampling import Sampler, Series, relative_error
 
 _EPS = float(np.finfo(float).eps)
@@ -166,9 +166,9 @@ class _Surface:
             self.kept[place] = self.ends[place](values)
         left = [place for place in wanted if place not in self.ends]
         done = len(places) - len(left)
-        for number, (found, state) in self._solved(left, values):
+        items = [(place, self.low, self.high, values) for place in left]
+        for number, found in self.sampler.workers.run(_on_line, items):
             self.kept[left[number]] = found
-            self._take(state)
             done += 1
             if tick is not None:
                 tick(done)
@@ -176,25 +176,6 @@ class _Surface:
         return _Found(
             places, np.stack([r[0] for r in rows]), np.stack([r[1] for r in rows]), not lines
         )
-
-    def _solved(
-        self, places: list[float], values: Array
-    ) -> Iterator[tuple[int, tuple[tuple[Array, Array], State]]]:
-        """Yield the invariants on lines as they are done, each begun alike in whatever order."""
-        lines, first = self.lines, 0
-        if places and lines.modes is None:
-            # Its modal coordinates serve all others.
-            yield 0, _invariants(lines, (places[0], self.low, self.high, values))
-            first = 1
-        items = [(lines.state, (place, self.low, self.high, values)) for place in places[first:]]
-        for number, found in self.sampler.workers.run(_on_line, items):
-            yield first + number, found
-
-    def _take(self, state: State) -> None:
-        """Let the lines to come begin with the most nodes that one has needed."""
-        leaves = [n for n in (self.lines.leaves, state[0]) if n is not None]
-        modes = self.lines.modes if self.lines.modes is not None else state[1]
-        self.lines.state = (max(leaves) if leaves else None, modes)
 
     def table(self, found: _Found) -> Array:
         """Return Chebyshev coefficients along both axes, values along one that is taken whole."""
@@ -276,30 +257,22 @@ class _Surface:
             grown = int(np.argmax(np.max(found.weight, axis=(1, 2))))
         picked = sorted({0, len(found.outer) // 2, len(found.outer) - 1, grown})
         values = self.values
-        state = self.lines.state
         items = [
-            (state, (float(found.outer[i]), self.low, self.high, values, found.values[i]))
-            for i in picked
+            (float(found.outer[i]), self.low, self.high, values, found.values[i]) for i in picked
         ]
         gaps = self.sampler.workers.map(_gap_on_line, items)
         gap = np.pad(np.max(gaps, axis=0), 1, mode="edge")
         return np.asarray(np.maximum(np.maximum(gap[:-2], gap[1:-1]), gap[2:]) + 64 * _EPS)
 
 
-def _on_line(sampler: Sampler, item: tuple[State, _Place]) -> tuple[tuple[Array, Array], State]:
-    """Return the invariants on a line begun with a state, and what it leaves."""
-    return _invariants(Lines(sampler).begun(item[0]), item[1])
+def _on_line(sampler: Sampler, place: _Place) -> tuple[Array, Array]:
+    """Return the invariants on a line, and the weights of their errors."""
+    return Lines(sampler).line(*place)(place[3])
 
 
-def _invariants(lines: Lines, place: _Place) -> tuple[tuple[Array, Array], State]:
-    return lines.line(*place)(place[3]), lines.state
-
-
-def _gap_on_line(
-    sampler: Sampler, item: tuple[State, tuple[float, float, float, Array, Array]]
-) -> Array:
+def _gap_on_line(sampler: Sampler, item: tuple[float, float, float, Array, Array]) -> Array:
     """Return by how much another solution differs on a line."""
-    return Lines(sampler).begun(item[0]).error(*item[1])
+    return Lines(sampler).error(*item)
 
 
 def _method(nodes: list[int]) -> str:

@@ -7,8 +7,11 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.charts.characteristic import weighed_characteristic
-from elastolink.runtime.stability.charts.invariants import instability_kind, largest_modulus
+from elastolink.runtime.stability.charts.invariants import (
+    instability_kind,
+    largest_modulus,
+    weighed_characteristic,
+)
 from elastolink.runtime.stability.charts.lines import Lines
 from elastolink.runtime.stability.charts.sampling import Sampler, Series
 from elastolink.runtime.stability.charts.verdict import undecided, verdict

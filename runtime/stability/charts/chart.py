@@ -17,7 +17,7 @@ from ...hill.form import is_hill
 from ...hill.perturbation import check_order
 from .boundaries import BoundaryCurves, boundary_curves
 from .edge_rows import EdgeCurves, edge_curves
-from .line_series import series_by_lines
+from .lines import series_by_lines
 from .sampling import Sampler, invariants, relative_error
 from .structure import natural_frequency
 from .verdict import judged, spot_check

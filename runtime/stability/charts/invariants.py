@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from ...core.families import Array
 from ...hill import HillForm, discriminant
-from .characteristic import characteristic as characteristic
 from .hill_axes import leaves_function_alone
-from .signs import surely_stable
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)
@@ -26,6 +24,12 @@ _CLOSED = 4
 _TOGETHER = 8
 
 Moduli = tuple[Array, NDArray[np.bool_], Array]
+
+
+_EPS = float(np.finfo(float).eps)
+# Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues do
+# better.
+_LOST = 1e-11
 
 
 def largest_modulus(
@@ -357,3 +361,162 @@ def half_trace_rows(
         each = [(float(r.value), float(r.error)) for r in results]
         rows.append((np.array([v for v, _ in each]), np.array([e for _, e in each])))
     return np.stack([row for row, _ in rows]), np.stack([error for _, error in rows])
+
+
+def characteristic(matrices: Array, *, reduced: bool) -> Array:
+    """Return coefficients of the characteristic polynomial of each matrix.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (..., 2n, 2n)
+        Monodromy matrices.
+    reduced : bool
+        For a symplectic matrix the coefficients are palindromic; only the first n are returned.
+
+    Returns
+    -------
+    ndarray, shape (..., n) or (..., 2n)
+        ``c_1, c_2, ...`` of ``rho^2n + c_1 rho^(2n-1) + ...``; not finite where they overflow.
+    """
+    size = matrices.shape[-1]
+    return weighed_characteristic(matrices, size // 2 if reduced else size)[0]
+
+
+def weighed_characteristic(
+    matrices: Array, wanted: int, change: Array | None = None
+) -> tuple[Array, Array]:
+    """Return the first coefficients of characteristic polynomials, and what moves them.
+
+    Faddeev and LeVerrier: ``B_k = X B_(k-1) + c_k``, ``c_k = -tr(X B_(k-1)) / k``.  Its round-off
+    grows like powers of X, and where too much of a coefficient would be lost the polynomial is
+    made from the eigenvalues instead.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (..., m, m)
+        The matrices X.
+    wanted : int
+        How many coefficients.
+    change : ndarray, shape (...), optional
+        Size of a change of X, by default that of X itself.
+
+    Returns
+    -------
+    coefficients : ndarray, shape (..., wanted)
+        ``c_1, c_2, ...``
+    weight : ndarray, shape (..., wanted)
+        How far such a change moves each, at first order: ``dc_k = -tr(B_(k-1) dX)``; at least 1.
+    """
+    m = matrices.shape[-1]
+    found, weight = [], []
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = _norm(matrices)
+        change = size if change is None else change
+        power = np.broadcast_to(np.eye(m), matrices.shape)
+        rough, worst = np.zeros_like(size), np.zeros_like(size)
+        for k in range(1, wanted + 1):
+            norm = _norm(power)
+            rough = size * (rough + _EPS * norm)
+            worst = np.maximum(worst, rough / k)
+            product = matrices @ power
+            coefficient = -np.trace(product, axis1=-2, axis2=-1) / k
+            found.append(coefficient)
+            weight.append(np.maximum(change * norm, 1.0))
+            power = product + coefficient[..., None, None] * np.eye(m)
+        coefficients = np.stack(found, axis=-1)
+        top = np.maximum(np.max(np.abs(coefficients), axis=-1), 1.0)
+        lost = (worst > _LOST * top) & np.all(np.isfinite(coefficients), axis=-1)
+    if np.any(lost):
+        coefficients[lost] = _from_eigenvalues(matrices[lost], wanted)
+    return coefficients, np.stack(weight, axis=-1)
+
+
+def _norm(matrices: Array) -> Array:
+    value: Array = np.sqrt(np.einsum("...ij,...ij->...", matrices, matrices))
+    return value
+
+
+def _from_eigenvalues(matrices: Array, wanted: int) -> Array:
+    """Return coefficients as products of eigenvalues, those of balanced matrices."""
+    values: NDArray[np.complex128] = np.linalg.eigvals(matrices).astype(complex)
+    # The largest first: no partial product is larger than a coefficient of its own.
+    order = np.argsort(-np.abs(values), axis=-1)
+    values = np.take_along_axis(values, order, axis=-1)
+    table = np.zeros((*values.shape[:-1], values.shape[-1] + 1), dtype=complex)
+    table[..., 0] = 1.0
+    with np.errstate(over="ignore", invalid="ignore"):
+        for i in range(values.shape[-1]):
+            table[..., 1 : i + 2] -= values[..., i : i + 1] * table[..., : i + 1]
+    return np.asarray(table[..., 1 : wanted + 1].real)
+
+
+def surely_stable(
+    polynomial: Array, error: Array, between: Array | None = None
+) -> NDArray[np.bool_]:
+    """Return where all roots are real, simple and between -2 and 2, whatever the errors.
+
+    A polynomial of degree n that changes sign n times between -2 and 2 has n roots there.  It is
+    tried at the ends and at places between its roots; how well those are chosen is of no matter
+    to the proof.
+
+    Parameters
+    ----------
+    polynomial : ndarray, shape (..., n)
+        ``a_1 ... a_n`` of ``z^n + a_1 z^(n-1) + ...``, z = rho + 1/rho.
+    error : ndarray, shape (...)
+        Absolute error of each coefficient of the characteristic polynomial in rho.
+    between : ndarray, shape (..., n - 1), optional
+        Places to try, rising; by default those where the slope vanishes, which needs n <= 4.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+    """
+    n = polynomial.shape[-1]
+    if between is None and n > 4:
+        raise ValueError("more than four roots want places between them")
+    a = np.moveaxis(polynomial, -1, 0)
+    # With z = 2 cos phi a coefficient enters by 2 cos(k phi), the middle one by 1; the rest is the
+    # round-off of Horner's rule.
+    powers = 2.0 ** np.arange(n, -1, -1)
+    size = powers[0] + sum(np.abs(a[j]) * powers[j + 1] for j in range(n))
+    with np.errstate(invalid="ignore", over="ignore"):
+        least = (2 * n - 1) * error + 4 * n * _EPS * size
+        sure = np.ones(polynomial.shape[:-1], dtype=bool)
+        inner = _turning(a) if between is None else list(np.moveaxis(between, -1, 0))
+        ends = np.full(a[0].shape, 2.0)
+        place = -ends
+        for i, wanted in enumerate([place, *(np.minimum(t, 2.0) for t in inner), ends]):
+            place = np.maximum(place, wanted)  # the proof wants rising places
+            value = place + a[0]
+            for j in range(1, n):
+                value = value * place + a[j]
+            sure &= (value if (n - i) % 2 == 0 else -value) > least
+    return sure
+
+
+def _turning(a: Array) -> list[Array]:
+    """Return the places where the slope vanishes, rising; anything where they are not all real."""
+    n = len(a)
+    if n == 1:
+        return []
+    middle = -a[0] / n
+    if n == 2:
+        return [middle]
+    if n == 3:
+        reach = np.sqrt(np.maximum(middle**2 - a[1] / 3.0, 0.0))
+        return [middle - reach, middle + reach]
+    # Slope / 4 = z^3 + 3 a_1/4 z^2 + a_2/2 z + a_3/4; with z = middle + t: t^3 - 3 p t - 2 q.
+    p = middle**2 - a[1] / 6.0
+    q = -0.5 * _cubic(a, middle)
+    root = np.sqrt(np.maximum(p, 0.0))
+    with np.errstate(divide="ignore"):
+        angle = np.arccos(np.clip(q / root**3, -1.0, 1.0)) / 3.0
+    third = 2.0 * np.pi / 3.0
+    return [middle + 2.0 * root * np.cos(angle + k * third) for k in (1, 2, 0)]
+
+
+def _cubic(a: Array, z: Array) -> Array:
+    """Return a quarter of the slope of a polynomial of degree four."""
+    value: Array = ((z + 0.75 * a[0]) * z + 0.5 * a[1]) * z + 0.25 * a[2]
+    return value

@@ -359,12 +359,12 @@ LOADS = {
     "a four-bar moves": (
         "el.FourBar(frame=5.0, crank=1.0, coupler=5.0, follower=2.0).motion(0.3)",
         LINKAGES,
-        ("floquet", "response", "hill", "beams", "scenes"),
+        ("periodic", "stability", "hill", "beams", "scenes"),
     ),
     "multipliers of a coupler": (
         f"el.floquet_multipliers(el.load_scene('{RIG}').system(), 34.0)",
         LINKAGES | {f"generated.{FAMILY}"},
-        ("response", "hill", "beams", "floquet.edges", "floquet.tongues", "floquet.decoupled"),
+        ("stability", "hill", "beams", "periodic.decoupled"),
     ),
     "beams of one kind": (
         "el.load_scene('aannaque_1996_table_4_1').system()",

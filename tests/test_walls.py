@@ -142,7 +142,7 @@ def test_the_scan_of_imports_sees_what_it_has_to(tmp_path, monkeypatch):
     path.write_text(
         "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import jinja2\n"
         "else:\n    import sympy\n"
-        "from ...derive import pipeline\nfrom .. import charts\nimport runtime.charts\n"
+        "from ...derive import pipeline\nfrom .. import hill\nimport runtime.hill\n"
         "try:\n    import scipy.linalg\nexcept ImportError:\n    pass\n"
         "def plot():\n    import matplotlib.pyplot\n    from . import options\n"
         "class A:\n    import numpy\n"
@@ -155,8 +155,8 @@ def test_the_scan_of_imports_sees_what_it_has_to(tmp_path, monkeypatch):
         "elastolink.derive": True,
         "elastolink.derive.pipeline": True,
         "elastolink.runtime": True,
-        "elastolink.runtime.charts": True,
-        "runtime.charts": True,
+        "elastolink.runtime.hill": True,
+        "runtime.hill": True,
         "scipy.linalg": True,
         "matplotlib.pyplot": False,
         "elastolink.runtime.cli": False,

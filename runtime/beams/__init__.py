@@ -30,12 +30,7 @@ from .structure import Beam, Node, Structure
 
 if TYPE_CHECKING:
     from .elastic_curve import ElasticCurve, elastic_coupler_curve
-    from .layered import (
-        ElasticLayer,
-        SandwichSection,
-        ViscoelasticLayer,
-        sandwich_section,
-    )
+    from .layered import ElasticLayer, SandwichSection, ViscoelasticLayer, sandwich_section
     from .strain_energy import BeamEnergies, beam_energies
 
 _PUBLIC = {

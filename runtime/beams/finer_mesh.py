@@ -155,7 +155,7 @@ def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> 
     """
     # Loaded here: the response knows frequencies, and these know beams.
     from ..core.trigonometric import differentiated
-    from ..floquet.first_order import canonical_form
+    from ..periodic.first_order import canonical_form
     from ..response.collocation import points, ring_motion
 
     form = canonical_form(system, speed, {}, forcing=True)

@@ -250,7 +250,7 @@ def _eigenvalues(matrix: Array, shift: float) -> tuple[ComplexArray, Array]:
     """Return the eigenvalues in a fixed order, each with its error from that of the matrix."""
     if not matrix.size:
         return np.zeros(0, dtype=complex), np.zeros(0)
-    from ..floquet.eigenvalues import conditions, multiplier_order
+    from ..periodic.multipliers import conditions, multiplier_order
 
     values, vectors = np.linalg.eig(matrix)
     values = values.astype(complex)

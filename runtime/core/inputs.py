@@ -166,3 +166,22 @@ def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np
     if row.ndim != 1 or not row.size or not np.all(np.isfinite(row)):
         raise bad(where, repr(value), f"finite numbers in a row{unit}", "correct them")
     return row
+
+
+def speed_span(speed_range: tuple[float, float]) -> tuple[float, float]:
+    """Return a range of speeds as floats.
+
+    Raises
+    ------
+    BadInput
+        If it is not a rising pair of positive numbers.
+    """
+    values = numbers("speed_range", speed_range)
+    if values.shape != (2,) or not np.all(np.isfinite(values)) or not 0 < values[0] < values[1]:
+        raise bad(
+            "speed_range",
+            speed_range,
+            "(low, high) in rad/s with 0 < low < high",
+            "boundaries accumulate at zero: choose a positive lowest speed",
+        )
+    return float(values[0]), float(values[1])

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from ..beams.element_forms import required_structure
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
-from ..floquet.first_order import numbers
 from ..linkages import FourBar, transmission_angle
 from ..periodic.stresses import stress_curve
 from .speed_profile import Array

@@ -11,8 +11,8 @@ import numpy as np
 from ..beams.element_forms import required_structure
 from ..core.errors import BadInput, bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.results import Check, Result
-from ..floquet.first_order import numbers
 from ..periodic.stresses import stress_curve
 from .effects import StressEffect, damping_effect, length_effect
 from .quiet import Band, QuietSpeeds, quiet_speeds

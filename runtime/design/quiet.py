@@ -13,8 +13,8 @@ import numpy as np
 from ..beams.element_forms import required_structure
 from ..core.errors import BadInput, Problem
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.results import Check, Result
-from ..floquet.first_order import numbers
 from ..periodic.stresses import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
 

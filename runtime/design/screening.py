@@ -14,8 +14,8 @@ from ..beams.element_forms import required_structure
 from ..beams.stress import stress_operator
 from ..core.errors import BadInput, Problem
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.results import Result, provenance
-from ..floquet.first_order import numbers
 from ..frequencies import natural_frequencies
 from .speed_profile import Array
 

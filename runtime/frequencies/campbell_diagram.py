@@ -22,7 +22,7 @@ from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from ..floquet.decoupled.exponents import SlowModes, SlowMonodromy
+from ..periodic.decoupled.exponents import SlowModes, SlowMonodromy
 from .held import (
     HeldModes,
     buckling_speed,

@@ -48,7 +48,7 @@ def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
 
     With one damping ratio they follow one another as the modes do, but where two pairs meet.
     """
-    from ..floquet import floquet_multipliers
+    from ..periodic import floquet_multipliers
     from ..periodic.reduced import reduced_system
 
     system = reduced_system(beams(1, drop), _MODES)
@@ -161,7 +161,7 @@ def _held() -> NaturalFrequencies:
 
 def _meissner(speed: Array, intervals: int) -> Array:
     """Return J of so many intervals of the first mode; exact means of each."""
-    from ..floquet import meissner_function
+    from ..frequencies.marked_speeds import meissner_function
 
     first = _held().frequency[:, 0]
     levels = first.reshape(intervals, -1).mean(axis=1)

@@ -244,8 +244,8 @@ def march(
 
     Newmark's steps, 720 in a revolution, 62 rad/s, one element for each link.
     """
-    from ..floquet.first_order import canonical_form
     from ..integrators.newmark import newmark_rule
+    from ..periodic.first_order import canonical_form
     from ..response.stepped import period_maps
 
     system = beams(1, drop, ratio=ratio)

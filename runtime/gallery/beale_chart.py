@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..charts.chart import StabilityChart, stability_chart
 from ..core.families import Array
 from ..periodic import floquet_multipliers
 from ..response.frozen import frozen_frequencies
+from ..stability.charts.chart import StabilityChart, stability_chart
 from .beale_tip import FLEXIBLE, rod
 from .records import Drawn, Quoted, Table
 from .style import legend_below, panel_title

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
-from ..floquet.first_order import canonical_form
 from ..integrators import METHODS
+from ..periodic.first_order import canonical_form
 from ..scenes import load_scene
 from ..simulation.marching import make_grid, march
 from .records import Drawn, Quoted, Table

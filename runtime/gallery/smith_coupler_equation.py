@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..floquet.boundary_speeds import speed_boundaries
 from ..hill import perturbation_boundaries
+from ..stability.boundary_speeds import speed_boundaries
 from .records import Drawn, Quoted, Table
 from .smith_linkages import (
     EQUATIONS,

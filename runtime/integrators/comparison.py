@@ -49,16 +49,17 @@ def flow(method: OneStep, form: Any, steps: int, stretch: float = 1.0) -> Array:
     stretch : float
         Part of the period, from its start.
     """
-    # Floquet analysis builds on the integrators, so it is not imported with them.
-    from ..floquet.period_products import ordered_product
-
     step = stretch * float(form.system.period) / steps
     together = max(1, 100_000 // (form.size**2 * max(1, len(form.speed))))
     total = np.eye(form.size)
     for left in range(0, steps, together):
         theta = step * np.arange(left, min(left + together, steps), dtype=float)
-        product, power = ordered_product(method.maps(form.generator, theta, step))
-        total = np.ldexp(product, power[:, None, None]) @ total
+        maps = method.maps(form.generator, theta, step)
+        while maps.shape[1] > 1:
+            even = maps.shape[1] - maps.shape[1] % 2
+            pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
+            maps = np.concatenate([pairs, maps[:, even:]], axis=1)
+        total = maps[:, 0] @ total
     return total
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ..core.errors import LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm
-from ..floquet.monodromy_matrix import FloquetMultipliers
+from ..periodic import FloquetMultipliers
+from ..periodic.first_order import CanonicalForm
 from ..simulation.trajectory import LINEAR_RANGE
 from .request import Found
 

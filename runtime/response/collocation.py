@@ -17,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm, even_angles
-from ..floquet.second_order import combined, even_samples, term_samples
+from ..core.trigonometric import even_angles
 from ..integrators.radau import legendre_integrals as integrals
 from ..integrators.radau import radau_tableau
 from ..integrators.tableau import gauss_tableau
+from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
 from .request import Found, Request, peaks, resampled, whole_option, word_option
+from .second_order import combined, even_samples, term_samples
 from .stepped import ring_closing, stepped
 
 Array = NDArray[np.float64]

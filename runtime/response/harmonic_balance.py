@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm, even_angles
-from ..floquet.second_order import Series, even_count, series_of
+from ..core.trigonometric import even_angles
+from ..periodic.first_order import CanonicalForm
 from .balance_matrix import real_matrix
 from .checks import check_memory
 from .request import Found, Request, peaks, whole_option
+from .second_order import Series, even_count, series_of
 from .slow_balance import Balanced, balanced_slowly
 from .steering import harmonics_of
 

@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm, even_angles
-from ..floquet.second_order import even_count, second_order
+from ..core.trigonometric import even_angles
 from ..integrators.expm import expm
+from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
 from .harmonic_balance import by_harmonic_balance
 from .request import Found, Request, peaks, resampled, whole_option
+from .second_order import even_count, second_order
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.families import LinearPeriodic
-from ..floquet.first_order import canonical_form
 from ..integrators.newmark import newmark_rule
+from ..periodic.first_order import canonical_form
 from .closed_form import printed_closing
 from .stepped import period_maps, ring_closing
 from .transition import transition_closing

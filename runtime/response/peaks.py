@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from ..floquet.first_order import canonical_form, numbers
+from ..periodic.first_order import canonical_form
 from .checks import warn_beyond
 from .result import SteadyState
 from .shooting import first_segments

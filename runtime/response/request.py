@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm
-from ..floquet.monodromy_matrix import FloquetMultipliers
+from ..periodic import FloquetMultipliers
+from ..periodic.first_order import CanonicalForm
 
 Array = NDArray[np.float64]
 

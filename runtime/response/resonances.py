@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.results import Result, provenance
-from ..floquet.first_order import numbers
 from .frozen import frozen_frequencies
 from .peaks import peak_error, quiet_state, require_shapes
 

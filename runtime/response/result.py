@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.deferred import DeferredField
 from ..core.errors import bad
+from ..core.inputs import numbers
 from ..core.results import Result
-from ..floquet.first_order import numbers
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

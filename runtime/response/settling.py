@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
+from ..core.inputs import numbers
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm, numbers
-from ..floquet.second_order import even_count, second_order
 from ..integrators.newmark import StepRule, acceleration
+from ..periodic.first_order import CanonicalForm
 from .request import Found, Request, number_option, peaks, whole_option
+from .second_order import even_count, second_order
 from .stepped import Item, joined, period_maps, refined, ring_closing, rule_from
 
 Array = NDArray[np.float64]

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..floquet.first_order import CanonicalForm
-from ..floquet.period_products import STAGES
 from ..integrators.gauss_legendre import gauss_maps
+from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
 
+STAGES = 8
 Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)

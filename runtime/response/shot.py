@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm, even_angles
+from ..core.trigonometric import even_angles
+from ..periodic.first_order import CanonicalForm
 from .checks import check_memory, nearness
 from .request import Found, Request, resampled
 from .shooting import Orbit, first_segments, periodic_orbits

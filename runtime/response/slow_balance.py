@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import CanonicalForm
-from ..floquet.second_order import even_count
+from ..periodic.first_order import CanonicalForm
 from .request import peaks, resampled
+from .second_order import even_count
 from .slow_modes import slow_modes
 from .speed_parts import speed_parts
 from .steering import Equation, Steering

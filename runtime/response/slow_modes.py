@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import BadInput
-from ..floquet.first_order import CanonicalForm, even_angles
-from ..floquet.second_order import keep
+from ..core.trigonometric import even_angles
+from ..periodic.first_order import CanonicalForm
+from .second_order import keep
 from .speed_parts import SpeedParts
 
 Array = NDArray[np.float64]

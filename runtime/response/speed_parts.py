@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import SPEED_POWER, CanonicalForm
-from ..floquet.second_order import keep, second_order
+from ..periodic.equation import SPEED_POWER
+from ..periodic.first_order import CanonicalForm
+from .second_order import keep, second_order
 
 Array = NDArray[np.float64]
 

@@ -14,11 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, provenance
-from ..floquet.decoupled.exponents import SlowMultipliers, characteristic_exponents
-from ..floquet.first_order import CanonicalForm, canonical_form, numbers
-from ..floquet.monodromy_matrix import FloquetMultipliers, floquet_multipliers
+from ..periodic import FloquetMultipliers, floquet_multipliers
+from ..periodic.decoupled.exponents import SlowMultipliers, characteristic_exponents
+from ..periodic.first_order import CanonicalForm, canonical_form
 from ..simulation.trajectory import LINEAR_RANGE
 from .checks import (
     check_forcing,

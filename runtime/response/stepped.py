@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm, even_angles
-from ..floquet.second_order import even_count, second_order
+from ..core.trigonometric import even_angles
 from ..integrators.newmark import StepRule, generalized_alpha_rule, newmark_rule, step_maps
+from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
 from .request import Found, Request, number_option, peaks, resampled, whole_option, word_option
+from .second_order import even_count, second_order
 
 Array = NDArray[np.float64]
 

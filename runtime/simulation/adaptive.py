@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from ..floquet.first_order import CanonicalForm
 from ..integrators import kutta_merson
+from ..periodic.first_order import CanonicalForm
 from .generator_series import generator_series
 from .marching import Grid, March, Tick, generator_of_one, scaled_state, unscaled
 

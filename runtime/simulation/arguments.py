@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from ..floquet.first_order import CanonicalForm, numbers
+from ..core.inputs import numbers
 from ..integrators import METHODS, SCIPY_METHODS, SECOND_ORDER
+from ..periodic.first_order import CanonicalForm
 from .automatic import POWER_SERIES
 from .marching import MOST_INTERVALS, MOST_STEPS
 

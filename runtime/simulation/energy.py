@@ -12,10 +12,10 @@ from scipy.interpolate import CubicSpline
 
 from ..core.errors import BadInput
 from ..core.results import Check
-from ..floquet.first_order import CanonicalForm
-from ..floquet.spring_form import periodic_derivative
 from ..integrators.tableau import gauss_tableau
+from ..periodic.first_order import CanonicalForm
 from .marching import cyclic
+from .spring_form import periodic_derivative
 
 Array = NDArray[np.float64]
 

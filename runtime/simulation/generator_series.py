@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import CanonicalForm, even_angles
+from ..core.trigonometric import even_angles
+from ..periodic.first_order import CanonicalForm
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..floquet.first_order import CanonicalForm
-from ..floquet.period_products import ordered_product
-from ..floquet.second_order import second_order_at
-from ..floquet.spring_form import spring_generator
 from ..integrators import OneStep
 from ..integrators import de_vogelaere as _de_vogelaere
 from ..integrators.newmark import RULES, StepRule, acceleration, step_maps
+from ..periodic.first_order import CanonicalForm
+from ..periodic.transition import product as ordered_product
+from ..response.second_order import second_order_at
+from .spring_form import spring_generator
 
 Array = NDArray[np.float64]
 Tick = Callable[[int], None]

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ..core.errors import LinearRangeWarning
 from ..core.families import LinearPeriodic
 from ..core.results import Check, DeferredChecks
-from ..floquet.first_order import CanonicalForm, even_angles
+from ..core.trigonometric import even_angles
+from ..periodic.first_order import CanonicalForm
 from .energy import energy_balance
 from .marching import March
 

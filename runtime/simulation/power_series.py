@@ -13,8 +13,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import CanonicalForm
-from ..floquet.period_products import ordered_product
+from ..periodic.first_order import CanonicalForm
+from ..periodic.transition import product as ordered_product
 from ..stretches import stretch_maps
 from ..stretches.power_series import MOST_TERMS
 from .generator_series import Expansion, GeneratorSeries, expansion, generator_series

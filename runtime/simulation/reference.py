@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..floquet.first_order import CanonicalForm
 from ..integrators.gauss_legendre import gauss_legendre
+from ..periodic.first_order import CanonicalForm
 from .marching import Grid, March, Tick, march, steps_for
 from .power_series import PowerSeries
 

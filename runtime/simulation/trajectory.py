@@ -14,9 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import StepTooLongWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Result, provenance
-from ..floquet.first_order import CanonicalForm, canonical_form
-from ..floquet.spring_form import spring_generator
 from ..integrators import METHODS, SCIPY_METHODS, SECOND_ORDER, OneStep
+from ..periodic.first_order import CanonicalForm, canonical_form
 from .adaptive import adaptive_march
 from .arguments import check_arguments, scalar, start_of
 from .automatic import FALLBACK, POWER_SERIES, default_phase
@@ -30,6 +29,7 @@ from .motion_checks import (
     warn_of_large_deflection,
 )
 from .reference import Reference
+from .spring_form import spring_generator
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

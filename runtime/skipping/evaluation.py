@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..core.families import MATRICES, VECTORS, LinearPeriodic
-from ..floquet.first_order import SPEED_POWER, canonical_form
-from ..floquet.second_order import even_count
+from ..periodic.equation import SPEED_POWER, equation_of
 from .emitted import EmittedCost
 
 
@@ -48,12 +47,13 @@ def of_linear(system: LinearPeriodic, speed: float) -> Evaluated:
             arrays[array] = "constant" if constant else "periodic"
     steady = [row for row in alive if system.terms[row].array in SPEED_POWER]
     moving = [row for row in steady if not system.terms[row].constant]
+    equation = equation_of(system, speed, forcing=True) if moving else None
     return Evaluated(
         arrays=arrays,
         powers=_powers(system, alive),
         samples=len(steady),
-        angles=even_count(system) if moving else 0,
-        harmonics=canonical_form(system, speed).reach if moving else 0,
+        angles=len(equation.even_angles()) if equation else 0,
+        harmonics=equation.reach if equation else 0,
     )
 
 

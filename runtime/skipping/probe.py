@@ -164,7 +164,7 @@ def _moved(linkage: Any) -> Any:
 
 def _linear(system: Any, speed: float) -> Iterator[tuple[str, Callable[[], object]]]:
     def multipliers() -> object:
-        from ..floquet import floquet_multipliers
+        from ..periodic import floquet_multipliers
 
         return floquet_multipliers(system, speed)
 

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, numbers
-from ..floquet.first_order import SPEED_POWER, canonical_form, even_angles
-from ..floquet.krein import form_matrix
+from ..core.trigonometric import even_angles
+from ..periodic.equation import SPEED_POWER
+from ..periodic.first_order import canonical_form
+from ..periodic.signatures import form_matrix
 
 Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]

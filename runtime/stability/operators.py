@@ -23,9 +23,10 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic
-from ..floquet.first_order import SPEED_POWER, even_angles
-from ..floquet.krein import form_matrix
+from ..core.trigonometric import even_angles
 from ..hill.bloch import degree_of, monomials, product_table, recursion
+from ..periodic.equation import SPEED_POWER
+from ..periodic.signatures import form_matrix
 from .meetings import IMAGINARY, Resonance
 
 Array = NDArray[np.float64]

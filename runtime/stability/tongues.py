@@ -14,9 +14,9 @@ from ..core.errors import bad
 from ..core.families import DAMPING, LinearPeriodic, Term
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ..floquet import floquet_multipliers
-from ..floquet.first_order import canonical_form
 from ..hill.bloch import BEYOND, HIGHEST
+from ..periodic import floquet_multipliers
+from ..periodic.first_order import canonical_form
 from .ends import UNBOUNDED, Ends, Several, expected, two_exponents
 from .meetings import MeanSystem, Resonance, conservative
 from .operators import Point, ResonantOperator, constant_at, resonant_operator

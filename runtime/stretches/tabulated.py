@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import chebyshev
-from ..floquet.period_products import ordered_product
+from ..periodic.transition import product as ordered_product
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from elastolink.runtime.beams import Beam, BeamMotion, Node, Section, Structure, linear_system
-from elastolink.runtime.floquet.spring_form import periodic_derivative
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
+from elastolink.runtime.simulation.spring_form import periodic_derivative
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
-from elastolink.runtime.floquet import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.systems.rod import FreeFreeBasis, FreeFreeRod, free_free_rod, rod_system
 
 # Beale & Scott, section 2.1: the very flexible rod.

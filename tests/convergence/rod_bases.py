@@ -12,9 +12,10 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import numpy as np
-from elastolink.runtime.floquet import floquet_multipliers
-from elastolink.runtime.floquet.first_order import canonical_form, even_angles
+from elastolink.runtime.core.trigonometric import even_angles
 from elastolink.runtime.linkages import QuickReturn
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.systems.rod import (
     FreeFreeBasis,
     OverhangBasis,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, beam_linkage, linear_system
-from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.linkages import QuickReturn
+from elastolink.runtime.periodic.first_order import canonical_form
 from rod_reference import _A, _C, CASES
 from rod_tip_deflections import TIPS
 

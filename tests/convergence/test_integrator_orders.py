@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.integrators import METHODS
 from elastolink.runtime.integrators.gauss_legendre import gauss_legendre
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.simulation.marching import make_grid, march
 
 SPEED = 3.0

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.integrators.gauss_legendre import gauss_legendre
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.simulation.marching import make_grid, march
 from elastolink.runtime.systems.rod import (
     OverhangBasis,

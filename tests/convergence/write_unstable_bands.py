@@ -9,7 +9,8 @@ import sys
 
 import elastolink as el
 import numpy as np
-from elastolink.runtime.floquet import StabilityEdges, slow_system, unstable_bands
+from elastolink.runtime.periodic.decoupled import slow_system
+from elastolink.runtime.stability import StabilityEdges, unstable_bands
 
 WIDTHS = (1e-7, 1e-5, 1e-3)
 WIDEST = 10

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.floquet import tongue_curves, unstable_bands
-from elastolink.runtime.floquet.edges.over_parameter import trace_tongue
-from elastolink.runtime.floquet.edges.tracing import stability_edges
-from elastolink.runtime.floquet.krein import krein_signatures
-from elastolink.runtime.stability import resonances, tongue
+from elastolink.runtime.stability import resonances, tongue, tongue_curves, unstable_bands
+from elastolink.runtime.stability.edges.over_parameter import trace_tongue
+from elastolink.runtime.stability.edges.tracing import stability_edges
+from elastolink.runtime.stability.krein import krein_signatures
 from hill_pairs import HillPair
 from honesty import verdict
 

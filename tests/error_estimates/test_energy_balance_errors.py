@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.first_order import canonical_form
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.simulation.energy import energy_balance
 from elastolink.runtime.simulation.trajectory import simulate
 from manufactured import manufactured

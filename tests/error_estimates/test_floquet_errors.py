@@ -7,7 +7,7 @@ centrifugal and stiffness terms, and multipliers and boundaries that are known i
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
+from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from wavy_springs import Wavy, tame, verdict
 
 

@@ -12,10 +12,10 @@ import pytest
 from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
 from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.shape_stress import largest_by_shape
-from elastolink.runtime.floquet.spring_form import periodic_derivative
 from elastolink.runtime.integrators.gauss_legendre import gauss_maps
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.periodic import steady_state
+from elastolink.runtime.simulation.spring_form import periodic_derivative
 from honesty import verdict
 from scipy.interpolate import CubicSpline
 

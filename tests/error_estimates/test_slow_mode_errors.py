@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import characteristic_exponents, floquet_multipliers, slow_system
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
 
 SCENES = 200
 

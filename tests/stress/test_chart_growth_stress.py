@@ -6,12 +6,15 @@ import elastolink as el
 import mpmath
 import numpy as np
 import pytest
-from elastolink.runtime.charts.characteristic import weighed_characteristic
-from elastolink.runtime.charts.invariants import instability_kind, largest_modulus
-from elastolink.runtime.charts.lines import Lines
-from elastolink.runtime.charts.sampling import Sampler, Series
-from elastolink.runtime.charts.verdict import undecided, verdict
 from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.stability.charts.invariants import (
+    instability_kind,
+    largest_modulus,
+    weighed_characteristic,
+)
+from elastolink.runtime.stability.charts.lines import Lines
+from elastolink.runtime.stability.charts.sampling import Sampler, Series
+from elastolink.runtime.stability.charts.verdict import undecided, verdict
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 
 
@@ -109,8 +112,8 @@ def test_waves_alone_move_a_system_whose_mean_stiffness_vanishes():
 
 def test_lines_are_not_made_again_and_again_where_nothing_settles(monkeypatch):
     made = []
-    plain = Lines._series
-    monkeypatch.setattr(Lines, "_series", lambda *a: made.append(1) or plain(*a))
+    plain = Lines._piece
+    monkeypatch.setattr(Lines, "_piece", lambda *a: made.append(1) or plain(*a))
     rows = np.linspace(0.5, 2.0, 10)
     chart = el.stability_chart(
         divergent(2), ("speed", np.linspace(0.02, 1.0, 100)), ("k", rows), boundaries=False
@@ -142,14 +145,14 @@ def test_a_matrix_that_is_not_a_number_is_undecided():
 
 @pytest.mark.parametrize("basis", [PolynomialBasis(3), OverhangBasis(2)])
 def test_the_second_solution_is_another_one(basis):
-    """Fast cranks want the least number of stretches, of which the second solution has more."""
+    """Fast cranks want the least number of segments, of which the second solution has more."""
     system = rod(basis).with_geometry(crank_ratio=0.2)
     speeds = np.array([3000.0, 4000.0])
     sampler = Sampler(system, ("speed", "damping"), (speeds, np.array([0.0, 1e-9])), 1e-11)
     lines = Lines(sampler)
     low, high = 1.0 / speeds[1] ** 2, 1.0 / speeds[0] ** 2
     one, other = (lines._line(0.0, low, high, None, f).pieces[0] for f in (1.0, 1.37))
-    assert other.stretches.shape[1] > one.stretches.shape[1]
+    assert other.segments > one.segments
 
 
 def _characteristic_in_many_digits(matrix):

@@ -7,8 +7,8 @@ import dataclasses
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.charts import sampling, verdict
 from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.stability.charts import sampling, verdict
 
 ONE, TWO = np.eye(1), np.eye(2)
 RIG = "smith_1972_5152_sixteenth_inch"

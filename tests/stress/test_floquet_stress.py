@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
+from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from periodic_systems import named

@@ -12,14 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from .emitted import (
-    Places,
-    Values,
-    array_function,
-    dropped_names,
-    parameter_values,
-    stacked,
-)
+from .emitted import Places, Values, array_function, dropped_names, parameter_values, stacked
 from .linear_periodic import Array
 from .multipliers import solve_multipliers
 

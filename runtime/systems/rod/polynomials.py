@@ -19,13 +19,7 @@ from numpy.typing import NDArray
 
 from ....generated import quick_return_rod_polynomials as emitted
 from ...core.errors import bad
-from .basis import (
-    require_array,
-    require_derivative,
-    require_modes,
-    require_places,
-    require_points,
-)
+from .basis import require_array, require_derivative, require_modes, require_places, require_points
 
 Array = NDArray[Any]  # doubles, or long doubles for tables
 _Kernel = Callable[..., tuple[Array, ...]]

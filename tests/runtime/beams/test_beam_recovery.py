@@ -26,7 +26,7 @@ from elastolink.runtime.beams import (
 from elastolink.runtime.beams.element_forms import ElementForms
 from elastolink.runtime.beams.recovery import recovery, stations_of
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.floquet.spring_form import periodic_derivative
+from elastolink.runtime.simulation.spring_form import periodic_derivative
 from elastolink.runtime.systems import with_modal_damping
 
 # Round-off of forces that are differences of stiffness times displacement.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import (
+from elastolink.runtime.frequencies.marked_speeds import (
     mean_frequency_speeds,
     meissner_speeds,
     multiplier_maxima,

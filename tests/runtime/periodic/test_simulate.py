@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, StepTooLongWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.integrators import METHODS, SCIPY_METHODS
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.simulation.adaptive import sampled_generator
 from elastolink.runtime.simulation.trajectory import Trajectory, simulate
 
@@ -269,7 +269,7 @@ def test_leaving_the_linear_range_is_told():
 
 
 def test_energy_balance_catches_a_wrong_motion():
-    from elastolink.runtime.floquet.first_order import canonical_form
+    from elastolink.runtime.periodic.first_order import canonical_form
     from elastolink.runtime.simulation.energy import energy_balance
 
     system, _ = _turned((3.0, 5.0))

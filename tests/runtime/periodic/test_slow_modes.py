@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import (
-    characteristic_exponents,
-    floquet_multipliers,
-    slow_system,
-    unstable_bands,
-)
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
+from elastolink.runtime.stability import unstable_bands
 from stiff_linkage import stiff_four_bar
 
 FREQUENCIES = np.array([1.0, 2.3, 45.0, 160.0])

@@ -7,7 +7,9 @@ and knows nothing of the decoupling or of the tables over the speed.
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.floquet import floquet_multipliers, slow_system, unstable_bands
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.periodic.decoupled import slow_system
+from elastolink.runtime.stability import unstable_bands
 
 # Where to look for the widest band: spread over the range of speeds.
 PLACES = (

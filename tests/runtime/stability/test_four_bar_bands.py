@@ -3,17 +3,10 @@
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import (
-    characteristic_exponents,
-    floquet_multipliers,
-    monodromy,
-    multiplier_maxima,
-    slow_system,
-    unstable_bands,
-)
-from elastolink.runtime.floquet.speed_tables import tabulated
-from elastolink.runtime.periodic import reduced_system
+from elastolink.runtime.frequencies.marked_speeds import multiplier_maxima
+from elastolink.runtime.periodic import floquet_multipliers, monodromy, reduced_system
+from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
+from elastolink.runtime.stability import unstable_bands
 
 SPAN = (71.0, 74.0)
 # The widest band below 75 rad/s: the first mode with itself.
@@ -39,27 +32,13 @@ def bands(slow):
     return unstable_bands(slow, SPAN)
 
 
-def test_tables_give_the_monodromy_matrices(slow):
-    system = tabulated(slow.system, SPAN)
-    speeds = np.array([71.3, 72.2, 73.9])
-    found, direct = monodromy(system, speeds), monodromy(slow.system, speeds)
-    gap = np.max(np.abs(found.scaled - direct.scaled), axis=(1, 2))
-    size = np.max(np.abs(direct.scaled), axis=(1, 2))
-    assert np.all(gap <= (found.error + direct.error) * size)
-    assert np.max(found.error) <= 1e-11
-    # A system made from it, with other terms, must not take them.
-    other = system.with_changed_terms(lambda term: term)
-    assert monodromy(other, 72.2).segments == direct.segments[1]
-    assert found.segments[1] != direct.segments[1]
-
-
 def test_multipliers_are_on_the_circle_outside_the_bands(slow, bands):
     speeds = np.linspace(*SPAN, 240)
     margin = 1e-3
     near = (speeds[:, None] > bands.lower - margin) & (speeds[:, None] < bands.upper + margin)
     outside = speeds[~np.any(near, axis=1)][:60]
     assert len(outside) == 60
-    found = floquet_multipliers(tabulated(slow.system, SPAN), outside)
+    found = floquet_multipliers(slow.system, outside)
     assert np.max(np.abs(np.abs(found.multipliers) - 1.0)) <= 1e-10
 
 
@@ -67,7 +46,7 @@ def test_multipliers_grow_inside_every_open_band(slow, bands):
     wide = np.flatnonzero(bands.width > 1e-4)
     assert len(wide) >= 5
     middle = 0.5 * (bands.lower + bands.upper)[wide]
-    found = floquet_multipliers(tabulated(slow.system, SPAN), middle)
+    found = floquet_multipliers(slow.system, middle)
     assert np.all(np.max(np.abs(found.multipliers), axis=-1) > 1.0 + 1e-8)
     kinds = {bands.kind[i] for i in wide}
     assert "principal" in kinds and "sum" in kinds
@@ -94,7 +73,7 @@ def test_all_nine_freedoms_grow_as_the_slow_modes_do():
 def test_two_percent_of_damping_close_every_band():
     damped = slow_system(four_bar(0.02), SPAN, 5)
     speeds = np.append(np.linspace(*SPAN, 400), INSIDE)
-    found = monodromy(tabulated(damped.system, SPAN), speeds)
+    found = monodromy(damped.system, speeds)
     largest = np.max(np.abs(np.linalg.eigvals(found.scaled)), axis=-1)
     assert np.max(largest) < 0.8
 
@@ -112,23 +91,3 @@ def test_maxima_swept_on_few_modes_are_those_of_the_whole_linkage():
     column = int(np.argmin(beside[1]))
     assert beside[1, column] < 5e-3
     assert np.all(np.max(whole.multipliers.real, axis=-1) <= whole.multipliers[1, column].real)
-
-
-@pytest.mark.parametrize("order", [1, 3])
-def test_coefficients_that_are_not_smooth_make_no_table(order):
-    """A jump of the stiffness, or of its third derivative: they are found one by one."""
-
-    def stiffness(theta):
-        wave = np.abs(np.sin(0.5 * (theta - 0.3))) ** (order - 1) * np.sign(np.sin(theta - 0.3))
-        return (30.0 + 9.0 * wave)[:, None, None] * np.diag([1.0, 2.0])
-
-    terms = (Term("M", None, np.eye(2)), Term("K", None, stiffness))
-    plain = LinearPeriodic(2, terms, {}, lambda values: {})
-    system = tabulated(plain, (1.0, 1.5))
-    if order == 1:
-        assert system.tables == ()
-    speeds = np.array([1.1, 1.4])
-    found, direct = monodromy(system, speeds, rtol=1e-6), monodromy(plain, speeds, rtol=1e-6)
-    gap = np.max(np.abs(found.scaled - direct.scaled), axis=(1, 2))
-    size = np.max(np.abs(direct.scaled), axis=(1, 2))
-    assert np.all(gap <= (found.error + direct.error) * size)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet import floquet_multipliers
+from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.stability import resonances, tongue
 from periodic_systems import named
 

@@ -7,10 +7,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.floquet.boundary_checks import parity
-from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers, monodromy
 from elastolink.runtime.hill.boundaries import hill_boundaries
+from elastolink.runtime.periodic import floquet_multipliers, monodromy
+from elastolink.runtime.stability.boundary_speeds import parity, speed_boundaries
 from periodic_systems import named, wave
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b

@@ -11,12 +11,9 @@ from elastolink import load_scene
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.floquet import (
-    floquet_multipliers,
-    speed_boundaries,
-)
 from elastolink.runtime.hill.boundaries import hill_boundaries
-from elastolink.runtime.stability import resonances, tongue
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.stability import resonances, speed_boundaries, tongue
 from periodic_systems import is_growing, named, wave
 from scipy.integrate import solve_ivp
 

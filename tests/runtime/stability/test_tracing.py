@@ -10,10 +10,10 @@ import scipy.optimize
 from edge_truth import discriminant, region_of
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
-from elastolink.runtime.floquet.edges.over_parameter import trace_tongue
-from elastolink.runtime.floquet.edges.tracing import stability_edges
 from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.stability.boundary_speeds import speed_boundaries
+from elastolink.runtime.stability.edges.over_parameter import trace_tongue
+from elastolink.runtime.stability.edges.tracing import stability_edges
 
 RIG = "smith_1972_5152_sixteenth_inch"
 LOW, HIGH = 1.0, 2.3

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import DAMPING, Term
-from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.hill.form import is_hill
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.simulation.energy import energy_balance
 from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss

@@ -1,1 +1,0 @@
-"""Edges of unstable regions along the speed, found from the multipliers and refined."""

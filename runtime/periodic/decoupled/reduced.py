@@ -1,0 +1,291 @@
+"""The slow modes of a stiff periodic system as a smaller linear periodic system of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.errors import BadInput, bad
+from ...core.families import DAMPING, LinearPeriodic, Term
+from ...core.inputs import speed_span
+from ...core.trigonometric import even_angles
+from ..equation import at_geometry
+from ..first_order import CanonicalForm, canonical_form
+from .blocks import modal_arrays, slow_part
+from .exponents import decoupling_error, integrated
+from .fourier import Part, PeriodicSeries
+from .frames import Frames, gap_choices, held_modes, moving_frames
+
+Array = NDArray[np.float64]
+
+# Degrees in the speed squared that are tried, and the part of an array left out that is enough.
+_DEGREES = (1, 2, 3, 4, 6, 8)
+_SMALL = 1e-11
+# Change of a monodromy matrix that ends the search for a gap, that ends it where better ones are
+# dearer, and the largest that will do.
+_PRECISE, _ENOUGH, _MOST = 1e-9, 1e-6, 1e-3
+# How many times the work of the first choice that is good enough a better one may cost.
+_DEARER = 10.0
+# Gap above the slow modes, in turns a period, from which decoupling is worth a try.
+_WORTH = 4.0
+_FEWEST = 4
+
+
+@dataclass(frozen=True)
+class SlowSystem:
+    """The slow modes of a stiff system, with what leaving the others out costs.
+
+    Attributes
+    ----------
+    system : LinearPeriodic
+        Undamped: the exact motion of the slow modes, the fast ones following them, as arrays that
+        are polynomials in the speed squared.  Damping enters to leading order.
+    modes : int
+        Number k of its freedoms.
+    speed_range : tuple of float
+        Speeds [rad/s] that it holds for.
+    fit : float
+        Largest error of an array by the polynomials, over the largest entry, at speeds between
+        those they were made from.
+    residual : float
+        Change of a monodromy matrix that incomplete decoupling makes at the highest speed.
+    degree : int
+        Degree of the polynomials in the speed squared.
+    """
+
+    system: LinearPeriodic
+    modes: int
+    speed_range: tuple[float, float]
+    fit: float
+    residual: float
+    degree: int
+
+    @property
+    def error(self) -> float:
+        """Relative error of the exponents' turns, an estimate."""
+        return self.fit + self.residual
+
+
+def slow_system(
+    system: LinearPeriodic,
+    speed_range: tuple[float, float],
+    modes: int | None = None,
+    **parameters: float,
+) -> SlowSystem:
+    """Return the slow modes of a stiff system as a smaller linear periodic system.
+
+    All that takes a :class:`LinearPeriodic` takes the result: multipliers, Krein signatures,
+    ``stability_edges``.  Its coordinates are those of a moving basis; there is no forcing.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Conservative but for damping.
+    speed_range : pair of float
+        Lowest and highest speed [rad/s] that the result shall hold for.
+    modes : int, optional
+        Number of slow modes.  By default the least of at least 4 with a relative change of the
+        monodromy matrix below 1e-9 at the highest speed; where that takes over ten times the work
+        of the first below 1e-6, the best until there; where none is below 1e-6, the best.
+    **parameters : float
+        Parameter values that replace the system's own; geometry too.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, the system is not conservative but for damping, no gap of the
+        frequencies lets modes be left out with a change below 1e-3, or the arrays are no
+        polynomials in the speed squared.
+    """
+    low, high = speed_span(speed_range)
+    system, changed = at_geometry(system, parameters)
+    calm = system.without(*DAMPING)
+    top = canonical_form(calm, np.array([high]), changed)
+    if not top.conservative:
+        raise bad(
+            "system",
+            "stiffness or centrifugal terms that are not symmetric",
+            "a system conservative but for damping",
+            "use characteristic_exponents",
+        )
+    chosen = _chosen(top, modes)
+    frames = chosen.frames
+    degree, coefficients, fit = _fitted(calm, chosen, (low, high), changed)
+    terms = _terms(coefficients, system.period, high)
+    damped = canonical_form(system, np.array([high]), changed)
+    if damped.damped:
+        terms += _damping(damped, frames)
+    reduced = LinearPeriodic(
+        frames.modes,
+        tuple(terms),
+        {},
+        _no_scales,
+        period=system.period,
+        labels=tuple(f"slow {i + 1}" for i in range(frames.modes)),
+        provenance=system.changed_provenance(**changed),
+    )
+    return SlowSystem(reduced, frames.modes, (low, high), fit, chosen.change, degree)
+
+
+def _no_scales(values: object) -> dict[str, Array]:
+    return {}
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """A basis, the change of the matrix by incomplete decoupling, and the passes it takes."""
+
+    frames: Frames
+    change: float
+    passes: int
+
+
+def _chosen(form: CanonicalForm, modes: int | None) -> _Choice:
+    """Return the basis for the one speed of a form, the highest."""
+    n = form.system.size
+    if modes is not None:
+        if modes != int(modes) or not 1 <= modes < n:
+            raise bad("modes", modes, f"a whole number from 1 to {n - 1}", "correct it")
+        return _tried(form, int(modes))
+    best = _searched(form)
+    if best is None or not best.change < _MOST:
+        found = "no gap of the natural frequencies is wide enough to leave the modes above it out"
+        if best is not None:
+            found += f" (best: {best.frames.modes} modes, relative change {best.change:.1e})"
+        raise bad(
+            "speed_range",
+            f"up to {float(form.speed[0]):.4g} rad/s, where {found}",
+            "speeds far below a gap of the natural frequencies",
+            "lower the speeds or use the whole system",
+        )
+    return best
+
+
+def _searched(form: CanonicalForm) -> _Choice | None:
+    """Return the best choice that is not dear without need; None where there is none."""
+    n, period = form.system.size, form.system.period
+    frequency = held_modes(form, even_angles(period, 256))[0]
+    work = np.max(frequency, axis=0) * np.arange(1, n + 1) ** 3.0
+    least = _WORTH * 2 * np.pi / period * float(form.speed[0])
+    best: _Choice | None = None
+    dearest = np.inf
+    for k, gap in gap_choices(frequency, min(_FEWEST, n - 1)):
+        if work[k - 1] > dearest:
+            break
+        if gap < least:
+            continue
+        try:
+            found = _tried(form, k)
+        except BadInput:
+            continue
+        if best is None or found.change < best.change:
+            best = found
+        if found.change < _PRECISE:
+            break
+        if found.change < _ENOUGH:
+            dearest = min(dearest, _DEARER * float(work[k - 1]))
+    return best
+
+
+def _tried(form: CanonicalForm, modes: int) -> _Choice:
+    """Return the basis for a number of modes and what it costs."""
+    frames = moving_frames(form, modes)
+    slow, period = slow_part(form, frames), form.system.period
+    rate = float(np.max(frames.slow) / form.speed[0])
+    found = integrated(slow, frames.modes, period, rate, 1e-9)
+    change = min(decoupling_error(slow, found, period), found.residual)
+    return _Choice(frames, change, int(slow.passes[0]))
+
+
+def _arrays(
+    system: LinearPeriodic, chosen: _Choice, speed: Array, changed: Mapping[str, ArrayLike]
+) -> dict[str, Array]:
+    """Return M, A and R = K + Kg - w^2 B of the slow modes, each ``(ns, nt, k, k)``."""
+    form = canonical_form(system, speed, changed)
+    slow, k = slow_part(form, chosen.frames, chosen.passes), chosen.frames.modes
+    scale = slow.scale[:, None, :k]
+    size = np.concatenate([scale, 1.0 / scale], axis=-1)
+    plain = slow.generator * size[..., :, None] / size[..., None, :]
+    mass = np.linalg.inv(plain[..., :k, k:])
+    gyro = -mass @ plain[..., :k, :k]
+    push = plain[..., k:, :k] + np.swapaxes(gyro, -1, -2) @ plain[..., :k, k:] @ gyro
+    rest = -(speed[:, None, None, None] ** 2) * push
+    return {
+        "M": 0.5 * (mass + np.swapaxes(mass, -1, -2)),
+        "A": gyro,
+        "R": 0.5 * (rest + np.swapaxes(rest, -1, -2)),
+    }
+
+
+def _fitted(
+    system: LinearPeriodic,
+    chosen: _Choice,
+    span: tuple[float, float],
+    changed: Mapping[str, ArrayLike],
+) -> tuple[int, dict[str, list[Array]], float]:
+    """Return the degree, the coefficients by powers of the speed squared, and the error."""
+    low, high = (value**2 for value in span)
+    best: tuple[int, dict[str, list[Array]], float] | None = None
+    for degree in _DEGREES:
+        # The last column of nodes between tells how well the others do.
+        nodes = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+        extra = np.array([-1.0, 0.37, 1.0])
+        places = 0.5 * (low + high) + 0.5 * (high - low) * np.concatenate([nodes, extra])
+        found = _arrays(system, chosen, np.sqrt(places), changed)
+        unit = places / high
+        vander = np.vander(unit, degree + 1, increasing=True)
+        inverse = np.linalg.inv(vander[: degree + 1])
+        coefficients, error = {}, 0.0
+        for name, values in found.items():
+            flat = values.reshape(len(places), -1)
+            own = inverse @ flat[: degree + 1]
+            gap = np.max(np.abs(vander[degree + 1 :] @ own - flat[degree + 1 :]))
+            error = max(error, float(gap / np.max(np.abs(flat))))
+            shape = values.shape[1:]
+            coefficients[name] = [(row / high**j).reshape(shape) for j, row in enumerate(own)]
+        if best is None or error < 0.5 * best[2]:
+            best = degree, coefficients, error
+        if error < _SMALL:
+            break
+    if best is None or not best[2] < _MOST:
+        raise bad(
+            "system",
+            "slow modes whose arrays are no polynomials in the speed squared",
+            "terms with even powers of the speed, and speeds far below a gap of the frequencies",
+            "lower the speeds or use characteristic_exponents",
+        )
+    return best
+
+
+def _terms(coefficients: Mapping[str, list[Array]], period: float, high: float) -> list[Term]:
+    """Return the terms of the reduced Lagrangian, all of them parts of one series."""
+    named = [(n, 2 * j, v) for n in ("M", "A") for j, v in enumerate(coefficients[n])]
+    first, *rest = coefficients["R"]
+    named += [("K", 0, first), *(("B", 2 * j, -v) for j, v in enumerate(rest))]
+    largest = {
+        name: max(float(np.max(np.abs(v))) * high**p for n, p, v in named if n == name)
+        for name in ("M", "A", "K", "B")
+    }
+    # Small beside the largest of its kind at the highest speed, a harmonic does not count.
+    sizes = [max(largest[name], 1e-300) / high**power for name, power, _ in named]
+    stacked = np.stack([v / size for (_, _, v), size in zip(named, sizes, strict=True)], axis=1)
+    series = PeriodicSeries.of(stacked, period)
+    return [
+        Term(name, None, Part(series, i, size), power=power)
+        for i, ((name, power, _), size) in enumerate(zip(named, sizes, strict=True))
+    ]
+
+
+def _damping(form: CanonicalForm, frames: Frames) -> list[Term]:
+    """Return the damping of the slow modes, without what the fast ones add by following."""
+    modal, k = modal_arrays(form, frames), frames.modes
+    shape = (len(frames.theta), k, k)
+    terms = []
+    for name, values in (("C", modal.drag), ("D", modal.carried)):
+        if values is not None:
+            own = np.broadcast_to(values[0, :, :k, :k], shape) * form.speed[0]
+            terms.append(Term(name, None, PeriodicSeries.of(own, form.system.period)))
+    return terms

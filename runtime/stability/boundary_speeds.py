@@ -1,0 +1,556 @@
+"""Crank speeds at which a linear periodic system has a periodic or antiperiodic motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import speed_span
+from ..core.results import Check, Result, provenance
+from ..periodic import Monodromy, monodromy
+from ..periodic.first_order import canonical_form
+from .fourier_matrices import Wave, real_matrices, waves
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Matrices = dict[int, Array]
+
+_EPS = float(np.finfo(float).eps)
+_MOST_ROWS = 4000
+# Relative change of a speed by a larger truncation that a fixed one may leave.
+_FAIR = 0.01
+# Relative distance up to which roots are told apart within their own span.
+_NEARLY_DOUBLE = 1e-6
+# Relative imaginary part up to which a root of the truncated problem counts as a double real one.
+_NEARLY_REAL = 1e-6
+
+
+_MOST_BOUNDARIES = 256
+# Most that a singular value, relative to the matrix, may be and still count as zero.
+_MOST_DEFECT = 0.01
+# Widest gaps between boundaries whose middles are test speeds.
+_GAPS = 14
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedBoundaries(Result):
+    """Speeds at which a Floquet multiplier is exactly +1 or -1.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], rising, shape ``(k,)``; a double one occurs twice.
+    multiplier : ndarray of int
+        +1 or -1, shape ``(k,)``.
+    error : ndarray
+        Absolute error of each speed [rad/s], shape ``(k,)``.
+    cosine, sine : ndarray
+        The motion itself, ``q(theta) = sum_j cosine[j] cos(kappa_j x) + sine[j] sin(kappa_j x)``
+        with x = 2 pi theta/period and kappa_j = j (multiplier +1) or j + 1/2 (-1); each
+        ``(k, harmonics + 1, n)``, scaled to a sum of squares of 1.
+    harmonics : int
+        Highest harmonic that was used.
+    period : float
+        Period of the coefficients [rad].
+    """
+
+    speed: Array
+    multiplier: NDArray[np.int64]
+    cosine: Array
+    sine: Array
+    harmonics: int
+    period: float
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "speed": ("boundary",),
+        "multiplier": ("boundary",),
+        "error": ("boundary",),
+        "cosine": ("boundary", "harmonic", "coordinate"),
+        "sine": ("boundary", "harmonic", "coordinate"),
+    }
+
+    def motion(self, index: int, theta: ArrayLike) -> Array:
+        """Return the motion of one boundary at crank angles ``(nt,)``, shape ``(nt, n)``."""
+        angles = np.atleast_1d(np.asarray(theta, dtype=float))
+        shift = 0.0 if self.multiplier[index] == 1 else 0.5
+        kappa = 2 * np.pi / self.period * (np.arange(self.cosine.shape[1]) + shift)
+        phase = angles[:, None] * kappa
+        value: Array = np.cos(phase) @ self.cosine[index] + np.sin(phase) @ self.sine[index]
+        return value
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the boundaries as lines over the speed and return the axes."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for sign, colour in ((1, "C0"), (-1, "C1")):
+            for speed in self.speed[self.multiplier == sign]:
+                ax.axvline(speed * 30 / np.pi, color=colour, linewidth=0.8)
+            ax.plot([], [], color=colour, label=f"multiplier {sign:+d}")
+        ax.set_xlabel("crank speed [rpm]")
+        ax.set_yticks([])
+        ax.legend()
+        return ax
+
+
+def speed_boundaries(
+    system: LinearPeriodic,
+    multiplier: int | Sequence[int] = (1, -1),
+    *,
+    speed_range: tuple[float, float],
+    harmonics: int | None = None,
+    rtol: float = 1e-11,
+    **parameters: float,
+) -> SpeedBoundaries:
+    """Return the speeds at which a periodic or antiperiodic motion exists.
+
+    These are the boundaries of the simple unstable regions of each mode and, where single modes
+    meet +1 or -1 in another way, of divergence.  Combination resonances, where multipliers leave
+    the unit circle in conjugate pairs, have no such motion and do not appear.
+
+    The Fourier matrix of the truncated problem is a polynomial in the speed.  Undamped systems
+    give a symmetric definite problem, linear in the speed squared; damping or other powers of the
+    speed give a companion problem of which the real roots count.  Every root is refined on the
+    polynomial itself, and the truncation is raised until no root moves.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    multiplier : int or sequence of int
+        +1, -1 or both.
+    speed_range : pair of float
+        Lowest and highest speed [rad/s], the lowest positive: boundaries accumulate at zero.
+    harmonics : int, optional
+        Highest harmonic, fixed.  By default raised until converged.
+    rtol : float
+        Relative change of a speed at which the truncation is enough.
+    **parameters : float
+        Parameter values that replace the system's own.
+
+    Returns
+    -------
+    SpeedBoundaries
+        Its checks: ``truncation``, how far a larger truncation moves a speed, relatively, plus
+        the number of boundaries that it adds or removes, for the worse multiplier; ``parity``,
+        the number of test speeds at which integration contradicts the count of boundaries;
+        ``monodromy``, the smallest singular value of (monodromy matrix - multiplier), relative to
+        the matrix, from integration, at up to 256 of the boundaries.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or the lowest speed needs a larger matrix than 4000 rows.
+    """
+    wanted = _wanted(multiplier)
+    low, high = speed_span(speed_range)
+    if harmonics is not None and (harmonics != int(harmonics) or harmonics < 1):
+        raise bad("harmonics", harmonics, "a whole number of at least 1", "leave it out")
+    if not 1e-14 <= rtol < 1:
+        raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-11")
+    form = canonical_form(system, low, parameters)
+    found = waves(system, parameters)
+    reach = max(wave.reach for wave in found)
+    usual = ceil(float(form.rate[0]) * system.period / (2 * np.pi)) + reach + 6
+    parts = [
+        _converged(_Problem(found, system.size, system.period, sign, low, high), usual, rtol)
+        if harmonics is None
+        else _truncated(
+            _Problem(found, system.size, system.period, sign, low, high), harmonics, usual, rtol
+        )
+        for sign in wanted
+    ]
+    limit = rtol if harmonics is None else _FAIR
+    return _result(system, parts, (low, high), limit, parameters)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """One truncation-free problem: boundaries of one multiplier in one range of speeds."""
+
+    found: tuple[Wave, ...]
+    size: int
+    period: float
+    multiplier: int
+    low: float
+    high: float
+
+    def matrices(self, harmonics: int) -> Matrices:
+        if self.size * (2 * harmonics + 1) > _MOST_ROWS:
+            raise bad(
+                "speed_range",
+                f"a lowest speed of {self.low:.4g} rad/s, which needs {harmonics} harmonics",
+                f"at most {_MOST_ROWS // (2 * self.size)}",
+                "raise the lowest speed or leave out the highest modes",
+            )
+        return real_matrices(self.found, self.size, self.period, harmonics, self.multiplier)
+
+
+@dataclass(frozen=True)
+class _Roots:
+    """Roots of one truncation, with their vectors in the real basis, ``(k, m)``.
+
+    ``truncation`` is the largest relative change by a larger truncation, plus the change of the
+    number of roots.
+    """
+
+    multiplier: int
+    harmonics: int
+    speed: Array
+    error: Array
+    vectors: Array
+    truncation: float = 0.0
+
+
+def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
+    """Raise the truncation until no root moves and none appears."""
+    coarse = _roots(problem, harmonics)
+    while True:
+        harmonics = harmonics + max(6, harmonics // 4)
+        fine = _roots(problem, harmonics)
+        change = _movement(fine.speed, coarse.speed)
+        if len(fine.speed) == len(coarse.speed) and np.all(change <= rtol * fine.speed):
+            moved = _truncation(fine.speed, coarse.speed, change)
+            return replace(fine, error=fine.error + change, truncation=moved)
+        coarse = fine
+
+
+def _truncated(problem: _Problem, harmonics: int, usual: int, rtol: float) -> _Roots:
+    """Return the roots at a wanted truncation; the error is what a converged one changes."""
+    roots = _roots(problem, harmonics)
+    larger = _converged(problem, max(usual, harmonics), rtol)
+    change = _movement(roots.speed, larger.speed)
+    moved = _truncation(roots.speed, larger.speed, change)
+    return replace(roots, error=roots.error + change, truncation=moved)
+
+
+def _truncation(speed: Array, other: Array, change: Array) -> float:
+    """Return the largest relative change plus the change of the number of roots."""
+    lost = abs(len(speed) - len(other))
+    return lost + float(np.max(np.minimum(change / speed, 1.0), initial=0.0))
+
+
+def _movement(speed: Array, other: Array) -> Array:
+    """Return the distance of each speed to the one of like rank, or else to the nearest."""
+    if len(speed) == len(other):
+        return np.abs(speed - other)
+    if len(other) == 0:
+        return np.full(len(speed), np.inf)
+    distance: Array = np.min(np.abs(speed[:, None] - other), axis=1)
+    return distance
+
+
+def _roots(problem: _Problem, harmonics: int) -> _Roots:
+    matrices = problem.matrices(harmonics)
+    lowest = min(matrices)
+    matrices = {power - lowest: matrix for power, matrix in matrices.items()}
+    even = all(power % 2 == 0 for power in matrices)
+    unit = float(np.sqrt(problem.low * problem.high))
+    stride = 2 if even else 1
+    degree = max(matrices) // stride
+    zero = np.zeros_like(next(iter(matrices.values())))
+    levels = [matrices.get(stride * j, zero) * unit ** (stride * j) for j in range(degree + 1)]
+    symmetric = even and all(_symmetric(level) for level in levels)
+    inverse, vectors = _inverse_roots(levels, symmetric)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        real = (np.abs(inverse.imag) <= _NEARLY_REAL * np.abs(inverse)) & (inverse.real > 0)
+        speed = np.where(real, unit * np.abs(inverse) ** (-1 / stride), np.inf)
+    near = (speed >= problem.low * (1 - 1e-3)) & (speed <= problem.high * (1 + 1e-3))
+    index = np.flatnonzero(near)
+    index = index[np.argsort(speed[index], kind="stable")]
+    start = None if vectors is None else vectors[:, index].T
+    imaginary = np.abs(inverse.imag[index] / inverse[index]) * speed[index] / stride
+    refined, error, motions = _refined(matrices, speed[index], start, symmetric)
+    inside = (refined >= problem.low) & (refined <= problem.high)
+    order = np.flatnonzero(inside)[np.argsort(refined[inside], kind="stable")]
+    return _Roots(
+        problem.multiplier,
+        harmonics,
+        refined[order],
+        (error + imaginary)[order],
+        motions[order],
+    )
+
+
+def _symmetric(matrix: Array) -> bool:
+    return bool(np.max(np.abs(matrix - matrix.T)) <= 1e-13 * np.max(np.abs(matrix), initial=1e-300))
+
+
+def _inverse_roots(
+    levels: list[Array], symmetric: bool
+) -> tuple[NDArray[np.complex128], Array | None]:
+    """Return all 1/x with ``sum_j levels[j] x^j`` singular, and vectors where symmetric."""
+    import scipy.linalg
+
+    if len(levels) < 2:
+        return np.zeros(0, dtype=complex), None
+    if symmetric and len(levels) == 2 and _definite(levels[0]):
+        reals, vectors = scipy.linalg.eigh(-(levels[1] + levels[1].T) / 2, levels[0])
+        return reals.astype(np.complex128), vectors
+    m = len(levels[0])
+    degree = len(levels) - 1
+    # (levels[0] y^d + levels[1] y^(d-1) + ...) v = 0 with y = 1/x; state (y^(d-1) v, ..., v).
+    right = np.eye(degree * m)
+    right[:m, :m] = levels[0]
+    left = np.zeros((degree * m, degree * m))
+    left[:m] = -np.concatenate(levels[1:], axis=1)
+    left[m:, :-m] = np.eye((degree - 1) * m)
+    if np.linalg.cond(levels[0]) < 1e8:
+        left[:m] = np.linalg.solve(levels[0], left[:m])
+        return scipy.linalg.eigvals(left).astype(complex), None
+    values = scipy.linalg.eigvals(left, right)
+    return np.where(np.isfinite(values), values, 0).astype(complex), None
+
+
+def _definite(matrix: Array) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _refined(
+    matrices: Matrices, speed: Array, start: Array | None, symmetric: bool
+) -> tuple[Array, Array, Array]:
+    """Refine roots on the polynomial itself; return speeds, errors and motions."""
+    m = len(next(iter(matrices.values())))
+    if len(speed) == 0:
+        return speed, speed, np.zeros((0, m))
+    if start is None:
+        pairs = [_null_vectors(_polynomial(matrices, root), symmetric) for root in speed]
+        right, left = (np.array(vectors) for vectors in zip(*pairs, strict=True))
+    else:
+        right = left = _apart(matrices, speed, start)
+    value, slope, size = np.zeros((3, len(speed)))
+    for power, matrix in matrices.items():
+        form = np.einsum("ki,ki->k", left @ matrix, right)
+        value += speed**power * form
+        slope += power * speed ** (power - 1.0) * form
+        size += speed**power * np.einsum("ki,ki->k", np.abs(left) @ np.abs(matrix), np.abs(right))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = -value / slope
+        # A step that is not small means a double root, where the quotient has no meaning.
+        small = np.abs(step) < 1e-6 * speed
+        left_over = np.where(small, step * step / speed, np.abs(step))
+        error = left_over + 4 * _EPS * size / np.abs(slope) + 4 * _EPS * speed
+    refined = np.where(small, speed + step, speed)
+    return refined, error, right / np.linalg.norm(right, axis=1, keepdims=True)
+
+
+def _apart(matrices: Matrices, speed: Array, vectors: Array) -> Array:
+    """Turn the vectors of roots that nearly coincide so that each belongs to a root of its own.
+
+    The decomposition of the whole problem mixes them; within their span it is a small one.
+    """
+    import scipy.linalg
+
+    turned = np.array(vectors)
+    cuts = np.flatnonzero(np.diff(speed) > _NEARLY_DOUBLE * speed[1:]) + 1
+    for group in np.split(np.arange(len(speed)), cuts):
+        if len(group) < 2:
+            continue
+        own, at = vectors[group], float(np.mean(speed[group]))
+        level, slope = np.zeros((2, len(group), len(group)))
+        for power, matrix in matrices.items():
+            form = own @ matrix @ own.T
+            level += at**power * form
+            slope += power * at ** (power - 1.0) * form
+        sign = np.sign(np.trace(slope))
+        if not _definite(sign * slope):
+            continue
+        shifts, mix = scipy.linalg.eigh(-sign * level, sign * slope)
+        if np.max(np.abs(shifts)) <= _NEARLY_DOUBLE * at:
+            turned[group] = mix.T @ own
+    return turned
+
+
+def _null_vectors(matrix: Array, symmetric: bool) -> tuple[Array, Array]:
+    """Return right and left null vectors of a nearly singular matrix by inverse iteration."""
+    import scipy.linalg
+
+    m = len(matrix)
+    norm = np.max(np.abs(matrix))
+    # A tiny shift keeps the factors regular where the root is exact.
+    factors = scipy.linalg.lu_factor(matrix + 4 * _EPS * norm * np.eye(m), check_finite=False)
+    pair = []
+    for transposed in (0, 1):
+        vector = np.cos(np.arange(m) * 1.7 + 0.3)
+        for _ in range(3):
+            vector = scipy.linalg.lu_solve(factors, vector, trans=transposed, check_finite=False)
+            vector /= np.linalg.norm(vector)
+        pair.append(vector)
+    return pair[0], pair[0] if symmetric else pair[1]
+
+
+def _polynomial(matrices: Matrices, speed: float) -> Array:
+    total = np.zeros_like(next(iter(matrices.values())))
+    for power, matrix in matrices.items():
+        total += speed**power * matrix
+    return total
+
+
+def _result(
+    system: LinearPeriodic,
+    parts: list[_Roots],
+    span: tuple[float, float],
+    limit: float,
+    parameters: Mapping[str, float],
+) -> SpeedBoundaries:
+    n = system.size
+    harmonics = max(part.harmonics for part in parts)
+    speed = np.concatenate([part.speed for part in parts])
+    order = np.argsort(speed, kind="stable")
+    sign = np.concatenate([np.full(len(part.speed), part.multiplier) for part in parts])
+    cosine = np.zeros((len(speed), harmonics + 1, n))
+    sine = np.zeros_like(cosine)
+    done = 0
+    for part in parts:
+        rows = slice(done, done + len(part.speed))
+        done += len(part.speed)
+        blocks = part.vectors.reshape(len(part.speed), part.vectors.shape[1] // n, n)
+        first = 1 if part.multiplier == 1 else 0
+        cosine[rows, :first] = blocks[:, :first]
+        count = (blocks.shape[1] - first) // 2
+        cosine[rows, first : first + count] = np.sqrt(2) * blocks[:, first::2]
+        sine[rows, first : first + count] = np.sqrt(2) * blocks[:, first + 1 :: 2]
+    error = np.concatenate([part.error for part in parts])
+    return SpeedBoundaries(
+        method="eigenvalues of the Fourier matrix",
+        error=error[order],
+        error_norm="absolute, of each speed [rad/s]",
+        checks={
+            "truncation": Check(max(part.truncation for part in parts), limit),
+            "parity": parity(
+                system, [(part.multiplier, part.speed) for part in parts], span, parameters
+            ),
+            **at_boundaries(system, speed[order], sign[order], error[order], parameters),
+        },
+        provenance=provenance(system.changed_provenance(**parameters)),
+        speed=speed[order],
+        multiplier=sign[order],
+        cosine=cosine[order],
+        sine=sine[order],
+        harmonics=harmonics,
+        period=system.period,
+    )
+
+
+def _wanted(multiplier: int | Sequence[int]) -> tuple[int, ...]:
+    values = np.atleast_1d(np.asarray(multiplier))
+    if values.ndim != 1 or not len(values) or not np.all(np.isin(values, (1, -1))):
+        raise bad("multiplier", multiplier, "+1, -1 or both", "correct it")
+    return tuple(sorted({int(value) for value in values}, reverse=True))
+
+
+def at_boundaries(
+    system: LinearPeriodic,
+    speed: Array,
+    sign: NDArray[np.int64],
+    error: Array,
+    parameters: Mapping[str, float],
+) -> dict[str, Check]:
+    """Compare with monodromy matrices, at the worst boundary against what its error allows.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    speed, error : ndarray
+        Boundary speeds and their errors [rad/s], shape ``(k,)``.
+    sign : ndarray of int
+        +1 or -1, shape ``(k,)``.
+    parameters : mapping
+        Parameter values that replace the system's own.
+
+    Returns
+    -------
+    dict
+        Empty where there is no boundary.
+    """
+    if not len(speed):
+        return {}
+    pick = np.unique(np.linspace(0, len(speed) - 1, _MOST_BOUNDARIES).round().astype(int))
+    speed, sign, error = speed[pick], sign[pick], error[pick]
+    matrices = monodromy(system, speed, **parameters)
+    value = _smallest(matrices, sign)
+    form = canonical_form(system, speed, parameters)
+    turning = 2 * form.rate * system.period
+    width = matrices.matrix.shape[-1]
+    limit = 8 * width * (matrices.error + (1 + turning) * error / speed)
+    limit = np.minimum(limit, _MOST_DEFECT)
+    worst = int(np.argmax(value / limit))
+    return {"monodromy": Check(float(value[worst]), float(limit[worst]))}
+
+
+def parity(
+    system: LinearPeriodic,
+    found: Sequence[tuple[int, Array]],
+    span: tuple[float, float],
+    parameters: Mapping[str, float],
+) -> Check:
+    """Count the contradictions between boundaries and signs of det(monodromy - multiplier).
+
+    The determinant changes sign with every boundary, a double one counted twice.  It is taken at
+    the ends of the range and in the widest gaps between boundaries.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    found : sequence of (int, ndarray)
+        Multiplier, and all its boundary speeds in the range [rad/s].
+    span : pair of float
+        The range [rad/s].
+    parameters : mapping
+        Parameter values that replace the system's own.
+    """
+    wrong = 0
+    for sign, boundaries in found:
+        rising = np.sort(boundaries)
+        speed = _test_speeds(rising, span)
+        matrices = monodromy(system, speed, **parameters)
+        signs = np.linalg.slogdet(_shifted(matrices, np.full(len(speed), sign)))[0]
+        sure = _smallest(matrices, np.full(len(speed), sign)) > 100 * matrices.error
+        count = np.searchsorted(rising, speed)
+        expected = np.where(count % 2 == 0, 1.0, -1.0)
+        agreed = (signs * expected)[sure]
+        # The sign at the lowest speed is not known beforehand: the majority stands for it.
+        wrong += int(min(np.sum(agreed > 0), np.sum(agreed < 0)))
+    return Check(float(wrong), 0.0)
+
+
+def _test_speeds(boundaries: Array, span: tuple[float, float]) -> Array:
+    """Return the ends of the range and the middles of the widest gaps, in logarithms."""
+    marks = np.log(np.concatenate([[span[0]], boundaries, [span[1]]]))
+    while len(marks) <= _GAPS:
+        widest = int(np.argmax(np.diff(marks)))
+        middle = (marks[widest] + marks[widest + 1]) / 2
+        marks = np.insert(marks, widest + 1, middle)
+    widths = np.diff(marks)
+    widest_gaps = np.sort(np.argsort(-widths, kind="stable")[:_GAPS])
+    middles = (marks[widest_gaps] + marks[widest_gaps + 1]) / 2
+    return np.concatenate([[span[0]], np.exp(middles), [span[1]]])
+
+
+def _shifted(matrices: Monodromy, sign: NDArray[np.int64]) -> Array:
+    unit = np.eye(matrices.matrix.shape[-1])
+    shrink = np.ldexp(1.0, -matrices.exponent)[:, None, None]
+    value: Array = matrices.scaled - shrink * (sign[:, None, None] * unit)
+    return value
+
+
+def _smallest(matrices: Monodromy, sign: NDArray[np.int64]) -> Array:
+    """Return the smallest singular value of (matrix - multiplier) over the matrix."""
+    norm = np.linalg.norm(matrices.scaled, axis=(-2, -1))
+    value: Array = np.linalg.svd(_shifted(matrices, sign), compute_uv=False)[:, -1] / norm
+    return value

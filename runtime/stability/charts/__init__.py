@@ -1,0 +1,1 @@
+"""Stability charts over two parameters."""

@@ -1,0 +1,383 @@
+"""Boundary curves of a chart with one mode: from the Hill matrix, and by perturbation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.families import Array, LinearPeriodic
+from ...core.periodic_function import PeriodicFunction
+from ...hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
+from ...hill.fourier_matrix import layout, stacked, truncation
+from .hill_axes import is_stiffness, leaves_function_alone
+from .structure import is_damped
+
+_MOST_ROWS = 121
+_MOST_DAMPED_ROWS = 41
+_MOST_REGIONS = 24
+
+
+_EPS = float(np.finfo(float).eps)
+
+
+# More functions than this cost more together than row by row.
+_MOST_FUNCTIONS = 2
+# Steps towards the K that belongs to the lam2 of an end, and the change that ends them.
+_STEPS, _SETTLED = 60, 1e-13
+Ends = tuple[Array, Array, Array]
+Solve = Callable[[int, Array], Ends]
+
+
+@dataclass(frozen=True)
+class BoundaryCurves:
+    """Ends of the unstable regions along one axis of a chart.
+
+    Attributes
+    ----------
+    along : str
+        The axis that the ends lie on: ``"speed"`` or the parameter that is the constant stiffness.
+    regions : tuple of int
+        Number of each region; 0 has an upper end alone, and is there where the axis is lam2's.
+    at : ndarray, shape (n,)
+        Values of the other axis.
+    lower, upper : ndarray, shape (len(regions), n)
+        Ends in lam2, brought to the units of the axis; NaN where there is none.
+    error : ndarray, shape (len(regions), n)
+        Absolute error in the units of the axis, estimated.
+    left_out : int
+        How many further regions reach into the chart but are not followed.
+    """
+
+    along: str
+    regions: tuple[int, ...]
+    at: Array
+    lower: Array
+    upper: Array
+    error: Array
+    left_out: int = 0
+
+
+def boundary_curves(
+    system: LinearPeriodic, names: tuple[str, str], axes: tuple[Array, Array], order: int
+) -> tuple[BoundaryCurves | None, BoundaryCurves | None]:
+    """Return exact and perturbation boundaries within a chart, or None where no axis suits.
+
+    An axis suits where it is the speed, or a parameter that is the constant stiffness itself.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        One mode, see :func:`~.form.hill_form`.
+    names : tuple of str
+        Names of the axes x and y.
+    axes : tuple of ndarray
+        Their values.
+    order : int
+        Of the perturbation.
+    """
+    form = hill_form(system)
+    which = next((i for i in (0, 1) if _suits(form, names[i])), None)
+    if which is None:
+        return None, None
+    along, other = names[which], names[1 - which]
+    rows = axes[1 - which]
+    sharp = not is_damped(system, names, axes)
+    most = _MOST_ROWS if sharp else _MOST_DAMPED_ROWS
+    if len(rows) > most:
+        rows = np.linspace(rows[0], rows[-1], most)
+    points = [_Point.of(form, along, other, float(value)) for value in rows]
+    regions, left_out = _regions(axes[which], along, points)
+    exact = np.full((3, len(regions), len(rows)), np.nan)
+    for j, point in enumerate(points):
+        exact[:, :, j] = point.ends(regions)
+    near = overlay_ends(form, along, other, rows, regions, order)
+    tables = (
+        BoundaryCurves(along, regions, rows, ends[0], ends[1], ends[2], left_out)
+        for ends in (exact, near)
+    )
+    return next(tables), next(tables)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """One row of the chart: a Hill equation whose lam2 and damping follow the axis."""
+
+    along: str
+    speed: float
+    function: PeriodicFunction
+    stiffness: float
+    damping: float
+
+    @classmethod
+    def of(cls, form: HillForm, along: str, other: str, value: float) -> _Point:
+        changes = {} if other == "speed" else {other: value}
+        speed = value if other == "speed" else 1.0
+        f = form.function(speed, **changes)
+        return cls(along, speed, f, form.stiffness(**changes), form.damping(**changes))
+
+    def ends(self, regions: tuple[int, ...]) -> Array:
+        """Return lower ends, upper ends and errors in the units of the axis, shape (3, regions)."""
+        if self.along != "speed":
+            damping = self.damping / (2 * self.speed)
+            found = hill_boundaries(self.function, 1.0, regions, damping=damping)
+            # Region 0 begins at minus infinity, which is no end.
+            lower = np.where(np.isfinite(found.lower), found.lower, np.nan)
+            return np.stack([lower, found.upper, found.error]) * self.speed**2
+        if self.stiffness <= 0.0:
+            return np.full((3, len(regions)), np.nan)
+        if self.damping != 0.0:
+            return exact_speeds(self.function, self.stiffness, self.damping, regions)
+        found = hill_boundaries(self.function, 1.0, regions)
+        lam2 = np.stack([found.lower, found.upper])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            speeds = np.sqrt(np.where(lam2 > 0, self.stiffness / lam2, np.nan))
+            error = found.error * np.max(speeds / (2 * np.abs(lam2)), axis=0)
+        return np.stack([speeds[0], speeds[1], error])
+
+
+def _suits(form: HillForm, name: str) -> bool:
+    return leaves_function_alone(form, name) if name == "speed" else is_stiffness(form, name)
+
+
+def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, ...], int]:
+    """Return the regions that may reach into the chart, the lowest ones, and how many more do."""
+    lows, highs, reach = [], [], 0.0
+    for point in points:
+        lam2 = point.stiffness / ends**2 if along == "speed" else ends / point.speed**2
+        lows.append(float(lam2.min()))
+        highs.append(float(lam2.max()))
+        reach = max(reach, point.function.bound())
+    first = int(np.floor(2 * np.sqrt(max(min(lows) - reach, 0.0))))
+    # At positive stiffness region 0, of divergence, has no speed of its own.
+    first = max(first, 1 if along == "speed" else 0)
+    last = max(first, int(np.ceil(2 * np.sqrt(max(max(highs) + reach, 0.25)))))
+    most = min(last, max(first, 1) + _MOST_REGIONS - 1)
+    return tuple(range(first, most + 1)), last - most
+
+
+def exact_speeds(
+    f: PeriodicFunction, stiffness: float, damping: float, regions: tuple[int, ...]
+) -> Array:
+    """Return the exact ends of unstable regions, and their errors.
+
+    Parameters
+    ----------
+    f : PeriodicFunction
+        The periodic part, the same at every speed.
+    stiffness, damping : float
+        k [1/s^2] > 0 and c [1/s] > 0.
+    regions : tuple of int
+        Numbers from 1.
+
+    Returns
+    -------
+    ndarray, shape (3, len(regions))
+        Speed at the lower and at the upper end in lam2, and the error of either [rad/s]; NaN
+        where damping has closed the region, and at the lower end of one that reaches on to
+        infinite speed.
+
+    Notes
+    -----
+    With lam2 = s^2 and K = r s, r = c / (2 sqrt(k)), Hill's matrix gives
+    ``(k^2 - f) v - 2 r s D v = s^2 v``, D = d/d theta.  A region lies within the undamped one
+    moved by K^2 (see :func:`~.damped.damped`), which is how real s get its number.
+    """
+    ratio = damping / (2.0 * np.sqrt(stiffness))
+    sharp = hill_boundaries(f, 1.0, regions)
+    highest = float(np.sqrt(max(float(np.max(sharp.upper)), 0.25)))
+    cut = truncation(f, 1.0, max(regions), (ratio * highest) ** 2)
+    local = cut.left_out + 8.0 * _EPS * (cut.norm + 2.0 * ratio * highest * cut.harmonic) + f.error
+    out = np.full((3, len(regions)), np.nan)
+    for odd in (0, 1):
+        if not any(n % 2 == odd for n in regions):
+            continue
+        s = _inverse_speeds(f, odd, cut.harmonic + odd, ratio)
+        shifted = s * s * (1.0 - ratio * ratio)
+        for i, n in enumerate(regions):
+            if n % 2 != odd:
+                continue
+            low, high = float(sharp.lower[i]), float(sharp.upper[i])
+            own = np.sort(s[(shifted >= low - 4 * local) & (shifted <= high + 4 * local)])
+            if low < 0.0 < high and len(own):
+                # The region reaches on to infinite speed: one end alone.
+                error = local * np.sqrt(stiffness) / (2.0 * own[-1] ** 3)
+                out[1:, i] = np.sqrt(stiffness) / own[-1], error
+            if low < 0.0 or len(own) < 2:
+                continue
+            ends = own[[0, -1]]
+            width = 0.5 * float(ends[1] ** 2 - ends[0] ** 2)
+            speeds = np.sqrt(stiffness) / ends
+            error = _drawn_in(local, width, 0.5 * (high - low))
+            out[:, i] = *speeds, error * float(np.max(speeds / (2.0 * ends**2)))
+    return out
+
+
+def _inverse_speeds(f: PeriodicFunction, odd: int, harmonic: int, ratio: float) -> Array:
+    """Return all real s > 0 with a solution of one parity."""
+    number = np.sqrt(layout(odd, harmonic).squares)
+    size = number.size
+    whole = stacked(f, odd, harmonic, np.ones(1))[0] - float(f.a[0]) * np.eye(size)
+    drag = np.zeros((size, size))
+    # d/d theta takes cos k to -k sin k and sin k to k cos k, which stand side by side.
+    cos = np.arange(1 - odd, size, 2)
+    drag[cos + 1, cos] = 2.0 * ratio * number[cos]
+    drag[cos, cos + 1] = -drag[cos + 1, cos]
+    companion = np.block([[np.zeros((size, size)), np.eye(size)], [whole, drag]])
+    values = np.linalg.eigvals(companion)
+    return np.asarray(values.real[(values.imag == 0.0) & (values.real > 0.0)])
+
+
+def _drawn_in(local: float, half: float, sharp_half: float) -> float:
+    """Return the error of ends ``+-half`` that damping drew in from ``+-sharp_half``.
+
+    An error of the data is magnified by ``sharp_half / half``, and at the tip by the square root.
+    """
+    square = 2.0 * max(half, sharp_half) * local
+    inner = half * half - square
+    moved = half - np.sqrt(inner) if inner > 0.0 else np.sqrt(half * half + square)
+    return float(moved) + local
+
+
+def overlay_ends(
+    form: HillForm, along: str, other: str, rows: Array, regions: tuple[int, ...], order: int
+) -> Array:
+    """Return lower ends, upper ends and errors in the units of the axis.
+
+    Parameters
+    ----------
+    form : HillForm
+        One mode.
+    along, other : str
+        The axis that the ends lie on, and the other one.
+    rows : ndarray, shape (n,)
+        Values of the other axis.
+    regions : tuple of int
+        Numbers from 0, along the speed from 1.
+    order : int
+        1 to 8.
+
+    Returns
+    -------
+    ndarray, shape (3, len(regions), n)
+        NaN where damping closes a region, where the orders do not converge, and at the end of one
+        that reaches on to infinite speed.
+    """
+    points = [{} if other == "speed" else {other: float(v)} for v in rows]
+    speed = rows if other == "speed" else np.ones_like(rows)
+    stiffness = np.array([form.stiffness(**p) for p in points])
+    damping = np.array([form.damping(**p) for p in points])
+    solve = _solver(form, other, rows, order)
+    out = np.full((3, len(regions), len(rows)), np.nan)
+    for i, n in enumerate(regions):
+        if along != "speed":
+            found = np.stack(solve(n, damping / (2 * speed))) * speed**2
+            out[:, i] = np.where(np.isfinite(found), found, np.nan)
+            continue
+        out[:, i] = _along_speed(solve, n, stiffness, damping)
+    return out
+
+
+def _along_speed(solve: Solve, n: int, stiffness: Array, damping: Array) -> Array:
+    """Return the ends of one region in speed, where lam2 and K both depend on it.
+
+    At crank speed w, lam2 = k / w^2 and K = c / (2 w) = r sqrt(lam2): an end is where the lam2
+    that belongs to K gives that K again.
+    """
+    out = np.full((3, len(stiffness)), np.nan)
+    usable = stiffness > 0.0
+    ratio = np.where(usable, damping / (2 * np.sqrt(np.where(usable, stiffness, 1.0))), 0.0)
+    sharp = solve(n, np.zeros_like(damping))
+    for side in (0, 1):
+        lam2, error, slow = np.array(sharp[side]), np.array(sharp[2]), np.zeros_like(ratio)
+        if np.any(ratio > 0.0):
+            lam2, error, slow = _settled(solve, n, ratio, lam2, side)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            lam2 = np.where(usable & (lam2 > 0.0), lam2, np.nan)
+            out[side] = np.sqrt(stiffness / lam2)
+            spread = error / (1.0 - slow) * out[side] / (2 * lam2)
+        out[2] = np.fmax(out[2], spread)
+    return out
+
+
+def _settled(solve: Solve, n: int, ratio: Array, start: Array, side: int) -> Ends:
+    """Return lam2, its error and the rate of the steps; NaN where they do not settle."""
+    lam2, change, slow = start, np.full_like(start, np.inf), np.zeros_like(start)
+    error = np.full_like(start, np.nan)
+    for _ in range(_STEPS):
+        with np.errstate(invalid="ignore"):
+            found = solve(n, np.where(lam2 > 0.0, ratio * np.sqrt(np.maximum(lam2, 0.0)), 0.0))
+            new, error = np.where(lam2 > 0.0, found[side], np.nan), found[2]
+            before, change = change, np.abs(new - lam2)
+            rate = np.where(before > 0, change / before, 0.0)
+            slow = np.where(np.isfinite(rate) & (change > 1e-11), rate, slow)
+            lam2 = new
+            if not np.any(change > _SETTLED * np.abs(lam2)):
+                break
+    with np.errstate(invalid="ignore"):
+        settled = (change <= 1e-9 * np.abs(lam2)) & (slow < 0.9)
+    return np.where(settled, lam2, np.nan), np.where(settled, error, np.nan), slow
+
+
+def _solver(form: HillForm, other: str, rows: Array, order: int) -> Solve:
+    """Return lower and upper ends in lam2 and their error, of all rows for one region and K."""
+    functions, factors = _functions(form, other, rows)
+    if len(functions) <= _MOST_FUNCTIONS:
+
+        def together(n: int, damping: Array) -> Ends:
+            found = perturbation_boundaries(functions, factors, (n,), order, damping)
+            return found.lower[0], found.upper[0], found.error[0]
+
+        return together
+    single = [_total(functions, [f[j] for f in factors]) for j in range(len(rows))]
+
+    def apart(n: int, damping: Array) -> Ends:
+        found = [
+            perturbation_boundaries(f, 1.0, (n,), order, float(k))
+            for f, k in zip(single, damping, strict=True)
+        ]
+        ends = np.array([[r.lower[0], r.upper[0], r.error[0]] for r in found], dtype=float)
+        return ends[:, 0], ends[:, 1], ends[:, 2]
+
+    return apart
+
+
+def _functions(
+    form: HillForm, other: str, rows: Array
+) -> tuple[list[PeriodicFunction], list[Array]]:
+    """Return functions and factors, one for each row, whose sum is the periodic part.
+
+    Parts that change in proportion are one function.
+    """
+    scales = form.system.scale_values(**({} if other == "speed" else {other: rows}))
+    points = [{} if other == "speed" else {other: float(v)} for v in rows]
+    mass = np.array([form.system.array("M", 0.0, **p)[0, 0, 0] for p in points])
+    divisor = rows**2 if other == "speed" else np.ones_like(rows)
+    functions: list[PeriodicFunction] = []
+    factors: list[Array] = []
+    for parts, over in ((form.inertial, np.ones_like(rows)), (form.elastic, divisor)):
+        for scale, part in parts:
+            value = 1.0 if scale is None else np.asarray(scales[scale], dtype=float)
+            factor = np.broadcast_to(value, rows.shape) / (over * mass)
+            size = float(np.max(np.abs(factor), initial=0.0))
+            if size == 0.0:
+                continue
+            unit = factor / size
+            for i, known in enumerate(factors):
+                if np.max(np.abs(unit - known)) <= 1e-15:
+                    functions[i] = functions[i] + part * size
+                    break
+            else:
+                functions.append(part * size)
+                factors.append(unit)
+    if not functions:
+        return [PeriodicFunction()], [np.zeros_like(rows)]
+    return functions, factors
+
+
+def _total(functions: Sequence[PeriodicFunction], factors: Sequence[float]) -> PeriodicFunction:
+    total = PeriodicFunction()
+    for function, factor in zip(functions, factors, strict=True):
+        total = total + function * float(factor)
+    return total

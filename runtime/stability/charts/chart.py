@@ -1,0 +1,290 @@
+"""Stability charts: what decides stability over two parameters, boundaries, self-checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.errors import bad
+from ...core.families import Array, LinearPeriodic
+from ...core.inputs import numbers
+from ...core.results import Check, Result
+from ...hill.form import is_hill
+from ...hill.perturbation import check_order
+from .boundaries import BoundaryCurves, boundary_curves
+from .edge_rows import EdgeCurves, edge_curves
+from .lines import series_by_lines
+from .sampling import Sampler, invariants, relative_error
+from .structure import natural_frequency
+from .verdict import judged, spot_check
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from matplotlib.axes import Axes
+
+Axis = tuple[str, ArrayLike]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StabilityChart(Result):
+    """Stable and unstable regions over two parameters.
+
+    Attributes
+    ----------
+    x_name, y_name : str
+        ``"speed"`` [rad/s], or a parameter or geometry of the system.
+    x, y : ndarray, shapes (nx,), (ny,)
+        Values along the axes.
+    invariants : ndarray, shape (ny, nx, k)
+        What decides stability: the half trace (one mode), or the coefficients of the reduced
+        (undamped) or full characteristic polynomial of the monodromy matrix.
+    stable : ndarray of bool, shape (ny, nx)
+        True where no multiplier leaves the unit circle by more than the slack.
+    largest : ndarray, shape (ny, nx)
+        Largest modulus of a multiplier; infinite where the growth in a turn overflows, such a
+        point being unstable, NaN where the matrix is, such a point being undecided.
+    slack : ndarray, shape (ny, nx)
+        How far a modulus may lie above 1 and still count as stable: what the error of the
+        invariants explains.  A resonance that grows less than this in a turn is not seen.  0 for
+        several undamped modes where signs prove that all multipliers are on the unit circle.
+    undecided : ndarray of bool, shape (ny, nx)
+        True where the errors leave open whether the point is stable.
+    kind : ndarray of int8, shape (ny, nx)
+        How a point is unstable, by its largest multiplier: 1 or -1 where that is real, positive
+        or negative (principal regions of even and of odd number, or divergence); 2 where it is
+        complex (combination); 0 where stable.
+    exact, perturbation : BoundaryCurves or None
+        Boundaries from the Hill matrix, and by perturbation to ``order``, NaN where that does not
+        converge; one mode only.
+    order : int
+        Order of ``perturbation`` in the periodic part and the damping.
+    edges : EdgeCurves or None
+        Regions along the speed, at some rows; several modes, where asked for.
+    natural_frequency : float
+        Lowest natural frequency [rad/s] of the system at rest; NaN where speed is not an axis or
+        the other axis changes the frequency.
+    frequency_name : str
+        What the plot calls it.
+    marks : mapping
+        Values along y or x to be marked, by label.
+    nodes : tuple of int
+        How many Chebyshev nodes were sampled along x and y; 0 along an axis at each of whose
+        values the invariants were evaluated.
+    speed : float
+        Crank speed [rad/s] of all points; NaN where the speed is an axis.
+    """
+
+    x_name: str
+    y_name: str
+    x: Array
+    y: Array
+    invariants: Array
+    stable: NDArray[np.bool_]
+    largest: Array
+    slack: Array
+    undecided: NDArray[np.bool_]
+    kind: NDArray[np.int8]
+    exact: BoundaryCurves | None = None
+    perturbation: BoundaryCurves | None = None
+    order: int = 1
+    edges: EdgeCurves | None = None
+    natural_frequency: float = float("nan")
+    frequency_name: str = "natural frequency"
+    marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    nodes: tuple[int, int] = (0, 0)
+    speed: float = float("nan")
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "x": ("x",),
+        "y": ("y",),
+        "stable": ("y", "x"),
+        "largest": ("y", "x"),
+        "slack": ("y", "x"),
+        "undecided": ("y", "x"),
+        "kind": ("y", "x"),
+        "invariants": ("y", "x", "invariant"),
+    }
+
+    @property
+    def first_order(self) -> BoundaryCurves | None:
+        """The boundaries by perturbation where they are of first order."""
+        return self.perturbation if self.order == 1 else None
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Shade the unstable regions by kind and draw the boundaries; speeds in rpm."""
+        from .picture import draw_chart
+
+        return draw_chart(self, ax)
+
+
+def stability_chart(
+    system: LinearPeriodic,
+    x: Axis,
+    y: Axis,
+    *,
+    boundaries: bool = True,
+    order: int = 1,
+    edges: bool = False,
+    marks: Mapping[str, Sequence[float]] | None = None,
+    speed: float | None = None,
+    rtol: float = 1e-11,
+    executor: Executor | None = None,
+    progress: bool = False,
+    frequency_name: str = "natural frequency",
+) -> StabilityChart:
+    """Return the stability of a system over two parameters.
+
+    The invariants of the monodromy matrix are entire functions of the parameters and of the
+    inverse (square of the) speed, so that a few dozen Chebyshev nodes along each axis fix them
+    everywhere to near round-off.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Any number of modes, with or without damping.
+    x, y : tuple of (str, array_like)
+        ``("speed", values)`` in rad/s or ``(name, values)`` in SI units, of a parameter or of the
+        geometry; values rise.
+    boundaries : bool
+        Whether exact and perturbation boundaries are computed too; for one mode, where one of the
+        axes is the speed or the constant stiffness.
+    order : int
+        Order of the perturbation, 1 to 8; of several modes there is none in a chart, so that only 1
+        is taken.
+    edges : bool
+        Whether regions along the speed, combinations among them, are traced at some rows too.
+    marks : mapping, optional
+        Label to values along y that the plot marks.
+    speed : float, optional
+        Crank speed [rad/s] of all points, where the speed is no axis.  Left out it is 1, as in
+        Hill's and Mathieu's equations; systems whose geometry is an axis, and those of several
+        modes that a turning crank drives, want it.  No boundaries are traced beside another one.
+    rtol : float
+        Wanted error of the invariants, relative to their size where that exceeds 1.
+    executor : concurrent.futures.Executor, optional
+        Threads, processes or Dask's ``client.get_executor()``, for the lines of the chart and for
+        the verdicts of several modes.  The answer does not depend on it.
+    progress : bool
+        Whether to show a progress bar (extra ``progress``).
+    frequency_name : str
+        What the plot calls the natural frequency.
+
+    Returns
+    -------
+    StabilityChart
+        ``error``: largest error of an invariant, over the larger of 1 and its size, estimated
+        from the tail of the series and the samples.  Check ``spot check``: five points beside
+        :func:`floquet_multipliers`.
+
+    Raises
+    ------
+    BadInput
+        If an axis or option is unusable; if a crank speed is wanted and missing; if modes and
+        axes would take an hour or so.
+    """
+    names, axes = _axes(system, x, y)
+    options = _options(system, rtol, order, edges, names)
+    named = {k: tuple(float(v) for v in vs) for k, vs in (marks or {}).items()}
+    sampler = Sampler.of_chart(system, names, axes, speed, options.rtol, executor)
+    found = _chart(sampler, options, boundaries=boundaries, progress=progress)
+    fixed = float("nan") if "speed" in names else float(1.0 if speed is None else speed)
+    return replace(found, marks=named, frequency_name=frequency_name, speed=fixed)
+
+
+@dataclass(frozen=True)
+class _Options:
+    rtol: float
+    order: int
+    edges: bool
+
+
+def _options(
+    system: LinearPeriodic, rtol: float, order: int, edges: bool, names: tuple[str, str]
+) -> _Options:
+    if not 1e-13 <= rtol <= 1e-2:
+        raise bad("rtol", rtol, "a number from 1e-13 to 1e-2", "choose 1e-9")
+    check_order(order)
+    if order != 1 and not is_hill(system):
+        raise bad(
+            "order",
+            order,
+            "one mode, which alone has boundaries by perturbation in a chart",
+            "leave it out; tongue has the series of several modes",
+        )
+    if edges and "speed" not in names:
+        raise bad("edges", edges, "a chart with the speed as an axis", "leave it out")
+    return _Options(rtol, int(order), bool(edges))
+
+
+def _chart(
+    sampler: Sampler, options: _Options, *, boundaries: bool, progress: bool
+) -> StabilityChart:
+    """Return the chart, less what only concerns its picture."""
+    system, names, axes = sampler.system, sampler.names, sampler.axes
+    sampled = invariants if sampler.hill else series_by_lines
+    series = sampled(sampler, progress=progress)
+    found = judged(sampler, series)
+    exact, near, rows = None, None, None
+    shaped = any(name in system.geometry for name in names)
+    if boundaries and is_hill(system) and not shaped:
+        exact, near = boundary_curves(system, names, axes, options.order)
+    checks = {
+        "error of samples": Check(series.sample_error, max(1e-8, 1e3 * options.rtol)),
+        "spot check": spot_check(sampler, series, (found.largest, found.stable, found.slack)),
+    }
+    if options.edges:
+        rows = edge_curves(system, names, axes)
+        checks["edges"] = rows.check
+    return StabilityChart(
+        method=series.method,
+        error=relative_error(series.error, series.values),
+        error_norm=("half trace" if sampler.hill else "invariants")
+        + " of the monodromy matrix, largest, relative where beyond 1",
+        checks=checks,
+        provenance=system.provenance,
+        x_name=names[0],
+        y_name=names[1],
+        x=axes[0],
+        y=axes[1],
+        invariants=series.values,
+        stable=found.stable,
+        largest=found.largest,
+        slack=found.slack,
+        undecided=found.undecided,
+        kind=found.kind,
+        exact=exact,
+        perturbation=near,
+        order=options.order,
+        edges=rows,
+        natural_frequency=natural_frequency(system, names, axes),
+        nodes=series.nodes,
+    )
+
+
+def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tuple[Array, Array]]:
+    known = ["speed", *sorted({*system.parameters, *system.geometry})]
+    found = []
+    for label, (name, given) in (("x", x), ("y", y)):
+        if name not in known:
+            raise bad(f"axis {label}", repr(name), f"one of {known}", "correct the name")
+        values = numbers(f"axis {label}", given)
+        if values.ndim != 1 or len(values) < 2 or not np.all(np.isfinite(values)):
+            raise bad(
+                f"axis {label}",
+                f"shape {values.shape}",
+                "at least two finite values in a line",
+                "give a range",
+            )
+        if np.any(np.diff(values) <= 0):
+            raise bad(f"axis {label}", "values that do not rise", "rising values", "sort them")
+        if name == "speed" and values[0] <= 0:
+            raise bad(f"axis {label}", f"speed {values[0]:g}", "positive speeds", "raise the range")
+        found.append(values)
+    if x[0] == y[0]:
+        raise bad("axis y", repr(y[0]), "another parameter than along x", "choose another")
+    return (x[0], y[0]), (found[0], found[1])

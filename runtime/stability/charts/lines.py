@@ -1,0 +1,514 @@
+"""Invariants of several modes, line by line: a whole line of speeds from one table of segments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...core import chebyshev
+from ...core.families import Array
+from ...core.progress import bar
+from ...periodic.equation import Equation, SampledSystem, equation_of, sampled
+from ...periodic.tables import Table, table_of
+from ...periodic.transition import levels_for, method, rung
+from .invariants import from_sum, sum_weights_back, weighed_characteristic
+from .sampling import Sampler, Series, relative_error
+
+# Another number of segments gives another solution; the difference, over-estimated, is the error.
+_OTHER, _MARGIN = 1.37, 4.0
+# Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
+_RTOL, _ALIKE = 1e-12, 1e-13
+# Places along a line at which the number of segments is judged.
+_JUDGED = 5
+# Stages among which the cheapest are taken.
+_STAGES = (4, 5, 6, 8, 10)
+# Chebyshev nodes of a line to begin with.
+_NODES = 20
+
+
+_EPS = float(np.finfo(float).eps)
+# Nodes to begin with on a line, and lines across it.
+_FIRST, _FEWEST_LINES = 32, 9
+# Share of the values along an axis from which each of them is taken instead of nodes.
+_NEARLY_ALL = 0.8
+# Round-off of samples, roughly, relative to the largest, below which no tail falls.
+_NOISE = 1e-12
+# Invariants beyond this are not interpolated: elsewhere in the chart others are about 1.
+_WIDE = 1e8
+# Tails beyond this are no round-off.
+_SMALL = 1e-8
+Tick = Callable[[int], None] | None
+# Value of the outer axis, ends and values of the variable of the inner one.
+_Place = tuple[float, float, float, Array]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Transition matrices over values of the variable, of a period or of half of one."""
+
+    table: Table
+    segments: int
+    half: bool
+
+
+@dataclass(frozen=True)
+class Line:
+    """The system at one value of the outer axis, for all values of the inner one."""
+
+    pieces: tuple[Piece, ...]
+    reduced: bool
+
+    def __call__(self, values: Array) -> tuple[Array, Array]:
+        """Return invariants ``(n, k)`` at values of the variable, and the weight of errors of each.
+
+        The weight is by how much an error of relative size 1 in the matrices moves an invariant.
+        Where the growth overflows the invariants are infinite, with the sign of the first.
+        """
+        if len(self.pieces) == 1:
+            return self._of(self.pieces[0], values)
+        found = [
+            self._of(piece, values[i : i + 1]) for i, piece in enumerate(self.pieces)
+        ]  # one piece per value
+        return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
+
+    def _of(self, piece: Piece, values: Array) -> tuple[Array, Array]:
+        plain, power = piece.table.products(values)
+        with np.errstate(over="ignore", invalid="ignore"):
+            matrices = np.ldexp(plain, power[:, None, None])
+            if piece.half:
+                n = plain.shape[-1] // 2
+                sums = 2.0 * mirrored_sums(matrices)
+                change = n + 4.0 * _norm(matrices[:, :n, n:]) * _norm(matrices[:, n:, :n])
+                found, weight = weighed_characteristic(sums, n, change)
+                found, weight = from_sum(found), weight @ sum_weights_back(n)
+            else:
+                wanted = plain.shape[-1] // (2 if self.reduced else 1)
+                found, weight = weighed_characteristic(matrices, wanted)
+        finite = np.all(np.isfinite(found) & np.isfinite(weight), axis=-1)
+        if not np.all(finite):
+            grown = ~finite & np.all(np.isfinite(plain), axis=(-2, -1))
+            sign = _sign_of_trace(plain, piece.half)
+            found[~finite], weight[~finite] = np.nan, np.inf
+            found[grown] = np.where(sign[grown] > 0, -np.inf, np.inf)[:, None]
+        return found, weight
+
+
+def mirrored_sums(halves: Array) -> Array:
+    """Return P with ``X + X^-1 = diag(2 P, 2 P^T)``, X over a period that is its own mirror image.
+
+    With F = [[a, b], [c, d]] over half a period and R = diag(1, -1), ``X = R F^-1 R F``; F is
+    symplectic, so that the upper left block of X is ``1 + 2 b^T c``, and X^-1 = R X R.
+
+    Parameters
+    ----------
+    halves : ndarray
+        F, shape ``(..., 2n, 2n)``.
+
+    Returns
+    -------
+    ndarray, shape (..., n, n)
+        Its eigenvalues are those of ``(rho + 1/rho) / 2``, each once.
+    """
+    n = halves.shape[-1] // 2
+    cross = np.swapaxes(halves[..., :n, n:], -1, -2) @ halves[..., n:, :n]
+    value: Array = np.eye(n) + 2.0 * cross
+    return value
+
+
+def is_mirrored(equation: Equation) -> bool:
+    """Return whether a system is the same after a reversal of the crank.
+
+    Mass and stiffness are even functions of the angle then, A is odd, and nothing is damped.
+    """
+    if equation.damped or equation.harmonics < 0:
+        return False
+    angles = equation.even_angles()
+    for name in equation.fields:
+        value = equation.at(name, angles)
+        # A constant has one place.
+        back = value if value.shape[1] == 1 else np.roll(value[:, ::-1], 1, axis=1)
+        odd = -1.0 if name == "gyroscopic" else 1.0
+        if not np.max(np.abs(value - odd * back)) <= _ALIKE * np.max(np.abs(value)):
+            return False
+    return True
+
+
+def _norm(matrices: Array) -> Array:
+    value: Array = np.sqrt(np.sum(matrices * matrices, axis=(-2, -1)))
+    return value
+
+
+def _sign_of_trace(matrices: Array, half: bool) -> Array:
+    """Return the sign of the trace of matrices, or of what half a period's are half of."""
+    if half:
+        matrices = mirrored_sums(matrices) - np.eye(matrices.shape[-1] // 2)
+    value: Array = np.sign(np.trace(matrices, axis1=-2, axis2=-1))
+    return value
+
+
+class Lines:
+    """Makes the lines of a chart.
+
+    The inner axis is the speed where that is one of the axes; of two others one that is no
+    geometry, for which the system is made anew at each value.
+    """
+
+    def __init__(self, sampler: Sampler) -> None:
+        self.system, self.names = sampler.system, sampler.names
+        self.back, self.reduced = sampler.back, sampler.reduced
+        self.inner = self.names.index("speed") if "speed" in self.names else 0
+        if self.names[self.inner] in self.system.geometry:
+            self.inner = 1
+        # The system of all lines; none where each line has its own.
+        self.known: SampledSystem | None = None
+
+    @property
+    def inner_is_geometry(self) -> bool:
+        """Whether the system is made anew at each point."""
+        return self.names[self.inner] in self.system.geometry
+
+    def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Line:
+        """Return the line at a value of the outer axis.
+
+        Parameters
+        ----------
+        outer : float
+            Value of the outer axis.
+        low, high : float
+            Ends of the variable of the inner axis.
+        values : ndarray, optional
+            Where both axes are geometry: the values at which the line will be wanted.
+        """
+        return self._line(outer, low, high, values, 1.0)
+
+    def error(self, outer: float, low: float, high: float, values: Array, found: Array) -> Array:
+        """Return by how much another solution differs from invariants, over the weight of errors.
+
+        One number per value; 0 where either overflows, infinite where either is NaN.
+        """
+        again, weight = self._line(outer, low, high, values, _OTHER)(values)
+        grown = np.isinf(again) | np.isinf(found)
+        with np.errstate(invalid="ignore"):
+            gap = np.where(grown, 0.0, np.abs(again - found) / weight)
+        worst: Array = np.max(np.where(np.isnan(gap), np.inf, gap), axis=-1)
+        return _MARGIN * worst
+
+    def _line(
+        self, outer: float, low: float, high: float, values: Array | None, fineness: float
+    ) -> Line:
+        inner_name, outer_name = self.names[self.inner], self.names[1 - self.inner]
+        fixed = {outer_name: float(outer)}
+        if inner_name in self.system.geometry:
+            if values is None:
+                raise ValueError("a line along geometry wants its values beforehand")
+            pieces = tuple(
+                self._piece({**fixed, inner_name: float(v)}, None, v, v, fineness) for v in values
+            )
+            return Line(pieces, self.reduced)
+        return Line((self._piece(fixed, inner_name, low, high, fineness),), self.reduced)
+
+    def _sampled(self, geometry: dict[str, float]) -> SampledSystem:
+        """Return the system at a geometry with its Fourier series."""
+        if geometry:
+            return sampled(self.system.with_geometry(**geometry))
+        if self.known is None:
+            self.known = sampled(self.system)
+        return self.known
+
+    def _piece(
+        self,
+        fixed: dict[str, float],
+        inner: str | None,
+        low: float,
+        high: float,
+        fineness: float,
+    ) -> Piece:
+        geometry = {k: v for k, v in fixed.items() if k in self.system.geometry}
+        known = self._sampled(geometry)
+        rest = {k: v for k, v in fixed.items() if k not in geometry}
+
+        def plain(values: Array) -> Equation:
+            point: dict[str, Any] = {**rest}
+            if inner is not None:
+                point[inner] = self.back(inner, values)
+            speed = np.broadcast_to(point.pop("speed", 1.0), values.shape)
+            return equation_of(known, speed, point)
+
+        judged = plain(np.linspace(low, high, _JUDGED if high > low else 1))
+        unit = judged.scale[len(judged.scale) // 2]
+        ways = [method("radau" if judged.damped else "gauss", stages) for stages in _STAGES]
+        counts = [rung(int(np.max(levels_for(judged, way, _RTOL)))) for way in ways]
+        # Solving the stages of a segment: between the square and the cube of their number.
+        work = [count * way.stages**2.5 for count, way in zip(counts, ways, strict=True)]
+        best = int(np.argmin(work))
+        way, count = ways[best], counts[best]
+        # A multiple of 16 can be multiplied by pairs, of half a period too.
+        count = 16 * int(np.ceil(fineness * count / 16))
+
+        def equation_at(values: Array) -> Equation:
+            made = plain(values)
+            return replace(made, scale=np.broadcast_to(unit, made.scale.shape))
+
+        half = self.reduced and is_mirrored(judged)
+        table = table_of(equation_at, (low, high), count, way, _RTOL, half=half, nodes=_NODES)
+        return Piece(table, count, half)
+
+
+def series_by_lines(sampler: Sampler, *, progress: bool) -> Series:
+    """Return the invariants of a chart of several modes.
+
+    Parameters
+    ----------
+    sampler : Sampler
+        The chart.
+    progress : bool
+        Whether to show a progress bar.
+
+    Returns
+    -------
+    Series
+        ``nodes`` is 0 along an axis all of whose values were taken.
+
+    Raises
+    ------
+    BadInput
+        If modes, lines and nodes amount to more than an hour or so.
+    """
+    surface = _Surface(sampler)
+    surface.find_inner()
+    lines = surface.first_lines()
+    while True:
+        with bar(progress, lines or len(surface.across)) as tick:
+            found = surface.sample(lines, tick)
+        if surface.too_wide(found.values) and (lines or surface.count):
+            # No series spans this; every point for itself.
+            surface.set_count(len(surface.wanted))
+            lines = 0
+            continue
+        grown = surface.next_lines(found, lines)
+        if grown == lines and not surface.grow_inner(found):
+            return surface.series(found)
+        lines = grown
+
+
+class _Found:
+    """Invariants on lines, ``values`` and the ``weight`` of their errors ``(lines, nodes, k)``."""
+
+    def __init__(self, outer: Array, values: Array, weight: Array, direct: bool) -> None:
+        self.outer, self.values, self.weight, self.direct = outer, values, weight, direct
+
+
+class _Surface:
+    """A chart whose inner axis is solved line by line."""
+
+    def __init__(self, sampler: Sampler) -> None:
+        self.sampler = sampler
+        self.lines = Lines(sampler)
+        which = self.lines.inner
+        self.wanted = sampler.transform(sampler.names[which], sampler.axes[which])
+        self.across = sampler.axes[1 - which]
+        self.low, self.high = float(self.wanted.min()), float(self.wanted.max())
+        self.count = 0
+        self.ends: dict[float, Line] = {}
+        # Tails before the last refinement: round-off, where it has not halved them.
+        self.before = (np.inf, np.inf)
+        self.kept: dict[float, tuple[Array, Array]] = {}
+
+    @property
+    def values(self) -> Array:
+        """Where lines are sampled: at nodes, or at every value of the chart."""
+        if not self.count:
+            return self.wanted
+        half = 0.5 * (self.high - self.low)
+        return np.asarray(0.5 * (self.low + self.high) + half * chebyshev.nodes(self.count))
+
+    def limit(self, size: float) -> float:
+        """Return how large a tail may be: no larger where only other parts of the chart grow."""
+        return max(self.sampler.rtol, _NOISE * size)
+
+    def line(self, outer: float) -> Line:
+        """Return a line of the chart."""
+        if outer not in self.ends:
+            return self.lines.line(outer, self.low, self.high, self.values)
+        return self.ends[outer]
+
+    def find_inner(self) -> None:
+        """Settle how many nodes a line needs, judged on the lines at both ends of the other axis.
+
+        The number is doubled until the tail is small; then the coefficients tell where it begins.
+        """
+        if len(self.wanted) <= _FIRST or self.lines.inner_is_geometry:
+            return
+        self.sampler.allowed(2, len(self.wanted))
+        self.ends = {float(outer): self.line(float(outer)) for outer in self.across[[0, -1]]}
+        self.count = _FIRST
+        while self.count < 2 * len(self.wanted):
+            found = [line(self.values)[0] for line in self.ends.values()]
+            if any(self.too_wide(values) for values in found):
+                self.set_count(len(self.wanted))
+                return
+            tables = [chebyshev.analysis(self.count) @ values for values in found]
+            size = max(1.0, max(float(np.max(np.abs(table))) for table in tables))
+            sizes = np.max(np.abs(np.concatenate(tables, axis=1)), axis=1)
+            needed = chebyshev.length(sizes, self.limit(size) / 8)
+            if needed <= self.count - max(2, self.count // 16):
+                # Inside the chart a little more may be needed than at its edges.
+                self.set_count(needed + 3 + needed // 16)
+                return
+            self.count *= 2
+        self.set_count(self.count)
+
+    @staticmethod
+    def too_wide(values: Array) -> bool:
+        """Return whether invariants grow so much that a series would lose the others."""
+        return not float(np.max(np.abs(values))) <= _WIDE
+
+    def set_count(self, count: int) -> None:
+        """Take so many nodes, or every value of the chart where those are hardly more."""
+        self.count = 0 if count > _NEARLY_ALL * len(self.wanted) else count
+        self.kept.clear()
+
+    def first_lines(self) -> int:
+        """Return with how many lines to begin; 0 stands for one at every value."""
+        return 0 if len(self.across) <= _FEWEST_LINES else _FEWEST_LINES
+
+    def places(self, lines: int) -> Array:
+        """Return where the lines lie: all values of the axis, or nested Chebyshev points."""
+        if not lines:
+            return self.across
+        low, high = float(self.across[0]), float(self.across[-1])
+        places = np.asarray(0.5 * (low + high) + 0.5 * (high - low) * chebyshev.extrema(lines))
+        places[[0, -1]] = high, low
+        return places
+
+    def sample(self, lines: int, tick: Tick) -> _Found:
+        """Return the invariants on a number of lines; those that are known are not solved again."""
+        places = self.places(lines)
+        values = self.values
+        self.sampler.allowed(len(places), len(values))
+        wanted = [float(place) for place in places if float(place) not in self.kept]
+        for place in [place for place in wanted if place in self.ends]:
+            self.kept[place] = self.ends[place](values)
+        left = [place for place in wanted if place not in self.ends]
+        done = len(places) - len(left)
+        items = [(place, self.low, self.high, values) for place in left]
+        for number, found in self.sampler.workers.run(_on_line, items):
+            self.kept[left[number]] = found
+            done += 1
+            if tick is not None:
+                tick(done)
+        rows = [self.kept[float(place)] for place in places]
+        return _Found(
+            places, np.stack([r[0] for r in rows]), np.stack([r[1] for r in rows]), not lines
+        )
+
+    def table(self, found: _Found) -> Array:
+        """Return Chebyshev coefficients along both axes, values along one that is taken whole."""
+        table = found.values
+        if not found.direct:
+            table = np.tensordot(chebyshev.extrema_analysis(len(found.outer)), table, axes=1)
+        if self.count:
+            table = np.einsum("ij,ljk->lik", chebyshev.analysis(self.count), table, optimize=True)
+        return np.asarray(table)
+
+    def tails(self, found: _Found) -> tuple[float, float, float]:
+        """Return the tails along lines and across them, and the size of the coefficients."""
+        table = np.abs(self.table(found))
+        inner = _tail(np.max(table, axis=(0, 2))) if self.count else 0.0
+        outer = 0.0 if found.direct else _tail(np.max(table, axis=(1, 2)))
+        return inner, outer, max(1.0, float(np.max(table)))
+
+    def next_lines(self, found: _Found, lines: int) -> int:
+        """Return how many lines are wanted next; the same number where the tail is small."""
+        _, outer, size = self.tails(found)
+        settled = self._settled(outer, self.before[0], size)
+        self.before = (outer, self.before[1])
+        if not lines or settled:
+            return lines
+        more = 2 * lines - 1
+        return 0 if more > _NEARLY_ALL * len(self.across) else more
+
+    def grow_inner(self, found: _Found) -> bool:
+        """Take more nodes where the lines inside the chart need them; return whether so."""
+        inner, _, size = self.tails(found)
+        settled = self._settled(inner, self.before[1], size)
+        self.before = (self.before[0], inner)
+        if not self.count or settled:
+            return False
+        self.set_count(self.count + self.count // 3)
+        return True
+
+    def _settled(self, tail: float, before: float, size: float) -> bool:
+        """Return whether a tail is small, or no more than round-off, which more nodes keep."""
+        return tail <= self.limit(size) or 0.5 * before < tail <= _SMALL * size
+
+    def series(self, found: _Found) -> Series:
+        """Return the chart from the samples."""
+        with np.errstate(invalid="ignore"):
+            errors = self.solution_error(found)[:, None] * found.weight
+        error = np.max(errors, axis=-1)
+        sample = relative_error(error, found.values)
+        nodes = [0, 0]
+        nodes[self.lines.inner] = self.count
+        nodes[1 - self.lines.inner] = 0 if found.direct else len(found.outer)
+        if not any(nodes):
+            values = found.values
+            if self.lines.inner == 1:
+                values, error, errors = (np.swapaxes(a, 0, 1) for a in (values, error, errors))
+            return Series(values, error, sample, (0, 0), _method(nodes), errors)
+        inner, outer, size = self.tails(found)
+        table = self.table(found)
+        if self.count:
+            place = chebyshev.unit(self.wanted, self.low, self.high)
+            along = chebyshev.basis(place, self.count).T
+            table = np.einsum("xi,lik->lxk", along, table, optimize=True)
+        if not found.direct:
+            low, high = float(self.across[0]), float(self.across[-1])
+            place = chebyshev.unit(self.across, low, high)
+            table = np.tensordot(chebyshev.basis(place, len(found.outer)).T, table, axes=1)
+        # Round-off of the series is spread over the chart by its largest values.
+        total = inner + outer + float(np.max(error)) + 8 * _EPS * size
+        error = np.full(table.shape[:2], total)
+        if self.lines.inner == 1:
+            table, error = np.swapaxes(table, 0, 1), error.T
+        return Series(table, error, sample, (nodes[0], nodes[1]), _method(nodes))
+
+    def solution_error(self, found: _Found) -> Array:
+        """Return the relative error of samples at each value, from other solutions on four lines.
+
+        The differences are those of the value itself and of its neighbours.
+        """
+        with np.errstate(invalid="ignore"):
+            grown = int(np.argmax(np.max(found.weight, axis=(1, 2))))
+        picked = sorted({0, len(found.outer) // 2, len(found.outer) - 1, grown})
+        values = self.values
+        items = [
+            (float(found.outer[i]), self.low, self.high, values, found.values[i]) for i in picked
+        ]
+        gaps = self.sampler.workers.map(_gap_on_line, items)
+        gap = np.pad(np.max(gaps, axis=0), 1, mode="edge")
+        return np.asarray(np.maximum(np.maximum(gap[:-2], gap[1:-1]), gap[2:]) + 64 * _EPS)
+
+
+def _on_line(sampler: Sampler, place: _Place) -> tuple[Array, Array]:
+    """Return the invariants on a line, and the weights of their errors."""
+    return Lines(sampler).line(*place)(place[3])
+
+
+def _gap_on_line(sampler: Sampler, item: tuple[float, float, float, Array, Array]) -> Array:
+    """Return by how much another solution differs on a line."""
+    return Lines(sampler).error(*item)
+
+
+def _method(nodes: list[int]) -> str:
+    if not any(nodes):
+        return "characteristic polynomial at each point"
+    return "characteristic polynomial at Chebyshev nodes, spectral interpolation"
+
+
+def _tail(sizes: Array) -> float:
+    """Return the sum of the sizes of the last two coefficients (an eighth of many) of an axis."""
+    return float(np.sum(sizes[-min(max(2, len(sizes) // 32), 8) :]))

@@ -1,0 +1,177 @@
+"""Stable or not, with the slack that errors leave, and a spot check against multipliers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.families import Array, LinearPeriodic
+from ...core.results import Check
+from ...periodic import floquet_multipliers
+from ...sweeps.workers import Workers
+from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
+from .sampling import Sampler, Series
+from .structure import damping_rate, on_grid
+
+_SPOTS = 5
+# Points that are judged together.
+_BLOCK = 250_000
+Verdict = tuple[Array, NDArray[np.bool_], Array]
+
+
+def verdict(sampler: Sampler, series: Series) -> Verdict:
+    """Return the largest modulus, whether stable, and the slack, each ``(ny, nx)``."""
+    if not sampler.hill:
+        error = series.error if series.errors is None else series.errors
+        return largest_modulus(series.values, reduced=sampler.reduced, error=error)
+    half = np.abs(series.values[..., 0])
+    level = _level(sampler, half)
+    largest = _larger_root(half, level)
+    # An error of the half trace moves the boundary, where it is (1 + W) / 2.
+    edge = 0.5 * (1.0 + level)
+    slack = _larger_root(edge + series.error, level) - 1.0
+    return largest, half <= edge + series.error, slack
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is told of each point, ``(ny, nx)``; see :class:`~.chart.StabilityChart`."""
+
+    largest: Array
+    stable: NDArray[np.bool_]
+    slack: Array
+    undecided: NDArray[np.bool_]
+    kind: NDArray[np.int8]
+
+
+def judged(sampler: Sampler, series: Series) -> Judged:
+    """Return what is told of each point, some rows at a time, which bounds the memory."""
+    rows, points = series.values.shape[:2]
+    together = max(1, _BLOCK // max(1, points))
+    parts = [slice(start, start + together) for start in range(0, rows, together)]
+    shape = (rows, points)
+    found = Judged(
+        np.empty(shape),
+        np.empty(shape, dtype=bool),
+        np.empty(shape),
+        np.empty(shape, dtype=bool),
+        np.empty(shape, dtype=np.int8),
+    )
+    # Of one mode the verdict is quicker than the way to another process and back.
+    workers = Workers(None, lambda: sampler) if sampler.hill else sampler.workers
+    items = ((part, series.rows(part)) for part in parts)
+    for number, block in workers.run(_judge, items):
+        for name, value in vars(block).items():
+            getattr(found, name)[parts[number]] = value
+    return found
+
+
+def _judge(sampler: Sampler, item: tuple[slice, Series]) -> Judged:
+    """Return what is told of the points of some rows."""
+    part, series = item
+    rows = sampler.rows(part)
+    found = verdict(rows, series)
+    largest, stable, slack = found
+    kind = instability_kind(series.values, stable, hill=rows.hill, reduced=rows.reduced)
+    return Judged(largest, stable, slack, undecided(rows, series, found), kind)
+
+
+def undecided(sampler: Sampler, series: Series, found: Verdict) -> NDArray[np.bool_]:
+    """Return where the errors leave open whether a point is stable, ``(ny, nx)``."""
+    largest, stable, slack = found
+    if sampler.hill:
+        half = np.abs(series.values[..., 0])
+        edge = 0.5 * (1.0 + _level(sampler, half))
+        return np.asarray(np.abs(half - edge) <= series.error)
+    unknown = np.isnan(largest)
+    if sampler.reduced:
+        return unknown | (stable & (slack > 0.0))
+    # Unstable is only what some multiplier proves beyond its own error.
+    return np.asarray(unknown | (stable & (largest + slack >= 1.0)))
+
+
+def _level(sampler: Sampler, half: Array) -> Array:
+    """Return the determinant of the monodromy matrices of one mode."""
+    if not sampler.damped:
+        return np.ones_like(half)
+    speed, _ = on_grid(sampler.names, sampler.axes)
+    rate = damping_rate(sampler.system, sampler.names, sampler.axes)
+    return np.asarray(np.exp(-2 * np.pi * rate / speed) * np.ones_like(half))
+
+
+def _larger_root(half: Array, level: Array) -> Array:
+    """Return the largest modulus of the roots of ``rho^2 - 2 X rho + W`` at X >= 0.
+
+    W is the determinant.
+    """
+    with np.errstate(over="ignore"):
+        square = half**2
+        real = square >= level
+        root = half + np.sqrt(np.where(real, square - level, 0.0))
+    return np.where(real, root, np.sqrt(level))
+
+
+def spot_check(sampler: Sampler, series: Series, found: Verdict) -> Check:
+    """Compare a handful of points with their Floquet multipliers.
+
+    The value is the worst gap of the largest modulus over what the errors allow.  The allowance
+    comes from the multipliers themselves, not from the slack of the verdict.
+    """
+    rng = np.random.default_rng(1972)
+    largest, stable, _ = found
+    i = rng.integers(0, largest.shape[0], _SPOTS)
+    j = rng.integers(0, largest.shape[1], _SPOTS)
+    point: dict[str, Any] = {sampler.names[0]: sampler.axes[0][j]}
+    point[sampler.names[1]] = sampler.axes[1][i]
+    with np.errstate(over="ignore", invalid="ignore"):
+        multipliers, known = _direct(sampler.system, point)
+    modulus = np.abs(multipliers)
+    usable = np.all(np.isfinite(modulus), axis=-1) & np.isfinite(largest[i, j])
+    usable &= np.all(np.isfinite(series.values[i, j]), axis=-1)
+    if not np.any(usable):
+        return Check(0.0, 1.0)
+    top = np.argmax(modulus, axis=-1)
+    rows = np.arange(_SPOTS)
+    error = _full_errors(series, i, j, modulus.shape[-1])
+    own = root_uncertainty(np.where(usable[:, None], multipliers, 0.0), error)[rows, top]
+    peak = np.where(usable, modulus[rows, top], 1.0)
+    allowed = 4.0 * (own + known[rows, top]) + 1e-12 * peak
+    gap = np.abs(peak - np.where(usable, largest[i, j], peak))
+    # A growth beyond the allowance that is called stable is a gap as well.
+    gap = np.where(stable[i, j], np.maximum(gap, peak - 1.0), gap)
+    return Check(float(np.max((gap / allowed)[usable])), 1.0)
+
+
+def _full_errors(series: Series, i: NDArray[np.int64], j: NDArray[np.int64], size: int) -> Array:
+    """Return errors of all coefficients of characteristic polynomials at points, doubled."""
+    values = series.values[i, j]
+    if series.errors is None:
+        known = known_to(values, series.error[i, j])[..., :1]
+        return np.broadcast_to(2.0 * known, (len(i), size))
+    known = known_to(values, series.errors[i, j])
+    if known.shape[-1] < size:
+        # Palindromic: the same again backwards, and a last coefficient that is 1.
+        known = np.concatenate([known, known[:, -2::-1], np.zeros((len(i), 1))], axis=1)
+    return 2.0 * known
+
+
+def _direct(
+    system: LinearPeriodic, point: dict[str, Array]
+) -> tuple[NDArray[np.complex128], Array]:
+    """Return multipliers and their errors at points, ``(points, 2n)`` each."""
+    shapes = {k: point[k] for k in point if k in system.geometry}
+    rest = {k: v for k, v in point.items() if k not in shapes}
+    speed = rest.pop("speed", np.ones(_SPOTS))
+    if not shapes:
+        values: dict[str, Any] = {**rest}
+        found = floquet_multipliers(system, speed, **values)
+        return found.multipliers, found.error
+    each = []
+    for i in range(_SPOTS):
+        here = system.with_geometry(**{k: float(v[i]) for k, v in shapes.items()})
+        numbers: dict[str, Any] = {k: float(v[i]) for k, v in rest.items()}
+        each.append(floquet_multipliers(here, speed[i], **numbers))
+    return np.stack([e.multipliers for e in each]), np.stack([e.error for e in each])

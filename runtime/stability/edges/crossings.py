@@ -1,0 +1,504 @@
+"""Speeds at which a multiplier crosses the unit circle, whichever it is, and what that encloses.
+
+The m-th largest of the log moduli is continuous in the speed, whatever the multipliers do, and
+changes its sign where the number outside the circle passes m.  Where the multiplier crosses tells
+the kind: at +1, at -1, or with its conjugate elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.families import LinearPeriodic
+from ...periodic import monodromy
+from ...periodic.multipliers import conditions
+from .pair_roots import bracketed_roots, perturbation_size
+from .phase_events import phase_grid
+from .regions import Regions, joined
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Index = NDArray[np.intp]
+
+_EPS = float(np.finfo(float).eps)
+_TOGETHER = 256
+_ROUNDS = 6
+
+
+_Growth = Callable[[Index, Array], tuple[Array, Array]]
+# Places at which growth is looked for, in half widths from the middle of the undamped region.
+_PLACES = np.linspace(-1.5, 1.5, 13)
+_PARABOLAS = 4
+# Arguments [rad] that count as that of the pair in any case.
+_NEAR = 0.1
+# Cost of a label: of another kind of multiplier, in half widths, and the most that is taken.
+_OTHER_KIND, _FAR = 100.0, 20.0
+_LIKE_WIDTH, _LOWER = 0.2, 0.05
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Log moduli, falling, with errors and multipliers, all of shape ``(k, 2n)``.
+
+    ``size`` is the error of the monodromy matrices, shape ``(k,)``.
+    """
+
+    value: Array
+    noise: Array
+    multiplier: ComplexArray
+    size: Array
+
+    @property
+    def outside(self) -> NDArray[np.bool_]:
+        """Which are outside the circle beyond their error."""
+        flags: NDArray[np.bool_] = self.value > 2 * self.noise
+        return flags
+
+
+@dataclass(frozen=True)
+class Span:
+    """Speeds between which multipliers of one kind are outside the circle.
+
+    ``lower`` and ``upper`` are NaN where none crosses the circle; ``begin`` and ``end`` are then
+    the last speeds at which that kind was seen.
+    """
+
+    lower: float
+    upper: float
+    error: float
+    begin: float
+    end: float
+    multiplier: complex
+
+
+@dataclass(frozen=True)
+class _Crossing:
+    speed: float
+    error: float
+    rising: bool
+    multiplier: complex
+
+
+class Crossings:
+    """Crossings of the circle between the samples of a range.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    parameters : mapping
+        Parameter values that replace the system's own.
+    rtol : float
+        Of the monodromy matrices.
+    speed : ndarray
+        Samples, rising [rad/s]; the first and the last are the ends of the range.
+    sharp : bool
+        Whether multipliers rest on the circle, as without damping: a region then begins where
+        one is outside beyond its error.
+    """
+
+    def __init__(
+        self,
+        system: LinearPeriodic,
+        parameters: Mapping[str, float],
+        rtol: float,
+        speed: Array,
+        sharp: bool = False,
+    ) -> None:
+        self._system, self._parameters, self._rtol = system, parameters, rtol
+        self._sharp = sharp
+        self._speed, self._levels = speed, self.levels(speed)
+
+    def levels(self, speed: Array) -> Levels:
+        """Return the log moduli at speeds of shape ``(k,)``."""
+        m = 2 * self._system.size
+        none = np.zeros((0, m))
+        parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
+        for start in range(0, len(speed), _TOGETHER):
+            at = speed[start : start + _TOGETHER]
+            result = monodromy(self._system, at, rtol=self._rtol, **self._parameters)
+            matrices = np.ldexp(result.scaled, result.exponent[:, None, None])
+            values, vectors = np.linalg.eig(matrices)
+            values = values.astype(complex)
+            size = np.maximum(np.abs(values), 1e-300)
+            own = conditions(vectors.astype(complex))
+            shift = perturbation_size(matrices, result.error)
+            noise = own * shift[:, None] / size
+            order = np.argsort(-size, axis=-1, kind="stable")
+            columns = (np.log(size), np.minimum(noise, 1.0), values)
+            ordered = (np.take_along_axis(c, order, axis=-1) for c in columns)
+            parts.append((*ordered, shift))
+        return Levels(*(np.concatenate(c) for c in zip(*parts, strict=True)))
+
+    def spans(self) -> list[Span]:
+        """Return what is outside the circle, kind by kind, with the speeds between which."""
+        found = self._crossings()
+        for _ in range(_ROUNDS):
+            # Between crossings the number outside must be what they make it.
+            ends = np.unique([self._speed[0], *(c.speed for c in found), self._speed[-1]])
+            fresh = np.setdiff1d(0.5 * (ends[1:] + ends[:-1]), self._speed)
+            if not len(fresh):
+                break
+            before = len(found)
+            speed = np.concatenate([self._speed, fresh])
+            order = np.argsort(speed, kind="stable")
+            old, new = self._levels, self.levels(fresh)
+            self._levels = Levels(
+                *(
+                    np.concatenate([getattr(old, f), getattr(new, f)])[order]
+                    for f in ("value", "noise", "multiplier", "size")
+                )
+            )
+            self._speed = speed[order]
+            found = self._crossings()
+            if len(found) == before:
+                break
+        return self._spans(found)
+
+    def _crossings(self) -> list[_Crossing]:
+        """Return all crossings between neighbouring samples, by rising speed."""
+        out, levels = self._levels.outside, self._levels
+        row, rank = np.nonzero(out[1:] != out[:-1])
+        if not len(row):
+            return []
+        # What is not outside beyond its error counts as inside.
+        value = np.where(out, levels.value, np.minimum(levels.value, -1e-3 * levels.noise))
+        if self._sharp:
+            value = np.where(out, levels.value, -levels.noise)
+
+        def level(which: Index, at: Array) -> tuple[Array, Array]:
+            found = self.levels(at)
+            rows = np.arange(len(at))
+            own, noise = found.value[rows, rank[which]], found.noise[rows, rank[which]]
+            # On the circle the modulus rests at 1 within its error.
+            return (own - 2 * noise, np.zeros_like(noise)) if self._sharp else (own, noise)
+
+        first, second = self._speed[row], self._speed[row + 1]
+        root, width, slope = bracketed_roots(
+            level, first, second, value[row, rank], value[row + 1, rank]
+        )
+        last = self.levels(root)
+        error = width + 4 * _EPS * root
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if self._sharp:
+                # The square of the growth starts in proportion to the distance.
+                beyond = np.where(out[row, rank], row, row + 1)
+                rise = levels.value[beyond, rank] ** 2 / np.abs(self._speed[beyond] - root)
+                error = error + 16 * last.size / rise
+            else:
+                error = error + last.noise[np.arange(len(root)), rank] / np.abs(slope)
+        error = np.where(np.isfinite(error), error, second - first)
+        return self._sorted(row, rank, root, error, last)
+
+    def _sorted(
+        self, row: Index, rank: Index, root: Array, error: Array, last: Levels
+    ) -> list[_Crossing]:
+        """Return crossings by rising speed, one for two conjugates."""
+        out = self._levels.outside
+        nearest = np.argmin(np.abs(last.value), axis=-1)
+        found: list[_Crossing] = []
+        halves: dict[tuple[int, bool], int] = {}
+        for i in np.lexsort((rank, row)):
+            rising = bool(out[row[i] + 1, rank[i]])
+            turn = self._crossed(int(row[i]), rising, complex(last.multiplier[i, nearest[i]]))
+            if turn.imag != 0.0:
+                # One of two conjugates is enough.
+                key = int(row[i]), rising
+                halves[key] = halves.get(key, 0) + 1
+                if halves[key] % 2 == 0:
+                    continue
+            found.append(_Crossing(float(root[i]), float(error[i]), rising, turn))
+        return sorted(found, key=lambda c: c.speed)
+
+    def _crossed(self, row: int, rising: bool, turn: complex) -> complex:
+        """Return the multiplier that crosses, of the kind that a crossing adds to those outside.
+
+        Where two nearly meet at the crossing, rounding decides whether they are complex there.
+        """
+        more, fewer = (row + 1, row) if rising else (row, row + 1)
+        added = Counter(_kind(t) for t in _kinds(self._levels, more))
+        added.subtract(_kind(t) for t in _kinds(self._levels, fewer))
+        kinds = [kind for kind, number in added.items() if number > 0]
+        if len(kinds) == 1 and kinds[0] != 2:
+            return complex(kinds[0])
+        if len(kinds) == 1 and turn.imag == 0.0:
+            turn = next(t for t in _kinds(self._levels, more) if _kind(t) == 2)
+        return complex(turn.real, abs(turn.imag))
+
+    def _spans(self, found: list[_Crossing]) -> list[Span]:
+        """Join crossings outwards with the next ones of their kind inwards."""
+        begun: list[_Crossing | complex] = list(_kinds(self._levels, 0))
+        made: list[Span] = []
+        for crossing in found:
+            if crossing.rising:
+                begun.append(crossing)
+                continue
+            kind = _kind(crossing.multiplier)
+            same = [i for i, other in enumerate(begun) if _kind(_turn(other)) == kind]
+            made.append(self._span(begun.pop(same[-1]) if same else None, crossing))
+        made.extend(self._span(other, None) for other in begun)
+        return made
+
+    def _span(self, first: _Crossing | complex | None, last: _Crossing | None) -> Span:
+        turn = _turn(first) if first is not None else last.multiplier if last else 1.0 + 0j
+        turn = turn / abs(turn)
+        lower = first.speed if isinstance(first, _Crossing) else np.nan
+        upper = last.speed if last is not None else np.nan
+        errors = [c.error for c in (first, last) if isinstance(c, _Crossing)]
+        begin = lower if np.isfinite(lower) else self._seen(upper, _kind(turn), -1)
+        end = upper if np.isfinite(upper) else self._seen(begin, _kind(turn), 1)
+        return Span(lower, upper, max(errors, default=0.0), begin, end, turn)
+
+    def _seen(self, start: float, kind: int, step: int) -> float:
+        """Return the last sample from a speed on at which a kind is outside the circle."""
+        if not np.isfinite(start):
+            start = float(self._speed[0 if step > 0 else -1])
+            if step < 0:
+                return float(self._speed[0])
+        i = int(np.searchsorted(self._speed, start))
+        if step < 0:
+            i = int(np.searchsorted(self._speed, start, side="right")) - 1
+        seen = start
+        while 0 <= i < len(self._speed):
+            if kind not in {_kind(turn) for turn in _kinds(self._levels, i)}:
+                break
+            seen = float(self._speed[i])
+            i += step
+        return seen
+
+
+def _kind(turn: complex) -> int:
+    """Return 1, -1 or 2: real positive, real negative, complex."""
+    return 2 if turn.imag != 0.0 else (1 if turn.real > 0 else -1)
+
+
+def _turn(item: _Crossing | complex) -> complex:
+    return item.multiplier if isinstance(item, _Crossing) else item
+
+
+def _kinds(levels: Levels, row: int) -> list[complex]:
+    """Return the multipliers outside the circle at one sample, one of each conjugate pair."""
+    values = levels.multiplier[row][levels.outside[row]]
+    return [complex(value) for value in values if value.imag >= 0.0]
+
+
+def damped_regions(
+    system: LinearPeriodic,
+    undamped: Regions,
+    span: tuple[float, float],
+    rtol: float,
+    parameters: Mapping[str, float],
+) -> Regions:
+    """Return the unstable regions of a damped system.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With damping.
+    undamped : Regions
+        Without: where narrow regions are looked for, and whence the labels are taken.
+    span : pair of float
+        The range [rad/s].
+    rtol : float
+        Of the monodromy matrices.
+    parameters : mapping
+        Parameter values that replace the system's own.
+    """
+    begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
+    undamped = undamped.take(np.flatnonzero(end - begin > 4 * undamped.error))
+    begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
+    phase = np.angle(undamped.multiplier)
+
+    def growth(which: Index, speed: Array) -> tuple[Array, Array]:
+        return _growth(system, speed, phase[which], rtol, parameters)
+
+    middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
+    ends = np.unique(np.concatenate([span, begin, end]))
+    more = np.concatenate(
+        [
+            _highest(growth, middle, half),
+            (middle[:, None] + half[:, None] * _PLACES).ravel(),
+            0.5 * (ends[1:] + ends[:-1]),
+        ]
+    )
+    more = more[(more > span[0]) & (more < span[1])]
+    speed = phase_grid(system, span, parameters, more)
+    speed[[0, -1]] = span
+    spans = Crossings(system, parameters, rtol, speed).spans()
+    return labelled([s for s in spans if not s.upper - s.lower <= 0.0], undamped)
+
+
+def labelled(spans: list[Span], undamped: Regions) -> Regions:
+    """Give each the label of the undamped region it is most like, none twice; 0 where none is."""
+    from scipy.optimize import linear_sum_assignment
+
+    k = len(spans)
+    begin, end = np.array([s.begin for s in spans]), np.array([s.end for s in spans])
+    turn = np.array([s.multiplier for s in spans], dtype=complex)
+    lows, highs = undamped.begin, undamped.end
+    size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
+    cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
+    cost = cost + 2 * np.abs(np.angle(turn[:, None] / _upper(undamped.multiplier)))
+    # Of two that lie alike the one of like width, then that of the lower, stronger harmonic.
+    ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
+    cost = cost + _LIKE_WIDTH * np.abs(ratio) + _LOWER * undamped.harmonic
+    real = np.array([s.multiplier.imag == 0.0 for s in spans], dtype=bool)
+    principal = np.array([kind == "principal" for kind in undamped.kind], dtype=bool)
+    cost = cost + _OTHER_KIND * (real[:, None] != principal)
+    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < _FAR]
+    modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
+    detuning = np.full(k, np.nan)
+    kind = ["principal" if flag else "sum" for flag in real]
+    for row, column in pairs:
+        modes[row], harmonic[row] = undamped.modes[column], undamped.harmonic[column]
+        detuning[row], kind[row] = undamped.detuning[column], undamped.kind[column]
+    return Regions(
+        np.array([s.lower for s in spans]),
+        np.array([s.upper for s in spans]),
+        np.array([s.error for s in spans]),
+        turn,
+        modes,
+        harmonic,
+        detuning,
+        begin,
+        end,
+        tuple(kind),
+    )
+
+
+def _upper(turn: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    value: NDArray[np.complex128] = turn.real + 1j * np.abs(turn.imag)
+    return value
+
+
+def _highest(growth: _Growth, middle: Array, half: Array) -> Array:
+    """Return where growth is greatest about the undamped regions."""
+    k, places = len(middle), len(_PLACES)
+    rows = np.arange(k)
+    speed = np.maximum(middle[:, None] + half[:, None] * _PLACES, 1e-3 * middle[:, None])
+    value, _ = growth(np.repeat(rows, places), speed.ravel())
+    value = value.reshape(k, places)
+    best = np.clip(np.argmax(value, axis=1), 1, places - 2) if k else rows
+    x = np.stack([speed[rows, best + s] for s in (-1, 0, 1)])
+    g = np.stack([value[rows, best + s] for s in (-1, 0, 1)])
+    for _ in range(_PARABOLAS):
+        place = _vertex(x, g)
+        new, _ = growth(rows, place)
+        x, g = _three(x, g, place, new)
+    found: Array = x[np.argmax(g, axis=0), rows]
+    return found
+
+
+def _growth(
+    system: LinearPeriodic,
+    speed: Array,
+    phase: Array,
+    rtol: float,
+    parameters: Mapping[str, float],
+) -> tuple[Array, Array]:
+    """Return the largest log modulus of the multipliers near a phase, and its error."""
+    if not len(speed):
+        return np.zeros(0), np.zeros(0)
+    result = monodromy(system, speed, rtol=rtol, **parameters)
+    matrices = np.ldexp(result.scaled, result.exponent[:, None, None])
+    values, vectors = np.linalg.eig(matrices)
+    away = np.abs(np.angle(values * np.exp(-1j * phase)[:, None]))
+    with np.errstate(divide="ignore"):
+        logarithm = np.log(np.abs(values))
+    # Those that the undamped pair has become, whatever else grows at another argument.
+    second = np.sort(away, axis=-1)[:, 1:2]
+    logarithm = np.where(away <= np.maximum(second, _NEAR), logarithm, -np.inf)
+    chosen = np.argmax(logarithm, axis=-1)
+    rows = np.arange(len(speed))
+    own = conditions(vectors.astype(complex))[rows, chosen]
+    noise = own * perturbation_size(matrices, result.error) / np.abs(values[rows, chosen])
+    return logarithm[rows, chosen], np.minimum(noise, 1.0)
+
+
+def _vertex(x: Array, g: Array) -> Array:
+    """Return where a parabola through three points is greatest, within them."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        left, right = (g[1] - g[0]) / (x[1] - x[0]), (g[2] - g[1]) / (x[2] - x[1])
+        curve = (right - left) / (x[2] - x[0])
+        place = 0.5 * (x[0] + x[1]) - 0.5 * left / curve
+    usable = np.isfinite(place) & (curve < 0)
+    place = np.where(usable, place, 0.5 * (x[1] + x[2]))
+    margin = 1e-2 * (x[2] - x[0])
+    value: Array = np.clip(place, x[0] + margin, x[2] - margin)
+    return value
+
+
+def _three(x: Array, g: Array, place: Array, value: Array) -> tuple[Array, Array]:
+    """Return the greatest of four points and its neighbours."""
+    four = np.concatenate([x, place[None]])
+    order = np.argsort(four, axis=0, kind="stable")
+    four = np.take_along_axis(four, order, axis=0)
+    values = np.take_along_axis(np.concatenate([g, value[None]]), order, axis=0)
+    top = np.clip(np.argmax(values, axis=0), 1, 2)
+    rows = np.arange(four.shape[1])
+    chosen = [(four[top + s, rows], values[top + s, rows]) for s in (-1, 0, 1)]
+    return np.stack([c[0] for c in chosen]), np.stack([c[1] for c in chosen])
+
+
+def mended(
+    system: LinearPeriodic,
+    regions: Regions,
+    usable: NDArray[np.bool_],
+    where: tuple[tuple[float, float], Array],
+    rtol: float,
+    parameters: Mapping[str, float],
+) -> Regions:
+    """Return combination regions that agree with the multipliers off the circle.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Conservative.
+    regions : Regions
+        As pairs of multipliers make them.
+    usable : ndarray of bool, shape (k,)
+        False where the pair meets at +-1: kept for its label only.
+    where : tuple
+        The range, and speeds of interest [rad/s].
+    rtol : float
+        Of the monodromy matrices.
+    parameters : mapping
+        Parameter values that replace the system's own.
+    """
+    span, near = where
+    ends = np.unique(np.concatenate([span, near[np.isfinite(near)]]))
+    ends = ends[(ends >= span[0]) & (ends <= span[1])]
+    speed = phase_grid(system, span, parameters, 0.5 * (ends[1:] + ends[:-1]))
+    speed[[0, -1]] = span
+    truth = [
+        s
+        for s in Crossings(system, parameters, rtol, speed, sharp=True).spans()
+        if s.multiplier.imag != 0.0 and not s.upper - s.lower <= 4 * s.error
+    ]
+    kept, new = np.array(usable), list[Span]()
+    own: set[int] = set()
+    for one in truth:
+        free = [int(i) for i in np.flatnonzero(usable) if int(i) not in own]
+        same = [i for i in free if _same(regions, i, one)]
+        own.update(same[:1])
+        if not same:
+            new.append(one)
+    for one in new:
+        over = (regions.begin < one.end) & (regions.end > one.begin)
+        kept &= ~over | np.isin(np.arange(len(kept)), list(own))
+    if not new:
+        return regions.take(np.flatnonzero(kept))
+    pool = regions.take(np.flatnonzero(~kept))
+    return joined(regions.take(np.flatnonzero(kept)), labelled(new, pool))
+
+
+def _same(regions: Regions, index: int, span: Span) -> bool:
+    """Return True where both ends agree within their errors."""
+    slack = float(regions.error[index]) + span.error
+    pairs = [(float(regions.lower[index]), span.lower), (float(regions.upper[index]), span.upper)]
+    return all(abs(a - b) <= slack or (np.isnan(a) and np.isnan(b)) for a, b in pairs)

@@ -1,0 +1,423 @@
+"""Which modes and which harmonic a boundary of instability belongs to.
+
+The modes are those of the averaged equation (mean coefficients) at the speed in question, numbered
+by the size of their frequencies; where the periodic part is large, a label says which mode and
+harmonic are nearest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.families import LinearPeriodic
+from ...periodic import floquet_multipliers
+from ...periodic.first_order import canonical_form
+from ...periodic.signatures import form_matrix
+from ..boundary_speeds import SpeedBoundaries
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+# How far from its whole number a label may be [turns in a period].
+_REACH = 2
+_FORBIDDEN = 1e6
+# Relative distance beside a boundary at which growth is looked for, and of boundaries that are
+# the ends of a region too narrow to show it.
+_BESIDE = 1e-8
+# What it costs, in turns, that none of the motion at the ends of a region is of a mode.
+_LACK = 4.0
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of the averaged equation at k speeds.
+
+    Attributes
+    ----------
+    turns : ndarray, shape (k, n)
+        Turns in a period of each multiplier of positive signature; negative where the mode has
+        negative energy; NaN where the averaged equation is not stable.
+    shapes : ndarray of complex, shape (k, n, n)
+        Displacements in rows, of unit norm by the mean mass.
+    mass : ndarray, shape (k, n, n)
+        Mean mass.
+    """
+
+    turns: Array
+    shapes: ComplexArray
+    mass: Array
+
+
+def averaged_modes(
+    system: LinearPeriodic, speed: Array, parameters: Mapping[str, float | Array]
+) -> Modes:
+    """Return the modes of the averaged equation at speeds of shape ``(k,)``."""
+    n = system.size
+    if not len(speed):
+        return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
+    form = canonical_form(system, speed, parameters)
+    mean = form.mean
+    flexibility = np.linalg.inv(mean["M"])
+    across = np.swapaxes(mean["A"], -1, -2)
+    rate = np.zeros((len(form.speed), 2 * n, 2 * n))
+    rate[:, :n, :n], rate[:, :n, n:] = -flexibility @ mean["A"], flexibility
+    rate[:, n:, :n] = mean["B"] - mean["K"] - across @ flexibility @ mean["A"]
+    rate[:, n:, n:] = across @ flexibility
+    values, vectors = np.linalg.eig(rate)
+    values, vectors = values.astype(complex), vectors.astype(complex)
+    sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
+    turns = np.full((len(rate), n), np.nan)
+    shapes = np.zeros((len(rate), n, n), dtype=complex)
+    for row in range(len(rate)):
+        steady = np.abs(values[row].real) <= 1e-7 * np.max(np.abs(values[row]))
+        chosen = np.flatnonzero((sign[row] > 0) & steady)
+        if len(chosen) != n:
+            continue
+        chosen = chosen[np.argsort(np.abs(values[row, chosen].imag), kind="stable")]
+        turns[row] = values[row, chosen].imag * system.period / (2 * np.pi)
+        own = vectors[row][:n, chosen].T
+        norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mean["M"][row], own)))
+        shapes[row] = own / norm[:, None]
+    return Modes(turns, shapes, mean["M"])
+
+
+def meeting_labels(
+    modes: Modes, plus: Array, minus: Array, shares: Array | None = None
+) -> tuple[Whole, Whole, Array]:
+    """Return modes ``(k, 2)`` from 1, the harmonic, and how far off, of meetings of two modes.
+
+    The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
+    those that meet; no two meetings get the same label.  0 where there is none.
+
+    Parameters
+    ----------
+    modes : Modes
+        At the meetings.
+    plus, minus : ndarray, shape (k,)
+        Arguments of the multipliers of positive and negative signature [rad].
+    shares : ndarray, shape (k, n), optional
+        How much of the motion each mode has; what a label's two modes lack of it counts too.
+    """
+    k, n = modes.turns.shape
+    options: dict[tuple[int, int, int], dict[int, float]] = {}
+    for row in range(k):
+        for i in range(n):
+            for j in range(i + 1, n):
+                total = modes.turns[row, i] + modes.turns[row, j]
+                if not np.isfinite(total):
+                    continue
+                phases = min(
+                    _apart(modes.turns[row, a], plus[row])
+                    + _apart(modes.turns[row, b], -minus[row])
+                    for a, b in ((i, j), (j, i))
+                )
+                lack = 0.0 if shares is None else 1.0 - float(shares[row, i] + shares[row, j])
+                middle = round(float(total))
+                for harmonic in range(middle - _REACH, middle + _REACH + 1):
+                    cost = abs(float(total) - harmonic) + 0.5 * phases + _LACK * lack
+                    options.setdefault((i + 1, j + 1, harmonic), {})[row] = cost
+    found = np.zeros((k, 2), dtype=np.int64)
+    chosen = np.zeros(k, dtype=np.int64)
+    off = np.full(k, np.nan)
+    for row, (i, j, number) in _assigned(k, options).items():
+        found[row], chosen[row] = (i, j), number
+        off[row] = abs(modes.turns[row, i - 1] + modes.turns[row, j - 1] - number)
+    return found, chosen, off
+
+
+def principal_labels(
+    modes: Modes, real: Array, shares: Array | None = None
+) -> tuple[Whole, Whole, Array]:
+    """Return mode from 1, number and how far off, of meetings of a mode with itself.
+
+    Parameters
+    ----------
+    modes : Modes
+        At the meetings.
+    real : ndarray, shape (k,)
+        The multiplier there, +1 or -1.
+    shares : ndarray, shape (k, n), optional
+        How much of the motion each mode has; what a label's mode lacks of it counts too.
+    """
+    k, n = modes.turns.shape
+    options: dict[tuple[int, int, int], dict[int, float]] = {}
+    for row in range(k):
+        parity = 0 if real[row] > 0 else 1
+        for i in range(n):
+            total = 2 * float(modes.turns[row, i])
+            if np.isfinite(total):
+                lack = 0.0 if shares is None else 1.0 - float(shares[row, i])
+                middle = 2 * round((total - parity) / 2) + parity
+                for number in range(middle - 4, middle + 5, 2):
+                    cost = abs(total - number) + _LACK * lack
+                    options.setdefault((i + 1, number, parity), {})[row] = cost
+    mode, chosen = np.zeros((2, k), dtype=np.int64)
+    off = np.full(k, np.nan)
+    for row, (i, number, _) in _assigned(k, options).items():
+        mode[row], chosen[row] = i, abs(number)
+        off[row] = abs(2 * float(modes.turns[row, i - 1]) - number)
+    return mode, chosen, off
+
+
+Unit = tuple[int, int]
+
+
+def boundary_units(
+    system: LinearPeriodic,
+    modes: Modes,
+    found: SpeedBoundaries,
+    parameters: Mapping[str, float],
+) -> list[Unit]:
+    """Return the two boundaries of each principal region, lower first; -1 where one is missing.
+
+    Boundaries between which a real multiplier stays off the circle make a group.  A group of two
+    is a region; in a larger one, where regions lie within each other, those belong together whose
+    motion is mostly of one mode.  Boundaries that coincide within a region are one of their own.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Conservative.
+    modes : Modes
+        At the boundaries.
+    found : SpeedBoundaries
+        All boundaries in a range.
+    parameters : mapping
+        Parameter values that replace the system's own.
+    """
+    owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
+    units: list[Unit] = []
+    for sign in (1, -1):
+        own = np.flatnonzero(found.multiplier == sign)
+        if not len(own):
+            continue
+        speed = found.speed[own]
+        middle = np.concatenate(
+            [
+                [speed[0] * (1 - _BESIDE)],
+                0.5 * (speed[1:] + speed[:-1]),
+                [speed[-1] * (1 + _BESIDE)],
+            ]
+        )
+        values = floquet_multipliers(system, middle, **parameters)
+        real = np.abs(values.multipliers.imag) <= 4 * values.error
+        beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
+        count = np.sum(real & beyond, axis=-1)
+        off = count > 0
+        # Regions too narrow to show growth.
+        narrow = np.concatenate([[False], np.diff(speed) <= _BESIDE * speed[1:], [False]])
+        linked = (off | narrow)[1:-1]
+        touching = _touching(found, own, count, narrow)
+        mine: list[Unit] = [(int(own[i]), int(own[i + 1])) for i in touching]
+        alone = np.concatenate([own[touching], own[touching + 1]])
+        for members in np.split(own, np.flatnonzero(~linked) + 1):
+            first, last = members[0] == own[0], members[-1] == own[-1]
+            at_end = bool(first and off[0]), bool(last and off[-1])
+            group = members[~np.isin(members, alone)]
+            if not len(group):
+                continue
+            if np.all(np.isfinite(modes.turns[group])) or any(at_end):
+                mine.extend(_units(group, owner[group], at_end))
+            else:
+                # Without modes: one within the other.
+                pairs = (len(group) + 1) // 2
+                mine.extend((int(group[d]), int(group[-1 - d])) for d in range(pairs))
+        if not np.array_equal(_covering(mine, own)[~narrow], count[~narrow]):
+            mine = _nested(own, count, narrow) or mine
+        units.extend(mine)
+    return units
+
+
+def _touching(
+    found: SpeedBoundaries,
+    own: NDArray[np.intp],
+    count: NDArray[np.intp],
+    narrow: NDArray[np.bool_],
+) -> NDArray[np.intp]:
+    """Return the first of each two boundaries that coincide to their errors and change nothing.
+
+    At a double boundary two multipliers touch +-1 and go back: a closed region.  Its two motions
+    span a plane in which only rounding chooses, so that modes do not tell what belongs together.
+    """
+    apart = np.diff(found.speed[own])
+    same = apart <= found.error[own][1:] + found.error[own][:-1]
+    beside = ~narrow[:-2] & ~narrow[2:] & (count[:-2] == count[2:])
+    value: NDArray[np.intp] = np.flatnonzero(same & narrow[1:-1] & beside)
+    return value
+
+
+def _covering(units: list[Unit], own: NDArray[np.intp]) -> Whole:
+    """Return how many regions cover each interval before, between and behind boundaries."""
+    place = {int(row): i for i, row in enumerate(own)}
+    change = np.zeros(len(own) + 2, dtype=np.int64)
+    for first, last in units:
+        change[place[first] + 1 if first >= 0 else 0] += 1
+        change[place[last] + 1 if last >= 0 else -1] -= 1
+    value: Whole = np.cumsum(change)[:-1]
+    return value
+
+
+def _nested(
+    own: NDArray[np.intp], count: NDArray[np.intp], narrow: NDArray[np.bool_]
+) -> list[Unit] | None:
+    """Pair boundaries so that as many regions cover each interval as multipliers are off there.
+
+    A boundary behind which one more is off begins a region, another ends the last one begun; two
+    that nearly coincide and change nothing are one of their own.  None where the numbers do not
+    follow from boundaries alone.
+    """
+    begun, found = [-1] * int(count[0]), list[Unit]()
+    i = 0
+    while i < len(own):
+        row = int(own[i])
+        step = int(count[i + 1] - count[i])
+        if narrow[i + 1]:
+            step = int(count[i + 2] - count[i])
+            other = int(own[i + 1])
+            i += 2
+            if step == 0:
+                found.append((row, other))
+            elif step == 2:
+                begun.extend((row, other))
+            elif step == -2 and len(begun) >= 2:
+                found.extend(((begun.pop(), row), (begun.pop(), other)))
+            else:
+                return None
+            continue
+        i += 1
+        if step == 1:
+            begun.append(row)
+        elif step == -1 and begun:
+            found.append((begun.pop(), row))
+        else:
+            return None
+    found.extend((row, -1) for row in begun)
+    return None if (-1, -1) in found else found
+
+
+def _units(
+    group: NDArray[np.intp], owner: NDArray[np.intp], at_end: tuple[bool, bool]
+) -> list[Unit]:
+    """Pair the boundaries of one group; ``at_end`` tells whether growth goes on beyond its ends."""
+    members = [int(row) for row in group]
+    if len(members) == 2 and not any(at_end):
+        return [(members[0], members[1])]
+    found: list[Unit] = []
+    for mode in np.unique(owner):
+        own = [row for row, whose in zip(members, owner, strict=True) if whose == mode]
+        if len(own) % 2:
+            # The one that stands alone is at an end of the range.
+            found.append((-1, own.pop(0)) if at_end[0] else (own.pop(), -1))
+        found.extend((own[i], own[i + 1]) for i in range(0, len(own), 2))
+    return found
+
+
+def unit_labels(
+    modes: Modes, found: SpeedBoundaries, units: list[Unit]
+) -> tuple[Whole, Whole, Array]:
+    """Return mode from 1, number of the region and how far off, of each principal region.
+
+    Region n of mode j has 2 Omega_j = n, below zero for negative energy, and a motion at its ends
+    that is mostly of that mode.  No two regions get the same label; 0 where none is left, or the
+    averaged equation has no modes.
+    """
+    k = len(units)
+    mode, number = np.zeros((2, k), dtype=np.int64)
+    off = np.full(k, np.nan)
+    if not k:
+        return mode, number, off
+    shares = _shares(modes, found)
+    shares = shares / np.maximum(np.sum(shares, axis=-1, keepdims=True), 1e-300)
+    options: dict[tuple[int, int, int], dict[int, float]] = {}
+    turns = np.full((k, modes.turns.shape[1]), np.nan)
+    for row, unit in enumerate(units):
+        known = [end for end in unit if end >= 0]
+        # A missing end is about where the outermost boundaries are, or beyond.
+        ends = [unit[0] if unit[0] >= 0 else 0, unit[1] if unit[1] >= 0 else -1]
+        turns[row] = 2 * np.mean(modes.turns[ends], axis=0)
+        parity = 0 if found.multiplier[known[0]] == 1 else 1
+        for j, value in enumerate(turns[row]):
+            if not np.isfinite(value):
+                continue
+            lack = 1.0 - float(np.mean(shares[known, j]))
+            nearest = 2 * round((float(value) - parity) / 2) + parity
+            for n in range(nearest - 6, nearest + 7, 2):
+                gap = abs(float(value) - n)
+                # Beyond one turn rather another mode than another number.
+                cost = gap + _LACK * (lack + max(0.0, gap - 1.0))
+                options.setdefault((j + 1, n, parity), {})[row] = cost
+    for row, (j, n, _) in _assigned(k, options).items():
+        mode[row], number[row] = j, abs(n)
+        off[row] = abs(turns[row, j - 1] - n)
+    return mode, number, off
+
+
+def whole_range_labels(modes: Modes, turn: Whole) -> tuple[Whole, Whole, Array]:
+    """Return mode, number and how far off, of principal regions without boundaries in the range.
+
+    Parameters
+    ----------
+    modes : Modes
+        At one speed.
+    turn : ndarray of int, shape (k,)
+        +1 or -1.
+    """
+    k = len(turn)
+    mode, number = np.zeros((2, k), dtype=np.int64)
+    off = np.full(k, np.nan)
+    options: dict[Label, dict[int, float]] = {}
+    for row, sign in enumerate(turn.tolist()):
+        parity = 0 if sign == 1 else 1
+        for j, turns in enumerate(modes.turns[0].tolist()):
+            if np.isfinite(turns):
+                n = 2 * round((2 * turns - parity) / 2) + parity
+                options.setdefault((j + 1, n, parity), {})[row] = abs(2 * turns - n)
+    for row, (j, n, parity) in _assigned(k, options).items():
+        mode[row], number[row] = j, abs(n)
+        off[row] = options[j, n, parity][row]
+    return mode, number, off
+
+
+def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
+    """Return how much of the motion at each boundary each mode has, shape ``(k, n)``."""
+    coefficients = 0.5 * (found.cosine - 1j * found.sine)
+    weighted = coefficients @ modes.mass
+    along = np.abs(np.einsum("kjn,khn->kjh", modes.shapes.conj(), weighted)) ** 2
+    against = np.abs(np.einsum("kjn,khn->kjh", modes.shapes, weighted)) ** 2
+    # A motion of negative turns has its shape at the harmonics below zero.
+    share = np.where(modes.turns[:, :, None] < 0, against, along)
+    # Two modes of one shape, whirling to and fro, differ by their harmonics.
+    shift = np.where(found.multiplier == 1, 0.0, 0.5)
+    number = np.arange(share.shape[-1]) + shift[:, None]
+    gap = number[:, None, :] - np.abs(modes.turns)[:, :, None]
+    value: Array = np.sum(share / (1.0 + gap**2), axis=-1)
+    return value
+
+
+def _apart(turns: float, phase: float) -> float:
+    """Return the distance of two phases in turns."""
+    gap = turns - phase / (2 * np.pi)
+    return float(abs(gap - np.round(gap)))
+
+
+Label = tuple[int, int, int]
+
+
+def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[int, Label]:
+    """Give each row a label of its own at the least cost."""
+    from scipy.optimize import linear_sum_assignment
+
+    labels = sorted(options)
+    if not labels or not rows:
+        return {}
+    cost = np.full((rows, len(labels)), _FORBIDDEN)
+    for column, label in enumerate(labels):
+        for row, value in options[label].items():
+            cost[row, column] = value
+    chosen = zip(*linear_sum_assignment(cost), strict=True)
+    return {int(r): labels[c] for r, c in chosen if cost[r, c] < _FORBIDDEN}

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, stability_chart
 from ..core.families import Array
+from ..frequencies import frozen_frequencies
 from ..periodic import floquet_multipliers
-from ..response.frozen import frozen_frequencies
 from .beale_tip import FLEXIBLE, rod
 from .records import Drawn, Quoted, Table
 from .style import legend_below, panel_title

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, beam_linkage, linear_system
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import steady_state
 from exudyn_beams import displacements, simulate, start_of
 
 pytestmark = pytest.mark.slow

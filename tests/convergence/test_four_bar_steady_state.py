@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import LinearRangeWarning
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.response.request import resampled
 from four_bar_beams import four_bar
 from periodic_systems import peak_gap

@@ -7,7 +7,7 @@ import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.floquet.first_order import canonical_form
 from elastolink.runtime.simulation.energy import energy_balance
-from elastolink.runtime.simulation.trajectory import simulate
+from elastolink.runtime.periodic import simulate
 from manufactured import manufactured
 
 SCENES = 200

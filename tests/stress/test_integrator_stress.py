@@ -7,7 +7,7 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.integrators import METHODS
-from elastolink.runtime.simulation import simulate
+from elastolink.runtime.periodic import simulate
 
 pytestmark = pytest.mark.filterwarnings("error")
 

@@ -17,7 +17,7 @@ from elastolink.runtime.frequencies import (
     natural_frequencies,
     pinned_frequency,
 )
-from elastolink.runtime.response import frozen_frequencies
+from elastolink.runtime.frequencies import frozen_frequencies
 from elastolink.runtime.scenes import load_scene
 
 

@@ -14,7 +14,8 @@ from elastolink.runtime.gallery import (
     figures,
 )
 from elastolink.runtime.gallery.beale_tip import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
-from elastolink.runtime.response import frozen_frequencies, steady_state
+from elastolink.runtime.frequencies import frozen_frequencies
+from elastolink.runtime.periodic import steady_state
 from gallery_rows import require_rows
 from rod_tip_deflections import TIPS
 

@@ -135,7 +135,7 @@ def exact_largest(system, profile, start, phases=(PHASE,)):
     first[-1] = 1.0
     if start == "steady":
         speed = float(profile.speeds[0])
-        steady = steady_state(system, speed, method="shooting", rtol=1e-10, stability=False)
+        steady = steady_state(system, speed, rtol=1e-10)
         first[:n], first[n : 2 * n] = steady.q.reshape(-1, n)[0], steady.qd.reshape(-1, n)[0]
     problem = SecondOrder(system, profile)
     return [largest(system, profile, *problem.march(first, phase)) for phase in phases]

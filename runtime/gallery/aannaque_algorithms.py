@@ -36,8 +36,9 @@ def second_order_form(
 def newmark_maps(system: LinearPeriodic, speed: float, intervals: int) -> tuple[Array, Array]:
     """Return maps ``(N, 2n, 2n)`` and loads ``(N, 2n)`` on (q, q') of Newmark's steps (6.5)."""
     arrays = second_order_form(system, speed, intervals)
-    ends = [np.concatenate([array, array[:1]]) for array in arrays]
-    whole = step_maps(newmark_rule(), *ends, system.period / intervals)
+    mass, rate, stiffness, force = (np.concatenate([array, array[:1]]) for array in arrays)
+    step = system.period / intervals
+    whole = step_maps(newmark_rule(), mass, rate, stiffness, force, step)
     return whole[:, :-1, :-1], whole[:, :-1, -1]
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
-from ..periodic import floquet_multipliers
 from ..frequencies import ResonanceCurve, frozen_frequencies, resonance_curve
+from ..periodic import floquet_multipliers
 from .beale_tip import FLEXIBLE, rod, tip_from_rest
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, crank_axis, legend_below

@@ -96,7 +96,7 @@ def _from_rest(
         states.append(ahead @ state)
         state = states[-1][-1]
     q = np.concatenate(states)[:, : system.size] * equation.scale[0]
-    theta = 2.0 * np.pi / len(flows) * np.arange(len(q))
+    theta: Array = 2.0 * np.pi / len(flows) * np.arange(float(len(q)))
     shapes = system.shapes(places, theta)
     if shapes is None:
         raise TypeError("a system without mode shapes has no tip")

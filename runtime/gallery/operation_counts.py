@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-
 # Tables 6.2 and 6.3 as printed, in millions: (N, n, cycles) to marching, algorithms 1 and 2 with
 # storage, the same without; (N, harmonics, n) to the Fourier series and algorithm 1.
 TABLE_6_2: Mapping[tuple[int, int, int], tuple[float, ...]] = MappingProxyType(

@@ -7,8 +7,7 @@ import json
 import numpy as np
 import pytest
 from elastolink.runtime.cli import main
-from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.periodic import steady_state
+from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.scenes import load_scene
 
 SCENE = "beale_1992_flexible_rod"

@@ -394,27 +394,20 @@ def test_what_is_not_used_is_not_loaded(what):
         assert not inside
 
 
-@pytest.mark.parametrize("method", ["harmonic_balance", "cyclic"])
+@pytest.mark.parametrize("method", ["auto", "harmonic_balance"])
 def test_asking_for_the_stability_of_a_response_is_what_computes_it(method, monkeypatch):
-    module = importlib.import_module("elastolink.runtime.response.steady_state")
-    made = Counter()
-    find = module.floquet_multipliers
+    module = importlib.import_module("elastolink.runtime.periodic.periodic_motion")
+    calls = Counter()
+    multipliers = module.floquet_multipliers
 
     def counting(*arguments, **options):
-        made["multipliers"] += 1
-        return find(*arguments, **options)
+        calls["multipliers"] += 1
+        return multipliers(*arguments, **options)
 
     monkeypatch.setattr(module, "floquet_multipliers", counting)
     system = el.load_scene(RIG, {"coupler.damping_ratio": 0.01}).system()
-    found = el.steady_state(system, [30.0, 40.0], method=method)
-    assert found.passed and np.all(found.peak() > 0.0) and np.all(found.error < 1e-6)
-    assert not made
-    assert found.stable.shape == found.distance.shape == (2,)
-    assert found.multipliers.shape == (2, 2) and made == {"multipliers": 1}
-    asked = el.steady_state(system, [30.0, 40.0], method=method, stability=True)
-    assert made == {"multipliers": 2}
-    assert np.array_equal(asked.multipliers, found.multipliers)
-    assert np.array_equal(asked.distance, found.distance)
-    without = el.steady_state(system, [30.0, 40.0], method=method, stability=False)
-    assert without.stable is None and np.all(np.isnan(without.distance))
-    assert made == {"multipliers": 2}
+    motion = el.steady_state(system, [30.0, 40.0], method=method)
+    assert motion.passed and np.all(motion.peak() > 0.0) and np.all(motion.error < 1e-6)
+    assert not calls
+    assert motion.stable.shape == motion.distance.shape == (2,)
+    assert motion.multipliers.shape == (2, 2) and calls == {"multipliers": 1}

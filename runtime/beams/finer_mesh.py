@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.errors import BadInput
 from ..core.families import MATRICES, LinearPeriodic
+from ..core.trigonometric import differentiated
 from .assembly import Array
 from .beam_motion import BeamMotion, standing
 from .structure import Beam, Structure
@@ -153,14 +154,13 @@ def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> 
     count : int
         Even crank angles.
     """
-    # Loaded here: the response knows frequencies, and these know beams.
-    from ..core.trigonometric import differentiated
-    from ..periodic.first_order import canonical_form
-    from ..response.collocation import points, ring_motion
+    # Loaded here: only this error estimate of the beams needs motions.
+    from ..periodic.equation import equation_of
+    from ..periodic.periodic_motion import ring_motion
+    from ..periodic.transition import method
 
-    form = canonical_form(system, speed, {}, forcing=True)
-    q, _, _ = ring_motion(form, points("radau"), intervals, count)
-    q = answered(system, speed, resampled(q, count))
+    equation = equation_of(system, speed, {}, forcing=True)
+    q = answered(system, speed, ring_motion(method("radau", 8), count, equation, intervals)[0][0])
     return q, speed * differentiated(q, system.period)
 
 
@@ -179,9 +179,6 @@ def answered(system: LinearPeriodic, speed: float, q: Array) -> Array:
     q : ndarray, shape (nt, n)
         Coordinates at even angles.
     """
-    # Loaded here: the reduction knows beams.
-    from ..core.trigonometric import differentiated
-
     period = system.period
     theta = period * np.arange(len(q)) / len(q)
     at = {name: system.array(name, theta, speed) for name in (*MATRICES, "f", "h", "p")}
@@ -197,17 +194,3 @@ def answered(system: LinearPeriodic, speed: float, q: Array) -> Array:
     stiffness = at["K"] + at["Kg"]
     rest = at["p"] - inertia - drag - (stiffness @ q[..., None])[..., 0]
     return np.asarray(q + np.linalg.solve(stiffness, rest[..., None])[..., 0])
-
-
-def resampled(values: Array, count: int) -> Array:
-    """Return samples ``(nt, n)`` of a periodic function at another number of angles."""
-    own = len(values)
-    if own == count:
-        return values
-    spectrum = np.fft.rfft(values, axis=0)
-    if own % 2 == 0:
-        spectrum[-1] *= 0.5
-    kept = np.zeros((count // 2 + 1, values.shape[1]), dtype=complex)
-    most = min(len(kept), len(spectrum))
-    kept[:most] = spectrum[:most]
-    return np.asarray(np.fft.irfft(kept, n=count, axis=0) * (count / own))

@@ -15,7 +15,6 @@ from elastolink.runtime.design.shape_stress import largest_by_shape
 from elastolink.runtime.integrators.gauss_legendre import gauss_maps
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.periodic import steady_state
-from elastolink.runtime.simulation.spring_form import periodic_derivative
 from honesty import verdict
 from scipy.interpolate import CubicSpline
 

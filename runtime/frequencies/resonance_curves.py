@@ -14,8 +14,8 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Result, provenance
-from .frozen import frozen_frequencies
-from .peaks import peak_error, quiet_state, require_shapes
+from ..periodic.peaks import peak_error, quiet_state, require_shapes
+from .held import frozen_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -146,7 +146,7 @@ def resonance_curve(
     rtol : float
         Wanted error of the periodic motions.
     **parameters : float
-        Parameter values that replace the system's own.
+        Parameter values that replace the system's.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def resonance_curve(
     Raises
     ------
     BadInput
-        As :func:`~.steady_state.steady_state`; and if the speeds do not rise.
+        As :func:`~..periodic.steady_state`; and if the speeds do not rise.
     """
     speeds = numbers("speed", speed)
     if not (isinstance(x, Real) and 0 <= x <= 1):
@@ -171,8 +171,8 @@ def resonance_curve(
     low, high = speeds[tops - 1], speeds[tops + 1]
     for _ in range(_PASSES if len(low) else 0):
         inside = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _WITHIN)
-        found = quiet_state(system, inside, rtol, parameters).peak(x)
-        best = np.argmax(np.nan_to_num(found), axis=1)
+        tried = quiet_state(system, inside, rtol, parameters).peak(x)
+        best = np.argmax(np.nan_to_num(tried), axis=1)
         rows = np.arange(len(low))
         low = inside[rows, np.maximum(best - 1, 0)]
         high = inside[rows, np.minimum(best + 1, _WITHIN - 1)]

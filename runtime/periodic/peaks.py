@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import LinearRangeWarning, bad
+from ..core.errors import LinearRangeWarning, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from ..periodic.first_order import canonical_form
-from .checks import warn_beyond
-from .result import SteadyState
-from .shooting import first_segments
-from .shot import check_work, in_parts
-from .steady_state import steady_state
+from .periodic_motion import SteadyState, steady_state
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,8 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _PLACES = 41
-# Speeds taken together: as many as help one another, and numbers in their motions.
-_TOGETHER = 64
+# Numbers in the motions of the speeds that are taken together, 32 MiB.
 _FLOATS = 2**22
 
 
@@ -103,14 +97,14 @@ def steady_peaks(
     rtol : float
         Wanted error of the periodic motions.
     progress : bool
-        Whether to show a progress bar (extra ``progress``).
+        Whether to show a progress bar.
     **parameters : float
-        Parameter values that replace the system's own.
+        Parameter values that replace the system's.
 
     Returns
     -------
     SteadyPeaks
-        Its checks: the worst of those of :func:`~.steady_state.steady_state` in all parts.
+        Its checks: the worst of those of :func:`~.periodic_motion.steady_state` in all parts.
 
     Warns
     -----
@@ -120,7 +114,7 @@ def steady_peaks(
     Raises
     ------
     BadInput
-        As :func:`~.steady_state.steady_state`, and if the speeds are no row, a place is not a
+        As :func:`~.periodic_motion.steady_state`, and if the speeds are no row, a place is not a
         number from 0 to 1, or the system has no mode shapes.
     """
     speeds = numbers("speed", speed)
@@ -133,9 +127,10 @@ def steady_peaks(
     out = {name: np.full(len(speeds), np.nan) for name in ("peak", "place", "error", "distance")}
     stable = np.zeros(len(speeds), dtype=bool)
     checks: dict[str, Check] = {}
+    together = max(1, _FLOATS // (512 * system.size))
     with bar(progress, len(speeds)) as tick:
-        done = 0
-        for part in _parts(system, speeds, parameters):
+        for begin in range(0, len(speeds), together):
+            part = slice(begin, min(begin + together, len(speeds)))
             state = quiet_state(system, speeds[part], rtol, parameters)
             peaks = state.peak(places)
             at = places[np.argmax(np.nan_to_num(peaks), axis=1)]
@@ -144,11 +139,10 @@ def steady_peaks(
                 row[part] = value
             stable[part] = state.stable
             _join(checks, state.checks)
-            done += len(part)
             if tick is not None:
-                tick(done)
+                tick(part.stop)
     if "linear range" in checks:
-        warn_beyond(checks["linear range"].value)
+        warn_of_large_deflection(checks["linear range"].value)
     return SteadyPeaks(
         method=state.method,
         error=out["error"],
@@ -168,20 +162,6 @@ def require_shapes(where: str, system: LinearPeriodic) -> None:
     if system.shapes(np.zeros(1), np.zeros(1)) is None:
         fix = "take stress_curve for a structure of beams, or steady_state and its q"
         raise bad(where, "a system without mode shapes", "one with them", fix)
-
-
-def _parts(
-    system: LinearPeriodic, speeds: Array, parameters: Mapping[str, float]
-) -> Iterator[NDArray[np.intp]]:
-    """Yield the speeds that are taken together: of like numbers of segments."""
-    form = canonical_form(system, speeds, parameters, forcing=True)
-    first = np.concatenate([first_segments(part) for part in in_parts(form)])
-    check_work(form, first)
-    for number in np.unique(first)[::-1]:
-        group = np.flatnonzero(first == number)
-        together = int(np.clip(_FLOATS // (4 * number * system.size), 1, _TOGETHER))
-        for begin in range(0, len(group), together):
-            yield group[begin : begin + together]
 
 
 def quiet_state(
@@ -209,7 +189,7 @@ def _badness(check: Check) -> float:
 
 
 def peak_error(state: SteadyState, places: Array) -> Array:
-    """Return the error of the peak deflection over itself, of each motion at its own place.
+    """Return the error of the peak deflection over itself, of each motion at its place.
 
     Parameters
     ----------
@@ -229,9 +209,9 @@ def peak_error(state: SteadyState, places: Array) -> Array:
         top = np.max(np.abs(bent))
         if not (np.isfinite(top) and top > 0):
             continue
-        own = float((np.max(np.abs(q), axis=0) * error) @ np.max(np.abs(here), axis=0))
+        error_here = float((np.max(np.abs(q), axis=0) * error) @ np.max(np.abs(here), axis=0))
         # Between even angles, a wave of harmonic k is lower at the nearest by (k step/2)^2/2.
         waves = np.abs(np.fft.rfft(bent))
         turn = float(np.sum(waves * np.arange(len(waves)) ** 2) / np.max(waves))
-        out[k] = own / top + turn * (np.pi / len(state.theta)) ** 2 / 2
+        out[k] = error_here / top + turn * (np.pi / len(state.theta)) ** 2 / 2
     return out

@@ -9,8 +9,7 @@ import scipy.linalg
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.core.families import LinearPeriodic, Term, array_function
 from elastolink.runtime.floquet.boundary_speeds import speed_boundaries
-from elastolink.runtime.floquet.monodromy_matrix import floquet_multipliers
-from elastolink.runtime.periodic import simulate
+from elastolink.runtime.periodic import floquet_multipliers, simulate
 from scipy.integrate import solve_ivp
 
 UNIT = {

@@ -12,6 +12,7 @@ from elastolink.runtime.core.families import DAMPING, Term
 from elastolink.runtime.hill.form import is_hill
 from elastolink.runtime.periodic.energy import energy_balance
 from elastolink.runtime.periodic.equation import equation_of
+from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss
 from rod_newton import PlainBasis, Rod, linear_forces, second_order

@@ -191,7 +191,7 @@ def bending_at_midpoint(
 
     The motion is that of another system where one is given, the stress by the first one's shapes.
     """
-    from ..beams import recover
+    from ..recovery import recover
 
     motion = periodic(system if moving is None else moving, _SPEED)
     with warnings.catch_warnings():

@@ -188,7 +188,7 @@ def _stiffening_row() -> Quoted:
 @lru_cache(maxsize=1)
 def _hybrid_curve() -> Array:
     """Return the largest stress of all links [Pa] of the "exact" model, by cubic shapes."""
-    from ..beams import stress_operator
+    from ..recovery import stress_operator
 
     motion = periodic(hybrid_model(), _FEWER, rtol=1e-3)
     form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]

@@ -9,8 +9,6 @@
     The motion from a start, over any number of revolutions.
 ``prepare``
     Tables for a range of speeds: later answers take micro- or milliseconds.
-``stress_curve``
-    The largest stress of each link of a structure of beams at a thousand speeds.
 
 All of them rest on :mod:`~.transition`: collocation over segments of the period, in steps that suit
 the modes that are still alive after it.  The names load on first use.
@@ -35,7 +33,6 @@ if TYPE_CHECKING:
     from .periodic_motion import SteadyState, steady_state
     from .prepared import Prepared, prepare
     from .reduced import ReducedSystem, reduced_system
-    from .stresses import StressCurve, stress_curve
 
 _PUBLIC = {
     "FloquetMultipliers": "multipliers",
@@ -44,7 +41,6 @@ _PUBLIC = {
     "ReducedSystem": "reduced",
     "SteadyPeaks": "peaks",
     "SteadyState": "periodic_motion",
-    "StressCurve": "stresses",
     "Trajectory": "motion",
     "cycles_to_settle": "multipliers",
     "floquet_multipliers": "multipliers",
@@ -54,7 +50,6 @@ _PUBLIC = {
     "simulate": "motion",
     "steady_peaks": "peaks",
     "steady_state": "periodic_motion",
-    "stress_curve": "stresses",
 }
 
 __all__ = [
@@ -64,7 +59,6 @@ __all__ = [
     "ReducedSystem",
     "SteadyPeaks",
     "SteadyState",
-    "StressCurve",
     "Trajectory",
     "cycles_to_settle",
     "floquet_multipliers",
@@ -74,7 +68,6 @@ __all__ = [
     "simulate",
     "steady_peaks",
     "steady_state",
-    "stress_curve",
 ]
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -15,10 +15,11 @@ from beam_motions import (
     steadily,
     turning_bar,
 )
-from elastolink.runtime.beams import Section, frame, linear_system, linkage_system, stress
-from elastolink.runtime.beams.stress import stress_operator
+from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.periodic import simulate, steady_state
+from elastolink.runtime.recovery import stress
+from elastolink.runtime.recovery.stresses import stress_operator
 from elastolink.runtime.systems import with_modal_damping
 
 

@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..beams.assembly import Array
+from ..beams.structure import Beam, Structure
 from ..core.errors import BadInput
 from ..core.families import MATRICES, LinearPeriodic
 from ..core.trigonometric import differentiated
-from .assembly import Array
 from .beam_motion import BeamMotion, standing
-from .structure import Beam, Structure
 
 # The finer mesh is not the last one: where a resonance is near both may be off to one side.
 CAUTION = 3.0

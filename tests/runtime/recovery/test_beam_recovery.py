@@ -14,18 +14,11 @@ from beam_motions import (
     steadily,
     turning_bar,
 )
-from elastolink.runtime.beams import (
-    KINDS,
-    BeamMotion,
-    Section,
-    frame,
-    linear_system,
-    linkage_system,
-    recover,
-)
+from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linkage_system
 from elastolink.runtime.beams.element_forms import ElementForms
-from elastolink.runtime.beams.recovery import recovery, stations_of
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.recovery import BeamMotion, recover
+from elastolink.runtime.recovery.beam_forces import recovery, stations_of
 from elastolink.runtime.simulation.spring_form import periodic_derivative
 from elastolink.runtime.systems import with_modal_damping
 

@@ -10,17 +10,25 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..beams.recovery_forms import LinearForm, stacked
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
-from .assembly import Array
+from .beam_forces import (
+    METHODS,
+    Station,
+    evaluated,
+    propagated,
+    recovery,
+    require_method,
+    stations_of,
+)
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import StationResult, in_motion, stations_on
-from .element_forms import ElementForms, required_structure
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-from .recovery import METHODS, Station, evaluated, propagated, recovery, require_method, stations_of
-from .recovery_forms import LinearForm, stacked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -365,7 +373,7 @@ class StressResult(StationResult):
 
         Of a structure that stands still, the stress along the beams.
         """
-        from .stress import draw
+        from .stresses import draw
 
         return draw(self, ax)
 

@@ -11,19 +11,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..beams.element_forms import required_structure
-from ..beams.recovery import METHODS, Recovery, recovery
 from ..beams.recovery_forms import RIGID, LinearForm
-from ..beams.stress import fibre_factors
 from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import differentiated, even_angles
-from .equation import equation_of
-from .multipliers import floquet_multipliers
-from .periodic_motion import by_segments
-from .swept_motions import Growth, Truncations, speed_ranges
-from .truncation import arrays_at
+from ..periodic.equation import equation_of
+from ..periodic.multipliers import floquet_multipliers
+from ..periodic.periodic_motion import by_segments
+from ..periodic.swept_motions import Growth, Truncations, speed_ranges
+from ..periodic.truncation import arrays_at
+from .beam_forces import METHODS, Recovery, recovery
+from .stresses import fibre_factors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

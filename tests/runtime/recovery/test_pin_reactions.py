@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
-from elastolink.runtime.beams import Section, frame, linear_system, linkage_system, pin_reactions
-from elastolink.runtime.beams.strain_energy import beam_energies
+from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import SliderCrank
+from elastolink.runtime.recovery import pin_reactions
+from elastolink.runtime.recovery.strain_energy import beam_energies
 from elastolink.runtime.rigid import Machine, MassDistribution, rigid_forces
 from elastolink.runtime.systems import with_modal_damping
 

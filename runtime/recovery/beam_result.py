@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms
+from ..beams.recovery_forms import LinearForm
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result, provenance
-from .assembly import Array
 from .beam_motion import BeamMotion, chunks
-from .element_forms import ElementForms
-from .recovery_forms import LinearForm
 
 # Fields that are worked out when they are first looked at.
 _LATER = {name: DeferredField() for name in ("error", "error_norm")}

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..beams.recovery_forms import LinearForm
 from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
-from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
-from .element_forms import ElementForms, required_structure
 from .finer_mesh import CAUTION, on_finer_mesh
-from .recovery_forms import LinearForm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion
-from elastolink.runtime.beams import elastic_coupler_curve, frame, linear_system, linkage_system
+from elastolink.runtime.beams import frame, linear_system, linkage_system
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.recovery import elastic_coupler_curve
 
 LENGTH = FOUR_BAR.lengths["coupler"]
 

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..beams.assembly import Array
+from ..beams.element_forms import required_structure
+from ..beams.structure import Beam
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
 from ..core.results import Result
-from .assembly import Array
+from .beam_forces import recovery
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import in_motion
-from .element_forms import required_structure
 from .finer_mesh import CAUTION, on_finer_mesh
-from .recovery import recovery
-from .structure import Beam
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

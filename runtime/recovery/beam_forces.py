@@ -16,18 +16,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..beams.elements import placed_rotation, placed_shapes
+from ..beams.recovery_forms import LinearForm, stacked
+from ..beams.structure import Beam, PlacedElement, Structure
 from ..core.deferred import DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
-from .assembly import Array
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import StationResult, in_motion, stations_on
-from .element_forms import ElementForms, required_structure
-from .elements import placed_rotation, placed_shapes
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
-from .recovery_forms import LinearForm, stacked
-from .structure import Beam, PlacedElement, Structure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
 from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linkage_system
-from elastolink.runtime.beams.strain_energy import beam_energies
+from elastolink.runtime.recovery.strain_energy import beam_energies
 from elastolink.runtime.systems import with_modal_damping
 
 VISCOUS = {name: replace(s, retardation=3e-5) for name, s in SECTIONS.items()}

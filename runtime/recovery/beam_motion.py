@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from ..beams.assembly import Array
+from ..beams.element_forms import required_structure
 from ..core.errors import BadInput, LinearRangeWarning, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
-from .assembly import Array
-from .element_forms import required_structure
 
 if TYPE_CHECKING:
     from ..periodic import SteadyState, Trajectory

@@ -15,19 +15,16 @@ from beam_motions import (
     steadily,
     turning_bar,
 )
-from elastolink.runtime.beams import (
-    Section,
+from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
+from elastolink.runtime.core.families import Term
+from elastolink.runtime.recovery import (
     beam_energies,
     elastic_coupler_curve,
-    frame,
-    linear_system,
-    linkage_system,
     pin_reactions,
     recover,
     stress,
 )
-from elastolink.runtime.beams.finer_mesh import finer_structure, finer_system, solved
-from elastolink.runtime.core.families import Term
+from elastolink.runtime.recovery.finer_mesh import finer_structure, finer_system, solved
 from elastolink.runtime.systems import with_modal_damping
 
 APART = "apart"

@@ -3,9 +3,9 @@
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.beams.stress import stress
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.periodic import stress_curve
+from elastolink.runtime.recovery import stress_curve
+from elastolink.runtime.recovery.stresses import stress
 
 SPEEDS = np.linspace(18.0, 60.0, 90)
 

@@ -138,8 +138,7 @@ def table_of(
     size = equation_at(np.array([high])).size
     if nodes is None:
         nodes = _NODES if 2 * size < _SMALL else _NODES_OF_LARGE
-    if low == high:
-        nodes = 1
+    nodes = 1 if low == high else nodes
     while True:
         middle, reach = 0.5 * (low + high), 0.5 * (high - low)
         equation = equation_at(np.asarray(middle + reach * chebyshev.nodes(nodes)))

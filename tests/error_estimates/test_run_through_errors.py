@@ -14,7 +14,7 @@ from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.shape_stress import largest_by_shape
 from elastolink.runtime.integrators.gauss_legendre import gauss_maps
 from elastolink.runtime.linkages.linkage import LinkMotion
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.simulation.spring_form import periodic_derivative
 from honesty import verdict
 from scipy.interpolate import CubicSpline
@@ -135,7 +135,7 @@ def exact_largest(system, profile, start, phases=(PHASE,)):
     first[-1] = 1.0
     if start == "steady":
         speed = float(profile.speeds[0])
-        steady = steady_state(system, speed, method="shooting", rtol=1e-10, stability=False)
+        steady = steady_state(system, speed, rtol=1e-10)
         first[:n], first[n : 2 * n] = steady.q.reshape(-1, n)[0], steady.qd.reshape(-1, n)[0]
     problem = SecondOrder(system, profile)
     return [largest(system, profile, *problem.march(first, phase)) for phase in phases]

@@ -13,8 +13,6 @@ Who uses it says which equation, which variable, how long the stretches and how 
 ====================================  =========================  ==================================
 module                                variable                   solution of a stretch
 ====================================  =========================  ==================================
-``floquet.turn_series`` (charts)      any; 1/w or 1/w^2 mostly   power series, modal coordinates
-``floquet.speed_tables`` (bands)      1/w                        the same, compared with collocation
 ``prepared.table``                    1/w                        power series, at angles inside too
 ``reduction.growth`` (stress curves)  1/w                        Magnus, order six: 1e-4 is enough
 ``simulation.power_series``           none                       power series from Fourier series

@@ -19,7 +19,7 @@ from .edges.mode_labels import Modes, principal_labels
 from .edges.pair_roots import Edges, PairFunction, refined_edges
 from .edges.phase_events import Events, meetings, sampled_phases
 from .edges.regions import Regions, joined
-from .edges.tracing import REAL, StabilityEdges, combined_regions
+from .edges.tracing import REAL, Described, StabilityEdges, combined_regions
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -202,7 +202,7 @@ class _Pairs:
         return found
 
 
-def _principal(events: Events, edges: Edges, described: _Described) -> Regions:
+def _principal(events: Events, edges: Edges, described: Described) -> Regions:
     """Return the bands in which a mode's own multipliers meet, with labels."""
     kept = np.abs(np.sin(edges.phase)) <= np.sqrt(REAL)
     index = _single(edges, np.flatnonzero(kept))

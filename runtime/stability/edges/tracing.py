@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
-_Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
+Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
 
 # Relative width from which a tongue gets samples of its own on either side.
 _WIDE = 1e-6
@@ -285,7 +285,7 @@ def combined_regions(
     events: Events,
     edges: Edges,
     parameters: Mapping[str, float],
-    described: _Described | None = None,
+    described: Described | None = None,
 ) -> Regions:
     """Return the combination regions in which pairs meet, with labels.
 

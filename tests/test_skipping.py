@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 from elastolink.derive.spec import read_manifest
 from elastolink.runtime import beams
+from elastolink.runtime.cli.skipping import read_cost
 from elastolink.runtime.rigid import evaluation, forces
-from elastolink.runtime.skipping import read_cost
 from elastolink.runtime.systems import assembly
 
 PACKAGED = Path(elastolink.generated.__path__[0])

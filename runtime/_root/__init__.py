@@ -62,7 +62,7 @@ _PUBLIC = {
     "driving_torque": "rigid",
     "dynamic_stiffness": "frequencies",
     "estimate_sweep": "sweeps",
-    "explain": "skipping",
+    "explain": "cli.skipping",
     "fatigue": "design",
     "find_module": "systems",
     "floquet_multipliers": "periodic",

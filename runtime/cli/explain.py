@@ -21,7 +21,7 @@ def add(commands: Any) -> None:
 
 
 def _explain(options: argparse.Namespace) -> int:
-    from ..skipping import explain
+    from .skipping import explain
 
     opt.picture(options)  # refused before the work starts
     result = explain(options.scene, opt.settings(options.set))

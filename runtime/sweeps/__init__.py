@@ -7,9 +7,9 @@ from ..core.lazy import on_first_use
 _PUBLIC = {
     "Sweep": "result",
     "SweepEstimate": "estimate",
-    "WorkersLost": "workers",
+    "WorkersLost": ".core.workers",
     "estimate_sweep": "estimate",
-    "process_pool": "workers",
+    "process_pool": ".core.workers",
     "sweep": "sweeping",
 }
 

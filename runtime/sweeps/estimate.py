@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..core.workers import check_workers
 from .sweeping import planned
-from .workers import check_workers
 
 
 @dataclass(frozen=True)

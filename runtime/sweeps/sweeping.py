@@ -16,13 +16,13 @@ from ..core.errors import bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.progress import bar
 from ..core.results import Check, provenance
+from ..core.workers import Workers, check_executor
 from ..scenes import Scene
 from .pieces import Grid, check_chunk, grid_of
 from .requests import request_of
 from .result import Sweep
 from .store import Joined, Store
 from .tasks import NAMED, Outputs, Piece, Task, checks_of, task_of, told_of, worst
-from .workers import Workers, check_executor
 
 AnyArray = NDArray[Any]
 

@@ -9,7 +9,7 @@ import json
 from pathlib import Path
 
 import elastolink.generated
-from elastolink.runtime.skipping import read_cost
+from elastolink.runtime.cli.skipping import read_cost
 
 STORED = Path(__file__).with_name("emitted_costs.json")
 PACKAGED = Path(elastolink.generated.__path__[0])

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ...core.families import Array, LinearPeriodic
 from ...core.results import Check
+from ...core.workers import Workers
 from ...periodic import floquet_multipliers
-from ...sweeps.workers import Workers
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
 from .sampling import Sampler, Series
 from .structure import damping_rate, on_grid

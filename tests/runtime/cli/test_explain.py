@@ -14,8 +14,8 @@ import elastolink.generated
 import numpy as np
 import pytest
 from elastolink.runtime.cli import main
+from elastolink.runtime.cli.skipping import Explanation, explain, probe, read_cost
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.skipping import Explanation, explain, probe, read_cost
 
 GENERATED = Path(elastolink.generated.__path__[0])
 RIG = "smith_1972_5152_sixteenth_inch"

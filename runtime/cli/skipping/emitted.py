@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..core.errors import bad
+from ...core.errors import bad
 
 _COUNT = re.compile(r"^ {4}(\w+): (\d+) operations?$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"Left out of the energies: ([^.]*)\.")

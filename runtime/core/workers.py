@@ -19,8 +19,8 @@ from functools import partial
 from itertools import islice
 from typing import Any
 
-from ..core.errors import ElastolinkError, bad
-from ..core.inputs import require_whole
+from .errors import ElastolinkError, bad
+from .inputs import require_whole
 
 # Pieces handed over for each worker: one being done and one waiting.
 _EACH = 2

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..core.families import MATRICES, VECTORS, LinearPeriodic
-from ..periodic.equation import SPEED_POWER, equation_of
+from ...core.families import MATRICES, VECTORS, LinearPeriodic
+from ...periodic.equation import SPEED_POWER, equation_of
 from .emitted import EmittedCost
 
 

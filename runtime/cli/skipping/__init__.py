@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..core.lazy import on_first_use
+from ...core.lazy import on_first_use
 
 if TYPE_CHECKING:
     from .emitted import EmittedCost, read_cost

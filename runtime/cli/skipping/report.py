@@ -11,12 +11,12 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ...derive.spec import BEAM_FORMULATIONS, Entry, ModelSpec, read_manifest
-from ..core.errors import ElastolinkError, bad
-from ..core.families import LinearPeriodic
-from ..core.modules import search_path
-from ..core.results import Check, provenance
-from ..scenes import Scene, load_scene
+from ....derive.spec import BEAM_FORMULATIONS, Entry, ModelSpec, read_manifest
+from ...core.errors import ElastolinkError, bad
+from ...core.families import LinearPeriodic
+from ...core.modules import search_path
+from ...core.results import Check, provenance
+from ...scenes import Scene, load_scene
 from .emitted import EmittedCost, read_cost
 from .evaluation import Evaluated, of_entries, of_linear
 from .explanation import EmittedUse, Explanation, Stage
@@ -222,7 +222,7 @@ def _last(name: str) -> str:
 
 def _choices(spec: ModelSpec) -> tuple[str, ...]:
     """Return the terms that the packaged model of a spec can leave out."""
-    from ...derive.catalogue import find
+    from ....derive.catalogue import find
 
     try:
         return find(spec).choices.drop
@@ -236,7 +236,7 @@ def _terms(scene: Scene) -> dict[str, str]:
     offered: tuple[str, ...] = _choices(spec)
     dropped = set(spec.drop)
     if scene.model["formulation"] in BEAM_FORMULATIONS:
-        from ..scenes.beam_tables import DROPPED
+        from ...scenes.beam_tables import DROPPED
 
         offered, dropped = DROPPED, set(scene.model["drop"])
     return {name: "dropped" if name in dropped else "kept" for name in sorted(offered)}

@@ -32,7 +32,7 @@ class Counter:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Count what happens inside under a name; a refusal of the toolkit ends the stage."""
-        from ..core.errors import ElastolinkError
+        from ...core.errors import ElastolinkError
 
         self._calls, refused = {}, ""
         sys.setprofile(self._watch)
@@ -106,7 +106,7 @@ def main() -> None:
 def _scene(request: dict[str, Any]) -> Any:
     if "scene" in request:
         return pickle.loads(request["scene"])
-    from ..scenes import load_scene
+    from ...scenes import load_scene
 
     return load_scene(request["name"], request["overrides"])
 
@@ -139,7 +139,7 @@ def _rigid(scene: Any) -> Iterator[tuple[str, Callable[[], object]]]:
 
     def ask(*outputs: str) -> Callable[[], object]:
         def act() -> object:
-            from ..rigid import rigid_forces
+            from ...rigid import rigid_forces
 
             return rigid_forces(machine, theta, speed, outputs=outputs)  # type: ignore[arg-type]
 
@@ -164,17 +164,17 @@ def _moved(linkage: Any) -> Any:
 
 def _linear(system: Any, speed: float) -> Iterator[tuple[str, Callable[[], object]]]:
     def multipliers() -> object:
-        from ..periodic import floquet_multipliers
+        from ...periodic import floquet_multipliers
 
         return floquet_multipliers(system, speed)
 
     def response() -> object:
-        from ..periodic import steady_state
+        from ...periodic import steady_state
 
         return steady_state(system, speed)
 
     def frequencies() -> object:
-        from ..frequencies import natural_frequencies
+        from ...frequencies import natural_frequencies
 
         return natural_frequencies(system)
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..core.plotting import axes_or_new
-from ..core.results import Result
+from ...core.plotting import axes_or_new
+from ...core.results import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 from numpy.typing import NDArray
 
-from .second_order import Series
+from ..simulation.second_order import Series
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -23,8 +23,8 @@ from ..integrators.radau import radau_tableau
 from ..integrators.tableau import gauss_tableau
 from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
+from ..simulation.second_order import combined, even_samples, term_samples
 from .request import Found, Request, peaks, resampled, whole_option, word_option
-from .second_order import combined, even_samples, term_samples
 from .stepped import ring_closing, stepped
 
 Array = NDArray[np.float64]

@@ -18,10 +18,10 @@ from ..core.errors import bad
 from ..core.results import Check
 from ..core.trigonometric import even_angles
 from ..periodic.first_order import CanonicalForm
+from ..simulation.second_order import Series, even_count, series_of
 from .balance_matrix import real_matrix
 from .checks import check_memory
 from .request import Found, Request, peaks, whole_option
-from .second_order import Series, even_count, series_of
 from .slow_balance import Balanced, balanced_slowly
 from .steering import harmonics_of
 

@@ -20,9 +20,9 @@ from ..core.trigonometric import even_angles
 from ..integrators.expm import expm
 from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
+from ..simulation.second_order import even_count, second_order
 from .harmonic_balance import by_harmonic_balance
 from .request import Found, Request, peaks, resampled, whole_option
-from .second_order import even_count, second_order
 
 Array = NDArray[np.float64]
 

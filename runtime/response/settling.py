@@ -12,8 +12,8 @@ from ..core.inputs import numbers
 from ..core.results import Check
 from ..integrators.newmark import StepRule, acceleration
 from ..periodic.first_order import CanonicalForm
+from ..simulation.second_order import even_count, second_order
 from .request import Found, Request, number_option, peaks, whole_option
-from .second_order import even_count, second_order
 from .stepped import Item, joined, period_maps, refined, ring_closing, rule_from
 
 Array = NDArray[np.float64]

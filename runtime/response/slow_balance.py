@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..periodic.first_order import CanonicalForm
+from ..simulation.second_order import even_count
 from .request import peaks, resampled
-from .second_order import even_count
 from .slow_modes import slow_modes
 from .speed_parts import speed_parts
 from .steering import Equation, Steering

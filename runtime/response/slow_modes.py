@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..core.errors import BadInput
 from ..core.trigonometric import even_angles
 from ..periodic.first_order import CanonicalForm
-from .second_order import keep
+from ..simulation.second_order import keep
 from .speed_parts import SpeedParts
 
 Array = NDArray[np.float64]

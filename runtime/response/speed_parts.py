@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..periodic.equation import SPEED_POWER
 from ..periodic.first_order import CanonicalForm
-from .second_order import keep, second_order
+from ..simulation.second_order import keep, second_order
 
 Array = NDArray[np.float64]
 

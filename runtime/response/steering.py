@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..simulation.second_order import Series
 from .balance_matrix import real_matrix
 from .request import resampled
-from .second_order import Series
 from .slow_modes import SlowModes
 from .speed_parts import SpeedParts
 

@@ -14,8 +14,8 @@ from ..core.trigonometric import even_angles
 from ..integrators.newmark import StepRule, generalized_alpha_rule, newmark_rule, step_maps
 from ..periodic.first_order import CanonicalForm
 from ..periodic.ring import solve_ring
+from ..simulation.second_order import even_count, second_order
 from .request import Found, Request, number_option, peaks, resampled, whole_option, word_option
-from .second_order import even_count, second_order
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from ..integrators import de_vogelaere as _de_vogelaere
 from ..integrators.newmark import RULES, StepRule, acceleration, step_maps
 from ..periodic.first_order import CanonicalForm
 from ..periodic.transition import product as ordered_product
-from ..response.second_order import second_order_at
+from .second_order import second_order_at
 from .spring_form import spring_generator
 
 Array = NDArray[np.float64]

@@ -17,9 +17,9 @@ from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from ..frequencies.marked_speeds import MarkedSpeeds, meissner_speeds, multiplier_maxima
 from .critical_scan import scanned_deflections
 from .held import buckling_speed, held_frequencies, require_system
+from .marked_speeds import MarkedSpeeds, meissner_speeds, multiplier_maxima
 from .natural import natural_frequencies
 
 if TYPE_CHECKING:

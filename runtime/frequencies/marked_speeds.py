@@ -37,8 +37,6 @@ _MOST_SAMPLES = 4000
 _ROUNDS = 12
 # Relative step at which a maximum is found: beyond, the values say no more.
 _CLOSE = 1e-7
-
-
 # Lowest frequency left out, over the highest wanted and over the highest kept.
 _BEYOND, _GAP = 4.0, 1.3
 # Relative step of the speed by which frequencies are told.

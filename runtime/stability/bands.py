@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,17 +19,12 @@ from .edges.mode_labels import Modes, principal_labels
 from .edges.pair_roots import Edges, PairFunction, refined_edges
 from .edges.phase_events import Events, meetings, sampled_phases
 from .edges.regions import Regions, joined
-from .edges.tracing import StabilityEdges, combined_regions
+from .edges.tracing import REAL, Described, StabilityEdges, combined_regions
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-_Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
 
 _MARGIN = 1.05
-# Sine of the argument up to which two multipliers meet at +-1.
-_REAL = 1e-4
-
-
 _TOGETHER = 256
 # Angles and speeds at which frequencies are worked out; between speeds they change little.
 _ANGLES, _SPEEDS = 64, 65
@@ -156,7 +149,7 @@ class _Pairs:
         self._events = meetings(samples)
         pairs = refined_edges(function, self._events)
         self._combined = combined_regions(system, self._events, pairs, {}, self._described)
-        self._usable = np.abs(np.sin(pairs.phase)) > _REAL
+        self._usable = np.abs(np.sin(pairs.phase)) > REAL
         # Width that each pair was searched down to.
         self.least = float(np.max(np.concatenate([edges.least, pairs.least]), initial=0.0))
 
@@ -209,9 +202,9 @@ class _Pairs:
         return found
 
 
-def _principal(events: Events, edges: Edges, described: _Described) -> Regions:
+def _principal(events: Events, edges: Edges, described: Described) -> Regions:
     """Return the bands in which a mode's own multipliers meet, with labels."""
-    kept = np.abs(np.sin(edges.phase)) <= np.sqrt(_REAL)
+    kept = np.abs(np.sin(edges.phase)) <= np.sqrt(REAL)
     index = _single(edges, np.flatnonzero(kept))
     lower, upper, phase = edges.lower[index], edges.upper[index], edges.phase[index]
     reach = events.reach[index]

@@ -32,8 +32,6 @@ _FAIR = 0.01
 _NEARLY_DOUBLE = 1e-6
 # Relative imaginary part up to which a root of the truncated problem counts as a double real one.
 _NEARLY_REAL = 1e-6
-
-
 _MOST_BOUNDARIES = 256
 # Most that a singular value, relative to the matrix, may be and still count as zero.
 _MOST_DEFECT = 0.01

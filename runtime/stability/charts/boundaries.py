@@ -17,11 +17,7 @@ from .structure import is_damped
 _MOST_ROWS = 121
 _MOST_DAMPED_ROWS = 41
 _MOST_REGIONS = 24
-
-
 _EPS = float(np.finfo(float).eps)
-
-
 # More functions than this cost more together than row by row.
 _MOST_FUNCTIONS = 2
 # Steps towards the K that belongs to the lam2 of an end, and the change that ends them.

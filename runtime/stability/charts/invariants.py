@@ -24,8 +24,6 @@ _CLOSED = 4
 _TOGETHER = 8
 
 Moduli = tuple[Array, NDArray[np.bool_], Array]
-
-
 _EPS = float(np.finfo(float).eps)
 # Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues do
 # better.

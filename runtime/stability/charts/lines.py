@@ -27,8 +27,6 @@ _JUDGED = 5
 _STAGES = (4, 5, 6, 8, 10)
 # Chebyshev nodes of a line to begin with.
 _NODES = 20
-
-
 _EPS = float(np.finfo(float).eps)
 # Nodes to begin with on a line, and lines across it.
 _FIRST, _FEWEST_LINES = 32, 9
@@ -40,6 +38,7 @@ _NOISE = 1e-12
 _WIDE = 1e8
 # Tails beyond this are no round-off.
 _SMALL = 1e-8
+
 Tick = Callable[[int], None] | None
 # Value of the outer axis, ends and values of the variable of the inner one.
 _Place = tuple[float, float, float, Array]

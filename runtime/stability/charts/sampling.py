@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _FIRST, _MOST = 16, 512
 # Flops, roughly, that one chart may cost: an hour or so.
 _MOST_WORK = 1e13
-# Phase of a stretch of the turn, and what the series of one cost, in products of matrices.
+# Phase of a segment of the period, and what the series of one cost, in products of matrices.
 _PHASE, _PER_LINE = 4.0, 3000
 # The same of a point alone, and the flops that its system costs where it is made anew.
 _PER_POINT, _MAKING = 300, 1.4e8
@@ -145,7 +145,7 @@ class Sampler:
         Raises
         ------
         BadInput
-            If modes, points and stretches of the turn amount to more than an hour or so.
+            If modes, points and segments of the turn amount to more than an hour or so.
         """
         corner: dict[str, Any] = {
             name: np.asarray([a[i] for i in pick], dtype=float)
@@ -156,16 +156,16 @@ class Sampler:
         }
         speed = corner.pop("speed", np.ones(4))
         rate = float(np.max(canonical_form(self.system, speed, corner).rate))
-        stretches = max(8.0, rate * self.system.period / _PHASE)
+        segments = max(8.0, rate * self.system.period / _PHASE)
         product = 2.0 * (2 * self.system.size) ** 3
-        work = lines * (nodes + _PER_LINE) * stretches * product
+        work = lines * (nodes + _PER_LINE) * segments * product
         if all(name in self.system.geometry for name in self.names):
-            work = lines * nodes * (_PER_POINT * stretches * product + _MAKING)
+            work = lines * nodes * (_PER_POINT * segments * product + _MAKING)
         if work > _MOST_WORK:
             raise bad(
                 "stability_chart",
                 f"{self.system.size} modes, {lines} lines of {nodes} points, up to "
-                f"{stretches:.2g} stretches of the turn each",
+                f"{segments:.2g} segments of the period each",
                 f"at most {_MOST_WORK / work:.2g} of that",
                 "raise the lowest speed, give fewer modes or points, or narrower axes",
             )

@@ -28,8 +28,6 @@ Index = NDArray[np.intp]
 _EPS = float(np.finfo(float).eps)
 _TOGETHER = 256
 _ROUNDS = 6
-
-
 _Growth = Callable[[Index, Array], tuple[Array, Array]]
 # Places at which growth is looked for, in half widths from the middle of the undamped region.
 _PLACES = np.linspace(-1.5, 1.5, 13)

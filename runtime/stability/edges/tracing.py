@@ -34,18 +34,15 @@ from .regions import Regions, joined
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
-_Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
+Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
 
 # Relative width from which a tongue gets samples of its own on either side.
 _WIDE = 1e-6
 # Sine of the argument up to which two multipliers meet at +-1.
-_REAL = 1e-4
-
-
+REAL = 1e-4
 _RPM = 30.0 / np.pi
 _CLOSED = "closed: too narrow to be told from none"
 _COLOURS = {"principal": "#c05a1f", "sum": "#6b3d8f", "difference": "#2b7a78"}
@@ -275,7 +272,7 @@ def _undamped(
         [principal.lower, principal.upper, edges.lower, edges.upper, events.inside]
     )
     # A pair that leaves the circle at +-1 belongs to a principal region.
-    usable = np.abs(np.sin(edges.phase)) > _REAL
+    usable = np.abs(np.sin(edges.phase)) > REAL
     if whole:
         combined = mended(system, combined, usable, (span, near), rtol, parameters)
     else:
@@ -288,7 +285,7 @@ def combined_regions(
     events: Events,
     edges: Edges,
     parameters: Mapping[str, float],
-    described: _Described | None = None,
+    described: Described | None = None,
 ) -> Regions:
     """Return the combination regions in which pairs meet, with labels.
 

@@ -86,10 +86,9 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
     """Integrate the constrained equations from the undeformed rod."""
     from ..constrained import METHODS, constrained_motion
 
-    for name in ("initial", "steps"):
-        if getattr(options, name) is not None:
-            fix = "leave it out: the motion starts from the undeformed rod"
-            raise bad(f"--{name}", "a value", "none for constrained equations", fix)
+    if options.initial is not None:
+        fix = "leave it out: the motion starts from the undeformed rod"
+        raise bad("--initial", "a value", "none for constrained equations", fix)
     method = options.method or "collocation"
     if method not in METHODS:
         raise bad("--method", repr(method), f"one of {sorted(METHODS)}", "choose one")

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
-_LENGTHS = tuple(1.0 + 0.01 * k for k in range(23))
+_LENGTHS = tuple(1.0 + 0.02 * k for k in range(12))
 # Speeds of a run-up at which the stresses are looked at.
-_RUN_UP_SPEEDS = 400
+_RUN_UP_SPEEDS = 200
 
 
 @dataclass(frozen=True, kw_only=True)

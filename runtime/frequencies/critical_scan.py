@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 # Error of the transition matrices: maxima are looked for, not reported.
 _RTOL = 1e-6
 # Angles of a revolution.
-_ANGLES = 128
+_ANGLES = 64
 
 
 def scanned_deflections(system: LinearPeriodic, speeds: Array) -> Array | None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -262,7 +262,7 @@ def floquet_multipliers(
     values: ComplexArray = np.where(finite, np.where(finite, modulus, 0.0) * turning, np.inf)
     signs = np.zeros(values.shape, dtype=np.int8)
     if not equation.damped:
-        signs = signatures_of(vectors, values, absolute)
+        signs = signatures_of(vectors.astype(np.complex128), values, absolute)
         signs[exponent >= _GROWTH] = 0
     # What round-off allows, over the larger of 1 and the multiplier.
     with np.errstate(over="ignore", divide="ignore"):
@@ -320,9 +320,7 @@ def _checked(rtol: float, parameters: Mapping[str, ArrayLike]) -> Mapping[str, A
     return parameters
 
 
-def _matrices(
-    way: Method, equation: Equation, segments: int
-) -> tuple[Array, NDArray[np.int64], Array]:
+def _matrices(way: Method, equation: Equation, segments: int) -> tuple[NDArray[Any], ...]:
     """Return scaled monodromy matrices, the powers of two taken out of them, and round-off."""
     matrix, exponent = product(segments_of(equation, segments, way).maps)
     return matrix, exponent, rounding_error(equation, segments)

@@ -435,7 +435,7 @@ class TableMaker:
         return made.with_force_unit(self.unit)
 
     def table(
-        self, low: float, high: float, samples: int, rtol: float
+        self, low: float, high: float, samples: int, rtol: float, nodes: int | None = None
     ) -> tuple[Table, float, Array, Array]:
         """Return the table of a range of inverse speeds, and its errors.
 
@@ -444,7 +444,10 @@ class TableMaker:
         slowest = self.equation(np.array([high]))
         n = slowest.size
         way, segments = self.cheapest(slowest, samples, 0.1 * rtol)
-        table = table_of(self.equation, (low, high), segments, way, 0.1 * rtol, samples=samples)
+        span = low, high
+        table = table_of(
+            self.equation, span, segments, way, 0.1 * rtol, samples=samples, nodes=nodes
+        )
         whole = 16.0 * _EPS + table.tail
         flow, motion = np.full((n, len(self.scale)), 16.0 * _EPS), np.full(n, 16.0 * _EPS)
         tried = low + np.array(_TRIED if high > low else _TRIED[:1]) * (high - low)

@@ -27,10 +27,14 @@ from .truncation import TruncatedSystem, arrays_at, modes_offered, smooth_basis,
 
 Array = NDArray[np.float64]
 
-# Ratio of the ends of a range of speeds: tables of 24 to 36 nodes follow it to ten digits.
-_RATIO = 1.4
+# Ratio of the ends of a range of speeds: tables of 16 nodes follow it to 1e-8.
+_RATIO = 2.0
+# Nodes of a table to begin with: at errors of 1e-7 most ranges need no more.
+_NODES = 16
 # Speeds whose motions are lifted together.
 _TOGETHER = 64
+# Even angles at which the modes are carried round, at the least.
+_CARRIED = 128
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,8 @@ class SweptMotions:
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, begin + _TOGETHER)
             flows = self.table.flows(1.0 / speeds[part])
-            q, reach = lifted(self.truncated, flows, speeds[part], self.scale)
+            z, reach = reduced(self.truncated, flows, self.scale)
+            q, _ = self.truncated.lift(z, speeds[part])
             yield part, q, reach * self.motion_error
 
     def growth(self, speeds: Array) -> Growth:
@@ -86,19 +91,18 @@ class SweptMotions:
         )
 
 
-def lifted(
-    truncated: TruncatedSystem, flows: tuple[Array, Array], speeds: Array, scale: Array
+def reduced(
+    truncated: TruncatedSystem, flows: tuple[Array, Array], scale: Array
 ) -> tuple[Array, Array]:
-    """Return forced periodic motions ``(ns, nt, n)``, and how errors of flows enter them.
+    """Return forced periodic motions ``(ns, samples, m)``, and how errors of flows enter them.
 
-    Over the largest size of the truncated motion: that of its start times the reach of the ring.
+    Over the largest size of the motion: that of its start times the reach of the ring.
     """
     m = truncated.size
     states, _, reach = closed(*flows, 1.0 / scale[-1])
     size = np.max(np.abs(states[:, :, :m]), axis=(1, 2))
     start = np.max(np.abs(states[:, 0]), axis=1)
-    q, _ = truncated.lift(states[:, :, :m] * scale[:m], speeds)
-    return q, (reach + 1.0) * start / size
+    return states[:, :, :m] * scale[:m], (reach + 1.0) * start / size
 
 
 def growth_of(matrices: Array, relative: float) -> Growth:
@@ -109,6 +113,20 @@ def growth_of(matrices: Array, relative: float) -> Growth:
     condition = np.take_along_axis(conditions(vectors), which, axis=1)[:, 0]
     size = relative * np.max(np.abs(matrices), axis=(1, 2))
     return Growth(np.take_along_axis(modulus, which, axis=1)[:, 0], condition, condition * size)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One number of modes at a few speeds.
+
+    ``q``: motions ``(ns, nt, n)``; ``tail``: the upper quarter of the harmonics of the reduced
+    motions, over the largest.
+    """
+
+    truncated: TruncatedSystem
+    q: Array
+    growth: Growth
+    tail: float
 
 
 class Truncations:
@@ -139,7 +157,7 @@ class Truncations:
         key = modes, angles
         if key not in self._made:
             try:
-                basis = smooth_basis(self.system, modes, angles, self._held)
+                basis = smooth_basis(self.system, modes, max(angles, _CARRIED), self._held)
             except BadInput:
                 self._made[key] = None
             else:
@@ -168,20 +186,21 @@ class Truncations:
         truncated, known = self._required(modes, angles)
         low, high = span
         maker = TableMaker(known, (low * high) ** 0.5, {})
-        table, whole, _, motion = maker.table(1.0 / high, 1.0 / low, len(truncated.theta), rtol)
+        table, whole, _, motion = maker.table(1.0 / high, 1.0 / low, angles, rtol, _NODES)
         return SweptMotions(truncated, table, maker.scale, whole, float(np.max(motion)))
 
-    def trial(
-        self, modes: int, angles: int, speeds: Array, rtol: float
-    ) -> tuple[TruncatedSystem, Array, Growth]:
-        """Return the truncation, motions ``(ns, nt, n)`` and growth at a few speeds, rising."""
+    def trial(self, modes: int, angles: int, speeds: Array, rtol: float) -> Trial:
+        """Return motions and growth at a few speeds, rising."""
         truncated, known = self._required(modes, angles)
         maker = TableMaker(known, float(speeds[-1]), {})
-        samples = len(truncated.theta)
-        way, count = maker.cheapest(maker.equation(1.0 / speeds[:1]), samples, rtol)
-        flows = flows_at(maker.equation(1.0 / speeds), count, way, samples)
-        q, _ = lifted(truncated, flows, speeds, maker.scale)
-        return truncated, q, growth_of(flows[1][:, :-1, :-1], rtol)
+        way, count = maker.cheapest(maker.equation(1.0 / speeds[:1]), angles, rtol)
+        flows = flows_at(maker.equation(1.0 / speeds), count, way, angles)
+        z, _ = reduced(truncated, flows, maker.scale)
+        waves = np.max(np.abs(np.fft.rfft(z, axis=1)), axis=2)
+        upper = np.max(waves[:, 3 * waves.shape[1] // 4 :], axis=1)
+        tail = float(np.max(upper / np.max(waves, axis=1)))
+        q, _ = truncated.lift(z, speeds)
+        return Trial(truncated, q, growth_of(flows[1][:, :-1, :-1], rtol), tail)
 
     def _required(self, modes: int, angles: int) -> tuple[TruncatedSystem, SampledSystem]:
         made = self.at(modes, angles)

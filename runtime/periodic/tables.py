@@ -104,6 +104,7 @@ def table_of(
     *,
     samples: int = 0,
     half: bool = False,
+    nodes: int | None = None,
 ) -> Table:
     """Return the table of a range.
 
@@ -123,6 +124,8 @@ def table_of(
         Even angles of the period, from 0, at which matrices are wanted too; 0 for none.
     half : bool
         Whether half of the period is enough.
+    nodes : int, optional
+        Chebyshev nodes to begin with.
 
     Raises
     ------
@@ -133,7 +136,9 @@ def table_of(
     if samples:
         count = samples * -(-count // samples)
     size = equation_at(np.array([high])).size
-    nodes = 1 if low == high else _NODES if 2 * size < _SMALL else _NODES_OF_LARGE
+    if nodes is None:
+        nodes = _NODES if 2 * size < _SMALL else _NODES_OF_LARGE
+    nodes = 1 if low == high else nodes
     while True:
         middle, reach = 0.5 * (low + high), 0.5 * (high - low)
         equation = equation_at(np.asarray(middle + reach * chebyshev.nodes(nodes)))

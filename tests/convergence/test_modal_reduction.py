@@ -1,18 +1,15 @@
 """Reduction to moving modes: what it keeps exactly, and how fast it converges with the modes.
 
-References: the full system's own multipliers, and its motion by Fourier collocation of the
-equations in second-order form, which shares nothing with the harmonic balance of the reduction.
+References: the whole system's multipliers and motions.
 """
 
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.curve_rivals import SecondOrder, collocated
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.reduction import moving_basis, reduced_system
-from elastolink.runtime.reduction.balance import balance, samples_table
-from elastolink.runtime.reduction.condensed import condense
-from elastolink.runtime.reduction.residuals import corrected_motion, motion_of
+from elastolink.runtime.periodic import reduced_system, steady_state
+from elastolink.runtime.periodic.moving_basis import moving_basis
+from elastolink.runtime.periodic.truncation import modal_truncation
 
 # Enough for subspaces whose next frequency comes within a tenth.
 ANGLES = 512
@@ -97,38 +94,29 @@ def test_another_geometry_gets_modes_of_its_own(damped):
     assert changed.array("K", theta) == pytest.approx(wanted.array("K", theta), rel=1e-9)
 
 
-def motion_errors(system, modes, answers, speed, harmonics=40):
-    """Return the error of q over its peak: as condensed, and corrected by the full equation."""
-    basis = moving_basis(system, modes, angles=ANGLES)
-    condensed = condense(system, basis, answers=answers)
-    equation = balance(condensed, harmonics)
-    x = np.linalg.solve(equation.taylor(speed)[0], equation.load(speed))
-    table = samples_table(condensed.theta, harmonics, 1.0)
-    if answers:
-        motions = corrected_motion(condensed, equation, x, speed, table)
-    else:
-        motions = (motion_of(condensed, equation, x, speed, table),)
-    truth = collocated(SecondOrder(system, 97), speed)
-    wave = np.fft.rfft(truth, axis=0)
-    truth = np.fft.irfft(wave, n=ANGLES, axis=0) * (ANGLES / 97)
-    return [np.max(np.abs(q - truth)) / np.max(np.abs(truth)) for q in motions]
+@pytest.mark.parametrize(
+    ("elements", "modes", "speed", "most"),
+    [
+        (1, 4, 40.0, 2e-4),
+        (3, 4, 40.0, 2e-4),
+        (3, 6, 62.0, 1e-4),
+        (3, 8, 62.0, 3e-5),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
+def test_what_follows_in_equilibrium_is_lifted(elements, modes, speed, most):
+    """Motions of the truncated system against those of the whole one, each over its peak."""
+    full = linkage(elements=elements)
+    truncated = modal_truncation(full, modes)
+    z = steady_state(truncated, speed, rtol=1e-8, samples=128).q
+    q, change = truncated.lift(z[None], [speed])
+    truth = steady_state(full, speed, rtol=1e-8, samples=len(truncated.theta)).q
+    gap = np.max(np.abs(q[0] - truth), axis=0) / np.max(np.abs(truth), axis=0)
+    assert np.max(gap) < most
+    assert change[0] < 1e-2
 
 
-def test_the_error_falls_with_every_static_answer(damped):
-    """Each is worth the square of a frequency ratio: some 290 rad/s excited, 1700 left out."""
-    errors = [motion_errors(damped, 4, answers, 40.0)[0] for answers in (0, 1, 2)]
-    assert errors[0] < 1e-2
-    assert errors[0] > 10.0 * errors[1]
-    assert errors[1] > 5.0 * errors[2]
-
-
-def test_the_full_equation_corrects_what_is_left(damped):
-    before, after = motion_errors(damped, 4, 2, 40.0)
-    assert after < 0.5 * before
-
-
-def test_three_elements_reduce_as_well_and_better_with_more_modes():
-    full = linkage(elements=3)
-    errors = [motion_errors(full, m, 2, 40.0)[0] for m in (4, 6)]
-    assert errors[0] < 2e-4
-    assert errors[1] < 0.2 * errors[0]
+def test_multipliers_of_a_truncated_system_are_those_of_the_whole_one(damped):
+    few = el.floquet_multipliers(modal_truncation(damped, 4), 40.0).multipliers
+    whole = el.floquet_multipliers(damped, 40.0).multipliers
+    assert np.max(np.min(np.abs(few[:, None] - whole), axis=1)) < 1e-4

@@ -6,7 +6,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.stability import resonances, tongue
-from elastolink.runtime.systems.geometry_series import taylor_in_geometry
+from geometry_series import taylor_in_geometry
 
 # Frequencies [rad/s] of the rod held still on the block at 0.59997 L: roots of the pinned beam
 # with an overhang, six digits.

@@ -57,7 +57,7 @@ COVERED = {
     "steady_peaks": "test_speed_errors.py",
     "steady_state": "test_periodic_errors.py",
     "stress": "test_beam_stress_errors.py",
-    "stress_curve": "test_stress_curve_figures.py",
+    "stress_curve": "test_stress_curve_errors.py",
     "tolerances": "test_tolerance_errors.py",
     "tongue": "test_band_errors.py",
     "tongue_curves": "test_band_errors.py",

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.reduction import reduced_system
+from elastolink.runtime.periodic import reduced_system
 from honesty import verdict
 
 SCENES = 200

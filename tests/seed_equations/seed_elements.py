@@ -7,8 +7,6 @@ from functools import cache
 import sympy as sp
 from elastolink.derive.models import beam_elements as elements
 from elastolink.derive.models import beam_shapes as shapes
-from elastolink.derive.spec import ModelSpec
-from elastolink.derive.variational import hamilton
 
 x, L = shapes.x, shapes.length
 zeta = sp.Symbol("zeta", real=True)
@@ -26,19 +24,6 @@ def places(kind: str) -> list[int]:
     """Return where the document's nodal values stand among those of the element."""
     labels = [value.label for value in shapes.nodal_values(kind)]
     return [labels.index(name) for name in ORDERS[kind]]
-
-
-@cache
-def arrays(kind: str) -> dict[str, sp.Matrix]:
-    """Return the derived arrays by name, nodal values in the document's order."""
-    derived = elements.MODEL.discretise(
-        ModelSpec("beam_element", kind), hamilton(elements.beam_action(kind))
-    )
-    order = places(kind)
-    return {
-        name: sp.Matrix(matrix.extract(order, order if name != "load" else range(4)))
-        for name, matrix in derived.arrays
-    }
 
 
 @cache
@@ -62,15 +47,17 @@ def integral(row: sp.Matrix, factor: sp.Expr) -> sp.Matrix:
     return (row.T * row).applyfunc(moments)
 
 
-def symmetric(upper: list[list[object]]) -> sp.Matrix:
-    """Return a symmetric matrix from the rows of its upper triangle."""
-    n = len(upper)
-    return sp.Matrix(n, n, lambda i, j: upper[min(i, j)][max(i, j) - min(i, j)])
-
-
-def same(one: object, other: object) -> bool:
-    """Return True where two matrices are equal identically."""
-    return (sp.Matrix(one) - sp.Matrix(other)).applyfunc(sp.simplify).is_zero_matrix
+@cache
+def arrays(kind: str) -> dict[str, sp.Matrix]:
+    """Return the matrices by name: energies of the derived shapes."""
+    along, across = shape_rows(kind)
+    strains = [row.diff(zeta, k) / L**k for row, k in ((along, 1), (across, 2), (across, 1))]
+    mass, stiffness, geometric = (
+        integral(along, rho * L) + integral(across, rho * L),
+        integral(strains[0], EA * L) + integral(strains[1], EI * L),
+        integral(strains[2], L),
+    )
+    return {"mass": mass, "stiffness": stiffness, "geometric_0": geometric}
 
 
 def letters(expression: object) -> str:

@@ -6,16 +6,22 @@ from functools import cache
 from itertools import product
 
 import sympy as sp
-from smith_chapter_8.surd import ExactHarmonics
+from seed_waves import Coefficients
 
 theta = sp.Symbol("theta", real=True)
 n = sp.Symbol("n", integer=True, positive=True)
 eps = sp.symbols("epsilon_1 epsilon_2", real=True)
 delta, psi = sp.symbols("delta_n psi_n", real=True)
-# Two functions, neither even nor odd, for counterexamples in numbers (n = 2).
+# Two functions, neither even nor odd, for counterexamples in numbers (n = 2): a, b of each.
 TWO_FUNCTIONS = (
-    ExactHarmonics.of("0.9", ["0.1", "0.4", "-0.5", "0.4"], ["0.7", "0.3", "-0.4", "-0.9"]),
-    ExactHarmonics.of("0.8", ["-0.8", "0.2", "0.3", "-0.2"], ["0.5", "-0.6", "0.9", "-0.7"]),
+    (
+        Coefficients({0: 0.9, 1: 0.1, 2: 0.4, 3: -0.5, 4: 0.4}),
+        Coefficients({1: 0.7, 2: 0.3, 3: -0.4, 4: -0.9}),
+    ),
+    (
+        Coefficients({0: 0.8, 1: -0.8, 2: 0.2, 3: 0.3, 4: -0.2}),
+        Coefficients({1: 0.5, 2: -0.6, 3: 0.9, 4: -0.7}),
+    ),
 )
 
 
@@ -23,53 +29,40 @@ def _name(letter, powers):
     return f"{letter}_{''.join(map(str, powers))}"
 
 
-def alpha(*powers):
-    """Return the coefficient alpha_ij or alpha_ijk of lambda^2."""
-    return sp.Symbol(_name("alpha", powers), real=True)
-
-
-def part(*powers):
-    """Return y_ij or y_ijk as a function of theta."""
-    return sp.Function(_name("y", powers))(theta)
-
-
-def function(name):
-    """Return a periodic function by its name."""
-    return sp.Function(name)(theta)
-
-
 @cache
-def rows(parameters, coefficient, order=2):
-    """Return the equations of y'' + {lambda^2 + coefficient} y = 0 by powers of the parameters."""
+def rows(parameters, names, order=2):
+    """Return the equations of y'' + {lambda^2 + sum of parameter times function} y by powers.
+
+    With them, the letters of a formula: functions of theta under their names, alpha_ij, y_ij.
+    """
     powers = [k for k in product(range(order + 1), repeat=len(parameters)) if sum(k) <= order]
+    functions = {name: sp.Function(name)(theta) for name in names}
+    if "wave" in functions:
+        functions["wave"] = sp.cos(n * theta - psi)
+    coefficient = sum(x * f for x, f in zip(parameters, functions.values(), strict=True))
+    alpha = {k: sp.Symbol(_name("alpha", k), real=True) for k in powers}
+    part = {k: sp.Function(_name("y", k))(theta) for k in powers}
 
     def monomial(k):
         return sp.prod([x**i for x, i in zip(parameters, k, strict=True)])
 
-    lam2 = n**2 / sp.Integer(4) + sum(alpha(*k) * monomial(k) for k in powers if sum(k))
-    y = sum(part(*k) * monomial(k) for k in powers)
+    lam2 = n**2 / sp.Integer(4) + sum(alpha[k] * monomial(k) for k in powers if sum(k))
+    y = sum(part[k] * monomial(k) for k in powers)
     left = sp.Poly(sp.expand(sp.diff(y, theta, 2) + (lam2 + coefficient) * y), *parameters)
-    return {k: left.coeff_monomial(monomial(k)) for k in powers}
+    letters = {"theta": theta, "n": n, "psi_n": psi, **functions}
+    letters |= {f"alpha_{''.join(map(str, k))}": v for k, v in alpha.items()}
+    letters |= {f"y_{''.join(map(str, k))}": v for k, v in part.items()}
+    return {k: left.coeff_monomial(monomial(k)) for k in powers}, letters
 
 
-def operator(y):
-    """Return y'' + (n/2)^2 y."""
-    return sp.diff(y, theta, 2) + n**2 / sp.Integer(4) * y
+@cache
+def couplings(n, one, other):
+    """Return w and W of two functions, over all harmonics but 0 and n, as the remark of 8.30."""
 
+    def c(k, m):
+        a, b = TWO_FUNCTIONS[k]
+        return complex(a[abs(m)], -b[m] if m > 0 else b[-m]) / 2 if abs(m) != n else 0.0
 
-def resonant(expression, region):
-    """Return the coefficients of cos and sin(region theta/2) of a trigonometric sum."""
-    z = sp.Symbol("z")
-    powers = sp.expand(expression).rewrite(sp.exp)
-    powers = powers.replace(sp.exp, lambda x: _power(x, z))
-    expanded = sp.expand(powers)
-    plus, minus = expanded.coeff(z, region), expanded.coeff(z, -region)
-    return sp.expand(plus + minus), sp.expand(sp.I * (plus - minus))
-
-
-def _power(exponent, z):
-    """Write exp(i h theta/2 + c) as z^h exp(c)."""
-    exponent = sp.expand(exponent)
-    turning = exponent.coeff(theta)
-    rest = sp.expand(exponent - turning * theta)
-    return z ** (2 * turning / sp.I) * (sp.cos(rest / sp.I) + sp.I * sp.sin(rest / sp.I))
+    numbers = [m for m in range(-20, 21) if m not in (0, n)]
+    w = -sum((c(one, m).conjugate() * c(other, m)).real / (m * (m - n)) for m in numbers)
+    return w, sum(c(one, m) * c(other, n - m) / (m * (n - m)) for m in numbers)

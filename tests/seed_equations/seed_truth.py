@@ -98,6 +98,17 @@ def motion(lengths, assembly="open", count=512, unsteady=0.0):
     return Motion(*rates)
 
 
+def named(lengths):
+    """Return the lengths by their names in a formula."""
+    return dict(zip(("l1", "l2", "l3", "l4"), lengths, strict=True))
+
+
+def vectors(lengths, angles):
+    """Return the links as complex numbers by their names; the frame lies along 0."""
+    units = (1.0, *(np.exp(1j * angle) for angle in angles))
+    return {f"l{k + 1}_vec": lengths[k] * units[k] for k in range(4)}
+
+
 def pin_force_on_coupler(lengths, inertia4, masses, places, speed=1.0, assembly="open"):
     """Return the force (complex, fixed axes) that the follower exerts on the coupler at C.
 
@@ -120,40 +131,6 @@ def pin_force_on_coupler(lengths, inertia4, masses, places, speed=1.0, assembly=
     right = np.stack([moment, inertia4 * speed**2 * m.alpha4], axis=-1)
     solution = np.linalg.solve(matrix, right[..., None])[..., 0]
     return solution[:, 0] + 1j * solution[:, 1], m
-
-
-@dataclass(frozen=True)
-class Rig:
-    """One of Smith's rigs with the 1/16 in coupler: inches, lbf, seconds (his chapter 9).
-
-    The mass per length follows from the stiffness and the frequency of 26 Hz that he observed.
-    """
-
-    lengths: tuple[float, float, float, float]
-    stiffness: float = 171.5
-    frequency: float = TURN * 26.0
-    inertias: tuple[float, float] = (0.0058, 0.0190)
-
-    @property
-    def mass_per_length(self):
-        """Return the mass per length [lbf s^2 / in^2]."""
-        return self.stiffness * (np.pi / self.lengths[2]) ** 4 / self.frequency**2
-
-    def epsilon(self, inertia4):
-        """Return (epsilon1, epsilon2, epsilon3) of a uniform coupler, by their dimensions."""
-        _, l2, l3, l4 = self.lengths
-        scale = np.pi**2 / l3**2
-        return (
-            scale * l3**2 / 3.0,
-            scale * (l3 / 2.0) * l2,
-            scale * inertia4 / (self.mass_per_length * l4),
-        )
-
-
-RIGS = {
-    "5,1,5,2": Rig((15.0, 3.0, 15.0, 6.0)),
-    "10,1,10,4": Rig((15.0, 1.5, 15.0, 6.0)),
-}
 
 
 def coupler_functions(m):

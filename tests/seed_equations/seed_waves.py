@@ -1,38 +1,140 @@
-"""Sums of cos and sin(h theta/2) as Fourier coefficients {h: c}, with their exact products."""
+"""Functions of period 4 pi on a grid: derivatives by FFT, the parts in cos and sin(h theta/2)."""
 
 from __future__ import annotations
 
+from functools import cache
 
-def wave(halves, cosine=0.0, sine=0.0):
-    """Return cosine cos(h theta/2) + sine sin(h theta/2) as {h: complex coefficient}."""
-    c = 0.5 * (cosine - 1j * sine)
-    return total({halves: c}, {-halves: c.conjugate()})
+import numpy as np
 
-
-def total(*parts):
-    out = {}
-    for part in parts:
-        for key, value in part.items():
-            out[key] = out.get(key, 0.0) + value
-    return out
+COUNT = 256
+THETA = 4 * np.pi * np.arange(COUNT) / COUNT
+_NUMBER = np.fft.fftfreq(COUNT, 1.0 / COUNT)
 
 
-def scaled(part, factor):
-    return {key: factor * value for key, value in part.items()}
+def derivative(values, _name="theta", order=1):
+    """Differentiate by theta."""
+    return np.fft.ifft((0.5j * _NUMBER) ** order * np.fft.fft(values)).real
 
 
-def product(one, other):
-    return total(*({j + k: u * v for k, v in other.items()} for j, u in one.items()))
+def parts(values, halves):
+    """Return the factors of cos and sin(halves theta/2); of 1 and nothing where halves is 0."""
+    factor = np.fft.fft(values)[halves] / COUNT * (1 if halves == 0 else 2)
+    return factor.real, -factor.imag
 
 
-def without(part, n):
-    return {key: value for key, value in part.items() if abs(key) != n}
+def without(values, halves):
+    """Return the function without its part in cos and sin(halves theta/2)."""
+    spectrum = np.fft.fft(values)
+    spectrum[[halves, -halves]] = 0
+    return np.fft.ifft(spectrum).real
 
 
-def resonant(part, n):
-    """Return the factors of cos and sin(n theta/2)."""
-    return 2.0 * part.get(n, 0.0).real, -2.0 * part.get(n, 0.0).imag
+def solved(right, n):
+    """Return the solution of y'' + (n/2)^2 y = right that has no part in cos, sin(n theta/2)."""
+    divisor = 0.25 * (n**2 - _NUMBER**2)
+    spectrum = np.fft.fft(without(right, n))
+    return np.fft.ifft(spectrum / np.where(divisor == 0, 1, divisor)).real
 
 
-def distance(one, other):
-    return max((abs(v) for v in total(one, scaled(other, -1.0)).values()), default=0.0)
+HARMONICS = 9
+
+
+class Coefficients(dict):
+    """Fourier coefficients, 0 where there is none."""
+
+    def __missing__(self, number):
+        return 0.0
+
+
+def function(a, b):
+    """Return the sum of a[m] cos(m theta) + b[m] sin(m theta)."""
+    return sum(a[m] * np.cos(m * THETA) + b.get(m, 0.0) * np.sin(m * THETA) for m in a)
+
+
+def resonance(f, n, damping=0.0):
+    """Return both alpha1, upper first, and A0, B0 of each: no resonant part is left in (7.17).
+
+    ``damping`` is beta of (7.42).
+    """
+    waves = np.cos(n / 2 * THETA), np.sin(n / 2 * THETA)
+    columns = [parts(f * y + 2 * damping * derivative(y), n) for y in waves]
+    values, vectors = np.linalg.eig(-np.transpose(columns))
+    order = np.argsort(-values.real)
+    return [(values[k], vectors[:, k]) for k in order]
+
+
+@cache
+def case(n, sign, seed=0):
+    """Return a random f and what its resonance gives in region n, by their letters."""
+    rng = np.random.default_rng([n, sign + 1, seed])
+    a, b = (Coefficients(enumerate(rng.normal(size=7))) for _ in "ab")
+    b[0] = 0.0
+    return region(a, b, n, sign, A1=rng.normal(), B1=rng.normal(), scale=rng.normal())
+
+
+def region(a, b, n, sign, A1=0.0, B1=0.0, scale=1.0):
+    """Return f, its resonance and its first solution; with A1, B1 left to choose."""
+    f = function(a, b)
+    alpha1, (A0, B0) = resonance(f, n)[(1 - sign) // 2]
+    A0, B0 = scale, scale * B0 / A0
+    c, s = np.cos(n / 2 * THETA), np.sin(n / 2 * THETA)
+    y0 = A0 * c + B0 * s
+    y1 = solved(-(alpha1 + f) * y0, n) + A1 * c + B1 * s
+    numbers = {"n": n, "A0": A0, "B0": B0, "A1": A1, "B1": B1, "alpha1": alpha1, "pm": sign}
+    more = {"a": a, "b": b, "oo": max(a), "N": (n - 1) // 2, "D": derivative, "theta": THETA}
+    return {**numbers, **more, "f": f, "y0": y0, "y1": y1, "a0": a[0], "a_n": a[n], "b_n": b[n]}
+
+
+@cache
+def second(n, sign, seed=0):
+    """Return a case with the letters of (7.28) to (7.34), read from Fourier series."""
+    return second_order(case(n, sign, seed))
+
+
+def second_order(point):
+    """Add what is read from the series of the right side of (7.17) and of y1, and B1, alpha2."""
+    n = point["n"]
+    right = without(-(point["alpha1"] + point["f"]) * point["y0"], n)
+    tables = {name: Coefficients() for name in ("P", "Q", "R", "S", "T")}
+    primed = {f"{name}_p": Coefficients() for name in "PQRS"}
+    for m in range(1, max(point["a"]) + 1):
+        pairs = [(("P", "Q"), 2 * m + n, (1, 1))]
+        pairs += [(("R", "S"), n - 2 * m, (1, -1))] * (m <= point["N"])
+        for names, halves, signs in pairs:
+            in_right, in_y1 = parts(right, halves), parts(point["y1"], halves)
+            for k, name in enumerate(names):
+                tables[name][m, n] = -2 * signs[k] * in_right[k]
+                primed[f"{name}_p"][m, n] = 2 * signs[k] * in_y1[k]
+    tables["T"][n] = -2 * parts(right, 0)[0] if n % 2 == 0 else 0.0
+    c, s = np.cos(n / 2 * THETA), np.sin(n / 2 * THETA)
+    base = point["y1"] - point["B1"] * s
+    columns = [
+        parts(-alpha2 * point["y0"] - (point["alpha1"] + point["f"]) * y1, n)
+        for alpha2, y1 in ((1, 0 * c), (0, s), (0, base))
+    ]
+    alpha2, B1 = np.linalg.solve(np.transpose(columns[:2]), -np.array(columns[2]))
+    rest = {"alpha2": alpha2, "B1": B1, "y1": base + B1 * s}
+    return {**point, **tables, **primed, **rest}
+
+
+def series(a, b, n, sign, order):
+    """Return alpha_1.. and y_0.. of (7.12), (7.14) where the first order parts the boundaries."""
+    f = function(a, b)
+    alpha1, (A0, B0) = resonance(f, n)[(1 - sign) // 2]
+    c, s = np.cos(n / 2 * THETA), np.sin(n / 2 * THETA)
+    alphas, ys = [alpha1], [A0 * c + B0 * s]
+    across = -B0 * c + A0 * s
+    for _ in range(order - 1):
+        newest = solved(-sum(x * y for x, y in zip(alphas, ys[::-1], strict=True)) - f * ys[-1], n)
+
+        def rest(alpha, constant, newest=newest):
+            column = [*ys, newest + constant * across]
+            right = alpha * ys[0] + sum(x * y for x, y in zip(alphas, column[:0:-1], strict=True))
+            return np.array(parts(-right - f * column[-1], n))
+
+        base = rest(0.0, 0.0)
+        columns = [rest(1.0, 0.0) - base, rest(0.0, 1.0) - base]
+        alpha, constant = np.linalg.solve(np.transpose(columns), -base)
+        ys.append(newest + constant * across)
+        alphas.append(alpha)
+    return alphas, ys

@@ -1,138 +1,65 @@
 """Aannaque 3.5-3.8: motion of the four-bar, its pin forces and torque, joint accelerations."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import sympy as sp
-from seed_derivations import (
-    ANGLES,
-    LENGTHS,
-    SPEEDS,
-    alpha3,
-    alpha4,
-    closure_rows,
-    omega3,
-    omega4,
-    rates,
-)
-from seed_derivations import alpha2 as crank_acceleration
-from seed_ledger import establishes
+from seed_derivations import alpha3, alpha4, closure_rows, omega3, omega4, rates
+from seed_formula import Formula
+from seed_ledger import Ledger, hold, hold_derived, holds, latex, quoted, table
 from seed_rigid import TABLE_3_2, Link, centres, forces, motion, rate
 from seed_rigid_derivations import FREUDENSTEIN, TURNS, freudenstein, half_angle_quadratic
 from seed_truth import CRANK_ROCKERS, DRAG_LINK, LONG_CRANK, TURN, closure
 
+row = Ledger("Aannaque", __file__)
 KINDS = (TABLE_3_2, CRANK_ROCKERS["5,1,5,2"], CRANK_ROCKERS["2,1,2,2"], LONG_CRANK, DRAG_LINK)
 CRANK_ANGLES = np.linspace(0.03, TURN - 0.02, 61)
-DENSITY = 7850.0
 SECTIONS = ((24.8e-3, 6.35e-3), (25e-3, 3.42e-3), (25e-3, 3.15e-3))
 BARS = tuple(
-    Link.bar(DENSITY * width * thick * length, length)
+    Link.bar(7850.0 * width * thick * length, length)
     for (width, thick), length in zip(SECTIONS, TABLE_3_2[1:], strict=True)
 )
 
 
-def constants(lengths):
-    """Return K1 to K5 as printed below (3.5) and (3.7)."""
+def named(lengths):
+    """Return the lengths in this document's letters and Smith's, and the ratios of 3.4."""
     frame, l1, l2, l3 = lengths
-    lam2, lam3, lam4 = l2 / l1, l3 / l1, frame / l1
-    return (
-        lam4,
-        lam4 / lam3,
-        (1 - lam2**2 + lam3**2 + lam4**2) / (2 * lam3),
-        lam4 / lam2,
-        (lam3**2 - lam4**2 - 1 - lam2**2) / (2 * lam2),
-    )
+    letters = {"L1": l1, "L2": l2, "L3": l3, "L4": frame}
+    ratios = {"lam2": l2 / l1, "lam3": l3 / l1, "lam4": frame / l1}
+    return letters | ratios | {f"l{k}": v for k, v in enumerate(lengths, 1)}
 
 
-def latex_pair(*names):
-    """Return derived rates in the letters of Smith's chapter 2."""
-    return ",\\; ".join(f"{sp.latex(name)} = {sp.latex(rates()[name])}" for name in names)
+@cache
+def placed(lengths, assembly):
+    """Return a turn of a linkage by search."""
+    t2, t3 = closure(lengths, CRANK_ANGLES, assembly)
+    angles = {"t1": CRANK_ANGLES, "t2": t2, "t3": t3}
+    angles |= {"theta2": CRANK_ANGLES, "theta3": t2, "theta4": t3, "gamma": t3 - t2}
+    return {**named(lengths), **angles, "pm": -1 if assembly == "open" else 1}
 
 
-@establishes(
-    "Aannaque",
-    "3.3",
-    printed=r"L_1 e^{it_1} + L_2 e^{it_2} = L_3 e^{it_3} + L_4",
-    verdict="agrees",
-)
-@establishes(
-    "Aannaque",
-    "3.4",
-    printed=r"L_1\cos t_1 + L_2\cos t_2 - L_3\cos t_3 = L_4,\; "
-    r"L_1\sin t_1 + L_2\sin t_2 - L_3\sin t_3 = 0",
-    verdict="agrees",
-    derived=lambda: ",\\; ".join(f"{sp.latex(row)} = 0" for row in closure_rows(0)),
-)
-@pytest.mark.parametrize("assembly", ["open", "crossed"])
-def test_loop_closure(assembly):
-    for lengths in KINDS:
-        frame, l1, l2, l3 = lengths
-        t2, t3 = closure(lengths, CRANK_ANGLES, assembly)
-        gap = l1 * np.exp(1j * CRANK_ANGLES) + l2 * np.exp(1j * t2) - l3 * np.exp(1j * t3) - frame
-        assert np.abs(gap).max() < 1e-12 * sum(lengths)
-        values = (CRANK_ANGLES, t2, t3)
-        derived = sp.lambdify((*LENGTHS, *ANGLES), closure_rows(0))(*lengths, *values)
-        assert np.abs(derived).max() < 1e-12 * sum(lengths)
+@cache
+def places():
+    """Return a turn of each linkage in both assemblies."""
+    return [placed(lengths, assembly) for lengths in KINDS for assembly in ("open", "crossed")]
 
 
-@establishes(
-    "Aannaque",
-    "3.5",
-    printed=r"K_1\cos t_3 - K_2\cos t_1 + K_3 = \cos(t_1 - t_3),\; K_1 = \lambda_4,\; "
-    r"K_2 = \frac{\lambda_4}{\lambda_3},\; K_3 = \frac{1 - \lambda_2^2 + \lambda_3^2 + "
-    r"\lambda_4^2}{2\lambda_3}",
-    verdict="agrees",
-    derived=lambda: sp.latex(freudenstein()[0]) + " = 0",
-)
-@establishes(
-    "Aannaque",
-    "3.7",
-    printed=r"K_4\cos t_1 - K_1\cos t_2 + K_5 = \cos(t_1 - t_2),\; K_4 = \frac{\lambda_4}"
-    r"{\lambda_2},\; K_5 = \frac{\lambda_3^2 - \lambda_4^2 - 1 - \lambda_2^2}{2\lambda_2}",
-    verdict="slip",
-    derived=lambda: sp.latex(freudenstein()[1]) + " = 0",
-    remark="+ K1 cos(t2). Table 3.2, open, t1 = 1: left less right side is -3.06 as printed, 0 "
-    "with "
-    "the plus. (3.8) was solved from the right form.",
-)
-@pytest.mark.parametrize("assembly", ["open", "crossed"])
-def test_freudenstein(assembly):
-    for lengths in KINDS:
-        k1, k2, k3, k4, k5 = constants(lengths)
-        t1 = CRANK_ANGLES
-        t2, t3 = closure(lengths, t1, assembly)
-        follower = k1 * np.cos(t3) - k2 * np.cos(t1) + k3 - np.cos(t1 - t3)
-        coupler = k4 * np.cos(t1) + k1 * np.cos(t2) + k5 - np.cos(t1 - t2)
-        size = max(k1, k3, k4, -k5)
-        assert max(np.abs(follower).max(), np.abs(coupler).max()) < 1e-12 * size
-        assert np.abs(coupler - 2 * k1 * np.cos(t2)).max() > 0.5
-        symbols = (*FREUDENSTEIN, *TURNS)
-        derived = sp.lambdify(symbols, freudenstein())(*lengths[1:], lengths[0], t1, t2, t3)
-        assert np.abs(derived).max() < 1e-12 * size
-    t1 = 1.0
-    k1, _, _, k4, k5 = constants(TABLE_3_2)
-    t2 = closure(TABLE_3_2, t1)[0][0]
-    residual = k4 * np.cos(t1) - k1 * np.cos(t2) + k5 - np.cos(t1 - t2)
-    assert residual == pytest.approx(-3.06, abs=0.005)
+row("3.3", "3.9", check=holds(places))
+row("3.4", derived=lambda: closure_rows(0), check=holds(places))
+row("3.5", derived=lambda: freudenstein()[:1], check=holds(places))
 
 
-def half_tangents(lengths, t1):
-    """Return (3.6) and (3.8): follower and coupler angles, upper and lower sign."""
-    k1, k2, k3, k4, k5 = constants(lengths)
-    cosine, sine = np.cos(t1), np.sin(t1)
-    found = []
-    for first, last in (
-        ((1 - k2) * cosine + k3 - k1, k1 + k3 - (1 + k2) * cosine),
-        ((1 + k4) * cosine + k5 - k1, k1 + (k4 - 1) * cosine + k5),
-    ):
-        root = np.sqrt(4 * sine**2 - 4 * first * last)
-        found += [2 * np.arctan((2 * sine + sign * root) / (2 * first)) for sign in (1, -1)]
-    return found
-
-
-def quadratic_latex(coupler):
-    """Return the quadratic of the half angle."""
-    first, middle, last = (sp.latex(part) for part in half_angle_quadratic(coupler))
-    return rf"\left({first}\right)u^2 + \left({middle}\right)u + \left({last}\right) = 0"
+@row("3.7", derived=lambda: freudenstein()[1:])
+def freudenstein_of_the_coupler(entry):
+    hold_derived(entry, places)
+    for point in places():
+        # The sign of K1 in front of the cosine is the slip: with t2 + pi under it, it is right.
+        left, right = entry.printed.sides(**point)[0]
+        slip = 2 * point["L4"] / point["L1"] * np.cos(point["t2"])
+        assert np.abs(left - right + slip).max() < 1e-10 and np.abs(slip).max() > 0.5
+    point = named(TABLE_3_2) | {"t1": 1.0, "t2": closure(TABLE_3_2, 1.0)[0][0]}
+    quoted([np.subtract(*entry.printed.sides(**point)[0])], "-3.06")
 
 
 def turned(ours, theirs):
@@ -140,269 +67,198 @@ def turned(ours, theirs):
     return np.abs(np.angle(np.exp(1j * (ours - theirs)))).max()
 
 
-@establishes(
-    "Aannaque",
+@cache
+def constants(lengths, assembly):
+    """Return a turn with K1 to K5, as defined below (3.5) and (3.7)."""
+    point = placed(lengths, assembly)
+    for label in ("3.5", "3.7"):
+        values = Formula(table("Aannaque")[label]["printed"]).values(**point)
+        point = {**point, **values}
+    return point
+
+
+def random_linkages():
+    """Return crank-rockers whose K2 and K4 differ."""
+    sizes = np.random.default_rng(10).uniform((2.0, 0.9, 0.9), (4.0, 1.3, 1.3), (20, 3))
+    return [(frame, 0.5, frame * first, frame * second) for frame, first, second in sizes]
+
+
+def quadratic_latex(coupler):
+    """Return the quadratic of the half angle."""
+    first, middle, last = (latex(part) for part in half_angle_quadratic(coupler))
+    return rf"\left({first}\right)u^2 + \left({middle}\right)u + \left({last}\right) = 0"
+
+
+def half_tangent(name):
+    """Return the check of one of the two roots, in both assemblies."""
+
+    def check(entry):
+        for lengths in (*KINDS, *random_linkages()):
+            for assembly in ("open", "crossed"):
+                point = constants(lengths, assembly)
+                given = {k: v for k, v in point.items() if k != name}
+                assert turned(entry.printed.values(**given)[name], point[name]) < 1e-7
+
+    return check
+
+
+row(
     "3.6",
-    printed=r"t_3 = 2\tan^{-1}\left(\frac{2\sin t_1 \pm \sqrt{4\sin^2 t_1 - 4[(1 - K_2)\cos t_1 + "
-    r"K_3 - K_1][K_1 + K_3 - (1 + K_2)\cos t_1]}}{2[(1 - K_2)\cos t_1 + K_3 - K_1]}\right)",
-    verdict="agrees",
     derived=lambda: r"u = \tan\tfrac{t_3}{2}:\; " + quadratic_latex(0),
-    remark="Both roots. The lower sign is the open assembly throughout the turn, the upper one "
-    "the crossed. Divides by zero where t3 = 180 deg, which drag links pass.",
+    check=half_tangent("t3"),
 )
-@establishes(
-    "Aannaque",
+row(
     "3.8",
-    printed=r"t_2 = 2\tan^{-1}\left(\frac{2\sin t_1 \pm \sqrt{4\sin^2 t_1 - 4[(1 + K_4)\cos t_1 + "
-    r"K_5 - K_1][K_1 + (K_4 - 1)\cos t_1 + K_5]}}{2[K_5 - K_1 + (1 + K_4)\cos t_1]}\right)",
-    verdict="agrees",
     derived=lambda: r"u = \tan\tfrac{t_2}{2}:\; " + quadratic_latex(1),
-    remark="Both roots; the same sign as in (3.6) gives the same assembly.",
+    check=half_tangent("t2"),
 )
-@establishes(
-    "Aannaque",
-    "3.5 two assemblies",
-    printed=r"\text{two solutions for one input angle}",
-    verdict="agrees",
-    derived=r"\text{mirror images in } AC",
-)
-def test_both_roots():
-    rng = np.random.default_rng(10)
-    shapes = rng.uniform((2.0, 0.9, 0.9), (4.0, 1.3, 1.3), (20, 3))
-    random = [(frame, 0.5, frame * first, frame * second) for frame, first, second in shapes]
-    for lengths in (*KINDS, *random):
-        upper3, lower3, upper2, lower2 = half_tangents(lengths, CRANK_ANGLES)
-        for assembly, t3, t2 in (("open", lower3, lower2), ("crossed", upper3, upper2)):
-            coupler, follower = closure(lengths, CRANK_ANGLES, assembly)
-            assert turned(t3, follower) < 1e-7
-            assert turned(t2, coupler) < 1e-7
-        for coupler, angles in ((0, (upper3, lower3)), (1, (upper2, lower2))):
-            parts = sp.lambdify((*FREUDENSTEIN, TURNS[0]), half_angle_quadratic(coupler))(
-                *lengths[1:], lengths[0], CRANK_ANGLES
-            )
-            for angle in angles:
-                # (1 + cos) u^2 = 1 - cos and (1 + cos) u = sin: no division where u is infinite.
-                rest = parts[0] * (1 - np.cos(angle)) + parts[2] * (1 + np.cos(angle))
-                assert np.abs(rest + parts[1] * np.sin(angle)).max() < 1e-9 * np.abs(parts[0]).max()
+
+
+def test_quadratics_of_the_half_angle():
+    """``(1 + cos) u^2 = 1 - cos`` and ``(1 + cos) u = sin``: no division where u is infinite."""
+    for coupler, name in ((0, "t3"), (1, "t2")):
+        parts = sp.lambdify((*FREUDENSTEIN, TURNS[0]), half_angle_quadratic(coupler))
+        for point in places():
+            first, middle, last = parts(*(point[f"L{k}"] for k in (1, 2, 3, 4)), CRANK_ANGLES)
+            angle = point[name]
+            rest = first * (1 - np.cos(angle)) + last * (1 + np.cos(angle))
+            assert np.abs(rest + middle * np.sin(angle)).max() < 1e-9 * np.abs(first).max()
+
+
+@row("3.5 two assemblies")
+def two_assemblies(_):
+    for lengths in KINDS:
+        opened, crossed = (placed(lengths, assembly) for assembly in ("open", "crossed"))
         pin = lengths[1] * np.exp(1j * CRANK_ANGLES) - lengths[0]
-        mirrored = np.angle(pin**2 * np.exp(-1j * lower3))
-        assert turned(upper3, mirrored) < 1e-7
+        assert turned(crossed["t3"], np.angle(pin**2 * np.exp(-1j * opened["t3"]))) < 1e-7
 
 
-@establishes(
-    "Aannaque",
-    "3.9",
-    printed=r"\cos\gamma = \frac{L_2^2 + L_3^2 + 2L_1 L_4\cos t_1 - L_1^2 - L_4^2}{2L_2 L_3}",
-    verdict="agrees",
-    derived=r"AC^2 = L_1^2 + L_4^2 - 2L_1 L_4\cos t_1 = L_2^2 + L_3^2 - 2L_2 L_3\cos\gamma",
-)
-@establishes(
-    "Aannaque",
-    "3.10",
-    printed=r"\cos\gamma_{min} = \frac{L_2^2 + L_3^2 + 2L_1 L_4 - L_1^2 - L_4^2}{2L_2 L_3},\; "
-    r"\cos\gamma_{max} = \frac{L_2^2 + L_3^2 - 2L_1 L_4 - L_1^2 - L_4^2}{2L_2 L_3}",
-    verdict="agrees",
-    derived=r"\gamma_{min} \text{ at } t_1 = 0,\; \gamma_{max} \text{ at } 180^\circ",
-    remark="For an input that turns fully. For frame, input, coupler, output (4,3,2,2) the "
-    "second is "
-    "-5.1, no cosine: the extreme is 180 deg.",
-)
-@establishes(
-    "Aannaque",
-    "3.5 transmission angle of Table 3.2",
-    printed=r"\text{maximum at } 180^\circ, \text{ minimum at } 0, \text{ within } "
-    r"40\text{-}140^\circ",
-    verdict="agrees",
-    derived=r"45.6^\circ \le \gamma \le 112.3^\circ",
-)
-def test_transmission_angle():
+def extremes(lengths):
+    """Return the least and the greatest transmission angle by a turn, and where they are."""
+    m = motion(lengths)
+    gamma = np.arccos(np.cos(m.theta4 - m.theta3))
+    assert int(gamma.argmin()) == 0 and int(gamma.argmax()) == gamma.size // 2
+    return {**named(lengths), "gamma_min": gamma.min(), "gamma_max": gamma.max()}
+
+
+@row("3.10")
+def extremes_of_the_transmission_angle(entry):
+    hold(entry.printed, *map(extremes, KINDS))
+    rocking = named((4.0, 3.0, 2.0, 2.0)) | {"gamma_min": 0.0, "gamma_max": 0.0}
+    quoted([entry.printed.sides(**rocking)[1][1]], "-5.1")
+
+
+@row("3.5 transmission angle of Table 3.2")
+def within_the_recommended_band(entry):
+    found = extremes(TABLE_3_2)
+    angles = {k: found[k] for k in ("gamma_min", "gamma_max")}
+    hold(entry.printed, angles)
+    quoted(np.degrees(list(angles.values())), "45.6", "112.3")
+    limits = [entry.printed.sides(**angles)[0][k] for k in (0, 3)]
+    assert np.degrees(limits) == pytest.approx([40.0, 140.0])
+
+
+@cache
+def motions():
+    """Return angles, speeds and accelerations of each linkage at 2 rad/s."""
+    points = []
     for lengths in KINDS:
-        frame, l1, l2, l3 = lengths
         for assembly in ("open", "crossed"):
-            t2, t3 = closure(lengths, CRANK_ANGLES, assembly)
-            middle = l2**2 + l3**2 - l1**2 - frame**2
-            printed = (middle + 2 * l1 * frame * np.cos(CRANK_ANGLES)) / (2 * l2 * l3)
-            assert np.abs(printed - np.cos(t3 - t2)).max() < 1e-11
-        m = motion(lengths)
-        gamma = np.arccos(np.cos(m.theta4 - m.theta3))
-        extremes = [(middle + sign * 2 * l1 * frame) / (2 * l2 * l3) for sign in (1, -1)]
-        assert np.cos([gamma.min(), gamma.max()]) == pytest.approx(extremes, abs=1e-11)
-        assert int(gamma.argmin()) == 0 and int(gamma.argmax()) == gamma.size // 2
-    m = motion(TABLE_3_2)
-    gamma = np.degrees(np.arccos(np.cos(m.theta4 - m.theta3)))
-    assert [gamma.min(), gamma.max()] == pytest.approx([45.6, 112.3], abs=0.05)
-    assert pytest.approx(-5.1, abs=0.03) == (4 + 4 - 24 - 9 - 16) / 8
+            m = motion(lengths, assembly, 1024)
+            names = {f"t{k}": getattr(m, f"theta{k + 1}") for k in (1, 2, 3)}
+            names |= {f"omega{k}": 2 * getattr(m, f"omega{k + 1}") for k in (1, 2, 3)}
+            names |= {f"alpha{k}": 4 * getattr(m, f"alpha{k + 1}") for k in (1, 2, 3)}
+            points.append({**named(lengths), **names, "smith": {**named(lengths), **vars(m)}})
+    return points
 
 
-@establishes(
-    "Aannaque",
-    "3.11",
-    printed=r"\frac{\omega_2}{\omega_1} = -\frac{L_1\sin(t_3 - t_1)}{L_2\sin(t_3 - t_2)},\; "
-    r"\frac{\omega_3}{\omega_1} = -\frac{L_1\sin(t_2 - t_1)}{L_3\sin(t_3 - t_2)},\; "
-    r"\alpha_2 = \frac{L_1\omega_1^2\cos(t_3 - t_1) + L_2\omega_2^2\cos(t_3 - t_2) - L_3\omega_3^2}"
-    r"{L_2\sin(t_3 - t_2)},\; \alpha_3 = \frac{L_1\omega_1^2\cos(t_2 - t_1) - L_3\omega_3^2"
-    r"\cos(t_2 - t_3) + L_2\omega_2^2}{L_3\sin(t_3 - t_2)}",
-    verdict="agrees",
-    derived=lambda: latex_pair(omega3, omega4, alpha3, alpha4),
-    remark="At constant input speed, all signs. The derived forms are in Smith's letters: one "
-    "subscript higher, theta for t, and with the term of the crank's acceleration.",
-)
-@pytest.mark.parametrize("assembly", ["open", "crossed"])
-def test_rates(assembly):
-    for lengths in KINDS:
-        _, l1, l2, l3 = lengths
-        m = motion(lengths, assembly, 1024)
-        t1, t2, t3, w1, w2, w3 = m.theta2, m.theta3, m.theta4, m.omega2, m.omega3, m.omega4
-        divisor = np.sin(t3 - t2)
-        printed = (
-            -l1 * np.sin(t3 - t1) / (l2 * divisor),
-            -l1 * np.sin(t2 - t1) / (l3 * divisor),
-            (l1 * w1**2 * np.cos(t3 - t1) + l2 * w2**2 * np.cos(t3 - t2) - l3 * w3**2)
-            / (l2 * divisor),
-            (l1 * w1**2 * np.cos(t2 - t1) - l3 * w3**2 * np.cos(t2 - t3) + l2 * w2**2)
-            / (l3 * divisor),
-        )
-        symbols = (*LENGTHS, *ANGLES, *SPEEDS, crank_acceleration)
-        values = (*lengths, t1, t2, t3, w1, w2, w3, 0.0 * w1)
-        for name, ours, true in zip(
-            (omega3, omega4, alpha3, alpha4), printed, (w2, w3, m.alpha3, m.alpha4), strict=True
-        ):
-            scale = np.abs(true).max()
-            assert np.abs(ours - true).max() < 1e-7 * scale
-            derived = sp.lambdify(symbols, rates()[name])(*values)
-            assert np.abs(derived - true).max() < 1e-7 * scale
+@row("3.11", derived=lambda: {name: rates()[name] for name in (omega3, omega4, alpha3, alpha4)})
+def rates_hold(entry):
+    hold(entry.printed, motions, tol=1e-7)
+    hold_derived(entry, *(point["smith"] for point in motions()), tol=1e-7)
 
 
-def table_forces():
-    """Return the true forces of Table 3.2's uniform bars at 1 rad/s, inertia forces and motion."""
-    f, m = forces(TABLE_3_2, BARS), motion(TABLE_3_2)
+@cache
+def table_forces(unsteady=0.0):
+    """Return the true forces of Table 3.2's uniform bars near 1 rad/s in the letters of 3.7."""
+    f, m = forces(TABLE_3_2, BARS, unsteady=unsteady), motion(TABLE_3_2, unsteady=unsteady)
     inertia = [-k.mass * rate(p, 2) for k, p in zip(BARS, centres(TABLE_3_2, BARS, m), strict=True)]
-    return f, inertia, m
+    pins = {"F_01": f.f12, "F_12": f.f23, "F_23": f.f34, "F_03": -f.f41, "F_21": -f.f23}
+    pins |= {f"F_{k}": v for k, v in enumerate(inertia, 1)} | {"F_32": -f.f34}
+    point = named(TABLE_3_2) | {"C": f.torque, "omega1": m.omega2, "dE": f.energy_rate}
+    for k, bar in enumerate(BARS, 1):
+        point |= {f"t{k}": getattr(m, f"theta{k + 1}"), f"J{k}": bar.inertia_about_centre}
+        point |= {f"alpha{k}": getattr(m, f"alpha{k + 1}")}
+    for name, force in pins.items():
+        point |= {f"{name}x": force.real, f"{name}y": force.imag}
+    return point
 
 
-@establishes(
-    "Aannaque",
+row(
     "3.7 free-body equations of the input link",
-    printed=r"F_{01x} + F_{21x} + F_{1x} = 0,\; F_{01y} + F_{21y} + F_{1y} = 0,\; "
-    r"C + (F_{01x} - F_{21x})\frac{L_1}{2}\sin t_1 + (F_{21y} - F_{01y})\frac{L_1}{2}\cos t_1 = 0",
-    verdict="agrees",
-    derived=r"F_1 = -m_1 a_1 \text{ (inertia force)}",
-    remark="For a uniform bar at constant speed.",
-)
-@establishes(
-    "Aannaque",
     "3.7 free-body equations of coupler and follower",
-    printed=r"\text{(in Figs. 3.11.b and c)}",
-    verdict="not legible",
-    derived=r"F_{12} + F_{32} + F_2 = 0,\; F_{23} + F_{03} + F_3 = 0,\; \text{moments: rows 6 "
-    r"and 9 "
-    r"of (3.12)}",
-    remark="They went with the figures; (3.12) repeats them.",
+    check=holds(lambda: [table_forces()]),
 )
-def test_free_bodies():
-    f, inertia, m = table_forces()
-    f01, f21 = f.f12, -f.f23
-    assert np.abs(f01 + f21 + inertia[0]).max() < 1e-9 * np.abs(f01).max()
-    half = TABLE_3_2[1] / 2
-    moment = f.torque + (f01 - f21).real * half * np.sin(m.theta2)
-    moment += (f21 - f01).imag * half * np.cos(m.theta2)
-    assert np.abs(moment).max() < 1e-9 * np.abs(f.torque).max()
-    assert np.abs(f.f23 - f.f34 + inertia[1]).max() < 1e-9 * np.abs(f01).max()
-    assert np.abs(f.f34 - f.f41 + inertia[2]).max() < 1e-9 * np.abs(f01).max()
+UNKNOWNS = [f"F_{pin}{axis}" for pin in ("01", "12", "23", "03") for axis in "xy"]
 
 
-def printed_system(lengths, m, inertia, alphas, fifth=1.0):
-    """Return (3.12) for the unknowns F01, F12, F23, F03 (x, y each) and C, with C's column put "
-    "back.
-
-    ``fifth`` is the entry of row 5, column 4: +1 as printed.
-    """
-    _, *bars = lengths
-    count = m.theta2.size
-    matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
-    for i, (bar, angle) in enumerate(zip(bars, (m.theta2, m.theta3, m.theta4), strict=True)):
-        sine, cosine = bar / 2 * np.sin(angle), bar / 2 * np.cos(angle)
-        row, column = 3 * i, 2 * i
-        matrix[:, row, column] = matrix[:, row + 1, column + 1] = -1.0
-        matrix[:, row, column + 2] = matrix[:, row + 1, column + 3] = 1.0 if i < 2 else -1.0
-        near = np.stack([sine, -cosine], axis=-1)
-        matrix[:, row + 2, column : column + 2] = near if i < 2 else -near
-        matrix[:, row + 2, column + 2 : column + 4] = near
-        right[:, row], right[:, row + 1] = inertia[i].real, inertia[i].imag
-        right[:, row + 2] = BARS[i].inertia_about_centre * alphas[i]
-    matrix[:, 2, 8] = 1.0
-    matrix[:, 4, 3] = fifth
-    return np.linalg.solve(matrix, right[..., None])[..., 0]
+def samples(step, unsteady=0.0):
+    """Return the same at single angles, for matrices."""
+    point = table_forces(unsteady)
+    return [{k: v[at] if np.ndim(v) else v for k, v in point.items()} for at in range(5, 512, step)]
 
 
-@establishes(
-    "Aannaque",
-    "3.12",
-    printed=r"9\times 9;\; \text{rows 1-3: } (-1, 0, 1, 0),\, (0, -1, 0, 1),\, \tfrac{L_1}{2}"
-    r"(\sin t_1, -\cos t_1, \sin t_1, -\cos t_1);\; \text{row 5: } (0, 0, 0, 1, 0, 1, 0, 0);\; "
-    r"\ldots;\; \text{right side } F_{1x} \ldots J_3\alpha_3",
-    verdict="slip",
-    derived=r"\text{unknowns } F_{01}, F_{12}, F_{23}, F_{03}, C;\; \text{row 5: } "
-    r"(0, 0, 0, -1, 0, 1, 0, 0, 0);\; \text{row 3, column 9: } 1;\; \text{right side } F_{1x}, "
-    r"F_{1y}, J_1\alpha_1 = 0, F_{2x}, F_{2y}, J_2\alpha_2, F_{3x}, F_{3y}, J_3\alpha_3",
-    remark="Two faults: the column of C is lost (9 equations, 8 columns), and row 5 has +1 for "
-    "-1 in column 4. The other rows hold for the unknowns named here. Table 3.2: with the "
-    "printed +1 the torque is wrong by 263 percent of its peak.",
-)
-def test_nine_equations():
-    f, inertia, m = table_forces()
-    alphas = (m.alpha2, m.alpha3, m.alpha4)
-    true = np.stack(
-        [v for pin in (f.f12, f.f23, f.f34, -f.f41) for v in (pin.real, pin.imag)] + [f.torque], -1
-    )
-    right = printed_system(TABLE_3_2, m, inertia, alphas, fifth=-1.0)
-    assert np.abs(right - true).max() < 1e-9 * np.abs(true).max()
-    printed = printed_system(TABLE_3_2, m, inertia, alphas)
-    wrong = np.abs(printed - true)[:, 8].max() / np.abs(true[:, 8]).max()
-    assert wrong == pytest.approx(2.63, abs=0.006)
-
-
-@establishes(
-    "Aannaque",
-    "3.7 torque of the motor",
-    printed=r"\text{the torque fluctuates and can become negative}",
-    verdict="agrees",
-    derived=r"\oint T\,dt_1 = 0 \text{ at constant speed}",
-    remark="From inertia alone it must become negative, its mean being zero. Table 3.2: from "
-    "-0.0105 to 0.0071 N m at 1 rad/s.",
-)
-def test_torque_fluctuates():
-    f, _, m = table_forces()
-    assert abs(f.torque.mean()) < 1e-10 * np.abs(f.torque).max()
-    assert np.abs(f.torque * m.omega2 - f.energy_rate).max() < 1e-9 * np.abs(f.torque).max()
-    assert [f.torque.min(), f.torque.max()] == pytest.approx([-0.0105, 0.0071], abs=6e-5)
-
-
-@establishes(
-    "Aannaque",
-    "3.13",
-    printed=r"\ddot q_{Bx} = -L_1\omega_1^2\cos t_1 - L_2\omega_2^2\cos t_2 - L_2\alpha_2\sin t_1,"
-    r"\; \ddot q_{By} = -L_1\omega_1^2\sin t_1 - L_2\omega_2^2\sin t_1 + L_2\alpha_2\cos t_2,\; "
-    r"\ddot q_A = -L_1\omega_1^2(\cos t_1, \sin t_1)",
-    verdict="slip",
-    derived=r"\ddot q_{Bx} = \ldots - L_2\alpha_2\sin t_2,\; "
-    r"\ddot q_{By} = \ldots - L_2\omega_2^2\sin t_2 + \ldots",
-    remark="t2 for t1 twice. Table 3.2: the printed components are wrong by up to 131 and 53 "
-    "percent of the greatest acceleration of B. The other five lines are right.",
-)
-def test_joint_accelerations():
-    m = motion(TABLE_3_2)
-    _, l1, l2, _ = TABLE_3_2
-    t1, t2, w2, a2 = m.theta2, m.theta3, m.omega3, m.alpha3
-    pin_a = l1 * np.exp(1j * t1)
-    true_a, true_b = rate(pin_a, 2), rate(pin_a + l2 * np.exp(1j * t2), 2)
-    size = np.abs(true_b).max()
-    assert np.abs(true_a + l1 * (np.cos(t1) + 1j * np.sin(t1))).max() < 1e-9 * size
-    assert np.abs(m.alpha2).max() < 1e-9
+@row("3.12")
+def nine_equations(entry):
+    """Two faults: the torque of row 3, and the sign of F12y in row 5; the crank's speed varies."""
+    for point in samples(100, unsteady=0.2):
+        left, right = entry.printed.sides(**point)[0]
+        slips = np.array([0, 0, point["C"], 0, -2 * point["F_12y"], 0, 0, 0, 0])
+        np.testing.assert_allclose(right - left, slips, atol=1e-9)
+        hold(entry.corrected, point)
     wrong = []
-    for angle in (t2, t1):
-        along = -l1 * np.cos(t1) - l2 * w2**2 * np.cos(t2) - l2 * a2 * np.sin(angle)
-        across = -l1 * np.sin(t1) - l2 * w2**2 * np.sin(angle) + l2 * a2 * np.cos(t2)
-        wrong.append([np.abs(along - true_b.real).max(), np.abs(across - true_b.imag).max()])
-    assert max(wrong[0]) < 1e-8 * size
-    assert np.array(wrong[1]) / size == pytest.approx([1.31, 0.53], abs=0.006)
+    for point in samples(4):
+        units = (dict.fromkeys(UNKNOWNS, 0.0) | {name: 1.0} for name in UNKNOWNS)
+        columns = [entry.printed.sides(**{**point, **unit})[0][0] for unit in units]
+        right = entry.printed.sides(**point)[0][1]
+        found = np.linalg.solve(np.column_stack([*columns, np.eye(9)[2]]), right)
+        wrong.append(found[8] - point["C"])
+    peak = np.abs(table_forces()["C"]).max()
+    assert np.abs(wrong).max() / peak == pytest.approx(2.63, abs=0.01)
+
+
+@row("3.7 torque of the motor")
+def torque_fluctuates(_):
+    torque, speed, rate_ = (table_forces()[name] for name in ("C", "omega1", "dE"))
+    assert abs(torque.mean()) < 1e-10 * np.abs(torque).max()
+    assert np.abs(torque * speed - rate_).max() < 1e-9 * np.abs(torque).max()
+    quoted([torque.min(), torque.max()], "-0.0105", "0.0071")
+
+
+@cache
+def joint_accelerations():
+    """Return Table 3.2 at 2 rad/s with the accelerations of the joints by differentiation."""
+    m = motion(TABLE_3_2)
+    pin_a = TABLE_3_2[1] * np.exp(1j * m.theta2)
+    a, b = rate(pin_a, 2), rate(pin_a + TABLE_3_2[2] * np.exp(1j * m.theta3), 2)
+    found = {"q_Ax": a.real, "q_Ay": a.imag, "q_Bx": b.real, "q_By": b.imag, "q_t1": m.alpha2}
+    found |= {"q_t2": m.alpha3, "q_t3": m.alpha4}
+    speeds = {"omega1": 2 * m.omega2, "omega2": 2 * m.omega3, "t1": m.theta2, "t2": m.theta3}
+    spins = {"alpha2": 4 * m.alpha3, "alpha3": 4 * m.alpha4}
+    return {**named(TABLE_3_2), **{f"{k}_ddot": 4 * v for k, v in found.items()}, **speeds, **spins}
+
+
+@row("3.13")
+def accelerations_of_the_joints(entry):
+    p = joint_accelerations()
+    hold(entry.corrected, p, tol=1e-8)
+    lost = p["L2"] * (np.sin(p["t2"]) - np.sin(p["t1"]))
+    slips = [0.0] * 4 + [-p["alpha2"] * lost, -(p["omega2"] ** 2) * lost, 0.0]
+    size = np.hypot(p["q_Bx_ddot"], p["q_By_ddot"]).max()
+    for (true, printed), slip in zip(entry.printed.sides(**p), slips, strict=True):
+        assert np.abs(true - printed - slip).max() < 1e-8 * size
+    worst = [np.abs(slip).max() / size for slip in slips[4:6]]
+    assert worst == pytest.approx([1.31, 0.53], abs=0.006)
+
+
+test_row, test_falsified_row = row.tests()

@@ -1,4 +1,4 @@
-"""Aannaque (7.3)-(7.6), (7.9)-(7.11): Floquet, constant intervals, Meissner's functions."""
+"""Aannaque chapter 7: Floquet's theory, constant intervals, Meissner's functions, steady state."""
 
 from functools import cache
 
@@ -7,114 +7,169 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm, logm
-from seed_ledger import establishes
+from scipy.special import mathieu_a, mathieu_b
+from seed_ledger import Ledger, hold, holds, quoted, same, truths
 from seed_truth import normalised_solutions
 
+row = Ledger("Aannaque", __file__)
 PERIOD = 2.0
 OMEGA = 2.0 * np.pi / PERIOD
 
 
-def coefficients(t):
-    """Return A(t) of (7.2) for two freedoms with a damper and periodic, coupled springs."""
-    wave = np.cos(OMEGA * t)
-    stiffness = np.array([[5.0 + 1.5 * wave, 0.7], [0.7, 11.0 - 2.0 * np.sin(OMEGA * t)]])
+def turning_mass(t):
+    """Return M, C, K and M' of two freedoms whose mass turns."""
+    c, s = np.cos(OMEGA * t), np.sin(OMEGA * t)
+    mass = np.array([[2.0 + 0.5 * c, 0.3 * s], [0.3 * s, 1.5 - 0.4 * c]])
+    slope = OMEGA * np.array([[-0.5 * s, 0.3 * c], [0.3 * c, 0.4 * s]])
     damping = np.array([[0.2, 0.05], [0.05, 0.1]])
-    return np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -damping]])
+    stiffness = np.array([[9.0 + c, 0.7], [0.7, 21.0 - 2.0 * s]])
+    return mass, damping, stiffness, slope
 
 
-def transition(end, start=0.0):
-    """Return the matrix from a start to an end, backwards too."""
-    n = 4
+def load(t):
+    """Return the true acceleration of the rigid motion."""
+    return np.array([np.cos(OMEGA * t), np.sin(2.0 * OMEGA * t)])
 
-    def rates(t, state):
-        return (coefficients(t) @ state.reshape(n, n)).ravel()
 
-    found = solve_ivp(
-        rates, (start, end), np.eye(n).ravel(), method="DOP853", rtol=1e-12, atol=1e-13
-    )
-    return found.y[:, -1].reshape(n, n)
+def state_matrix(t):
+    """Return A(t) of (7.2)."""
+    mass, damping, stiffness, _ = turning_mass(t)
+    lower = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    return np.vstack([np.hstack([np.zeros((2, 2)), np.eye(2)]), lower])
+
+
+def solved(rates, start, end, begin=0.0):
+    tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
+    return solve_ivp(rates, (begin, end), start, **tight).y[:, -1]
 
 
 @cache
-def monodromy():
-    return transition(PERIOD)
+def transition(end, begin=0.0):
+    """Return the matrix from a start to an end, backwards too."""
+    rates = lambda t, y: (state_matrix(t) @ y.reshape(4, 4)).ravel()  # noqa: E731
+    return solved(rates, np.eye(4).ravel(), end, begin).reshape(4, 4)
 
 
-@establishes(
-    "Aannaque",
-    "7.3",
-    printed=r"Y(t) = \Phi(t)\exp(Bt)",
-    verdict="agrees",
-    derived=r"B = \frac{1}{T}\ln R,\; \Phi(t + T) = \Phi(t)",
-    remark="With negative multipliers B is complex; a real B needs the period 2T.",
-)
-@establishes(
-    "Aannaque",
-    "7.4",
-    printed=r"y(t+T) = \rho\,y(t)",
-    verdict="agrees",
-    derived=r"y = \Phi(t)\exp(Bt)z,\; \exp(BT)z = \rho z",
-)
-def test_floquet_form_of_a_damped_system_of_two_freedoms():
-    r = monodromy()
-    b = logm(r) / PERIOD
-    for t in (0.31, 1.2, 1.9):
-        phi = transition(t) @ expm(-b * t)
-        later = transition(t + PERIOD) @ expm(-b * (t + PERIOD))
-        np.testing.assert_allclose(later, phi, rtol=0.0, atol=1e-9)
-    roots, vectors = np.linalg.eig(r)
-    for root, vector in zip(roots, vectors.T, strict=True):
-        for t in (0.0, 0.77):
-            np.testing.assert_allclose(
-                transition(t + PERIOD) @ vector, root * transition(t) @ vector, atol=1e-9
-            )
+def multipliers(drag):
+    """Return the multipliers without damping, the mass's change left out or not."""
+
+    def rates(t, y):
+        mass, _, stiffness, slope = turning_mass(t)
+        push = drag * slope @ y[2:] + stiffness @ y[:2]
+        return np.concatenate([y[2:], -np.linalg.solve(mass, push)])
+
+    return np.linalg.eigvals(np.stack([solved(rates, e, PERIOD) for e in np.eye(4)], axis=1))
 
 
-@establishes(
-    "Aannaque",
-    "7.5",
-    printed=r"R = Y(T) \text{ when } Y(0) = I",
-    verdict="agrees",
-    derived=r"R = \exp(BT),\; \det R = \exp\int_0^T \operatorname{tr}A\,dt",
-)
-@establishes(
-    "Aannaque",
-    "7.6",
-    printed=r"\psi(t_3,t_1) = \psi(t_3,t_2)\psi(t_2,t_1),\; \psi(t_2,t_1) = \psi^{-1}(t_1,t_2)",
-    verdict="agrees",
-)
-def test_transition_matrices_form_a_group():
-    t1, t2, t3 = 0.2, 1.7, 0.9
-    whole = transition(t3, t1)
-    np.testing.assert_allclose(transition(t3, t2) @ transition(t2, t1), whole, atol=1e-9)
-    np.testing.assert_allclose(np.linalg.inv(transition(t1, t2)), transition(t2, t1), atol=1e-9)
-    r = monodromy()
-    assert np.linalg.det(r) == pytest.approx(np.exp(-0.3 * PERIOD), abs=1e-10)
-    np.testing.assert_allclose(expm(logm(r)), r, atol=1e-10)
+def moment(t=0.37):
+    """Return M, C, K and a state with its derivative by the equation (7.1) as it stands."""
+    mass, damping, stiffness, _ = turning_mass(t)
+    q, q_dot, r = np.array([0.3, -0.2]), np.array([1.1, 0.4]), load(t)
+    point = {"M": mass, "C": damping, "K": stiffness, "q": q, "q_dot": q_dot, "qr_ddot": r}
+    q_ddot = -np.linalg.solve(mass, damping @ q_dot + stiffness @ q) - r
+    free = q_ddot + r
+    blocks = {"Z": np.zeros((2, 2)), "E": np.eye(2), "q_ddot": q_ddot}
+    return {**point, **blocks, "y": np.r_[q, q_dot], "y_dot": np.r_[q_dot, free]}
 
 
-@establishes(
-    "Aannaque",
-    "7.2 stability from the multipliers",
-    printed=r"\lvert\rho_i\rvert \le 1 \text{ for all } i: \text{ stable}",
-    verdict="slip",
-    derived=r"\lvert\rho_i\rvert < 1, \text{ or } 1 \text{ with as many eigenvectors as its order}",
-    remark="Without stiffness both multipliers of y'' = 0 are 1, and y = t grows: by 1000 T over "
-    "1000 periods. The same holds on every boundary of an unstable region.",
-)
-def test_multipliers_on_the_circle_may_belong_to_growing_solutions():
-    # y'' = 0: no stiffness at all.
+@row("7.1")
+def instantaneous_form(entry):
+    """It keeps the product of the multipliers, but not each of them on the circle."""
+    hold(entry.printed, moment())
+    kept, dropped = np.abs(multipliers(1.0)), np.abs(multipliers(0.0))
+    np.testing.assert_allclose(kept, 1.0, atol=1e-9)
+    assert np.prod(dropped) == pytest.approx(1.0, abs=1e-9)
+    assert np.max(np.abs(dropped - 1.0)) > 1e-3
+
+
+row("7.2", check=holds(lambda: [moment()]))
+
+
+@cache
+def floquet():
+    """Return Floquet's form at some instants: B = ln R / T, its periodic factor, a multiplier."""
+    R = transition(PERIOD)
+    B = logm(R) / PERIOD
+    roots, vectors = np.linalg.eig(R)
+
+    def factor(t):
+        """The periodic factor, from its first period."""
+        return transition(t % PERIOD) @ expm(-B * (t % PERIOD))
+
+    points = []
+    for t in (0.31, 1.2, 2.31):
+        whole = transition(t)
+        point = {"t": t, "T": PERIOD, "Y": lambda at: transition(at), "Phi": factor, "B": B}
+        point |= {"exp": expm, "R": R, "E": np.eye(4)}
+        vector = vectors[:, 0]
+        point |= {"y": lambda at, v=vector: transition(at) @ v, "rho": roots[0]}
+        points.append(point | {"whole": whole})
+    return points
+
+
+row("7.3", "7.4", "7.5", check=holds(floquet, tol=1e-7))
+
+
+def test_the_transition_matrix_of_a_period():
+    R = transition(PERIOD)
+    drag = [np.trace(state_matrix(t)) for t in PERIOD * np.arange(64) / 64]
+    assert np.linalg.det(R) == pytest.approx(np.exp(np.mean(drag) * PERIOD), abs=1e-9)
+
+
+@row("7.6")
+def transition_matrices_form_a_group(entry):
+    hold(entry.printed, {"psi": transition, "t1": 0.2, "t2": 1.7, "t3": 0.9}, tol=1e-8)
+
+
+def variation():
+    """Return a motion under the rigid acceleration, and the periodic one."""
+
+    def h(t):
+        return np.concatenate([np.zeros(2), -load(t)])
+
+    def integral(body, low, high, _):
+        nodes, weights = np.polynomial.legendre.leggauss(20)
+        half = 0.5 * (high - low)
+        return half * sum(
+            w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True)
+        )
+
+    rates = lambda t, y: state_matrix(t) @ y + h(t)  # noqa: E731
+    start = np.array([0.1, 0.0, -0.2, 0.3])
+    whole = transition(PERIOD)
+    pushed = integral(lambda t: transition(PERIOD, float(t)) @ h(t), 0.0, PERIOD, False)
+    periodic = np.linalg.solve(np.eye(4) - whole, pushed)
+    np.testing.assert_allclose(solved(rates, periodic, PERIOD), periodic, atol=1e-9)
+    y = {0.0: start, PERIOD: solved(rates, start, PERIOD)}
+    names = {"psi": lambda a, b: transition(float(a), float(b)), "E": np.eye(4), "Int": integral}
+    names |= {"y": lambda t: y[t], "t": PERIOD, "t_0": 0.0, "z": np.zeros(2), "T": PERIOD}
+    return {**names, "qr_ddot": load, "h": h, "periodic": periodic}
+
+
+@row("7.7")
+def variation_of_constants(entry):
+    p = {k: v for k, v in variation().items() if k != "h"}
+    hold(entry.corrected, p, tol=1e-8)
+    hold(entry.printed, {**p, "qr_ddot": lambda t: -load(t)}, tol=1e-8)
+
+
+@row("7.8")
+def periodic_state(entry):
+    p = variation()
+    hold(entry.printed, {**p, "y": lambda t: p["periodic"] * (1 + t)}, tol=1e-8)
+
+
+@row("7.2 stability from the multipliers")
+def multipliers_on_the_circle(entry):
+    """They may belong to growing solutions: y'' = 0, and a boundary of Mathieu's equation."""
     r = np.array([[1.0, PERIOD], [0.0, 1.0]])
-    assert np.max(np.abs(np.linalg.eigvals(r))) == 1.0
+    assert all(truths(entry.printed, rho=root)[0] for root in np.linalg.eigvals(r))
     assert np.linalg.matrix_power(r, 1000)[0, 1] == 1000 * PERIOD
-    # A boundary of Mathieu's equation: d = a_1(q), found to round-off.
-    from scipy.special import mathieu_a
-
-    d, q = float(mathieu_a(1, 1.0)), 1.0
-    found = normalised_solutions(lambda t: d - 2.0 * q * np.cos(2.0 * t), np.pi)
+    assert truths(entry.printed, rho=1.001) == [False]
+    d = float(mathieu_a(1, 1.0))
+    found = normalised_solutions(lambda t: d - 2.0 * np.cos(2.0 * t), np.pi)
     np.testing.assert_allclose(np.linalg.eigvals(found), -1.0, atol=1e-4)
-    power = np.linalg.matrix_power(found, 1000)
-    assert np.linalg.norm(power) > 300.0
+    assert np.linalg.norm(np.linalg.matrix_power(found, 1000)) > 300.0
 
 
 def half_trace(levels, lengths):
@@ -125,24 +180,10 @@ def half_trace(levels, lengths):
     return 0.5 * np.trace(whole)
 
 
-@establishes(
-    "Aannaque",
-    "7.2 ends of a stable range",
-    printed=r"\rho = 1 \text{ at one end of a stable range},\; \rho = -1 \text{ at the other}",
-    verdict="approximation",
-    derived=r"\text{one freedom, and no region of zero width between}",
-    remark="Two levels 6.5 +- 2.5, each for half a turn: region 5 has no width, and the range "
-    "between regions 4 and 6 ends with 1 on both sides. With 2 freedoms or more, ranges also end "
-    "where two pairs meet on the circle away from 1 and -1.",
-)
-def test_a_stable_range_may_end_with_one_sign_on_both_sides():
-    lengths = (np.pi, np.pi)
-
-    def half(middle):
-        return half_trace((middle + 2.5, middle - 2.5), lengths)
-
+@row("7.2 ends of a stable range")
+def one_sign_on_both_sides(_):
     places = np.linspace(4.5, 9.0, 901)
-    values = np.array([half(x) for x in places])
+    values = np.array([half_trace((x + 2.5, x - 2.5), (np.pi, np.pi)) for x in places])
     touch = np.argmin(values)
     assert places[touch] == pytest.approx(6.5, abs=1e-3)
     assert values[touch] == pytest.approx(-1.0, abs=1e-9)
@@ -150,144 +191,116 @@ def test_a_stable_range_may_end_with_one_sign_on_both_sides():
         np.flatnonzero(values[part] > 1.0) for part in (slice(touch), slice(touch, None))
     )
     inside = values[left[-1] + 1 : touch + right[0]]
-    assert np.all(np.abs(inside) <= 1.0 + 1e-12)
-    assert len(inside) > 200
+    assert np.all(np.abs(inside) <= 1.0 + 1e-12) and len(inside) > 200
 
 
-@establishes(
-    "Aannaque",
-    "7.9",
-    printed=r"\begin{bmatrix}\cos\varpi\Delta t & \frac{1}{\varpi}\sin\varpi\Delta t\\"
-    r"-\varpi\sin\varpi\Delta t & \cos\varpi\Delta t\end{bmatrix}",
-    verdict="agrees",
-    derived=r"\exp\begin{bmatrix}0 & 1\\-\varpi^2 & 0\end{bmatrix}\Delta t",
-)
-@establishes(
-    "Aannaque",
-    "7.2 powers of the interval matrix",
-    printed=r"(A^2)_{12} = \frac{1}{\varpi}\sin^2\varpi\Delta t",
-    verdict="slip",
-    derived=r"(A^2)_{12} = \frac{2}{\varpi}\sin\varpi\Delta t\cos\varpi\Delta t",
-    remark="0.087 printed, 0.565 right at a frequency of 1 and a step of 0.3. The second line, "
-    "sin(2 ...), and the power N are right.",
-)
-@establishes(
-    "Aannaque",
-    "7.2 multipliers at a constant frequency",
-    printed=r"\lambda = \cos(2\pi\varpi/\omega) \pm i\sin(2\pi\varpi/\omega)",
-    verdict="agrees",
-    remark="They are real, and -1, also at speeds of 2/3, 2/5 ... of the frequency; the motion "
-    "there has the period 2T. The text has the whole divisions alone.",
-)
-def test_powers_of_the_matrix_of_one_interval():
-    w, step = sp.symbols("w h", positive=True)
-    matrix = sp.Matrix([[0, 1], [-(w**2), 0]])
-    c, s = sp.cos(w * step), sp.sin(w * step)
-    printed = sp.Matrix([[c, s / w], [-w * s, c]])
-    # The exponential by its equation: M' = A M, M(0) = 1.
-    assert sp.simplify(printed.diff(step) - matrix * printed) == sp.zeros(2)
-    assert printed.subs(step, 0) == sp.eye(2)
-    square = printed**2
-    assert sp.simplify(square[0, 1] - 2 * s * c / w) == 0
-    assert sp.simplify(square[1, 0] + 2 * w * s * c) == 0
-    assert sp.simplify(square - printed.subs(step, 2 * step)) == sp.zeros(2)
-    values = {w: 1, step: sp.Rational(3, 10)}
-    assert float((s**2 / w).subs(values)) == pytest.approx(0.087, abs=5e-4)
-    assert float(square[0, 1].subs(values)) == pytest.approx(0.565, abs=5e-4)
-    power = (printed**3 - printed.subs(step, 3 * step)).applyfunc(sp.expand_trig)
-    assert power.applyfunc(lambda e: sp.simplify(sp.expand(e))) == sp.zeros(2)
-    for ratio, expected in ((3.0, 1.0), (1.5, -1.0), (2.5, -1.0)):
-        # T = 2 pi / omega with omega = w / ratio.
-        period = 2.0 * np.pi * ratio
-        roots = np.linalg.eigvals(np.array(printed.subs({w: 1, step: period}), dtype=float))
-        np.testing.assert_allclose(roots, expected, atol=1e-7)
+def interval(w=1.3, dt=0.4):
+    """Return the matrix of one interval of constant frequency as an exponential."""
+    return {"w": w, "dt": dt, "A": expm(np.array([[0.0, 1.0], [-(w**2), 0.0]]) * dt)}
 
 
-@establishes(
-    "Aannaque",
-    "7.10",
-    printed=r"\frac{d^2y}{d\theta^2} + T^2 q(\theta)y = 0,\; q = v_i^2/4\pi^2",
-    verdict="agrees",
-    derived=r"T^2 q = v_i^2/\omega^2,\; \omega = 2\pi/T",
-)
-@establishes(
-    "Aannaque",
-    "7.2 C, S and V",
-    printed=r"C_i = \cos\frac{Tv_i\theta_i}{2\pi},\; S_i = \sin\frac{Tv_i\theta_i}{2\pi},\; "
-    r"V_{ik} = \frac12\left(\frac{v_i}{v_k} + \frac{v_k}{v_i}\right)",
-    verdict="agrees",
-)
-@establishes(
-    "Aannaque",
-    "7.11",
-    printed=r"J_2 = C_1C_2 - V_{12}S_1S_2,\; J_3 = C_1C_2C_3 - V_{12}S_1S_2C_3 - "
-    r"V_{13}S_1S_3C_2 - V_{23}S_2S_3C_1",
-    verdict="agrees",
-    derived=r"J_N = \tfrac12\operatorname{tr}\prod_i A_i",
-    remark="From N = 4 on a product of four sines has no single V before it but "
-    "V12 V34 - V13 V24 + V14 V23, the Pfaffian. In Fig. 7.2 the axes T v/2 are the phases of the "
-    "intervals only where both are half a turn.",
-)
-def test_meissners_functions_are_half_traces():
-    theta, t, v = sp.symbols("theta T v", positive=True)
-    wave = sp.cos(t * v * theta / (2 * sp.pi))
-    assert sp.simplify(wave.diff(theta, 2) + t**2 * v**2 / (4 * sp.pi**2) * wave) == 0
-    generator = np.random.default_rng(711)
-    for _ in range(20):
-        period = generator.uniform(0.5, 4.0)
-        v, angles = generator.uniform(0.3, 6.0, 4), generator.dirichlet(np.ones(4)) * 2.0 * np.pi
-        for count in (2, 3, 4):
-            part = angles[:count] * 2.0 * np.pi / np.sum(angles[:count])
-            levels = (period * v[:count] / (2.0 * np.pi)) ** 2
-            found = half_trace(levels, part)
-            phases = period * v[:count] * part / (2.0 * np.pi)
-            assert printed_j(np.cos(phases), np.sin(phases), v) == pytest.approx(found, abs=1e-11)
+row("7.9", check=holds(lambda: [interval()]))
 
 
-def printed_j(c, s, v):
-    """Return J_2, J_3 as printed, and J_4 with the factor of its four sines."""
+@row("7.2 powers of the interval matrix")
+def powers_of_the_matrix(entry):
+    p = interval(1.0, 0.3)
+    square = (p["A"] @ p["A"])[0, 1]
+    hold(entry.corrected, {**p, "A2_12": square})
+    quoted([entry.printed.values(**p)["A2_12"], square], "0.087", "0.565")
+    quoted([entry.printed.values(w=2.0, dt=0.7)["A2_12"]], "0.4856")
 
-    def ratio(i, k):
-        return 0.5 * (v[i] / v[k] + v[k] / v[i])
 
-    if len(c) == 2:
-        return c[0] * c[1] - ratio(0, 1) * s[0] * s[1]
-    if len(c) == 3:
-        return (
-            c[0] * c[1] * c[2]
-            - ratio(0, 1) * s[0] * s[1] * c[2]
-            - ratio(0, 2) * s[0] * s[2] * c[1]
-            - ratio(1, 2) * s[1] * s[2] * c[0]
-        )
-    pairs = [(i, k) for i in range(4) for k in range(i + 1, 4)]
+@row("7.2 multipliers at a constant frequency")
+def multipliers_at_a_constant_frequency(entry):
+    """Real, and -1, also where the frequency is 3/2, 5/2 ... of the speed."""
+    for ratio, expected in ((3.0, 1.0), (1.5, -1.0), (2.5, -1.0), (1.3, None)):
+        roots = np.linalg.eigvals(interval(1.0, 2 * np.pi * ratio)["A"])
+        if expected:
+            np.testing.assert_allclose(roots, expected, atol=1e-7)
+        values = [entry.printed.values(w=ratio, omega=1.0, pm=sign)["lam"] for sign in (1, -1)]
+        np.testing.assert_allclose(np.sort_complex(roots), np.sort_complex(values), atol=1e-7)
+        same(values[0], entry.printed.values(w=2 * ratio, omega=2.0, pm=1)["lam"])
+
+
+@cache
+def meissner():
+    """Return periods of two and three intervals, J by half traces of matrix exponentials."""
+    generator, points = np.random.default_rng(711), []
+    for _ in range(6):
+        T = generator.uniform(0.5, 4.0)
+        v, parts = generator.uniform(0.3, 6.0, 3), generator.dirichlet(np.ones(3)) * 2.0 * np.pi
+        point = {"T": T, "v": {k: w for k, w in enumerate(v, 1)}}
+        for count in (2, 3):
+            share = parts[:count] * 2.0 * np.pi / parts[:count].sum()
+            levels = (T * v[:count] / (2.0 * np.pi)) ** 2
+            phases = T * v[:count] * share / (2.0 * np.pi)
+            letters = {"theta": {k: w for k, w in enumerate(share, 1)}}
+            letters |= {
+                "C": {},
+                "S": {},
+                "V": {},
+                "count": count,
+                f"J{count}": half_trace(levels, share),
+            }
+            for k in range(count):
+                letters["C"][k + 1], letters["S"][k + 1] = np.cos(phases[k]), np.sin(phases[k])
+                letters["V"] |= {
+                    (i + 1, k + 1): (v[i] / v[k] + v[k] / v[i]) / 2 for i in range(count)
+                }
+            points.append({**point, **letters, "i": 1, "k": 2})
+    return points
+
+
+row("7.2 C, S and V", check=holds(meissner))
+
+
+@row("7.11")
+def meissners_functions(entry):
+    """J is half the trace; C, S and V as the row before defines them."""
+    for point in meissner():
+        hold(entry.printed[point["count"] - 2], point)
+
+
+@row("7.10")
+def equation_of_an_interval(entry):
+    """The wave of an interval of frequency v, its angle running 2 pi in the period T."""
+    theta, T, v = sp.symbols("theta T v", positive=True)
+    names = {"theta": theta, "T": T, "v": {sp.Symbol("i"): v}, "i": sp.Symbol("i")}
+    hold(entry.printed, {**names, "y": sp.cos(T * v * theta / (2 * sp.pi))})
+
+
+def test_four_sines_have_the_pfaffian_before_them():
+    """From N = 4 on the printed pattern of single factors ends."""
+    generator = np.random.default_rng(712)
+    v, phases = generator.uniform(0.3, 6.0, 4), generator.uniform(0.1, 5.0, 4)
+    c, s = np.cos(phases), np.sin(phases)
+    V = (v[:, None] / v + v / v[:, None]) / 2
     total = np.prod(c)
-    for i, k in pairs:
-        rest = [j for j in range(4) if j not in (i, k)]
-        total -= ratio(i, k) * s[i] * s[k] * np.prod(c[rest])
-    pfaffian = ratio(0, 1) * ratio(2, 3) - ratio(0, 2) * ratio(1, 3) + ratio(0, 3) * ratio(1, 2)
-    return total + pfaffian * np.prod(s)
+    for i in range(4):
+        for k in range(i + 1, 4):
+            rest = [j for j in range(4) if j not in (i, k)]
+            total -= V[i, k] * s[i] * s[k] * np.prod(c[rest])
+    pfaffian = V[0, 1] * V[2, 3] - V[0, 2] * V[1, 3] + V[0, 3] * V[1, 2]
+    found = half_trace(v**2, phases / v)
+    assert total + pfaffian * np.prod(s) == pytest.approx(found, abs=1e-11)
 
 
-@establishes(
-    "Aannaque",
-    "7.2 Mathieu's equation without modulation",
-    printed=r"\epsilon = 0,\; d = i^2: \text{ unstable}",
-    verdict="slip",
-    derived=r"R = (-1)^i I \text{ for } i \ge 1: \text{ every solution is periodic; regions of "
-    r"instability start there for } \epsilon \ne 0",
-    remark="Only d = 0 has a growing solution at eps = 0. At d = 9 the point itself stays stable "
-    "for small eps: both ends of region 3 lie above it, at 9.0137 and 9.0176 with eps = 1.",
-)
-def test_without_modulation_nothing_grows_but_at_zero():
+@row("7.2 Mathieu's equation without modulation")
+def nothing_grows_without_modulation(entry):
     t = sp.Symbol("t", real=True)
+    d = entry.printed[1].value(i=3)
     for i in (1, 2, 3, 4):
+        w = sp.sqrt(sp.nsimplify(entry.printed[1].value(i=i)))
         matrix = sp.Matrix(
-            [[sp.cos(i * t), sp.sin(i * t) / i], [-i * sp.sin(i * t), sp.cos(i * t)]]
+            [[sp.cos(w * t), sp.sin(w * t) / w], [-w * sp.sin(w * t), sp.cos(w * t)]]
         )
         assert matrix.subs(t, sp.pi) == (-1) ** i * sp.eye(2)
-    from scipy.special import mathieu_a, mathieu_b
-
     ends = sorted([float(mathieu_a(3, 0.5)), float(mathieu_b(3, 0.5))])
-    assert ends == pytest.approx([9.0137, 9.0176], abs=5e-5)
-    trace = 0.5 * np.trace(normalised_solutions(lambda t: 9.0 + np.cos(2.0 * t), np.pi))
-    assert abs(trace) < 1.0
+    quoted(ends, "9.0137", "9.0176")
+    eps = entry.printed[0].value() + 1.0
+    trace = 0.5 * np.trace(normalised_solutions(lambda t: d + eps * np.cos(2.0 * t), np.pi))
+    assert abs(trace) < 1.0 and eps == 1.0
+
+
+test_row, test_falsified_row = row.tests()

@@ -1,191 +1,277 @@
-"""Aannaque (4.1)-(4.14): shape functions, Hamilton's principle, strain energy, stiffness."""
+"""Aannaque (4.1)-(4.14) and appendix A: shape functions, strain energy, matrices of elements."""
 
+from functools import cache
+
+import numpy as np
+import pytest
+import scipy.linalg
 import sympy as sp
 from elastolink.derive.models import beam_elements as elements
 from elastolink.derive.models.beam_shapes import t, u, v
 from elastolink.derive.variational import hamilton
-from seed_elements import EA, EI, L, arrays, integral, letters, same, shape_rows, symmetric, x, zeta
-from seed_ledger import establishes
+from elastolink.runtime.beams.elements import element_arrays
+from seed_elements import EA, EI, L, arrays, letters, places, rho, shape_rows, x, zeta
+from seed_ledger import Ledger, hold, holds, quoted, same
 
+row = Ledger("Aannaque", __file__)
 AXIAL, BENT = slice(0, 2), slice(2, 6)
-PRINTED_CUBICS = sp.Matrix(
-    [
-        [
-            1 - 3 * zeta**2 + 2 * zeta**3,
-            L * (zeta - 2 * zeta**2 + zeta**3),
-            3 * zeta**2 - 2 * zeta**3,
-            L * (-(zeta**2) + zeta**3),
-        ]
+SIZES = {L: 0.7, EA: 1.9, EI: 2.3, rho: 1.1}
+LENGTH = SIZES[L]
+
+
+@cache
+def derived(kind):
+    """Return the derived matrices in numbers, and the rows of shapes as functions of the place.
+
+    ``("v", 2)`` is the second derivative by x of the row of v.
+    """
+    forms = arrays(kind)
+    numbers = {k: np.array(forms[k].subs(SIZES), dtype=float) for k in ("mass", "stiffness")}
+    for name, part in zip("uv", shape_rows(kind), strict=True):
+        for order in range(3):
+            form = part.diff(zeta, order) / L**order if order else part
+            function = sp.lambdify(zeta, form.subs(SIZES))
+            numbers[name, order] = lambda s, f=function: np.array(f(s / LENGTH), dtype=float)
+    return numbers
+
+
+def matrix_integral(body, low, high, _):
+    """Integrate a matrix by Gauss points."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    half = (high - low) / 2
+    return half * sum(w * body(low + half * (1 + s)) for s, w in zip(nodes, weights, strict=True))
+
+
+@cache
+def cubic():
+    """Return places of a beam in the document's letters, for free nodal values."""
+    d, q = derived("cubic"), np.array([0.3, -0.2, 0.5, 0.1, -0.4, 0.7])
+    stiffness = d["stiffness"]
+    common = {
+        "u_x": lambda s: (d["u", 1](s) @ q)[0],
+        "v": lambda s: (d["v", 0](s) @ q)[0],
+        "v_xx": lambda s: (d["v", 2](s) @ q)[0],
+        "B1": lambda s: d["u", 1](s)[:, AXIAL],
+        "B2": lambda s: d["v", 2](s)[:, BENT],
+        "N2": lambda s: d["v", 0](s)[:, BENT],
+        "N2_pp": lambda s: d["v", 2](s)[:, BENT],
+        **{"K": stiffness, "K1": stiffness[AXIAL, AXIAL], "K2": stiffness[BENT, BENT]},
+        **{"q1": q[AXIAL], "q2": q[BENT], "U_int": q @ stiffness @ q / 2, "Int": matrix_integral},
+        **{"L": LENGTH, "EA": SIZES[EA], "EI_z": SIZES[EI]},
+    }
+    return [
+        {**common, "x": s, "u": (d["u", 0](s) @ q)[0], "eps": (d["u", 1](s) @ q)[0]}
+        for s in (0.1, 0.45)
     ]
-)
 
 
-def by_x(row, order=1):
-    return row.diff(zeta, order) / L**order
+def polynomial(count, item, first=1):
+    """Return the check of a polynomial: determined by the nodal values, and a solution at rest."""
+
+    def check(entry):
+        a = sp.symbols(f"a{first}:{first + count}")
+        names = {f"a{k}": c for k, c in enumerate(a, first)} | {"a": dict(enumerate(a, 1))}
+        trial = entry.printed.value(**names, n=sp.Integer(count), x=x)
+        same(trial, sum(c * x**k for k, c in enumerate(a)))
+        ends = [sp.diff(trial, x, k).subs(x, e * L) for e in (0, 1) for k in range(count // 2)]
+        assert sp.simplify(sp.Matrix(ends).jacobian(a).det()) != 0
+        still = {elements.turn: 0, **dict.fromkeys((*elements.forces, *elements.loads), 0)}
+        values = {u: trial, v: 0} if item is u else {u: 0, v: trial}
+        equation = hamilton(elements.beam_action("cubic")).equations[item]
+        assert sp.expand(equation.subs(values).doit().subs(still).doit()) == 0
+
+    return check
 
 
-@establishes(
-    "Aannaque",
-    "4.1",
-    printed=r"u(x) = \sum_{i=1}^{n} a_i x^{i-1}",
-    verdict="agrees",
-    derived=r"\text{as many coefficients as nodal values, and these determine them}",
-)
-@establishes(
-    "Aannaque",
-    "4.2",
-    printed=r"u(x) = a_1 + a_2 x",
-    verdict="agrees",
-)
-@establishes(
-    "Aannaque",
-    "4.5",
-    printed=r"v(x) = a_3 + a_4 x + a_5 x^2 + a_6 x^3",
-    verdict="agrees",
-)
-def test_polynomials_are_determined_by_the_nodal_values():
-    """One polynomial for any nodal values; and static solutions without load are such."""
-    for count, conditions in ((2, [(0, 0), (0, 1)]), (4, [(k, e) for e in (0, 1) for k in (0, 1)])):
-        a = sp.symbols(f"a1:{count + 1}")
-        trial = sum(c * x**i for i, c in enumerate(a))
-        rows = [sp.diff(trial, x, order).subs(x, end * L) for order, end in conditions]
-        matrix = sp.Matrix([[sp.diff(row, c) for c in a] for row in rows])
-        assert sp.simplify(matrix.det()) != 0
-    equations = hamilton(elements.beam_action("cubic")).equations
-    still = {elements.turn: 0, **dict.fromkeys((*elements.forces, *elements.loads), 0)}
-    a = sp.symbols("a1:7")
-    stretched, bent = a[0] + a[1] * x, sum(c * x**i for i, c in enumerate(a[2:]))
-    for item in (u, v):
-        assert (
-            sp.expand(equations[item].subs({u: stretched, v: bent}).doit().subs(still).doit()) == 0
-        )
-    assert t not in stretched.free_symbols
+def shapes(kind, columns=slice(None), order=0):
+    """Return the check of printed shapes or their second derivatives, functions of zeta."""
+
+    def check(entry):
+        for s in (0.1, 0.3, 0.85):
+            true = derived(kind)["v", order](s * LENGTH)[0, columns] * LENGTH**order
+            same(np.ravel(entry.printed.value(L=LENGTH, zeta=s, xi=s, N_T=0, B_T=0)), true, 1e-9)
+
+    return check
 
 
-@establishes(
-    "Aannaque",
+def latex_of(kind, name, rows=slice(None), columns=slice(None)):
+    """Return what shows a derived matrix."""
+    return lambda: letters(arrays(kind)[name][rows, columns])
+
+
+row("4.1", "4.2", check=polynomial(2, u))
+row("4.5", check=polynomial(4, v, first=3))
+row(
     "4.3",
-    printed=r"u = [1 - \xi \quad \xi]\,q_1,\; \xi = x/L",
-    verdict="agrees",
     derived=lambda: letters(shape_rows("cubic")[0][:, AXIAL]),
+    check=lambda entry: hold(entry.printed, cubic),
 )
-@establishes(
-    "Aannaque",
-    "4.4",
-    printed=r"\varepsilon = B_1 q_1,\; B_1 = \frac{1}{L}[-1 \quad 1]",
-    verdict="agrees",
-    derived=lambda: letters(by_x(shape_rows("cubic")[0][:, AXIAL])),
-)
-@establishes(
-    "Aannaque",
-    "4.6",
-    printed=r"v(x) = N_2(x)\,q_2",
-    verdict="agrees",
-)
-@establishes(
-    "Aannaque",
+
+
+@row("4.4", derived=lambda: letters(shape_rows("cubic")[0][:, AXIAL].diff(zeta) / L))
+def strain(entry):
+    hold(entry.printed, *({k: v for k, v in p.items() if k != "B1"} for p in cubic()))
+
+
+row("4.6", "4.8", "4.9", "4.11", "4.14", check=holds(cubic))
+
+
+@row("4.10")
+def curvature(entry):
+    there = [{**p, **{k: p[k](p["x"]) for k in ("B2", "v_xx")}} for p in cubic()]
+    hold(entry.printed, *there)
+
+
+row(
     "4.2.1 cubic shape functions",
-    printed=r"[1 - 3\xi^2 + 2\xi^3 \quad L(\xi - 2\xi^2 + \xi^3) \quad 3\xi^2 - 2\xi^3 \quad "
-    r"L(-\xi^2 + \xi^3)]",
-    verdict="agrees",
     derived=lambda: letters(shape_rows("cubic")[1][:, BENT]),
+    check=shapes("cubic", BENT),
 )
-def test_linear_and_cubic_shapes():
-    along, across = shape_rows("cubic")
-    assert same(along, [[1 - zeta, zeta, 0, 0, 0, 0]])
-    assert same(by_x(along)[:, AXIAL], sp.Matrix([[-1, 1]]) / L)
-    assert same(across[:, BENT], PRINTED_CUBICS)
-    assert same(across[:, AXIAL], [[0, 0]])
 
 
-@establishes(
-    "Aannaque",
-    "4.7",
-    printed=r"\delta\int_{t_1}^{t_2}(T - U)\,dt = 0,\; \delta q(t_1) = \delta q(t_2) = 0",
-    verdict="agrees",
-    remark="U holds the potential of external forces; others add their virtual work.",
-)
-def test_hamiltons_principle_gives_the_known_equations_of_rod_and_beam():
+@row("4.7")
+def hamiltons_principle(_):
     """A frame at rest, no axial force: the wave equation and the beam equation with loads."""
-    action = elements.beam_action("cubic")
-    found = hamilton(action).equations
+    found = hamilton(elements.beam_action("cubic")).equations
     rest = {elements.turn: 0, **dict.fromkeys(elements.forces, 0)}
-    rho, s = elements.density, x / L
-    load = dict(zip(("px1", "px2", "py1", "py2"), elements.loads, strict=True))
-    rod = EA * u.diff(x, 2) - rho * u.diff(t, 2) + load["px1"] * (1 - s) + load["px2"] * s
-    beam = -EI * v.diff(x, 4) - rho * v.diff(t, 2) + load["py1"] * (1 - s) + load["py2"] * s
+    s, loads = x / L, dict(zip(("px1", "px2", "py1", "py2"), elements.loads, strict=True))
+    rod = EA * u.diff(x, 2) - rho * u.diff(t, 2) + loads["px1"] * (1 - s) + loads["px2"] * s
+    beam = -EI * v.diff(x, 4) - rho * v.diff(t, 2) + loads["py1"] * (1 - s) + loads["py2"] * s
     assert sp.simplify(found[u].subs(rest).doit() - rod) == 0
     assert sp.simplify(found[v].subs(rest).doit() - beam) == 0
 
 
-@establishes(
-    "Aannaque",
-    "4.8",
-    printed=r"U_{int} = \frac12\int_0^L EA\,u_x^2\,dx + \frac12\int_0^L EI_z\,v_{xx}^2\,dx",
-    verdict="agrees",
-    remark="Without shear and without the axial force's work, which 4.2.6 adds.",
-)
-@establishes(
-    "Aannaque",
-    "4.9",
-    printed=r"U_{int} = \frac12 q_1^T\left(\int EA\,B_1^T B_1 dx\right)q_1 + "
-    r"\frac12 q_2^T\left(\int EI_z B_2^T B_2 dx\right)q_2",
-    verdict="agrees",
-)
-@establishes(
-    "Aannaque",
-    "4.10",
-    printed=r"v_{xx} = N_2''(x)\,q_2 = B_2 q_2",
-    verdict="agrees",
-)
-@establishes(
-    "Aannaque",
-    "4.11",
-    printed=r"K_1 = \int_0^L EA\,B_1^T B_1\,dx,\; K_2 = \int_0^L EI_z B_2^T B_2\,dx",
-    verdict="agrees",
-)
-def test_stiffness_is_the_energy_of_the_strains():
-    along, across = shape_rows("cubic")
-    stiffness = arrays("cubic")["stiffness"]
-    first, second = by_x(along)[:, AXIAL], by_x(across, 2)[:, BENT]
-    assert same(stiffness[AXIAL, AXIAL], integral(first, EA * L))
-    assert same(stiffness[BENT, BENT], integral(second, EI * L))
-    q = sp.Matrix(sp.symbols("q1:7"))
-    stretch, bend = (by_x(along) * q)[0], (by_x(across, 2) * q)[0]
-    stored = (integral(sp.Matrix([[stretch]]), EA * L) + integral(sp.Matrix([[bend]]), EI * L))[
-        0
-    ] / 2
-    assert sp.simplify(stored - (q.T * stiffness * q)[0] / 2) == 0
+@row("4.12", derived=latex_of("cubic", "stiffness", AXIAL, AXIAL))
+def lost_denominator(entry):
+    hold(entry.printed, *({**point, "hole": LENGTH} for point in cubic()))
 
 
-@establishes(
-    "Aannaque",
-    "4.12",
-    printed=r"K_1 = \frac{EA}{\;}\begin{bmatrix}1 & -1\\-1 & 1\end{bmatrix}",
-    verdict="not legible",
-    derived=lambda: letters(arrays("cubic")["stiffness"][AXIAL, AXIAL]),
-    remark="The scan has a fraction bar and no denominator; L belongs there.",
-)
-@establishes(
-    "Aannaque",
+row(
     "4.13",
-    printed=r"K_2 = \frac{EI_z}{L^3}\begin{bmatrix}12 & 6L & -12 & 6L\\ & 4L^2 & -6L & 2L^2\\ "
-    r"& & 12 & -6L\\ & & & 4L^2\end{bmatrix}",
-    verdict="agrees",
-    derived=lambda: letters(arrays("cubic")["stiffness"][BENT, BENT]),
+    derived=latex_of("cubic", "stiffness", BENT, BENT),
+    check=lambda entry: hold(entry.printed, cubic),
 )
-@establishes(
-    "Aannaque",
-    "4.14",
-    printed=r"K = \begin{bmatrix}K_1 & \\ & K_2\end{bmatrix}",
-    verdict="agrees",
-    remark="The scan shows the blocks one above the other. Both axial displacements come first.",
+
+# Appendix A: the elements of the p-version.
+
+
+def matrix(entry):
+    """Return a printed matrix at the sizes of the test."""
+    return entry.printed.value(L=LENGTH, rhoA=SIZES[rho], EI=SIZES[EI])
+
+
+row(
+    "A.1",
+    derived=lambda: letters(shape_rows("internal_node")[1]),
+    check=shapes("internal_node"),
 )
-def test_stiffness_matrices():
-    stiffness = arrays("cubic")["stiffness"]
-    assert same(stiffness[AXIAL, AXIAL], EA / L * sp.Matrix([[1, -1], [-1, 1]]))
-    printed = symmetric(
-        [[12, 6 * L, -12, 6 * L], [4 * L**2, -6 * L, 2 * L**2], [12, -6 * L], [4 * L**2]]
+
+
+@row("A.2")
+def strains_by_zeta(entry):
+    shapes("internal_node", order=2)(entry)
+    quoted([0.328**-2], "9.3")
+
+
+@row("A.3", derived=latex_of("internal_node", "mass"))
+def mass_with_an_inner_node(entry):
+    same(matrix(entry), derived("internal_node")["mass"], 1e-9)
+
+
+@row("A.4")
+def stiffness_with_an_inner_node(entry):
+    true, printed = derived("internal_node")["stiffness"], matrix(entry)
+    wrong = np.argwhere(np.abs(printed - true) > 1e-9 * np.abs(true).max())
+    assert wrong.tolist() == [[1, 1]]
+    hold(entry.corrected, {"EI": SIZES[EI], "L": LENGTH, "K_22": true[1, 1], "K_66": true[5, 5]})
+    turned = np.array([0, 1, LENGTH / 2, 1, LENGTH, 1])
+    assert turned @ printed @ turned / 2 == pytest.approx(-SIZES[EI] / (7 * LENGTH))
+    kept, unit = np.ix_([1, 2, 3, 5], [1, 2, 3, 5]), {L: 1, EI: 1, rho: 1}
+    mass, right = (
+        np.array(arrays("internal_node")[k].subs(unit), dtype=float) for k in ("mass", "stiffness")
     )
-    assert same(stiffness[BENT, BENT], EI / L**3 * printed)
-    assert stiffness[AXIAL, BENT].is_zero_matrix
+    squares = [
+        scipy.linalg.eigvalsh(stiffness[kept], mass[kept])[0]
+        for stiffness in (right, entry.printed.value(L=1, EI=1))
+    ]
+    quoted(np.sqrt(squares), "9.8725", "9.5705")
+
+
+def curvatures(name, quotes=()):
+    """Return the check of a repeated form: the one before to the letter, so not the right one.
+
+    ``quotes`` are entry (1, 1) of the right and of the printed matrix without L, rho A and EI.
+    """
+
+    def check(entry):
+        before = {"A.5": "A.1", "A.6": "A.2", "A.7": "A.3", "A.8": "A.4"}[entry.label]
+        first = Ledger("Aannaque", "")._entry(before, None, None, False)
+        assert str(entry.printed) == str(first.printed)
+        if quotes:
+            unit = entry.printed.value(L=1, rhoA=1, EI=1)[0, 0]
+            right = arrays("curvature")[name].subs({L: 1, EI: 1, rho: 1})[0, 0]
+            quoted([right, unit], *quotes)
+
+    return check
+
+
+row("A.5", check=curvatures("v"), derived=lambda: letters(shape_rows("curvature")[1]))
+row(
+    "A.6",
+    check=curvatures("v"),
+    derived=lambda: letters((shape_rows("curvature")[1].diff(zeta, 2) / L**2).applyfunc(sp.factor)),
+)
+row("A.7", check=curvatures("mass", ("0.392", "0.151")), derived=latex_of("curvature", "mass"))
+row(
+    "A.8",
+    check=curvatures("stiffness", ("17.1", "145.5")),
+    derived=latex_of("curvature", "stiffness"),
+)
+
+
+def test_shapes_of_the_element_with_curvatures():
+    """Nodal values; and the printed ones, whose first has the curvature -46/L^2 at its end."""
+    found = shape_rows("curvature")[1]
+    for k, (order, end) in enumerate((o, e) for e in (0, 1) for o in (0, 1, 2)):
+        values = (found.diff(zeta, order) / L**order).subs(zeta, end)
+        assert sp.simplify(values - sp.eye(6)[k, :]).is_zero_matrix
+    first = sp.expand(found[0].diff(zeta, 2))
+    assert first == -60 * zeta + 180 * zeta**2 - 120 * zeta**3
+    assert derived("internal_node")["v", 2](0.0)[0, 0] == pytest.approx(-46 / LENGTH**2)
+    assert [shape.subs({zeta: sp.Rational(1, 2), L: 1}) for shape in (found[2],)] == [
+        sp.Rational(1, 64)
+    ]
+
+
+def test_matrices_of_the_element_with_curvatures():
+    """From the derived shapes by other integration; and they span the other element's space."""
+    shape = shape_rows("curvature")[1]
+    change = np.array(
+        [
+            [(form / L**k).subs(zeta, at).subs(SIZES) for form in shape.diff(zeta, k)]
+            for at in (0, sp.Rational(1, 2), 1)
+            for k in (0, 1)
+        ],
+        dtype=float,
+    )
+    for name in ("mass", "stiffness"):
+        other = change.T @ derived("internal_node")[name] @ change
+        same(other, derived("curvature")[name], 1e-9)
+
+
+@pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature"])
+def test_emitted_elements_hold_the_same_numbers(kind):
+    """The slips are not in the package; the first frequency of a pinned beam within 0.03 %."""
+    sizes = {"length": LENGTH, "mass_per_length": SIZES[rho], "axial_stiffness": SIZES[EA]}
+    found = element_arrays(kind, **sizes, bending_stiffness=SIZES[EI])
+    order = np.ix_(places(kind), places(kind))
+    for name in ("mass", "stiffness"):
+        same(getattr(found, name)[order], derived(kind)[name], 1e-12)
+    if kind != "cubic":
+        kept = np.ix_([2, 5, 6, 7], [2, 5, 6, 7])
+        square = scipy.linalg.eigvalsh(found.stiffness[kept], found.mass[kept])[0]
+        exact = (np.pi / LENGTH) ** 4 * SIZES[EI] / SIZES[rho]
+        assert abs(np.sqrt(square / exact) - 1) < 3e-4
+
+
+test_row, test_falsified_row = row.tests()

@@ -1,353 +1,345 @@
 """Smith (8.23)-(8.44): the modified and the alternative method for several parameters."""
 
-from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
 import sympy as sp
-from seed_ledger import establishes
-from seed_series import TWO_FUNCTIONS, eps, psi, resonant, theta
-from seed_truth import CRANK_ROCKERS, RIGS, TURN, boundaries, coupler_functions, fourier, motion
-from smith_chapter_8.modified import alternative_method
-from smith_chapter_8.strained import strained_boundaries
-from smith_chapter_8.surd import combine
+from seed_ledger import Ledger, derivative, hold, holds, quoted, same
+from seed_rigs import RIGS
+from seed_series import TWO_FUNCTIONS, couplings, delta, eps, rows
+from seed_truth import CRANK_ROCKERS, boundaries, coupler_functions, fourier, motion
+from seed_waves import (
+    THETA,
+    Coefficients,
+    function,
+    parts,
+    resonance,
+    second_order,
+    series,
+    solved,
+)
+from seed_waves import derivative as wave_derivative
+from seed_waves import region as hill_region
 
-F = Fraction
-A, B = sp.symbols("A B", real=True)
+row = Ledger("Smith", __file__)
 ONE, TWO = TWO_FUNCTIONS
+THREE = ((*eps, delta), ("f1_bar", "f2_bar", "wave"))
+TURN = slice(0, 128)  # of the grid over two turns
 
 
-def prime(level, region, sign=-1):
-    """Return the resonant parts of the right side of (8.26) in the turned frame."""
-    angle = (region * theta) / 2
-    y0 = A * sp.cos(angle) + B * sp.sin(angle)
-    return resonant(sign * level * y0 - sp.cos(region * theta) * y0, region)
+def is_row(key):
+    """Return the check that left less right side is the machine's equation of one power."""
+
+    def check(entry):
+        equations, letters = rows(*THREE)
+        one, other = entry.printed.sides(**letters)[0]
+        same(one - other, equations[key])
+
+    return check
 
 
-@establishes(
-    "Smith",
-    "8.3.2 first-order coefficients",
-    printed=r"\alpha_{100} = -a_0,\; \alpha_{010} = -c_0",
-    verdict="agrees",
-)
-@establishes(
-    "Smith",
-    "8.3.2 equation of y_001",
-    printed=r"y_{001}'' + (\tfrac n2)^2 y_{001} = \alpha_{001}\{A'c_1 + B's_1\} - \tfrac{A'}2\{c_3 "
-    r"+ c_1\} - \tfrac{B'}2\{s_3 - s_1\}",
-    verdict="slip",
-    derived=r"= -\alpha_{001}\{A'c_1 + B's_1\} - \tfrac{A'}2\{c_3 + c_1\} - \tfrac{B'}2\{s_3 - "
-    r"s_1\}",
-    remark="Minus alpha_001, by (8.26); c_k, s_k are cos and sin of k(n theta - psi_n)/2. As "
-    "printed A' = 1 would go with alpha_001 = +1/2; (8.27) has the right signs again.",
-)
-@establishes(
-    "Smith",
-    "8.27",
-    printed=r"A'_{000}\left(\alpha_{001} + \tfrac12\right) = 0,\; B'_{000}\left(\alpha_{001} - "
-    r"\tfrac12\right) = 0",
-    verdict="agrees",
-)
-@establishes(
-    "Smith",
-    "8.28",
-    printed=r"A'_{000} = 0 \Rightarrow \alpha_{001} = +\tfrac12,\; B'_{000} = 0 \Rightarrow "
-    r"\alpha_{001} = -\tfrac12",
-    verdict="agrees",
-    remark="With delta_n = 0 both constants stay free.",
-)
-def test_first_order_of_the_modified_method():
-    level = sp.Symbol("level", real=True)
-    for region in (1, 2, 3):
-        cosine, sine = prime(level, region)
-        assert sp.expand(cosine + A * (level + sp.Rational(1, 2))) == 0
-        assert sp.expand(sine + B * (level - sp.Rational(1, 2))) == 0
-        wrong, _ = prime(level, region, sign=1)
-        assert wrong.subs({level: sp.Rational(1, 2), A: 1}) == 0
-        # The products as printed, in the frame of psi_n.
-        x = (region * theta - psi) / 2
-        product = sp.cos(2 * x) * (A * sp.cos(x) + B * sp.sin(x))
-        printed = A / 2 * (sp.cos(3 * x) + sp.cos(x)) + B / 2 * (sp.sin(3 * x) - sp.sin(x))
-        numbers = {theta: 0.7, psi: 0.4, A: 1.3, B: -0.6}
-        assert float((product - printed).subs(numbers)) == pytest.approx(0.0, abs=1e-14)
-        # No n-th harmonic in the bar functions: only their means reach n/2.
-        bare, mean = sp.symbols("bare mean", real=True)
-        y0 = A * sp.cos(region * theta / 2) + B * sp.sin(region * theta / 2)
-        f = mean + bare * sp.cos((region + 1) * theta) + bare * sp.sin((region + 2) * theta)
-        found = resonant(-(level + f) * y0, region)
-        assert [value.subs(level, -mean) for value in found] == [0, 0]
+RIGHT = r",\; \alpha_{%s} = %s"
+FOUND = {
+    "8.30": RIGHT % (200, r"w_{11} \mp \Re(W_{11}e^{i\psi_n})"),
+    "8.31": RIGHT % ("020", r"w_{22} \mp \Re(W_{22}e^{i\psi_n})"),
+    "8.32": RIGHT % ("002", r"-\tfrac{1}{8n^2}"),
+    "8.33": RIGHT % (110, r"2w_{12} \mp 2\Re(W_{12}e^{i\psi_n})"),
+    "8.34": RIGHT % (101, r"\pm\tfrac{1}{4n^2}(a_{2n}\cos2\psi_n + b_{2n}\sin2\psi_n)"),
+    "8.35": RIGHT % ("011", r"\pm\tfrac{1}{4n^2}(c_{2n}\cos2\psi_n + d_{2n}\sin2\psi_n)"),
+}
+KEYS = {
+    "8.23": (0, 0, 0), "8.24": (1, 0, 0), "8.25": (0, 1, 0), "8.26": (0, 0, 1), "8.30": (2, 0, 0),
+    "8.31": (0, 2, 0), "8.32": (0, 0, 2), "8.33": (1, 1, 0), "8.34": (1, 0, 1), "8.35": (0, 1, 1),
+}  # fmt: skip
 
 
-def rig_case(region):
-    """Return exact and first-order boundaries of (8.3) for (5,1,5,2), lightest follower."""
+def shown(label):
+    """Return the derived equation of one order in LaTeX, and what it gives."""
+    return lambda: f"{sp.latex(rows(*THREE)[0][KEYS[label]])} = 0{FOUND.get(label, '')}"
+
+
+for label, key in KEYS.items():
+    row(label, check=is_row(key), derived=shown(label))
+
+
+@pytest.mark.parametrize("psi", [0.3, 1.9, 4.0])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_second_order_coefficients_of_the_modified_method(psi, sign):
+    """What (8.30)-(8.35) give, n = 2: projections on y_000 and across it, on the grid."""
+    order, half = 2, THETA - psi / 2
+    y000, across = (np.sin(half), np.cos(half)) if sign > 0 else (np.cos(half), -np.sin(half))
+
+    def projected(right):
+        c, s = parts(right, order)
+        pair = [(parts(y, order)[0] * c + parts(y, order)[1] * s) for y in (y000, across)]
+        return np.array(pair)
+
+    bars = [function(*({**p, 2: 0.0} for p in pair)) for pair in TWO_FUNCTIONS]
+    wave = np.cos(order * THETA - psi)
+    first = {k: -TWO_FUNCTIONS[k][0][0] for k in (0, 1)} | {2: sign / 2}
+    functions = [*bars, wave]
+    y = [solved(-(first[k] + functions[k]) * y000, order) for k in range(3)]
+
+    def condition(j, k):
+        """Return what alpha has to be, and what is left over; the constants of y are zero."""
+        right = -(first[j] + functions[j]) * y[k]
+        return projected(right if j == k else right - (first[k] + functions[k]) * y[j])
+
+    for (j, k), times in {(0, 0): 1, (1, 1): 1, (0, 1): 2}.items():
+        w, W = couplings(order, j, k)
+        turned = W * np.exp(1j * psi)
+        alpha, excess = condition(j, k)
+        assert alpha == pytest.approx(times * (w - sign * turned.real), abs=1e-12)
+        assert abs(excess) == pytest.approx(times * abs(turned.imag), abs=1e-12)
+        # No constant of y_100, y_010 changes them: what it multiplies has no resonant part.
+        assert np.abs(projected((first[j] + functions[j]) * across)).max() < 1e-12
+    assert condition(2, 2) == pytest.approx([-1 / 32, 0.0], abs=1e-12)
+    for j in (0, 1):
+        a, b = TWO_FUNCTIONS[j]
+        expected = sign / 16 * (a[4] * np.cos(2 * psi) + b[4] * np.sin(2 * psi))
+        assert condition(j, 2)[0] == pytest.approx(expected, abs=1e-12)
+        # The constant of y_100 meets the second condition: it stands there with a factor.
+        assert abs(projected((first[2] + wave) * across)[1]) > 0.5
+
+
+def turned(sign=1):
+    """Return the zero-order solution of the modified method in the frame of psi_n."""
+    for order in (1, 2, 3):
+        half = (order * THETA - 0.4) / 2
+        f = np.cos(order * THETA - 0.4)
+        for alpha, (A, B) in resonance(f, order):
+            # In the frame of psi_n.
+            a, b = A * np.cos(0.2) + B * np.sin(0.2), B * np.cos(0.2) - A * np.sin(0.2)
+            a, b = (np.round(x, 12) for x in (a, b))
+            y = a * np.cos(half) + b * np.sin(half)
+            second = -(alpha + f) * y - order**2 / 4 * 0.3
+            letters = {"n": order, "theta": THETA, "psi_n": 0.4, "A_000_p": a, "B_000_p": b}
+            yield {**letters, "alpha_001": alpha, "y_001": 0.3, "D": derivative(2, second)}
+
+
+@row("8.3.2 first-order coefficients")
+def means_alone(entry):
+    """With harmonic n left out only the means reach n/2."""
+    for order in (1, 2, 3):
+        (a, b), (c, d) = ([Coefficients({**x, order: 0.0}) for x in pair] for pair in TWO_FUNCTIONS)
+        levels = [v for pair in ((a, b), (c, d)) for v, _ in resonance(function(*pair), order)]
+        point = {"alpha_100": levels[0], "alpha_010": levels[2], "a0": a[0], "c0": c[0]}
+        hold(entry.printed, point, {**point, "alpha_100": levels[1], "alpha_010": levels[3]})
+
+
+@row("8.3.2 equation of y_001")
+def equation_of_y_001(entry):
+    hold(entry.corrected, turned)
+    hold(entry.printed, *({**p, "alpha_001": -p["alpha_001"]} for p in turned()))
+
+
+row("8.27", check=holds(turned))
+
+
+@row("8.28")
+def either_constant(entry):
+    """A' = 0 goes with the first value, B' = 0 with the second."""
+    values = [right for _, right in entry.printed.sides(A_000_p=0, B_000_p=0, alpha_001=0)]
+    for point in turned():
+        zero, level = ("A_000_p", values[1]) if point["alpha_001"] > 0 else ("B_000_p", values[3])
+        assert point[zero] == pytest.approx(0.0, abs=1e-12)
+        assert point["alpha_001"] == pytest.approx(level)
+    assert values[::2] == [0, 0]
+
+
+@cache
+def rig():
+    """Return f1 and f3 of (5,1,5,2), Fourier coefficients by letters, and both parameters."""
     _, f1, _, f3 = coupler_functions(motion(CRANK_ROCKERS["5,1,5,2"]))
     e1, _, e3 = RIGS["5,1,5,2"].epsilon(0.0058)
-    c1, c3 = fourier(f1), fourier(f3)
-    width = 2 * abs(e1 * c1[region] + e3 * c3[region])
-    centre = region**2 / 4 - e1 * c1[0].real - e3 * c3[0].real
-    exact = np.array(boundaries(e1 * f1 + e3 * f3, region))
-    return exact, np.array([centre - width / 2, centre + width / 2])
+    tables = {}
+    for names, f in (("ab", f1), ("cd", f3)):
+        c = fourier(f)
+        tables |= {names[0]: {k: 2 * c[k].real for k in range(9)}}
+        tables |= {names[1]: {k: -2 * c[k].imag for k in range(9)}}
+        tables[f"{names[0]}0"] = c[0].real
+    return {**tables, "eps1": e1, "eps2": e3, "lam": 2.0}, f1, f3
 
 
-@establishes(
-    "Smith",
-    "8.29",
-    printed=r"\lambda^2 = \left(\tfrac n2\right)^2 - \epsilon_1 a_0 - \epsilon_2 c_0 \pm "
-    r"\tfrac12\delta_n + O(2)",
-    verdict="approximation",
-    derived=r"+ w_0 \mp \Re(W e^{i\psi_n}) + O(\epsilon^3)",
-    remark="The scan has i/2 for 1/2. Error of order epsilon^2: for (5,1,5,2) with its own "
-    "epsilon1 = 3.29 and epsilon3 = 3.43 the boundaries of region 1 are off by 0.89 and 0.44 in "
-    "lambda^2, those of region 2 by 0.51 and 0.28.",
-)
-@establishes(
-    "Smith",
-    "8.43",
-    printed=r"\lambda^2 = \left(\tfrac n2\right)^2 - a_0\epsilon_1 - c_0\epsilon_2 \pm \tfrac12"
-    r"\sqrt{\epsilon_1^2(a_n^2 + b_n^2) + \epsilon_2^2(c_n^2 + d_n^2) + 2\epsilon_1\epsilon_2"
-    r"(a_n c_n + b_n d_n)}",
-    verdict="approximation",
-    derived=r"\text{as (8.29)}",
-    remark="Equal to (8.29), with its error: 0.51 and 0.28 in region 2 of (5,1,5,2).",
-)
-@establishes(
-    "Smith",
-    "8.4 width EF",
-    printed=r"EF = \delta_n = \sqrt{\epsilon_1^2(a_n^2 + b_n^2) + \epsilon_2^2(c_n^2 + d_n^2) + "
-    r"2\epsilon_1\epsilon_2(a_n c_n + b_n d_n)}",
-    verdict="approximation",
-    derived=r"EF = 2\lvert\tfrac12\delta_n e^{-i\psi_n} - W\rvert + O(\epsilon^3)",
-    remark="First order. Regions 1 to 4 of (5,1,5,2), its own parameters: 2.21, 0.91, 0.63, 0.22 "
-    "for the exact 2.66, 0.68, 0.23, 0.16.",
-)
-def test_first_order_boundaries_of_two_parameters():
-    e1, e2 = eps
-    an, bn, cn, dn = sp.symbols("a_n b_n c_n d_n", real=True)
-    square = (e1 * an + e2 * cn) ** 2 + (e1 * bn + e2 * dn) ** 2
-    printed = e1**2 * (an**2 + bn**2) + e2**2 * (cn**2 + dn**2) + 2 * e1 * e2 * (an * cn + bn * dn)
-    assert sp.expand(square - printed) == 0
-    errors, widths = {}, []
-    for region in (1, 2, 3, 4):
-        exact, first = rig_case(region)
-        errors[region] = np.abs(exact - first)
-        widths.append((first[1] - first[0], exact[1] - exact[0]))
-    assert errors[1] == pytest.approx([0.89, 0.44], abs=0.005)
-    assert errors[2] == pytest.approx([0.51, 0.28], abs=0.005)
-    assert np.array(widths).T[0] == pytest.approx([2.21, 0.91, 0.63, 0.22], abs=0.005)
-    assert np.array(widths).T[1] == pytest.approx([2.66, 0.68, 0.23, 0.16], abs=0.005)
-    _, f1, _, f3 = coupler_functions(motion(CRANK_ROCKERS["5,1,5,2"]))
-    gaps = []
-    for size in (0.004, 0.002):
-        c = size * (fourier(f1) - 0.7 * fourier(f3))
-        series = 1 - c[0].real + np.array([-1, 1]) * abs(c[2])
-        gaps.append(np.abs(series - boundaries(size * (f1 - 0.7 * f3), 2)).max())
+def letters(region, **more):
+    """Return the rig's letters with delta_n of a region."""
+    p = {**rig()[0], "n": region, **more}
+    whole = [p["eps1"] * p[x][region] + p["eps2"] * p[y][region] for x, y in ("ac", "bd")]
+    p |= {"delta_n": np.hypot(*whole), "psi_n": np.arctan2(*whole[::-1])}
+    mean = p["a0"] * p["eps1"] + p["c0"] * p["eps2"]
+    alpha1 = (-mean + more.get("pm", 1) * p["delta_n"] / 2) / p["eps1"]
+    tables = {"r": {}, "s": {}}
+    for name, (x, y) in {"r": "ac", "s": "bd"}.items():
+        tables[name] = {k: p[x][k] + p["eps2"] / p["eps1"] * p[y][k] for k in range(1, 9)}
+    return {**p, **tables, "r0": mean / p["eps1"], "alpha1": alpha1}
+
+
+def both(entry, region, **more):
+    """Return both printed boundaries, lower first; the left side is lambda^2."""
+    sides = []
+    for sign in (-1, 1):
+        point = letters(region, pm=sign, **more)
+        if entry.label == "8.41":
+            point["alpha1"] = entry.printed.values(
+                **{k: v for k, v in point.items() if k != "alpha1"}
+            )["alpha1"]
+        first = entry.printed.sides(**point)[0]
+        assert all(s == pytest.approx(first[1]) for s in first[2:]) and first[0] == 4
+        sides.append(first[1])
+    return np.array(sides)
+
+
+def exact(region, x, y):
+    _, f1, f3 = rig()
+    return np.array(boundaries(x * f1 + y * f3, region))
+
+
+@row("8.29", "8.43", "8.41")
+def first_order_boundaries(entry):
+    p = rig()[0]
+    error = {k: np.abs(both(entry, k) - exact(k, p["eps1"], p["eps2"])) for k in (1, 2)}
+    quoted(error[1], "0.89", "0.44")
+    quoted(error[2], "0.51", "0.28")
+    gaps = [
+        np.abs(both(entry, 2, eps1=h, eps2=-0.7 * h) - exact(2, h, -0.7 * h)).max()
+        for h in (0.004, 0.002)
+    ]
     assert np.log2(gaps[0] / gaps[1]) == pytest.approx(2.0, abs=0.1)
 
 
-@establishes(
-    "Smith",
-    "8.36",
-    printed=r"y_{100}'' + (\tfrac n2)^2 y_{100} = -\sum_{m \ge 1, m \ne n}(a_m\cos m\theta + b_m"
-    r"\sin m\theta)\{A_{000}\cos\tfrac n2\theta + B_{000}\sin\tfrac n2\theta\}",
-    verdict="agrees",
-    derived=r"\alpha_{100} + a_0 = 0",
-)
-@establishes(
-    "Smith",
-    "8.37",
-    printed=r"y_{100} = \tfrac12\sum_m\{P^{*\prime}\cos(m + \tfrac n2)\theta + Q^{*\prime}\sin(m + "
-    r"\tfrac n2)\theta\} + \tfrac12\sum_{m=1}^N\{R^{*\prime}\cos(\tfrac n2 - m)\theta - S^{*\prime}"
-    r"\sin(\tfrac n2 - m)\theta\} - \tfrac12(\tfrac2n)^2 T_n^* + A_{100}\cos\tfrac n2\theta + "
-    r"B_{100}\sin\tfrac n2\theta",
-    verdict="agrees",
-    derived=r"T_n^* = A_{000}a_{n/2} + B_{000}b_{n/2}",
-    remark="With the T_n of (7.27); the one that (7.28) prints has halves, and the constant would "
-    "be half as large. The star only says that harmonic n is left out: it enters no other term.",
-)
-@pytest.mark.parametrize("region", [1, 2, 3, 4])
-def test_first_order_solution(region):
-    a0, b0 = 1.3, -0.6
-    count = len(ONE.cosine)
-    bare = ONE.without(region)
-    a = np.array([0.0, *map(float, bare.cosine), *np.zeros(2 * region + count)])
-    b = np.array([0.0, *map(float, bare.sine), *np.zeros(2 * region + count)])
-    k = region / 2
-    angle = TURN * np.arange(256) / 128
-
-    def solution(constant):
-        y = np.zeros_like(angle)
-        for m in range(1, count + 1):
-            p = a0 * (a[m] + a[m + region]) - b0 * (b[m] - b[m + region])
-            q = a0 * (b[m] + b[m + region]) + b0 * (a[m] - a[m + region])
-            scale = 0.5 / (m * (m + region))
-            y += scale * (p * np.cos((m + k) * angle) + q * np.sin((m + k) * angle))
-        for m in range(1, (region - 1) // 2 + 1):
-            r = a0 * (a[m] + a[region - m]) + b0 * (b[m] + b[region - m])
-            s = a0 * (b[m] - b[region - m]) - b0 * (a[m] - a[region - m])
-            scale = -0.5 / (m * (region - m))
-            y += scale * (r * np.cos((k - m) * angle) - s * np.sin((k - m) * angle))
-        return y - 0.5 / k**2 * constant
-
-    constant = a0 * a[region // 2] + b0 * b[region // 2] if region % 2 == 0 else 0.0
-    waves = np.arange(1, count + 1)[:, None] * angle
-    f = a[1 : count + 1] @ np.cos(waves) + b[1 : count + 1] @ np.sin(waves)
-    right = -f * (a0 * np.cos(k * angle) + b0 * np.sin(k * angle))
-    # y'' over the period 4 pi of these samples, by its Fourier series.
-    number = np.fft.fftfreq(256, 1 / 256) / 2
-
-    def left(y):
-        return np.fft.ifft((k**2 - number**2) * np.fft.fft(y)).real
-
-    assert left(solution(constant)) == pytest.approx(right, abs=1e-11)
-    if constant:
-        short = left(solution(constant / 2)) - right
-        assert np.abs(short) == pytest.approx(abs(constant) / 4) and abs(constant) > 0.2
+@row("8.4 width EF")
+def width_of_both(entry):
+    p = rig()[0]
+    for region, quote, true in zip(
+        (1, 2, 3, 4),
+        ("2.21", "0.91", "0.63", "0.22"),
+        ("2.66", "0.68", "0.23", "0.16"),
+        strict=True,
+    ):
+        point = letters(region)
+        hold(entry.printed, {**point, "EF": point["delta_n"]})
+        low, high = exact(region, p["eps1"], p["eps2"])
+        quoted([point["delta_n"], high - low], quote, true)
 
 
-@establishes(
-    "Smith",
-    "8.3.3 order of the approximation",
-    printed=r"\text{order } k \text{ of } \lambda^2 \text{ needs the solutions to order } k - 1",
-    verdict="agrees",
-    derived=r"\text{to order } k - s,\; s \text{ the order at which the boundaries part}",
-    remark="s = 1 where the n-th harmonic is there. Without it, or with Rayleigh's quotient of the "
-    "solution, fewer do: the quotient of y_0 + mu y_1 is right to order 3.",
-)
-def test_order_of_the_approximation():
-    for f, s in ((ONE, 1), (ONE.without(2), 2)):
-        found = strained_boundaries(f, 2, 5)
-        assert found.split == s
-        assert all(len(x.solutions) - 1 == 5 - s for x in found.branches)
-    # Rayleigh's quotient of two terms, against the exact boundary.
-    found = strained_boundaries(ONE, 2, 2).branches[0]
-    angle = TURN * np.arange(128) / 128
-    y = [np.array([float(w(t)) for t in angle]) for w in found.solutions]
-    waves = np.arange(1, 5)[:, None] * angle
-    f = 0.9 + np.array([float(x) for x in ONE.cosine]) @ np.cos(waves)
-    f = f + np.array([float(x) for x in ONE.sine]) @ np.sin(waves)
-    number = np.fft.fftfreq(128, 1 / 128)
-    gaps = []
-    for mu in (0.02, 0.01):
-        whole = y[0] + mu * y[1]
-        slope = np.fft.ifft(1j * number * np.fft.fft(whole)).real
-        quotient = (slope @ slope - (mu * f * whole) @ whole) / (whole @ whole)
-        gaps.append(abs(quotient - boundaries(mu * f, 2)[1]))
-    assert np.log2(gaps[0] / gaps[1]) == pytest.approx(4.0, abs=0.2)
+@row("8.44")
+def one_parameter(entry):
+    p = rig()[0]
+    gaps = [np.abs(both(entry, k, eps2=0.0) - exact(k, p["eps1"], 0.0)) for k in (2, 1)]
+    quoted(np.ravel(gaps), "0.0112", "0.0066", "0.0233", "0.0118")
 
 
-@establishes(
-    "Smith",
-    "8.38",
-    printed=r"y'' + \{\lambda^2 + \epsilon_1 f_1 + \epsilon_2 f_2\}y = 0",
-    verdict="agrees",
-)
-@establishes(
-    "Smith",
-    "8.39",
-    printed=r"h = f_1 + \frac{\epsilon_2}{\epsilon_1}f_2",
-    verdict="agrees",
-    remark="For epsilon1 different from 0; with the larger parameter in front no quotient exceeds "
-    "one.",
-)
-@establishes(
-    "Smith",
-    "8.40",
-    printed=r"y'' + \{\lambda^2 + \epsilon_1 h\}y = 0",
-    verdict="agrees",
-    remark="Exactly (8.38), so that every order of chapter 7 applies along the ray, not the "
-    "first one only.",
-)
-@establishes(
-    "Smith",
-    "8.41",
-    printed=r"\lambda^2 = \left(\tfrac n2\right)^2 + \alpha_1\epsilon_1,\; \alpha_1 = -r_0 \pm "
-    r"\tfrac12\sqrt{r_n^2 + s_n^2}",
-    verdict="approximation",
-    derived=r"+ \alpha_2\epsilon_1^2 + \cdots",
-    remark="First order, as (8.29): 0.51 and 0.28 off in region 2 of (5,1,5,2). For epsilon1 < 0 "
-    "the upper sign is the lower boundary.",
-)
-@establishes(
-    "Smith",
-    "8.42",
-    printed=r"r_i = a_i + \frac{\epsilon_2}{\epsilon_1}c_i,\; s_i = b_i + \frac{\epsilon_2}"
-    r"{\epsilon_1}d_i",
-    verdict="agrees",
-)
-def test_alternative_method():
-    e1, e2 = F(1, 50), F(-1, 70)
-    h = combine((ONE, TWO), (1, e2 / e1))
-    for m in range(5):
-        pairs = zip(ONE.harmonic(m), TWO.harmonic(m), h.harmonic(m), strict=True)
-        assert all(z == x + e2 / e1 * y for x, y, z in pairs)
-    whole = combine((ONE, TWO), (e1, e2))
-    assert all(e1 * x == y for x, y in zip(h.cosine, whole.cosine, strict=True))
-    angle = TURN * np.arange(64) / 64
-    waves = np.arange(1, 5)[:, None] * angle
-    samples = float(whole.mean) + np.array([float(x) for x in whole.cosine]) @ np.cos(waves)
-    samples = samples + np.array([float(x) for x in whole.sine]) @ np.sin(waves)
-    exact = np.array(boundaries(samples, 2))
-    errors = [
-        np.abs(exact - alternative_method((ONE, TWO), 2, (e1, e2), order)).max()
-        for order in (1, 2, 3, 4)
-    ]
-    assert all(later < 0.2 * sooner for sooner, later in pairwise(errors))
+@row("8.4 axis PH")
+def axis(entry):
+    """On epsilon1 = 0 the middle of the region is that of the second function."""
+    p, size = rig()[0], 1e-4
+    quoted([p["a0"], p["c0"]], "-0.0092", "0.0336")
+    for form, right in (
+        (entry.printed[0], False),
+        (entry.printed[1], True),
+        (entry.corrected, True),
+    ):
+        for n in (2, 3):
+            four, printed = form.sides(**p | {"eps2": size}, n=n)[0]
+            assert four == 4
+            assert bool(abs(printed - np.mean(exact(n, 0.0, size))) < 1e-6) is right
+    quoted([(entry.printed[0].sides(**p | {"eps2": 1.0}, n=3)[0][1])], "2.2592")
+
+
+@row("8.4 widths AB and CD")
+def widths_on_the_axes(entry):
+    p = rig()[0]
+    values = entry.printed.values(**p, n=2)
+    widths = [np.ptp(exact(2, p["eps1"], 0.0)), np.ptp(exact(2, 0.0, p["eps2"]))]
+    quoted([values["AB"], values["CD"], *widths], "0.262", "0.727", "0.244", "0.657")
+
+
+def first_solutions():
+    """Return y_100 of (8.36) with the letters of (8.37): harmonic n is left out of the function."""
+    for order in (1, 2, 3, 4):
+        a, b = (Coefficients({**x, 0: 0.0, order: 0.0}) for x in ONE)
+        point = {**hill_region(a, b, order, 1), "y_star": None}
+        A, B, A1, B1 = 1.3, -0.6, 0.2, 0.5
+        c, s = np.cos(order / 2 * THETA), np.sin(order / 2 * THETA)
+        f = function(a, b)
+        y = solved(-f * (A * c + B * s), order) + A1 * c + B1 * s
+        whole = second_order(
+            {**point, "y0": A * c + B * s, "y1": y, "alpha1": 0.0, "f": f, "B1": 0.0}
+        )
+        stars = {f"{k}_star_p": whole[f"{k}_p"] for k in "PQRS"} | {"T_star": whole["T"]}
+        yield {
+            **point, **stars, "y_100": y, "A_000": A, "B_000": B, "A_100": A1, "B_100": B1,
+            "T_n": A * a[order / 2] + B * b[order / 2], "D": wave_derivative,
+        }  # fmt: skip
+
+
+row("8.36", "8.37", check=holds(first_solutions))
+
+
+@row("8.3.3 order of the approximation")
+def order_of_the_approximation(_):
+    """The recursion takes alpha_k from y_0 .. y_(k-1); Rayleigh's quotient does better."""
+    a, b = ONE
+    f = function(a, b)
     for sign in (1, -1):
-        upper, lower = strained_boundaries(h, 2, 1).branches
-        values = [float(branch.alpha[0]) * sign for branch in (lower, upper)]
-        assert (values[0] < values[1]) == (sign > 0)
-    found, first = rig_case(2)
-    assert np.abs(found - first) == pytest.approx([0.51, 0.28], abs=0.005)
+        alphas, ys = series(a, b, 2, sign, 4)
+        assert len(ys) == len(alphas) == 4
+        gaps = [
+            abs(
+                boundaries(mu * f[TURN], 2)[(1 + sign) // 2]
+                - 1
+                - np.polyval([*alphas[::-1], 0], mu)
+            )
+            for mu in (0.04, 0.02)
+        ]
+        assert np.log2(gaps[0] / gaps[1]) == pytest.approx(5.0, abs=0.5)
+        quotients = []
+        for mu in (0.02, 0.01):
+            whole = ys[0] + mu * ys[1]
+            slope = wave_derivative(whole)
+            quotient = (slope @ slope - (mu * f * whole) @ whole) / (whole @ whole)
+            quotients.append(abs(quotient - boundaries(mu * f[TURN], 2)[(1 + sign) // 2]))
+        assert np.log2(quotients[0] / quotients[1]) == pytest.approx(4.0, abs=0.2)
 
 
-@establishes(
-    "Smith",
-    "8.44",
-    printed=r"\lambda^2 = \left(\tfrac n2\right)^2 - a_0\epsilon_1 \pm \tfrac12\sqrt{(a_n^2 + "
-    r"b_n^2)\epsilon_1^2} = \left(\tfrac n2\right)^2 + \epsilon_1\{-a_0 \pm \tfrac12\sqrt{a_n^2 + "
-    r"b_n^2}\}",
-    verdict="approximation",
-    derived=r"\epsilon_2 = 0 \text{ in (8.43)}",
-    remark="First order: with epsilon1 = 3.29 alone, region 2 of (5,1,5,2), the boundaries are off "
-    "by 0.0112 and 0.0066 in lambda^2. The width is epsilon1's modulus times the root.",
-)
-@establishes(
-    "Smith",
-    "8.4 axis PH",
-    printed=r"\lambda^2 = \left(\tfrac n2\right)^2 - a_0\epsilon_2 \text{ (text)},\; \left(\tfrac "
-    r"n2\right)^2 - c_0\epsilon_2 \text{ (Fig. 38)}",
-    verdict="slip",
-    derived=r"\lambda^2 = \left(\tfrac n2\right)^2 - c_0\epsilon_2",
-    remark="c_0, as the figure has it, for on epsilon1 = 0 only f2 acts: its mean is 0.0336 for "
-    "(5,1,5,2) (f3 there), that of f1 is -0.0092.",
-)
-@establishes(
-    "Smith",
-    "8.4 widths AB and CD",
-    printed=r"AB = \epsilon_1\sqrt{a_n^2 + b_n^2},\; CD = \epsilon_2\sqrt{c_n^2 + d_n^2}",
-    verdict="approximation",
-    derived=r"2\lvert c_n\epsilon - W\epsilon^2\rvert + O(\epsilon^3)",
-    remark="First order. Region 2 of (5,1,5,2): AB 0.262 for the exact 0.244 at epsilon1 = 3.29, "
-    "CD 0.727 for 0.657 at epsilon3 = 3.43.",
-)
-def test_planes_of_the_stability_space():
-    _, f1, _, f3 = coupler_functions(motion(CRANK_ROCKERS["5,1,5,2"]))
-    e1, _, e3 = RIGS["5,1,5,2"].epsilon(0.0058)
-    means = fourier(f1)[0].real, fourier(f3)[0].real
-    assert means == pytest.approx((-0.0092, 0.0336), abs=5e-5)
-    size = 1e-4
-    centre = np.mean(boundaries(size * f3, 2))
-    assert (1 - centre) / size == pytest.approx(means[1], abs=1e-4)
-    assert abs((1 - centre) / size - means[0]) > 0.04
-    found = {}
-    for name, e, f in (("AB", e1, f1), ("CD", e3, f3)):
-        c = e * fourier(f)
-        exact = np.array(boundaries(e * f, 2))
-        first = 1 - c[0].real + np.array([-1, 1]) * abs(c[2])
-        found[name] = (first[1] - first[0], exact[1] - exact[0], np.abs(exact - first))
-    assert found["AB"][:2] == pytest.approx((0.262, 0.244), abs=5e-4)
-    assert found["CD"][:2] == pytest.approx((0.727, 0.657), abs=5e-4)
-    assert found["AB"][2] == pytest.approx([0.0112, 0.0066], abs=5e-5)
-    low, high = boundaries(-size * f1, 2)
-    assert (high - low) / size == pytest.approx(2 * abs(fourier(f1)[2]), rel=1e-3)
+@cache
+def rays():
+    """Return (8.38) and its ray h: y'' is that of the equation with both functions."""
+    points = []
+    for e1, e2 in ((0.02, -0.013), (-0.7, 0.4)):
+        (a, b), (c, d) = TWO_FUNCTIONS
+        f1, f2 = function(a, b), function(c, d)
+        second = -(1.69 + e1 * f1 + e2 * f2) * 0.6
+        h = (e1 * f1 + e2 * f2) / e1
+        spectrum = np.fft.fft(h[TURN]) / 128
+        for k in (1, 2, 3):
+            point = {"a": a, "b": b, "c": c, "d": d, "eps1": e1, "eps2": e2, "i": k, "y": 0.6}
+            point |= {"r": {k: 2 * spectrum[k].real}, "s": {k: -2 * spectrum[k].imag}, "f1": f1}
+            point |= {"f2": f2, "h": h, "lam": 1.3, "theta": THETA, "D": derivative(2, second)}
+            points.append(point)
+    return points
+
+
+row("8.39", "8.40", "8.42", check=holds(rays))
+
+
+def test_orders_of_the_alternative_method():
+    """Every order of chapter 7 applies along the ray."""
+    e1, e2 = 0.02, -1 / 70
+    h = [
+        Coefficients({k: x[k] + e2 / e1 * y.get(k, 0.0) for k in x})
+        for x, y in zip(ONE, TWO, strict=True)
+    ]
+    exact = boundaries(e1 * function(*h)[TURN], 2)
+    alphas = [series(*h, 2, sign, 4)[0] for sign in (-1, 1)]
+    errors = [
+        max(abs(1 + sum(x * e1 ** (k + 1) for k, x in enumerate(alpha[:order])) - limit)
+            for alpha, limit in zip(alphas, exact, strict=True))
+        for order in (1, 2, 3, 4)
+    ]  # fmt: skip
+    assert all(later < 0.2 * sooner for sooner, later in pairwise(errors))
+
+
+test_row, test_falsified_row = row.tests()

@@ -42,6 +42,7 @@ def test_field_equation_and_tension():
     assert len(machine.end_conditions()) == 2
 
 
+@pytest.mark.smoke
 def test_pin_force():
     lengths = CRANK_ROCKERS["5,1,5,2"]
     masses, places, follower, speed = (0.2, 0.5, 0.3), (0.7, 2.8, 4.6), 0.4, 3.0

@@ -448,12 +448,6 @@ def test_simulate_from_rest_and_from_a_start(capsys, tmp_path):
     refused(capsys, "simulate", RIG, "--method", "rk5")
 
 
-def test_too_long_a_step_is_a_warning_on_one_line(capsys):
-    arguments = ["--speed", "195 rpm", "--revolutions", "1", "--method", "rk4", "--steps", "24"]
-    _, _, err = run(capsys, "simulate", RIG, *arguments)
-    assert err.splitlines()[0].startswith("elastolink simulate: warning: ")
-
-
 @pytest.mark.parametrize("text", ["1", "a,b", ""])
 def test_a_wrong_start_is_refused(capsys, text):
     with pytest.raises(SystemExit) as left:

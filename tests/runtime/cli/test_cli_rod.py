@@ -67,7 +67,7 @@ def test_beyond_the_linear_range_no_verdict_is_given(capsys):
     [
         (("stability", SCENE, *FREE, "--speed", "90:110:3"), "one speed"),
         (("simulate", SCENE, *FREE, "--method", "rk4"), "projection"),
-        (("simulate", SCENE, *FREE, "--steps", "9"), "--steps"),
+        (("simulate", SCENE, *FREE, "--initial", "1,0"), "--initial"),
         (("chart", SCENE, *FREE), "free_free_linear"),
         (("steady-state", SCENE, "--at", "1.5"), "from 0 to 1"),
         (("steady-state", SCENE, "--speed=-3:4:5"), "positive speeds"),

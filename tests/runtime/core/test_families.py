@@ -190,7 +190,7 @@ def module(**changes) -> types.SimpleNamespace:
     values = {
         "__name__": "emitted",
         "FAMILY": "closed_form",
-        "PARAMETERS": (("m", "kg", "Mass"), ("k", "N/m", "Stiffness")),
+        "PARAMETERS": ("m", "k"),
         "ARRAYS": {"element": PLACES, "idle": {"f": PLACES["f"]}},
         "element": lambda x, m, k: (k * x, -m),
         **changes,

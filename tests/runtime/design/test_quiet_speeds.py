@@ -17,7 +17,7 @@ from elastolink.runtime.design import (
 )
 from elastolink.runtime.design.quiet import _bands, _maxima
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.reduction.stress_curve import stress_curve
+from elastolink.runtime.periodic import stress_curve
 
 TABLE = "aannaque_1996_table_4_1"
 STEEL = Material(tensile_strength=600e6, endurance_limit=200e6, exponent=9.0, knee=1e6)

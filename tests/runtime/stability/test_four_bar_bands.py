@@ -13,7 +13,7 @@ from elastolink.runtime.floquet import (
     unstable_bands,
 )
 from elastolink.runtime.floquet.speed_tables import tabulated
-from elastolink.runtime.reduction import reduced_system
+from elastolink.runtime.periodic import reduced_system
 
 SPAN = (71.0, 74.0)
 # The widest band below 75 rad/s: the first mode with itself.

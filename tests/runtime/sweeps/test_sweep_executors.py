@@ -10,10 +10,8 @@ from concurrent.futures import ThreadPoolExecutor
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.benchmarking.scaling import benchmark_scaling
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.sweeps.batches import _finer
 
 FIELDS = ("invariants", "stable", "largest", "slack", "undecided", "kind")
 # What a chart of 1e7 points may take [bytes], issue 7.
@@ -78,64 +76,21 @@ def test_a_chart_does_not_depend_on_who_works_it_out(rod, coupler, pool, number)
         assert (other.error, other.nodes) == (alone.error, alone.nodes)
 
 
-def test_multipliers_by_pieces(rod, pool):
-    speed = np.linspace(2000.0, 4000.0, 300).reshape(100, 3)
-    alone = el.floquet_multipliers(rod, speed)
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
+@pytest.mark.parametrize("solver", ["floquet_multipliers", "steady_state"])
+def test_points_do_not_depend_on_who_works_them_out(coupler, pool, solver):
+    values = {"speed": np.linspace(30.0, 50.0, 12), "follower_inertia": [6.5e-4, 7e-4]}
+    alone = el.sweep(solver, coupler, values, chunk=5)
     with ThreadPoolExecutor(2) as threads:
-        first = el.floquet_multipliers(rod, speed, executor=threads)
-    second = el.floquet_multipliers(rod, speed, executor=pool)
-    assert first.multipliers.tobytes() == second.multipliers.tobytes()
-    assert first.error.tobytes() == second.error.tobytes()
-    assert np.all(np.abs(first.multipliers - alone.multipliers) <= first.error + alone.error)
-    assert first.multipliers.shape == (100, 3, 2)
-    assert np.array_equal(first.signatures, alone.signatures)
-    assert set(first.checks) == set(alone.checks)
-    assert first.passed
+        others = [el.sweep(solver, coupler, values, chunk=5, executor=e) for e in (pool, threads)]
+    for other in others:
+        for name, array in alone.outputs.items():
+            assert other.outputs[name].tobytes() == array.tobytes(), name
 
 
-def test_steady_states_by_pieces(coupler, pool):
-    speed = np.linspace(30.0, 90.0, 70)
-    inertia = np.array([[6.5e-4], [7e-4]])
-    with pytest.warns(el.LinearRangeWarning):
-        alone = el.steady_state(coupler, speed, follower_inertia=inertia)
-    with pytest.warns(el.LinearRangeWarning) as told:
-        found = el.steady_state(coupler, speed, follower_inertia=inertia, executor=pool)
-    assert len(told) == 1
-    with ThreadPoolExecutor(2) as threads, pytest.warns(el.LinearRangeWarning):
-        other = el.steady_state(coupler, speed, follower_inertia=inertia, executor=threads)
-    for name in ("q", "qd", "error", "multipliers", "distance"):
-        assert getattr(found, name).tobytes() == getattr(other, name).tobytes(), name
-    assert found.q.shape == alone.q.shape == (2, 70, len(alone.theta), 1)
-    assert np.array_equal(found.stable, alone.stable)
-    peak = np.max(np.abs(alone.q), axis=-2, keepdims=True)
-    both = (found.error + alone.error)[..., None, :] * peak
-    assert np.all(np.abs(found.q - alone.q) <= both)
-    assert np.all(found.peak() > 0.0)
-
-
-def test_more_angles_tell_the_same_motion():
-    """Of pieces with different numbers of angles, by a trigonometric polynomial known in full."""
-    theta = 2 * np.pi * np.arange(16) / 16
-    fine = 2 * np.pi * np.arange(64) / 64
-
-    def motion(t):
-        return 0.3 + np.cos(t) - 2.0 * np.sin(5 * t) + 0.5 * np.cos(8 * t)
-
-    found = _finer(motion(theta)[None, :, None], 64)[0, :, 0]
-    assert found == pytest.approx(motion(fine), abs=32 * np.finfo(float).eps * 3.8)
-
-
-def test_refusals_pass_through_an_executor(rod, pool):
-    with pytest.raises(BadInput, match="positive"):
-        el.floquet_multipliers(rod, [1000.0, -1.0], executor=pool)
-    with pytest.raises(BadInput, match="broadcast"):
-        el.floquet_multipliers(rod, [1.0, 2.0, 3.0], damping=[0.0, 1.0], executor=pool)
-    with pytest.raises(BadInput, match="speed"):
-        el.steady_state(rod, [], executor=pool)
+def test_what_is_no_executor_is_refused(rod):
+    mathieu = el.load_scene("mathieu").system()
     with pytest.raises(BadInput, match="executor"):
-        el.floquet_multipliers(rod, 1000.0, executor=2)
-    with pytest.raises(BadInput, match="executor"):
-        mathieu = el.load_scene("mathieu").system()
         el.stability_chart(mathieu, ("lam2", [0.0, 1.0]), ("mu", [0.0, 1.0]), executor=2)
     with pytest.raises(BadInput, match="executor"):
         el.stability_chart(rod, ("speed", [900.0, 1000.0]), ("crank_ratio", [0.1, 0.2]), executor=2)
@@ -215,12 +170,3 @@ def test_ten_million_points_within_two_gigabytes(tmp_path, way):
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     unit = 1 if sys.platform == "darwin" else 1024
     assert int(done.stdout) * unit < MOST_MEMORY
-
-
-@pytest.mark.slow
-def test_the_measurement_of_throughput_compares_bytes():
-    found = benchmark_scaling(rounds=1, scale=0.05)
-    assert len(found.rows) == 6
-    assert found.checks["same bytes"].passed
-    with pytest.raises(BadInput, match="workers"):
-        benchmark_scaling(1)

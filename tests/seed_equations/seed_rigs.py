@@ -1,0 +1,111 @@
+"""Smith's rigs of chapter 9: parameters, functions, regions and the damping that closes one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import sympy as sp
+from seed_derivations import l2, l3, omega2, omega3, projected, theta2, theta3
+from seed_truth import (
+    CRANK_ROCKERS,
+    TURN,
+    boundaries,
+    coupler_functions,
+    fourier,
+    motion,
+    named,
+    normalised_solutions,
+)
+
+
+@dataclass(frozen=True)
+class Rig:
+    """One of Smith's rigs, with the 1/16 in coupler: inches, lbf, seconds (his chapter 9).
+
+    The mass per length follows from the stiffness and the frequency of 26 Hz that he observed.
+    """
+
+    lengths: tuple[float, float, float, float]
+    stiffness: float = 171.5
+    frequency: float = TURN * 26.0
+    inertias: tuple[float, float] = (0.0058, 0.0190)
+
+    @property
+    def mass_per_length(self):
+        """Return the mass per length [lbf s^2 / in^2]."""
+        return self.stiffness * (np.pi / self.lengths[2]) ** 4 / self.frequency**2
+
+    def epsilon(self, inertia4):
+        """Return (epsilon1, epsilon2, epsilon3) of a uniform coupler, by their dimensions."""
+        _, l2, l3, l4 = self.lengths
+        scale = np.pi**2 / l3**2
+        return (
+            scale * l3**2 / 3.0,
+            scale * (l3 / 2.0) * l2,
+            scale * inertia4 / (self.mass_per_length * l4),
+        )
+
+
+RIGS = {
+    "5,1,5,2": Rig((15.0, 3.0, 15.0, 6.0)),
+    "10,1,10,4": Rig((15.0, 1.5, 15.0, 6.0)),
+}
+
+
+def thinner(name, sixty_fourths):
+    """Return a rig with a thinner coupler: its frequency is in proportion to the thickness."""
+    part = sixty_fourths / 4
+    return Rig(RIGS[name].lengths, 171.5 * part**3, TURN * 26.0 * part)
+
+
+def parts(rig, inertia4):
+    """Return what (6.18) keeps, what (6.17) adds, and what the complete first mode adds."""
+    m = motion(rig.lengths)
+    phi, *functions = coupler_functions(m)
+    eps = rig.epsilon(inertia4)
+    frame_free = projected(1, 1)[1].subs({sp.Symbol(n, real=True): 0 for n in ("EI", "F_x")})
+    whole = sp.lambdify([l2, l3, omega2, omega3, theta2, theta3], frame_free)
+    rigid = whole(*rig.lengths[1:3], 1.0, m.omega3, m.theta2, m.theta3)
+    point = {f"eps{k}": e for k, e in enumerate(eps, 1)} | {"phi": phi, "alpha3": m.alpha3}
+    point |= {f"f{k}": f for k, f in enumerate(functions, 1)} | {"odd": lambda k: k % 2 == 1}
+    point |= {"omega2": 1.0, "theta2": m.theta2, "theta3": m.theta3} | named(rig.lengths)
+    return point, sum(e * f for e, f in zip(eps, functions, strict=True)) + rigid
+
+
+def speeds(rig, coefficient, region):
+    """Return the crank speeds [rpm] that bound a region."""
+    values = np.asarray(boundaries(coefficient, region))
+    return rig.frequency / np.sqrt(values) * 60 / TURN
+
+
+@cache
+def linkage_function(name):
+    return coupler_functions(motion(CRANK_ROCKERS[name]))[3]
+
+
+@cache
+def critical(name, mu, region):
+    """Return the damping that closes a region: its largest Floquet exponent without damping.
+
+    The half traces within the region come from integration, on a grid and at the top of a parabola
+    through its three largest exponents.
+    """
+    samples = mu * linkage_function(name)
+    low, high = boundaries(samples, region)
+    harmonics = fourier(samples)[:30]
+
+    def value(x):
+        waves = np.exp(1j * np.arange(30) * x)
+        return 2 * (harmonics @ waves).real - harmonics[0].real
+
+    def exponent(lam):
+        half = 0.5 * np.trace(normalised_solutions(lambda x: lam + value(x), TURN))
+        return np.arccosh(max(abs(half), 1.0)) / TURN
+
+    grid = low + (high - low) * np.linspace(0.05, 0.95, 10)
+    sizes = [exponent(lam) for lam in grid]
+    k = int(np.clip(np.argmax(sizes), 1, 8))
+    fit = np.polyfit(grid[k - 1 : k + 2], sizes[k - 1 : k + 2], 2)
+    return exponent(-fit[1] / (2 * fit[0]))

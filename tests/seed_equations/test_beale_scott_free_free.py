@@ -13,7 +13,7 @@ from elastolink.derive.models import free_free_modes as ff
 from elastolink.derive.models import free_free_rod as rod
 from elastolink.derive.projection.greens_identity import integral, primitive
 from elastolink.derive.records import Lagrangian
-from elastolink.derive.spec import ModelSpec
+from elastolink.runtime.systems.rod.free_free import FreeFreeModes
 from seed_ledger import establishes
 from sympy.calculus.euler import euler_equations
 
@@ -37,7 +37,7 @@ def psi(i, x):
 
 def at_pin(i):
     """Return the mode at the pin, 2 or -2 over sqrt(L): of unit square over the length."""
-    return rod.parity(i) * ff.end_value() / sp.sqrt(L)
+    return truth.parity(i) * ff.end_value() / sp.sqrt(L)
 
 
 def u(x):
@@ -51,10 +51,10 @@ def lagrangian():
     The machine's amplitudes are lengths over L and its modes of unit square over unit length:
     f_i here is L^(3/2) times that there, psi_i here 1 / sqrt(L) times.
     """
-    spec = ModelSpec("quick_return", "free_free", ("rod",), MODES, ("tension",))
-    ours = rod.MODEL.energies(spec)
+    ours = rod.lagrangian(MODES, tension=False)
     table = {f: f / sp.sqrt(L) ** 3 for f in F.values()}
     table |= {sp.Symbol(f"stiffness_{i}"): (K[i] * L) ** 4 for i in RANGE}
+    table |= {sp.Symbol(f"left_{i}"): at_pin(i) * sp.sqrt(L) for i in RANGE}
 
     def printed(expression):
         found = expression.subs(table, simultaneous=True).doit()
@@ -180,7 +180,7 @@ x = sp.Symbol("x", real=True)
     "eps = 0.2 the first is 6.0 percent of the elastic force.",
 )
 def test_foreshortening():
-    inward, retreat = (float(rod._shortening_number(which, 1, 1)) for which in (0, 1))
+    inward, retreat = (float(matrix[0, 0]) for matrix in FreeFreeModes(1).shortening)
     assert -2 * inward == pytest.approx(3.05, abs=5e-3)
     assert retreat == pytest.approx(12.37, abs=5e-3)
     pull = truth.integral(0, 1, 1, (1, 1)) / 8 - truth.integral(2, 1, 1, (1, 1)) / 2

@@ -306,6 +306,20 @@ class Design:
                     slopes.append(slope)
         return np.array(values), np.array(slopes)
 
+    def within(self, x: Array) -> Array:
+        """Return variables whose offsets keep their bounds, first moments kept where they can be.
+
+        A descent leaves a condition by what it does not feel of it.
+        """
+        x = x.copy()
+        for room, part in zip(self.rooms, x.reshape(-1, PER_LINK), strict=True):
+            offset = float(np.hypot(part[1], part[2]))
+            wanted = min(max(offset, room.nearest), 1.0)
+            if offset > 0.0 and wanted != offset:
+                part[0] = min(part[0] * offset / wanted, 1.0)
+                part[1:3] *= wanted / offset
+        return x
+
     def realised(self, p: Array, unfelt: Sequence[bool]) -> Array:
         """Return counterweights with the mass and first moments p, and the inertia if they can.
 
@@ -746,10 +760,10 @@ def _descended(search: Search, problem: PeakProblem, bound: float, start: Array)
             break
     # The last peaks alone: of several angles beside one peak the multipliers would be a mixture.
     epigraph = _Epigraph(search.exchanged(search.start(), design.parameters(x))[0], design)
-    best = epigraph.polished(x)
+    best = design.within(epigraph.polished(x))
     value = search.penalised(design.parameters(best))
     if not value - bound <= _GAP * search.unit:
-        for other in (x, start):
+        for other in (design.within(x), start):
             least = search.penalised(design.parameters(other))
             if least < value:
                 value, best = least, other

@@ -21,6 +21,7 @@ LAYERS = (
     "scenes",
     "hill",
     "periodic",
+    "recovery",
     "constrained",
     "frequencies",
     "stability",

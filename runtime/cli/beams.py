@@ -13,9 +13,9 @@ from . import options as opt
 from .linkages import refuse_frame, speed_of
 
 if TYPE_CHECKING:
-    from ..beams.stress import StressResult
     from ..core.families import LinearPeriodic
-    from ..periodic.stresses import StressCurve
+    from ..recovery.stress_over_speed import StressCurve
+    from ..recovery.stresses import StressResult
     from ..scenes import Scene
 
 _EXAMPLE = "aannaque_1996_table_4_1"
@@ -221,19 +221,19 @@ def _stress(options: argparse.Namespace) -> int:
     scene, system = _of_beams(options)
     limit = _limit(options)
     if scene.model["mechanism"] == "frame":
-        from ..beams.stress import stress
+        from ..recovery.stresses import stress
 
         opt.refuse_unused(options, ("speed",), "a linkage; a frame has no crank")
         standing = stress(system)
         return opt.finish(options, standing, _peaks(standing, limit))
     if options.speed is None or ":" not in options.speed:
-        from ..beams.stress import stress
+        from ..recovery.stresses import stress
 
         result = stress(system, speed_of(options, scene))
         return opt.finish(options, result, _peaks(result, limit))
     speeds = np.array(opt.values(options.speed, "frequency", "--speed"))
     if limit is None:
-        from ..periodic.stresses import stress_curve
+        from ..recovery.stress_over_speed import stress_curve
 
         curve = stress_curve(system, speeds)
         return opt.finish(

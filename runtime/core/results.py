@@ -66,7 +66,8 @@ class DeferredChecks(Mapping[str, Check]):
     @property
     def _checks(self) -> Mapping[str, Check]:
         if self._made is None:
-            self._made = self._make()
+            # What the maker holds is needed no more.
+            self._made, self._make = self._make(), dict
         return self._made
 
     def __getitem__(self, name: str) -> Check:

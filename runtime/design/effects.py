@@ -15,7 +15,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
 from ..linkages import FourBar, transmission_angle
-from ..periodic.stresses import stress_curve
+from ..recovery.stress_over_speed import stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:

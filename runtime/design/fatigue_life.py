@@ -8,9 +8,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..beams.stress import FIBRES, StressResult
 from ..core.errors import BadInput, ElastolinkError, Problem
 from ..core.results import Result
+from ..recovery.stresses import FIBRES, StressResult
 
 Array = NDArray[np.float64]
 # Cycles beyond which a life is called endless.

@@ -13,7 +13,7 @@ from ..core.errors import BadInput, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
-from ..periodic.stresses import stress_curve
+from ..recovery.stress_over_speed import stress_curve
 from .effects import StressEffect, damping_effect, length_effect
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array

@@ -15,7 +15,7 @@ from ..core.errors import BadInput, Problem
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
-from ..periodic.stresses import StressCurve, shade_unstable, stress_curve
+from ..recovery.stress_over_speed import StressCurve, shade_unstable, stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:

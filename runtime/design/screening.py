@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
-from ..beams.stress import stress_operator
 from ..core.errors import BadInput, Problem
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Result, provenance
 from ..frequencies import natural_frequencies
+from ..recovery.stresses import stress_operator
 from .speed_profile import Array
 
 _ANGLES = 256

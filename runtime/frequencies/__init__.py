@@ -1,4 +1,4 @@
-"""Natural frequencies and critical speeds, of finite elements and of exact members.
+"""Natural frequencies, critical speeds and resonance curves, of finite elements and exact members.
 
 The names load on first use.
 """
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .counting import FrameFrequencies, MemberShape, Mode, wittrick_williams
     from .critical import CriticalSpeeds, critical_speeds
     from .frames import DynamicStiffness, dynamic_stiffness, element_matrices, log_determinant
-    from .held import Buckling, buckling_speed
+    from .held import Buckling, FrozenFrequencies, buckling_speed, frozen_frequencies
     from .link_study import (
         FrequencyExponents,
         LinkFrequencies,
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .members import member_matrices
     from .mode_pictures import draw_mode, draw_modes
     from .natural import NaturalFrequencies, natural_frequencies
+    from .resonance_curves import ResonanceCurve, resonance_curve
     from .tracking import Encounter
 
 _PUBLIC = {
@@ -35,10 +36,12 @@ _PUBLIC = {
     "Encounter": "tracking",
     "FrameFrequencies": "counting",
     "FrequencyExponents": "link_study",
+    "FrozenFrequencies": "held",
     "LinkFrequencies": "link_study",
     "MemberShape": "counting",
     "Mode": "counting",
     "NaturalFrequencies": "natural",
+    "ResonanceCurve": "resonance_curves",
     "buckling_speed": "held",
     "campbell": "campbell_diagram",
     "critical_speeds": "critical",
@@ -47,11 +50,13 @@ _PUBLIC = {
     "dynamic_stiffness": "frames",
     "element_matrices": "frames",
     "frequency_exponents": "link_study",
+    "frozen_frequencies": "held",
     "link_frequencies": "link_study",
     "log_determinant": "frames",
     "member_matrices": "members",
     "natural_frequencies": "natural",
     "pinned_frequency": "link_study",
+    "resonance_curve": "resonance_curves",
     "wittrick_williams": "counting",
 }
 
@@ -63,10 +68,12 @@ __all__ = [
     "Encounter",
     "FrameFrequencies",
     "FrequencyExponents",
+    "FrozenFrequencies",
     "LinkFrequencies",
     "MemberShape",
     "Mode",
     "NaturalFrequencies",
+    "ResonanceCurve",
     "buckling_speed",
     "campbell",
     "critical_speeds",
@@ -75,11 +82,13 @@ __all__ = [
     "dynamic_stiffness",
     "element_matrices",
     "frequency_exponents",
+    "frozen_frequencies",
     "link_frequencies",
     "log_determinant",
     "member_matrices",
     "natural_frequencies",
     "pinned_frequency",
+    "resonance_curve",
     "wittrick_williams",
 ]
 

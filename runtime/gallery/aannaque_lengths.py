@@ -176,10 +176,9 @@ def _weak_rows(curves: Sequence[Array]) -> list[Quoted]:
 
 
 def _mean_frequencies(frame: float) -> Array:
-    from ..response import frozen_frequencies
+    from ..frequencies import frozen_frequencies
 
-    found = frozen_frequencies(beams(1, FULL, frame=frame))
-    return np.asarray(found.mean[:4])
+    return np.asarray(frozen_frequencies(beams(1, FULL, frame=frame)).mean[:4])
 
 
 # ---------------------------------------------------------------- Fig. 7.13
@@ -192,9 +191,9 @@ def bending_at_midpoint(
 
     The motion is that of another system where one is given, the stress by the first one's shapes.
     """
-    from ..beams import recover
+    from ..recovery import recover
 
-    motion = periodic(system if moving is None else moving, _SPEED, intervals=64)
+    motion = periodic(system if moving is None else moving, _SPEED)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
         forces = recover(

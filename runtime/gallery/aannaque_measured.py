@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..frequencies import LinkFrequencies
-    from ..periodic.stresses import StressCurve
+    from ..recovery.stress_over_speed import StressCurve
 
 FRAMES = (0.547, 0.632, 0.642, 0.652, 0.662)
 _LOW, _HIGH, _COUNT = 5.0, 40.0, 211

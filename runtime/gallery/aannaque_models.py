@@ -15,7 +15,7 @@ from ..scenes import load_scene
 
 if TYPE_CHECKING:
     from ..periodic import SteadyState
-    from ..periodic.stresses import StressCurve
+    from ..recovery.stress_over_speed import StressCurve
 
 SCENE = "aannaque_1996_table_4_1"
 # The thesis' form (7.1), without stiffening; and the whole of the equations.
@@ -71,7 +71,7 @@ def beams(
 
 def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> StressCurve:
     """Return the largest stresses over the speed, by the shapes as in the thesis."""
-    from ..periodic.stresses import stress_curve
+    from ..recovery.stress_over_speed import stress_curve
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)

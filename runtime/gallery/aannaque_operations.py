@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..response.operation_counts import TABLE_6_2, TABLE_6_3, operation_count, printed_count
+from ..periodic import cycles_to_settle
 from .aannaque_steady_state import march
+from .operation_counts import TABLE_6_2, TABLE_6_3, operation_count, printed_count
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, legend_below, panel_title
 
@@ -26,8 +27,6 @@ _RATIOS = (0.02, 0.06)
 
 def _cycles(ratio: float) -> int:
     """Return the cycles to a change of 1e-4 over the peak at 62 rad/s."""
-    from ..response import cycles_to_settle
-
     values = march(ratio=ratio)[1]
     return int(cycles_to_settle(values[np.argmax(np.abs(values))], 1e-4))
 

@@ -15,7 +15,7 @@ from .style import COLOURS, crank_axis, legend_below, panel_title
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..beams import ElasticCurve
+    from ..recovery import ElasticCurve
 
 _SLOW, _FAST = SPEEDS_C[0], SPEEDS_C[-1]
 # Half a division of graph paper in millimetres [m].
@@ -33,7 +33,7 @@ _NOTES = (
 @lru_cache(maxsize=4)
 def midpoint(speed: float) -> ElasticCurve:
     """Return the path of the coupler's midpoint at a crank speed [rad/s]."""
-    from ..beams import elastic_coupler_curve
+    from ..recovery import elastic_coupler_curve
 
     system = rig()
     return elastic_coupler_curve(system, quiet_motion(system, speed), finer_mesh=False)

@@ -17,7 +17,7 @@ from ..scenes import load_scene
 
 if TYPE_CHECKING:
     from ..periodic import SteadyState
-    from ..periodic.stresses import StressCurve
+    from ..recovery.stress_over_speed import StressCurve
 
 Array = NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def quiet_motion(system: LinearPeriodic, speed: float | tuple[float, ...]) -> St
 @lru_cache(maxsize=16)
 def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
     """Return the stresses at the gauges over the cycle."""
-    from ..beams import stress_operator
+    from ..recovery import stress_operator
 
     system = rig(scene, frame)
     motion = quiet_motion(system, speeds)
@@ -119,7 +119,7 @@ def curve(scene: str, frame: float, low: float, high: float, count: int) -> Stre
     count : int
         Their number.
     """
-    from ..periodic.stresses import stress_curve
+    from ..recovery.stress_over_speed import stress_curve
 
     return stress_curve(
         rig(scene, frame), np.linspace(low, high, count), stations=STATIONS, rtol=_CURVE

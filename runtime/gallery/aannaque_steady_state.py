@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -10,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning
-from ..core.families import Array, LinearPeriodic
+from ..core.families import Array
+from ..core.trigonometric import even_angles
+from ..periodic import cycles_to_settle
+from .aannaque_algorithms import modal_motion, newmark_maps, transition_nodes
 from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, periodic, rms
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, crank_axis, legend_below, panel_title
@@ -19,10 +20,12 @@ from .style import COLOURS, crank_axis, legend_below, panel_title
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..response import SteadyState
+    from ..periodic import SteadyState
 
 _SPEED = 35.0
 _INTERVALS = 256
+# Newmark's steps in a revolution, half a degree each.
+_STEPS = 720
 _CYCLES = 31
 _TOLERANCE = 1e-4
 
@@ -30,26 +33,20 @@ _TOLERANCE = 1e-4
 # ---------------------------------------------------------------- Figs. 6.3 and 6.4
 
 
-@lru_cache(maxsize=4)
-def _whole(elements: int) -> SteadyState:
-    return periodic(beams(elements), _SPEED)
+@lru_cache(maxsize=1)
+def _whole() -> SteadyState:
+    return periodic(beams(1), _SPEED)
 
 
 @lru_cache(maxsize=8)
-def _uncoupled(elements: int, modes: int) -> SteadyState:
-    """Return the motion by uncoupled modes, constant in each of 256 intervals."""
-    from ..response import steady_state
-
-    options = {"modes": modes, "intervals": _INTERVALS}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(
-            beams(elements), _SPEED, method="modal", stability=False, options=options
-        )
+def _uncoupled(modes: int) -> Array:
+    """Return the motion by uncoupled modes, constant in each of 256 intervals, ``(256, n)``."""
+    return modal_motion(beams(1), _SPEED, _INTERVALS, modes)
 
 
-def _across(elements: int, link: str, motion: SteadyState) -> Array:
-    return moved(beams(elements), link, motion.theta, motion.q)
+def _across(link: str, q: Array) -> Array:
+    """Return the displacement across a link's midpoint of a motion at even angles [m]."""
+    return moved(beams(1), link, even_angles(2.0 * np.pi, len(q)), q)
 
 
 def deflection_figure(link: str) -> Callable[[Sequence[Axes]], Drawn]:
@@ -58,17 +55,17 @@ def deflection_figure(link: str) -> Callable[[Sequence[Axes]], Drawn]:
     def draw(axes: Sequence[Axes]) -> Drawn:
         ax = axes[0]
         lines = (
-            (_whole(1), "-", "no uncoupling"),
-            (_uncoupled(1, 9), "--", "all 9 modes, uncoupled"),
-            (_uncoupled(1, 4), "-.", "4 modes, uncoupled"),
+            (_whole().q, "-", "no uncoupling"),
+            (_uncoupled(9), "--", "all 9 modes, uncoupled"),
+            (_uncoupled(4), "-.", "4 modes, uncoupled"),
         )
-        for (motion, style, label), colour in zip(lines, COLOURS, strict=False):
-            values = 1e3 * _across(1, link, motion)
-            turned = np.degrees(np.append(motion.theta, 2.0 * np.pi))
+        for (q, style, label), colour in zip(lines, COLOURS, strict=False):
+            values = 1e3 * _across(link, q)
+            turned = np.linspace(0.0, 360.0, len(q) + 1)
             ax.plot(turned, np.append(values, values[0]), style, color=colour, label=label)
         full = periodic(beams(1, FULL), _SPEED)
-        values = 1e3 * _across(1, link, full)
-        turned = np.degrees(np.append(full.theta, 2.0 * np.pi))
+        values = 1e3 * _across(link, full.q)
+        turned = np.linspace(0.0, 360.0, len(full.q) + 1)
         label = "full form with stiffening"
         ax.plot(turned, np.append(values, values[0]), ":", color="0.4", label=label)
         crank_axis(ax)
@@ -84,15 +81,10 @@ def deflection_figure(link: str) -> Callable[[Sequence[Axes]], Drawn]:
     return draw
 
 
-def _gap(link: str, modes: int, elements: int = 1) -> float:
+def _gap(link: str, modes: int) -> float:
     """Return the rms of what uncoupled modes are off by over the rms of the displacement."""
-    motion = _uncoupled(elements, modes)
-    exact = _across(elements, link, _whole(elements))
-    every = len(exact) // len(motion.theta)
-    if every == 0:
-        exact = np.fft.irfft(np.fft.rfft(exact), len(motion.theta)) * len(motion.theta) / len(exact)
-        every = 1
-    return float(rms(_across(elements, link, motion) - exact[::every]) / rms(exact))
+    exact = _across(link, _whole().q)
+    return float(rms(_across(link, _uncoupled(modes)) - exact) / rms(exact))
 
 
 def _uncoupling_rows(link: str) -> tuple[Quoted, ...]:
@@ -147,7 +139,7 @@ def _contributions(link: str) -> tuple[Array, Array]:
     """Return the displacement at a midpoint and the part of each mode, (nt,) and (nt, 9) [m]."""
     from scipy.linalg import eigh
 
-    system, motion = beams(1), _whole(1)
+    system, motion = beams(1), _whole()
     row = midpoint(system, link, motion.theta)
     mass = system.array("M", motion.theta)
     stiffness = system.array("K", motion.theta)
@@ -164,7 +156,7 @@ def contribution_figure(link: str) -> Callable[[Sequence[Axes]], Drawn]:
     def draw(axes: Sequence[Axes]) -> Drawn:
         ax = axes[0]
         whole, parts = _contributions(link)
-        turned = np.degrees(_whole(1).theta)
+        turned = np.degrees(_whole().theta)
         ax.plot(turned, 1e3 * whole, color="0.15", lw=1.6, label="displacement")
         for mode in range(4):
             ax.plot(turned, 1e3 * parts[:, mode], color=COLOURS[mode], label=f"mode {mode + 1}")
@@ -244,24 +236,19 @@ def march(
 
     Newmark's steps, 720 in a revolution, 62 rad/s, one element for each link.
     """
-    from ..integrators.newmark import newmark_rule
-    from ..periodic.first_order import canonical_form
-    from ..response.stepped import period_maps
-
     system = beams(1, drop, ratio=ratio)
-    form = canonical_form(system, CRITICAL, {}, forcing=True)
-    maps, loads = period_maps(form, newmark_rule(), 720)
+    maps, loads = newmark_maps(system, CRITICAL, _STEPS)
     state = np.zeros(maps.shape[-1])
     states = np.empty((40, *loads.shape))
     for cycle in states:
         for k in range(len(maps)):
             cycle[k] = state
             state = maps[k] @ state + loads[k]
-    theta = 2.0 * np.pi * np.arange(len(maps)) / len(maps)
     whole = np.eye(maps.shape[-1])
     for step in maps:
         whole = step @ whole
     values = np.linalg.eigvals(whole).astype(complex)
+    theta = even_angles(2.0 * np.pi, _STEPS)
     return moved(system, "follower", theta, states[..., : system.size]), values
 
 
@@ -308,7 +295,8 @@ def figure_6_5(axes: Sequence[Axes]) -> Drawn:
 def _cycle_rows() -> list[Quoted]:
     values, multipliers = march()
     system = beams(1)
-    exact = moved(system, "follower", *_transition(system))
+    q = transition_nodes(*newmark_maps(system, CRITICAL, _STEPS))[:, : system.size]
+    exact = _across("follower", q)
     last = values[-1]
     return [
         Quoted(
@@ -341,25 +329,7 @@ def _cycle_rows() -> list[Quoted]:
     ]
 
 
-def _transition(system: LinearPeriodic) -> tuple[Array, Array]:
-    """Return crank angles and coordinates by algorithm 1 with 720 intervals."""
-    from ..response import steady_state
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        found = steady_state(
-            system,
-            CRITICAL,
-            method="transition_matrix",
-            stability=False,
-            options={"intervals": 720},
-        )
-    return found.theta, found.q
-
-
 def _cycle_table() -> Table:
-    from ..response import cycles_to_settle
-
     rows = []
     for drop, name in ((THESIS, "the thesis' form"), (FULL, "full form with stiffening")):
         values, multipliers = march(drop)

@@ -188,7 +188,7 @@ def _stiffening_row() -> Quoted:
 @lru_cache(maxsize=1)
 def _hybrid_curve() -> Array:
     """Return the largest stress of all links [Pa] of the "exact" model, by cubic shapes."""
-    from ..beams import stress_operator
+    from ..recovery import stress_operator
 
     motion = periodic(hybrid_model(), _FEWER, rtol=1e-3)
     form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
@@ -219,7 +219,7 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
 
 def _first_mode_speeds() -> list[float]:
     """Return the speeds mean/3 of the first frequency: one, two, three elements and exact."""
-    from ..response import frozen_frequencies
+    from ..frequencies import frozen_frequencies
 
     means = [float(frozen_frequencies(beams(count)).mean[0]) / 3.0 for count in (1, 2, 3)]
     return [*means, float(np.mean(_hybrid(1e-10).first)) / 3.0]

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array
+from ..frequencies import frozen_frequencies
 from ..periodic import floquet_multipliers
-from ..response.frozen import frozen_frequencies
 from ..stability.charts.chart import StabilityChart, stability_chart
 from .beale_tip import FLEXIBLE, rod
 from .records import Drawn, Quoted, Table

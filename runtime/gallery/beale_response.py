@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
+from ..frequencies import ResonanceCurve, frozen_frequencies, resonance_curve
 from ..periodic import floquet_multipliers
-from ..response.frozen import frozen_frequencies
-from ..response.resonances import ResonanceCurve, resonance_curve
 from .beale_tip import FLEXIBLE, rod, tip_from_rest
 from .records import Drawn, Quoted, Table
 from .style import COLOURS, crank_axis, legend_below
@@ -237,7 +236,7 @@ def figure_resonances(axes: Sequence[Axes]) -> Drawn:
 
 def _tenth(ratio: float) -> Quoted:
     speed = mean_frequency(ratio=ratio) / 10
-    _, tip = tip_from_rest(_rod("polynomial", 3, _PRINTED, ratio), speed, turns=10.0, steps=1440)
+    _, tip = tip_from_rest(_rod("polynomial", 3, _PRINTED, ratio), speed, turns=10, steps=1440)
     return Quoted(
         f"largest tip deflection at a tenth of the mean frequency, crank ratio {ratio:g}",
         0.05,

@@ -196,8 +196,8 @@ def simulate(
             run, error, allowed = _converged(equation, grid, state, rtol, bound, tick)
         else:
             run = _by_scipy(equation, grid, state, method, rtol, bound, tick)
-            other, _, _ = _converged(equation, grid, state, 1e-10, bound, None)
-            error, allowed = _gap(equation, other, run, 1.0), _FAIR
+            other, remaining, _ = _converged(equation, grid, state, 1e-10, bound, None)
+            error, allowed = _gap(equation, other, run, 1.0) + remaining, _FAIR
     theta = grid.theta[: len(run.states)]
     q, slope = _unscaled(equation, theta, run.states)
     largest = _largest(equation.system, grid, q)
@@ -359,7 +359,8 @@ def _march(
         same = key in known and bool(np.all(divisions[begin:end] == divisions[-1]))
         if not same:
             known[key] = _flows(equation, grid, (begin, end), divisions[begin:end], way)
-        piece = (known[key] @ pieces[-1][-1][:, None])[:, :, 0]
+        with np.errstate(over="ignore", invalid="ignore"):
+            piece = (known[key] @ pieces[-1][-1][:, None])[:, :, 0]
         pieces.append(piece)
         done = end
         if tick is not None:
@@ -399,9 +400,10 @@ def _flows(
         maps = segments_from(equation, left.ravel(), h, way).maps[0]
         single[places], _ = product(maps.reshape(len(places), count, m, m))
     total = np.eye(m)
-    for k, one in enumerate(single):
-        total = one @ total
-        single[k] = total
+    with np.errstate(over="ignore", invalid="ignore"):
+        for k, one in enumerate(single):
+            total = one @ total
+            single[k] = total
     return single
 
 

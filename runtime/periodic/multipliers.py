@@ -593,3 +593,47 @@ def _reciprocal(logarithm: Array, angle: Array, error: Array) -> Check:
     limit = 2 * (known + np.take_along_axis(known, partner, axis=-1)) + 64 * _EPS
     worst = np.unravel_index(np.argmax(value / limit), value.shape)
     return Check(float(value[worst]), float(limit[worst]))
+
+
+def cycles_to_settle(
+    multiplier: ArrayLike, tolerance: float, *, norm: str = "change"
+) -> NDArray[np.int64]:
+    """Return how many periods a march from rest takes, by the slowest multiplier alone.
+
+    After k periods the motion from rest is ``y_s - rho^k y_s`` where y_s lies along the mode of
+    the multiplier rho; what else the start holds has died away before.
+
+    Parameters
+    ----------
+    multiplier : array_like of complex
+        The Floquet multiplier nearest to the unit circle.
+    tolerance : float
+        Where it has settled, over the size of the motion.
+    norm : str
+        ``"change"``: of the last period from the one before, ``abs(1 - rho) abs(rho)^(k - 2)``.
+        ``"remaining"``: the rest of the start in the last period, ``abs(rho)^(k - 1)``.
+
+    Returns
+    -------
+    ndarray of int
+        Periods, the last one included; -1 where the motion does not settle.
+
+    Raises
+    ------
+    BadInput
+        If the tolerance is not between 0 and 1, or the norm is unknown.
+    """
+    if not 0.0 < tolerance < 1.0:
+        raise bad("tolerance", tolerance, "a number between 0 and 1", "choose 1e-4")
+    if norm not in ("change", "remaining"):
+        raise bad("norm", repr(norm), "'change' or 'remaining'", "choose 'change'")
+    rho = np.asarray(multiplier, dtype=complex)
+    size = np.abs(rho)
+    first = np.abs(1.0 - rho) if norm == "change" else np.ones_like(size)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        before = 2.0 if norm == "change" else 1.0
+        needed = before + np.log(tolerance / np.maximum(first, 1e-300)) / np.log(size)
+    # The change of a first period from none is no change.
+    least = 2.0 if norm == "change" else 1.0
+    whole = np.ceil(np.where(size > 0.0, np.maximum(needed, least), least))
+    return np.where(size < 1.0, whole, -1.0).astype(np.int64)

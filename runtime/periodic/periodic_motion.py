@@ -309,14 +309,14 @@ def by_segments(
     """Return q and dq/dtheta ``(nb, nt, n)``, errors ``(nb, n)`` and sensitivities ``(nb,)``."""
     way = method("radau", 5 if rtol > 1e-4 else 7 if rtol > 1e-8 else 10)
     likely = equation.with_slow_modes(_LIKELY)
-    solve = partial(_ring_motion, way, samples)
+    solve = partial(ring_motion, way, samples)
     solutions, error, _ = refined(likely, way, rtol, solve, _change, least=1.0, tick=tick)
     q, slope, sensitivity = (np.array(part) for part in zip(*solutions, strict=True))
     return q, slope, error, sensitivity
 
 
-def _ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tuple[Array, ...]:
-    """Return the periodic motion at even angles, from so many segments, and its sensitivity."""
+def ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tuple[Array, ...]:
+    """Return q and dq/dtheta ``(nb, nt, n)`` at even angles, and sensitivities."""
     n = equation.size
     segments = segments_of(equation, count, way, slopes=True)
     flow, load = segments.maps[..., : 2 * n, : 2 * n], segments.maps[..., : 2 * n, 2 * n]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.beams import Beam, BeamMotion, Node, Section, Structure, linear_system
+from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
+from elastolink.runtime.recovery import BeamMotion
 from elastolink.runtime.simulation.spring_form import periodic_derivative
 
 STEEL = {"modulus": 210e9, "density": 7850.0}

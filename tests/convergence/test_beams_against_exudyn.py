@@ -60,9 +60,8 @@ def _periodic(speed, geometric_stiffness):
     with warnings.catch_warnings():
         # Fast cranks leave the linear range, and say so.
         warnings.simplefilter("ignore")
-        found = steady_state(system, speed, method="harmonic_balance", samples=64, rtol=1e-5)
-    step = len(found.theta) // 64
-    return found.q[::step], found.qd[::step]
+        motion = steady_state(system, speed, samples=64, rtol=1e-5)
+    return motion.q, motion.qd
 
 
 def _cables(structure, speed, elements, revolutions, steps):

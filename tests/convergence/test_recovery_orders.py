@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from beam_motions import periodic_motion, rocking, turning_bar
-from elastolink.runtime.beams import recover
+from elastolink.runtime.recovery import recover
 
 # A third of the first frequency, where the elastic inertia matters: some harmonics resonate.
 SPEED, COUNT = 17.0, 32

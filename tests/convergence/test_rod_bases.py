@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, TwoSegmentBasis
 from rod_bases import (
     BASES,

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from beam_motions import periodic_motion, turning_bar
-from elastolink.runtime.beams import beam_energies, elastic_coupler_curve, recover
-from elastolink.runtime.beams.beam_motion import quiet_steady_state
+from elastolink.runtime.recovery import beam_energies, elastic_coupler_curve, recover
+from elastolink.runtime.recovery.beam_motion import quiet_steady_state
 
 SCENES, COUNT, FINE = 200, 32, 4
 FIRST = {False: 3.516, True: 9.870}  # (lambda L)^2 of a clamped and of a pinned bar

@@ -12,13 +12,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from beam_motions import STEEL, periodic_motion, turning_bar
-from elastolink.runtime.beams import BeamMotion, Section, linkage_system, pin_reactions, stress
-from elastolink.runtime.beams.beam_motion import quiet_steady_state
-from elastolink.runtime.beams.finer_mesh import intervals_for, solved
-from elastolink.runtime.beams.recovery import stations_of
-from elastolink.runtime.beams.stress import fibre_factors, largest_difference, stresses
+from elastolink.runtime.beams import Section, linkage_system
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.linkages import FourBar, SliderCrank
+from elastolink.runtime.recovery import BeamMotion, pin_reactions, stress
+from elastolink.runtime.recovery.beam_forces import stations_of
+from elastolink.runtime.recovery.beam_motion import quiet_steady_state
+from elastolink.runtime.recovery.finer_mesh import intervals_for, solved
+from elastolink.runtime.recovery.stresses import fibre_factors, largest_difference, stresses
 from elastolink.runtime.systems import with_modal_damping
 
 BARS, SLIDER_CRANKS, FOUR_BARS = 185, 12, 3

@@ -13,9 +13,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from beam_motions import periodic_motion, turning_bar
-from elastolink.runtime.beams import stress
-from elastolink.runtime.beams.beam_motion import quiet_steady_state
-from elastolink.runtime.beams.stress import StressResult
 from elastolink.runtime.design import (
     Material,
     damping_effect,
@@ -24,6 +21,9 @@ from elastolink.runtime.design import (
     quiet_speeds,
     running_speed,
 )
+from elastolink.runtime.recovery import stress
+from elastolink.runtime.recovery.beam_motion import quiet_steady_state
+from elastolink.runtime.recovery.stresses import StressResult
 from elastolink.runtime.systems import with_modal_damping
 from honesty import verdict
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
+from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.shape_stress import largest_by_shape
 from elastolink.runtime.integrators.gauss_legendre import gauss_maps
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.periodic import steady_state
-from elastolink.runtime.simulation.spring_form import periodic_derivative
 from honesty import verdict
 from scipy.interpolate import CubicSpline
 
@@ -65,9 +65,9 @@ class SecondOrder:
     def __init__(self, system, profile):
         self.system, self.profile = system, profile
         self.slope = {
-            name: periodic_derivative(
-                lambda angles, name=name: system.array(name, angles)[None], system.period
-            )
+            name: interpolated(
+                system.array(name, even_angles(system.period, 1024)), system.period
+            ).derivative
             for name in ("M", "A")
         }
 
@@ -88,7 +88,7 @@ class SecondOrder:
             return total
 
         drift = at("A")
-        turn = self.slope["M"](theta)[0] + drift - np.swapaxes(drift, 1, 2)
+        turn = self.slope["M"](theta) + drift - np.swapaxes(drift, 1, 2)
         stiff = at("K") + at("Kg") + at("D", 1)
         stiff = stiff + w**2 * (self.slope["A"](theta)[0] - at("B")) + a * (drift - at("S"))
         force = at("f", 2) + a[:, 0] * at("g")

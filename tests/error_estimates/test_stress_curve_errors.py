@@ -7,7 +7,7 @@ recover stresses from a motion the same way.
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.periodic.stresses import Fibres
+from elastolink.runtime.recovery.stress_over_speed import Fibres
 
 STATIONS = 5
 # Elements of each link, damping ratio, lowest and highest speed [rad/s].

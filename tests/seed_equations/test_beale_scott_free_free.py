@@ -11,7 +11,7 @@ from elastolink.derive.models import free_free_modes as ff
 from elastolink.derive.models import free_free_rod as rod
 from elastolink.derive.projection.greens_identity import integral, primitive
 from elastolink.derive.records import Lagrangian
-from elastolink.derive.spec import ModelSpec
+from elastolink.runtime.systems.rod.free_free import FreeFreeModes
 from seed_ledger import Ledger, hold, is_zero, quoted, same
 
 row = Ledger("Beale & Scott", __file__)
@@ -28,12 +28,17 @@ BLOCK = rod.place_of_block()
 PIN = -L / 2
 
 
+def left_value(i):
+    """Return mode i at the left end: odd numbers are even about the middle."""
+    return (-1) ** (i + 1) * ff.end_value()
+
+
 def psi(i, order=0):
     """Return a function in the place of mode i: any will do, but for its value at the pin."""
 
     def value(x):
         if x == PIN and not order:
-            return rod.parity(i) * ff.end_value() / sp.sqrt(L)
+            return left_value(i) / sp.sqrt(L)
         return (sp.sin, sp.cos)[order](i * x + 1) * i**order
 
     return value
@@ -59,10 +64,10 @@ def lagrangian():
     The machine's amplitudes are lengths over L and its modes of unit square over unit length:
     f_i here is L^(3/2) times that there, psi_i here 1 / sqrt(L) times.
     """
-    spec = ModelSpec("quick_return", "free_free", ("rod",), MODES, ("tension",))
-    ours = rod.MODEL.energies(spec)
+    ours = rod.lagrangian(MODES, tension=False)
     table = {f: f / sp.sqrt(L) ** 3 for f in F.values()}
     table |= {sp.Symbol(f"stiffness_{i}"): (K[i] * L) ** 4 for i in RANGE}
+    table |= {sp.Symbol(f"left_{i}"): left_value(i) for i in RANGE}
 
     def printed(expression):
         found = expression.subs(table, simultaneous=True).doit()
@@ -169,7 +174,7 @@ def foreshortening(entry):
     x, field = sp.symbols("x u")
     unit = {"i_hat": sp.Matrix([1, 0]), "j_hat": sp.Matrix([0, 1]), "x": x, "u": field}
     same(entry.printed.value(**{**NAMES, **unit}), R + x * ALONG + field * ACROSS)
-    inward, retreat = (float(rod._shortening_number(which, 1, 1)) for which in (0, 1))
+    inward, retreat = (float(part[0, 0]) for part in FreeFreeModes(1).shortening)
     quoted([-2 * inward, retreat], "3.05", "12.37")
     pull = truth.integral(0, 1, 1, (1, 1)) / 8 - truth.integral(2, 1, 1, (1, 1)) / 2
     same(-2 * inward, float(pull), 1e-14)

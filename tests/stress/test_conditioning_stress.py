@@ -11,8 +11,7 @@ from elastolink.runtime.beams import Section, frame, linear_system
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import dynamic_stiffness, natural_frequencies, wittrick_williams
-from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import floquet_multipliers, steady_state
 
 pytestmark = pytest.mark.filterwarnings("error")
 CLAMPED = ("x", "y", "rotation")

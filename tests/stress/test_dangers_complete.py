@@ -108,7 +108,6 @@ DANGERS = {
         "motion; or the refusal of an exponent that means nothing",
         [
             "test_integrator_stress.py::test_slow_modes_survive_steps_long_beside_the_fast_one",
-            "test_integrator_stress.py::test_commutators_that_outgrow_the_generator_never_pass",
         ],
     ),
     "coefficients that jump": (

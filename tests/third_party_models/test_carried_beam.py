@@ -8,8 +8,7 @@ import scipy.linalg
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.modules import find_module
-from elastolink.runtime.periodic import floquet_multipliers, monodromy
-from elastolink.runtime.simulation.trajectory import simulate
+from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
 from elastolink.runtime.systems import assemble
 
 GEOMETRY = {"radius": 0.12, "rocking": 0.5, "length": 0.7}

@@ -7,8 +7,7 @@ import pytest
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.periodic import floquet_multipliers, monodromy
-from elastolink.runtime.simulation.trajectory import simulate
+from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
 from elastolink.runtime.systems import assemble
 
 LENGTH, TRAVEL = 2.0, 0.6

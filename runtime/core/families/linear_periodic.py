@@ -23,8 +23,8 @@ VECTORS = ("f", "h", "g", "p")
 # Those through which forces without a potential act: drag on the rates, and on what a moving
 # basis carries along.
 DAMPING = ("C", "D")
-# Places along a link at which its deflection is watched.
-_PLACES = np.linspace(0.0, 1.0, 26)
+# Places along a link at which its deflection is watched: a third sine is missed by 0.7 % at most.
+_PLACES = np.linspace(0.0, 1.0, 41)
 # What a limit of a parameter's values allows.
 _LIMITS: Mapping[str, Callable[[Array], NDArray[np.bool_]]] = {
     "positive": lambda values: values > 0.0,

@@ -12,7 +12,6 @@ from elastolink.runtime.beams import (
     frame,
     linear_system,
     linkage_system,
-    stress,
 )
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import BadInput
@@ -25,6 +24,7 @@ from elastolink.runtime.frequencies import (
 )
 from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.recovery import stress
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 BAR = Section.rectangle(0.02, 0.005, poisson=0.3, **STEEL)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from elastolink import BadInput, load_scene
 from elastolink.runtime.beams import Section, linkage_system
-from elastolink.runtime.beams.stress import StressResult
 from elastolink.runtime.design import (
     Material,
     damping_effect,
@@ -17,7 +16,8 @@ from elastolink.runtime.design import (
 )
 from elastolink.runtime.design.quiet import _bands, _maxima
 from elastolink.runtime.linkages import FourBar
-from elastolink.runtime.periodic import stress_curve
+from elastolink.runtime.recovery import stress_curve
+from elastolink.runtime.recovery.stresses import StressResult
 
 TABLE = "aannaque_1996_table_4_1"
 STEEL = Material(tensile_strength=600e6, endurance_limit=200e6, exponent=9.0, knee=1e6)

@@ -13,11 +13,11 @@ from elastolink.runtime.frequencies import (
     draw_mode,
     draw_modes,
     frequency_exponents,
+    frozen_frequencies,
     link_frequencies,
     natural_frequencies,
     pinned_frequency,
 )
-from elastolink.runtime.response import frozen_frequencies
 from elastolink.runtime.scenes import load_scene
 
 

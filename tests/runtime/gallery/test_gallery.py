@@ -22,8 +22,8 @@ from elastolink.runtime.gallery.smith_observations import OBSERVATIONS
 from elastolink.runtime.gallery.smith_waves import _system, periodic_response
 from elastolink.runtime.gallery.writing import write_together
 from elastolink.runtime.hill import hill_boundaries
+from elastolink.runtime.periodic import simulate
 from elastolink.runtime.scenes import load_scene
-from elastolink.runtime.simulation.trajectory import simulate
 
 QUICK = ("6", "7", "27", "28", "29", "32", "33", "34", "35", "36", "37", "38", "45", "83", "87")
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.cli import main
 from elastolink.runtime.core.errors import LinearRangeWarning
+from elastolink.runtime.frequencies import frozen_frequencies
 from elastolink.runtime.gallery import (
     beale_chart,
     beale_free_free,
@@ -14,7 +15,7 @@ from elastolink.runtime.gallery import (
     figures,
 )
 from elastolink.runtime.gallery.beale_tip import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
-from elastolink.runtime.response import frozen_frequencies, steady_state
+from elastolink.runtime.periodic import steady_state
 from gallery_rows import require_rows
 from rod_tip_deflections import TIPS
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.plotting import new_figure
 from elastolink.runtime.gallery import beale_response
-from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.scenes import load_scene
 
 

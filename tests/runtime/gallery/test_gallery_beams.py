@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.beams import recover, stress_operator
 from elastolink.runtime.gallery import (
     aannaque_critical,
     aannaque_exact,
@@ -19,6 +18,7 @@ from elastolink.runtime.gallery import (
 from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.gallery.model_comparison import compare_models
 from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.recovery import recover, stress_operator
 
 # Figure, and how many of its numbers are known to differ.
 FAST = (

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.gallery import smith_responses
 from elastolink.runtime.gallery.smith_linkages import RPM
-from elastolink.runtime.response import steady_peaks
+from elastolink.runtime.periodic import steady_peaks
 from gallery_rows import require_rows
 
 # Figure, and how many of its numbers are known to differ.

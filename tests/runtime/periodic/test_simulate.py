@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
+import pickle
 
 import numpy as np
 import pytest
-from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, StepTooLongWarning
+from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.integrators import METHODS, SCIPY_METHODS
-from elastolink.runtime.periodic.first_order import canonical_form
-from elastolink.runtime.simulation.adaptive import sampled_generator
-from elastolink.runtime.simulation.trajectory import Trajectory, simulate
+from elastolink.runtime.periodic import Trajectory, simulate
+from elastolink.runtime.periodic.motion import SCIPY_METHODS
+from elastolink.runtime.scenes import load_scene
 
-ALL = (*sorted(METHODS), *SCIPY_METHODS)
+ALL = ("auto", *SCIPY_METHODS)
 NUMBERS = {"stiffness": 50.0, "damping": 0.0, "f": 0.4, "h": 3.0, "p": 7.0, "depth": 0.0}
 
 
@@ -47,7 +46,7 @@ def _by_hand(theta, speed, q0, qd0):
 
 
 @pytest.mark.parametrize("method", ALL)
-def test_every_method_meets_the_hand_solution_within_its_own_figure(method):
+def test_every_method_meets_the_hand_solution_within_its_error(method):
     run = simulate(_driven(), 2.0, 2.0, method, initial=(0.1, -0.3), samples=60)
     q, qd = _by_hand(run.theta, 2.0, 0.1, -0.3)
     actual = np.max(np.abs(run.q[:, 0] - q)) / np.max(np.abs(q))
@@ -60,13 +59,17 @@ def test_every_method_meets_the_hand_solution_within_its_own_figure(method):
     assert run.passed, run.checks
 
 
-def test_collocation_is_exact_to_round_off():
-    run = simulate(_driven(), 2.0, 30.0, initial=(0.1, -0.3))
-    q, qd = _by_hand(run.theta, 2.0, 0.1, -0.3)
-    assert np.max(np.abs(run.q[:, 0] - q)) < 1e-12 * np.max(np.abs(q))
+@pytest.mark.smoke
+def test_a_wanted_error_is_reached_down_to_round_off():
+    for rtol in (1e-4, 1e-8, 1e-12):
+        run = simulate(_driven(), 2.0, 30.0, initial=(0.1, -0.3), rtol=rtol)
+        q, qd = _by_hand(run.theta, 2.0, 0.1, -0.3)
+        actual = np.max(np.abs(run.q[:, 0] - q)) / np.max(np.abs(q))
+        # The angles' rounding leaves 2e-13 of the hand solution.
+        assert actual <= run.error[0] + 2e-13 and run.error[0] <= max(rtol, 2e-12)
+    assert actual < 1e-12
     assert np.max(np.abs(run.qd[:, 0] - qd)) < 1e-12 * np.max(np.abs(qd))
-    assert run.error[0] < 1e-12
-    assert set(run.checks) == {"accuracy", "energy balance", "liouville", "symplectic"}
+    assert set(run.checks) == {"accuracy", "energy balance"} and run.passed
 
 
 def test_damped_steady_state_is_reached():
@@ -112,12 +115,12 @@ def _turned(w0: tuple[float, float]) -> tuple[LinearPeriodic, object]:
     return LinearPeriodic(2, terms, {}, lambda values: {}), transform
 
 
-@pytest.mark.parametrize("method", ["gauss_legendre", "magnus4", "rk4", "kutta_merson", "DOP853"])
+@pytest.mark.parametrize("method", ["auto", "DOP853"])
 def test_periodic_mass_and_coriolis_terms(method):
     system, transform = _turned((3.0, 5.0))
     start = transform(np.zeros(1))
     q0, z0 = np.array([0.2, -0.1]), start[0][0] @ np.array([0.2, -0.1])
-    run = simulate(system, 1.7, 3.0, method, initial=(q0, 0.0), samples=90)
+    run = simulate(system, 1.7, 3.0, method, initial=(q0, 0.0), samples=90, rtol=1e-11)
     rate = 1.7 * (start[1][0] @ q0)  # q' = 0, but R turns
     t = run.time[:, None]
     w0 = np.array([3.0, 5.0])
@@ -125,7 +128,7 @@ def test_periodic_mass_and_coriolis_terms(method):
     expected = np.linalg.solve(transform(run.theta)[0], z[:, :, None])[:, :, 0]
     gap = np.max(np.abs(run.q - expected), axis=0) / np.max(np.abs(expected), axis=0)
     assert np.all(gap <= run.error)
-    assert np.all(gap < (1e-12 if method == "gauss_legendre" else 1e-4))
+    assert np.all(gap < 1e-9)
     assert run.passed, run.checks
 
 
@@ -170,40 +173,56 @@ def test_any_period_of_the_coefficients(period):
     np.testing.assert_allclose(found.q, other.q, atol=1e-9)
 
 
-def test_error_figure_is_neither_idle_nor_too_small():
-    exact = simulate(_driven(depth=10.0), 2.0, 4.0, initial=(0.1, 0.0))
-    peak = np.max(np.abs(exact.q))
-    for method in ("rk4", "magnus4", "de_vogelaere", "kutta_merson"):
-        for steps in (72, 144, 288, 576, 1440):
-            run = simulate(
-                _driven(depth=10.0), 2.0, 4.0, method, initial=(0.1, 0.0), samples=72, steps=steps
-            )
-            every = round((len(exact.q) - 1) / (len(run.q) - 1))
-            actual = np.max(np.abs(run.q - exact.q[::every])) / peak
-            assert actual <= 1.0001 * run.error[0] <= 1.1 * actual + 1e-12
+@pytest.mark.parametrize(("samples", "revolutions"), [(360, 3.0), (7, 3.0), (90, 0.37)])
+def test_given_angles(samples, revolutions):
+    run = simulate(_driven(), 2.0, revolutions, initial=(0.1, 0.0), samples=samples)
+    count = int(np.ceil(samples * revolutions))
+    even = 2 * np.pi / samples * np.arange(count)
+    np.testing.assert_allclose(run.theta[:-1], even, rtol=1e-14)
+    assert run.theta[-1] == pytest.approx(2 * np.pi * revolutions, rel=1e-14)
+    q, _ = _by_hand(run.theta, 2.0, 0.1, 0.0)
+    assert np.max(np.abs(run.q[:, 0] - q)) <= run.error[0] * np.max(np.abs(q))
 
 
-def test_wanted_error_is_reached_by_doubling():
-    coarse = simulate(_driven(), 2.0, 1.0, "rk4", initial=(0.1, 0.0), steps=360)
-    fine = simulate(_driven(), 2.0, 1.0, "rk4", initial=(0.1, 0.0), rtol=1e-10)
-    assert coarse.error[0] > 1e-10 >= fine.error[0]
-    assert fine.steps % 360 == 0
-    assert len(fine.theta) == 361
+@pytest.mark.parametrize("start", [0.3, -2.0, 1000.3])
+def test_any_start(start):
+    """The same angles from another start: the motion of the rest of a longer run."""
+    whole = simulate(_driven(depth=10.0), 2.0, 1.0, initial=(0.1, 0.0), start=start)
+    rest = simulate(
+        _driven(depth=10.0), 2.0, 0.5, initial=(whole.q[180], whole.qd[180]), start=whole.theta[180]
+    )
+    assert whole.theta[0] == start
+    np.testing.assert_allclose(rest.q, whole.q[180:], atol=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("samples", "steps", "given"), [(360, 90, 90), (360, 720, 360), (100, 250, 125), (7, 7, 7)]
-)
-def test_given_angles(samples, steps, given):
-    run = simulate(_driven(), 2.0, 3.0, initial=(0.1, 0.0), samples=samples, steps=steps)
-    assert run.steps == steps
-    np.testing.assert_allclose(run.theta, np.arange(3 * given + 1) * 2 * np.pi / given, rtol=1e-15)
+def test_a_spring_that_jumps_is_met_within_its_error():
+    """Stiffness 9 and 25 by turns of half a revolution, at speed 1: sines and cosines by parts."""
+
+    def spring(theta):
+        return np.where(np.sin(theta) > 0.0, 9.0, 25.0)[:, None, None]
+
+    terms = (Term("M", None, np.eye(1)), Term("K", None, spring))
+    system = LinearPeriodic(1, terms, {}, lambda values: {})
+    run = simulate(system, 1.0, 1.0, initial=(1.0, 0.0), samples=64, rtol=1e-6)
+    first, later = run.theta[:33], run.theta[32:] - np.pi
+    middle, rate = np.cos(3 * np.pi), -3 * np.sin(3 * np.pi)
+    exact = np.cos(3 * first), middle * np.cos(5 * later) + rate / 5 * np.sin(5 * later)
+    gap = np.abs(run.q[:, 0] - np.concatenate([exact[0], exact[1][1:]]))
+    assert np.max(gap) <= run.error[0] and np.max(gap) < 1e-2
+
+
+@pytest.mark.parametrize("size", [1e-200, 1e-9, 1e9])
+def test_the_size_of_the_force_is_no_matter(size):
+    one = simulate(_driven(), 2.0, 2.0, samples=60)
+    other = simulate(_driven(f=0.4 * size, h=3.0 * size, p=7.0 * size), 2.0, 2.0, samples=60)
+    np.testing.assert_allclose(other.q / size, one.q, rtol=1e-9, atol=1e-12)
+    assert np.max(other.error) <= 1e-8
 
 
 # Growth, warnings, checks --------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["gauss_legendre", "rk4", "kutta_merson", "LSODA"])
+@pytest.mark.parametrize("method", ["auto", "LSODA"])
 def test_growth_stops_at_the_bound_and_says_so(method):
     system = _driven(stiffness=-800.0)
     run = simulate(system, 2.0, 200.0, method, initial=(1.0, 0.0), samples=60, bound=1e60)
@@ -220,31 +239,6 @@ def test_growth_beyond_every_number_does_not_overflow():
     assert run.status == 1
     assert np.all(np.isfinite(run.q))
     assert np.max(np.abs(run.q)) >= 1e150
-
-
-def test_smiths_rule_for_the_step():
-    # lambda = 5/0.5 = 10 per revolution: the half step must stay below 1.8 degrees.
-    common = {"initial": (0.1, 0.0), "samples": 36}
-    with pytest.warns(StepTooLongWarning, match=r"less than 1\.8"):
-        simulate(_driven(), 0.5, 1.0, "de_vogelaere", steps=100, **common)
-    simulate(_driven(), 0.5, 1.0, "de_vogelaere", steps=101, **common)
-    simulate(_driven(), 0.5, 1.0, "gauss_legendre", steps=10, **common)
-    for method in ("rk4", "kutta_merson"):
-        with pytest.warns(StepTooLongWarning, match=method):
-            simulate(_driven(), 0.5, 1.0, method, steps=90, **common)
-
-
-@pytest.mark.parametrize("speed", [0.02, 0.5, 40.0])
-def test_default_step_obeys_the_rule(speed):
-    run = simulate(_driven(), speed, 0.1, "de_vogelaere", initial=(0.1, 0.0))
-    assert 180.0 / run.steps < 18.0 / (5.0 / speed)
-
-
-def test_artificial_damping_shows_in_the_liouville_check():
-    with pytest.warns(StepTooLongWarning):
-        run = simulate(_driven(), 0.5, 20.0, "rk4", initial=(1.0, 0.0), steps=72, forcing=False)
-    assert run.checks["liouville"].value > 0.1
-    assert np.max(np.abs(run.q[-60:])) < 0.5
 
 
 def _beam(length: float) -> LinearPeriodic:
@@ -268,50 +262,10 @@ def test_leaving_the_linear_range_is_told():
     assert not run.passed
 
 
-def test_energy_balance_catches_a_wrong_motion():
-    from elastolink.runtime.periodic.first_order import canonical_form
-    from elastolink.runtime.simulation.energy import energy_balance
-
-    system, _ = _turned((3.0, 5.0))
-    run = simulate(system, 1.7, 3.0, initial=([0.2, -0.1], 0.0))
-    form = canonical_form(system, 1.7)
-    good = energy_balance(form, run.theta, run.q, run.qd / 1.7, 1e-12)
-    assert good.passed
-    for slip in (1.001, 0.99):
-        shifted = run.q * np.linspace(1.0, slip, len(run.q))[:, None]
-        assert not energy_balance(form, run.theta, shifted, run.qd / 1.7, 1e-12).passed
-
-
-def test_a_step_that_shrinks_to_nothing_is_told():
-    # The spring is not a number beyond theta = 1.
-    def spring(theta):
-        return np.where(theta < 1.0, 9.0, np.nan)[:, None, None]
-
-    from elastolink.runtime.integrators import kutta_merson
-
-    def generator(theta):
-        out = np.zeros((len(theta), 2, 2))
-        out[:, 0, 1] = 1.0
-        out[:, 1:, :1] = -spring(theta)
-        return out
-
-    run = kutta_merson.adaptive(
-        generator,
-        np.linspace(0.0, 2.0, 5),
-        np.array([1.0, 0.0]),
-        1e-6,
-        np.full(2, 1e-6),
-        stop=lambda state: False,
-        first=0.1,
-    )
-    assert len(run.states) == 2
-    assert run.rejected > 5
-
-
 def test_progress_is_shown_only_when_wanted(capsys):
     quiet = simulate(_driven(), 2.0, 3.0, initial=(0.1, 0.0), samples=36)
     assert capsys.readouterr() == ("", "")
-    for method in ("gauss_legendre", "kutta_merson", "DOP853"):
+    for method in ("auto", "DOP853"):
         shown = simulate(_driven(), 2.0, 3.0, method, initial=(0.1, 0.0), samples=36, progress=True)
         assert "108/108" in capsys.readouterr().err
         assert shown.q.shape == quiet.q.shape
@@ -336,6 +290,13 @@ def test_record_plots_saves_and_repeats(tmp_path):
     np.testing.assert_array_equal(saved["q"], run.q)
 
 
+def test_a_trajectory_is_pickled_with_its_checks():
+    system = load_scene("smith_1972_5152_sixteenth_inch").system()
+    run = simulate(system, 34.0, 1.0, samples=24)
+    twin = pickle.loads(pickle.dumps(run))
+    assert twin.q.tobytes() == run.q.tobytes() and dict(twin.checks) == dict(run.checks)
+
+
 @pytest.mark.parametrize(
     ("changes", "word"),
     [
@@ -343,19 +304,23 @@ def test_record_plots_saves_and_repeats(tmp_path):
         ({"speed": 0.0}, "speed"),
         ({"speed": -3.0}, "speed"),
         ({"speed": np.array([1.0, 2.0])}, "speed"),
+        ({"speed": "2"}, "speed"),
         ({"revolutions": 0.0}, "revolutions"),
         ({"revolutions": np.nan}, "revolutions"),
-        ({"steps": 0}, "steps"),
-        ({"steps": 2.5}, "steps"),
+        ({"revolutions": "2"}, "revolutions"),
+        ({"revolutions": 1e9}, "revolutions"),
         ({"samples": 0}, "samples"),
+        ({"samples": 2.5}, "samples"),
+        ({"samples": "8"}, "samples"),
         ({"rtol": 2.0}, "rtol"),
-        ({"rtol": 1e-8, "steps": 720}, "steps and rtol"),
-        ({"method": "RK45", "steps": 720}, "steps"),
+        ({"rtol": "1e-3"}, "rtol"),
         ({"initial": 3.0}, "initial"),
         ({"initial": ([1.0, 2.0], 0.0)}, "initial q"),
         ({"initial": (1.0, np.inf)}, "initial qd"),
+        ({"initial": ("a", 0.0)}, "initial q"),
         ({"bound": -1.0}, "bound"),
         ({"start": np.inf}, "start"),
+        ({"start": "0"}, "start"),
     ],
 )
 def test_bad_input_is_one_clear_line(changes, word):
@@ -363,25 +328,6 @@ def test_bad_input_is_one_clear_line(changes, word):
     with pytest.raises(BadInput, match=word) as caught:
         simulate(_driven(), **arguments)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("term", "word"),
-    [
-        (Term("C", None, np.eye(1)), "damping"),
-        (Term("M", None, lambda theta: np.cos(theta)[:, None, None]), "mass matrix"),
-    ],
-)
-def test_de_vogelaere_refuses_first_derivatives(term, word):
-    system = _driven().with_terms(term)
-    with pytest.raises(BadInput, match=word):
-        simulate(system, 2.0, 1.0, "de_vogelaere", initial=(0.1, 0.0))
-
-
-def test_de_vogelaere_refuses_gyroscopic_terms():
-    gyro = Term("A", None, np.array([[0.0, -1.0], [1.0, 0.0]]))
-    with pytest.raises(BadInput, match="gyroscopic"):
-        simulate(_beam(0.4).with_terms(gyro), 2.0, 1.0, "de_vogelaere", initial=(0.01, 0.0))
 
 
 def test_a_mass_that_is_not_positive_is_refused():
@@ -400,93 +346,6 @@ def test_a_mass_that_is_not_positive_is_refused():
             1.0,
             initial=(0.1, 0.0),
         )
-
-
-@pytest.mark.parametrize(("method", "steps"), [("magnus4", 2), ("rk4", 12), ("gauss_legendre", 1)])
-def test_a_wrong_answer_does_not_pass(method, steps):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", StepTooLongWarning)
-        run = simulate(_driven(), 2.0, 3.0, method, initial=(0.1, -0.3), steps=steps)
-    assert np.max(run.error) > 0.01
-    assert not run.checks["accuracy"].passed
-    assert not run.passed
-
-
-def test_liouville_limit_does_not_grow_with_the_error():
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", StepTooLongWarning)
-        run = simulate(_driven(), 2.0, 3.0, "rk4", initial=(0.1, -0.3), steps=12)
-    assert run.checks["liouville"].limit == 0.01
-    assert not run.checks["liouville"].passed
-
-
-def test_accuracy_is_held_against_the_tolerance_asked_for():
-    run = simulate(_driven(), 2.0, 1.0, "rk4", rtol=1e-7)
-    assert run.checks["accuracy"].limit == 1e-7
-    assert run.passed, run.checks
-
-
-@pytest.mark.parametrize("method", ["gauss_legendre", "rk4", "kutta_merson", "DOP853"])
-def test_a_tiny_speed_is_refused_in_one_line(method):
-    with pytest.raises(BadInput, match="speed: found 1e-06 rad/s, where a revolution needs"):
-        simulate(_driven(), 1e-6, 1.0, method)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        ({"steps": "a"}, "steps"),
-        ({"steps": True}, "steps"),
-        ({"steps": 10**9}, "steps"),
-        ({"revolutions": "2"}, "revolutions"),
-        ({"revolutions": 1e9}, "revolutions"),
-        ({"samples": "8"}, "samples"),
-        ({"start": "0"}, "start"),
-        ({"rtol": "1e-3"}, "rtol"),
-        ({"speed": "2"}, "speed"),
-        ({"initial": ("a", 0.0)}, "initial q"),
-    ],
-)
-def test_types_are_checked(arguments, word):
-    given = {"speed": 2.0, "revolutions": 1.0, **arguments}
-    with pytest.raises(BadInput, match=word) as caught:
-        simulate(_driven(), **given)
-    assert "\n" not in str(caught.value)
-
-
-def test_de_vogelaere_takes_a_damping_that_is_zero():
-    zero = _driven().with_terms(Term("C", None, np.zeros((1, 1))))
-    run = simulate(zero, 2.0, 1.0, "de_vogelaere")
-    np.testing.assert_array_equal(run.q, simulate(_driven(), 2.0, 1.0, "de_vogelaere").q)
-
-
-def test_a_spike_between_given_angles_is_seen():
-    def spike(theta):
-        return np.exp(-((((theta % (2 * np.pi)) - 1.0345) / 0.01) ** 2))[:, None, None] / 0.01
-
-    system = _driven(f=0.0, h=0.0, p=0.0).with_terms(Term("Kg", None, spike))
-    coarse = simulate(system, 2.0, 1.0, initial=(0.1, 0.0), samples=8)
-    fine = simulate(system, 2.0, 1.0, initial=(0.1, 0.0), steps=8192, samples=8)
-    gap = abs(coarse.q[-1, 0] - fine.q[-1, 0]) / np.max(np.abs(fine.q))
-    assert gap <= coarse.error[0] + fine.error[0]
-    assert coarse.passed, coarse.checks
-
-
-def test_sampled_generator_is_the_generator():
-    system, _ = _turned((3.0, 5.0))
-    form = canonical_form(system, 1.7)
-    theta = np.array([0.1, 2.0, 5.5, 1000.3])
-    direct = form.generator(theta)[0]
-    np.testing.assert_allclose(
-        sampled_generator(form)(theta), direct, atol=1e-12 * np.max(np.abs(direct))
-    )
-
-
-def test_a_generator_with_jumps_is_assembled_at_each_call():
-    jump = Term("Kg", None, lambda theta: np.sign(np.sin(theta - 0.3))[:, None, None])
-    form = canonical_form(_driven().with_terms(jump), 1.7, forcing=True)
-    theta = np.array([0.1, 0.2999, 0.3001])
-    np.testing.assert_array_equal(sampled_generator(form)(theta), form.generator(theta)[0])
 
 
 def test_provenance_tells_changes_and_versions():

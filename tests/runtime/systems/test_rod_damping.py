@@ -7,7 +7,7 @@ import warnings
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.response import steady_state
+from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.systems.rod import OverhangBasis
 from scipy.interpolate import CubicSpline
 

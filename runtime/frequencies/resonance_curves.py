@@ -1,0 +1,231 @@
+"""Resonance curves: the largest deflection of the steady state against the crank speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
+from ..core.results import Result, provenance
+from ..periodic.peaks import peak_error, quiet_state, require_shapes
+from .held import frozen_frequencies
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+# Each pass puts so many speeds into the gap about a maximum, and keeps a quarter of it.
+_PASSES = 4
+_WITHIN = 9
+# Modes that a maximum may be labelled by: of a high one any speed is near some fraction.
+_LABELLED = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResonanceCurve(Result):
+    """Largest deflection of the periodic motion against the crank speed, and its maxima.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], rising, shape ``(ns,)``.
+    peak : ndarray
+        Largest size of the deflection over a period [m], shape ``(ns,)``; NaN where there is no
+        single periodic motion.
+    stable : ndarray of bool
+        Whether that motion is stable, shape ``(ns,)``.
+    error : ndarray
+        Error of ``peak`` over itself, shape ``(ns,)``: of the periodic motion; between two of the
+        given angles a peak is missed by far less than 1 % where it is not narrower than they are.
+    maxima : ndarray
+        Speeds of the local maxima within the range [rad/s], refined, shape ``(nm,)``.
+    maxima_peak : ndarray
+        Largest deflections there [m], shape ``(nm,)``.
+    maxima_error : ndarray
+        How far each maximum may be from its speed [rad/s], shape ``(nm,)``.
+    order, mode : ndarray of int
+        Label of each maximum, shape ``(nm,)``: the mode, of the first three, counted from 1, whose
+        mean natural frequency over the speed is nearest to a whole number n, and that number.  A
+        guess where the frequencies vary much over the cycle.
+    ratio : ndarray
+        That mean frequency over n times the speed, shape ``(nm,)``; 1 where the mean says it all.
+    mean_frequency : ndarray
+        Mean natural frequencies over the cycle, crank held [rad/s], shape ``(n,)``.
+    x : float
+        Place x/length.
+    """
+
+    speed: Array
+    peak: Array
+    stable: NDArray[np.bool_]
+    maxima: Array
+    maxima_peak: Array
+    maxima_error: Array
+    order: NDArray[np.int64]
+    mode: NDArray[np.int64]
+    ratio: Array
+    mean_frequency: Array
+    x: float
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "speed": ("speed",),
+        "peak": ("speed",),
+        "stable": ("speed",),
+        "error": ("speed",),
+        "maxima": ("maximum",),
+        "maxima_peak": ("maximum",),
+        "maxima_error": ("maximum",),
+        "order": ("maximum",),
+        "mode": ("maximum",),
+        "mean_frequency": ("frequency",),
+        "ratio": ("maximum",),
+    }
+
+    @property
+    def joined(self) -> tuple[Array, Array]:
+        """Speeds [rad/s] and peaks [m] with the refined maxima among them, by rising speed."""
+        speed = np.concatenate([self.speed, self.maxima])
+        peak = np.concatenate([self.peak, self.maxima_peak])
+        order = np.argsort(speed, kind="stable")
+        return speed[order], peak[order]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the curve with its maxima labelled by n and return the axes."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        ax.semilogy(*self.joined, linewidth=0.9)
+        for speed, peak, order, mode in zip(
+            self.maxima, self.maxima_peak, self.order, self.mode, strict=True
+        ):
+            ax.annotate(
+                rf"$\omega_{mode}/{order}$" if order > 1 else rf"$\omega_{mode}$",
+                (speed, peak),
+                xytext=(0, 3),
+                textcoords="offset points",
+                ha="center",
+                fontsize=7,
+            )
+        ax.set_xlabel("crank speed [rad/s]")
+        ax.set_ylabel("largest deflection [m]")
+        return ax
+
+
+def resonance_curve(
+    system: LinearPeriodic,
+    speed: ArrayLike,
+    *,
+    x: float = 1.0,
+    rtol: float = 1e-6,
+    **parameters: float,
+) -> ResonanceCurve:
+    """Return the largest steady deflection against the crank speed, with its maxima refined.
+
+    A system that is forced once and more in a revolution resonates near the mean first natural
+    frequency over n = 1, 2, ... (Beale & Scott, section 3.2, ask whether it does where the
+    frequency varies much).  With little damping a resonance is at the ends of the unstable region
+    2n, where a multiplier is 1, and the motion between them is unstable: see ``stable``.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system, forced, with mode shapes; some damping keeps the maxima finite.
+    speed : array_like
+        Crank speeds [rad/s], rising, shape ``(ns,)``, at least 3.  A maximum between two of them
+        that shows at neither is missed.
+    x : float
+        Place x/length of the deflection, the end by default.
+    rtol : float
+        Wanted error of the periodic motions.
+    **parameters : float
+        Parameter values that replace the system's.
+
+    Returns
+    -------
+    ResonanceCurve
+        Its checks: those of the worst steady state of the curve, ``linear range`` among them.
+
+    Raises
+    ------
+    BadInput
+        As :func:`~..periodic.steady_state`; and if the speeds do not rise.
+    """
+    speeds = numbers("speed", speed)
+    if not (isinstance(x, Real) and 0 <= x <= 1):
+        raise bad("x", repr(x), "one place x/length from 0 to 1", "divide by the length")
+    if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
+        raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
+    require_shapes("resonance_curve", system)
+    mean = frozen_frequencies(system, 0.0, **parameters).mean
+    state = quiet_state(system, speeds, rtol, parameters)
+    peak = state.peak(x)
+    tops = _tops(peak)
+    low, high = speeds[tops - 1], speeds[tops + 1]
+    for _ in range(_PASSES if len(low) else 0):
+        inside = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _WITHIN)
+        tried = quiet_state(system, inside, rtol, parameters).peak(x)
+        best = np.argmax(np.nan_to_num(tried), axis=1)
+        rows = np.arange(len(low))
+        low = inside[rows, np.maximum(best - 1, 0)]
+        high = inside[rows, np.minimum(best + 1, _WITHIN - 1)]
+    maxima = 0.5 * (low + high)
+    heights = quiet_state(system, maxima, rtol, parameters).peak(x) if len(maxima) else maxima
+    order, mode = _labels(mean, maxima)
+    return ResonanceCurve(
+        method=state.method,
+        error=peak_error(state, np.full(len(speeds), float(x))),
+        error_norm="of the largest deflection, over itself",
+        checks={name: state.checks[name] for name in sorted(state.checks)},
+        provenance=provenance(system.changed_provenance(**parameters)),
+        speed=speeds,
+        peak=peak,
+        stable=state.stable,
+        maxima=maxima,
+        maxima_peak=heights,
+        maxima_error=0.5 * (high - low),
+        order=order,
+        mode=mode,
+        ratio=mean[mode - 1] / (order * maxima),
+        mean_frequency=mean,
+        x=float(x),
+    )
+
+
+def _tops(peak: Array) -> NDArray[np.intp]:
+    """Return the places of the local maxima of a curve; a gap in it is none."""
+    values = np.where(np.isfinite(peak), peak, np.inf)
+    middle = values[1:-1]
+    top = (middle > values[:-2]) & (middle >= values[2:]) & np.isfinite(middle)
+    places: NDArray[np.intp] = np.flatnonzero(top) + 1
+    return places
+
+
+def _labels(mean: Array, maxima: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return order and mode of each maximum from the mean frequencies over its speed.
+
+    The pairs that fit best choose first, and no label is given twice where another is left.
+    """
+    ratio = mean[:_LABELLED] / maxima[:, None]
+    orders = np.maximum(1, np.round(ratio)).astype(np.int64)
+    misfit = np.abs(ratio - orders)
+    order, mode = np.zeros((2, len(maxima)), dtype=np.int64)
+    taken: set[tuple[int, int]] = set()
+    for place, column in zip(
+        *np.unravel_index(np.argsort(misfit, axis=None), misfit.shape), strict=True
+    ):
+        label = int(orders[place, column]), int(column) + 1
+        if not mode[place] and label not in taken:
+            taken.add(label)
+            order[place], mode[place] = label
+    rest = mode == 0
+    nearest = np.argmin(misfit, axis=1)
+    order[rest], mode[rest] = orders[rest, nearest[rest]], nearest[rest] + 1
+    return order, mode

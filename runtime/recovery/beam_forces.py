@@ -1,0 +1,522 @@
+"""Forces and stresses along beams from the motion of their nodes.
+
+Two ways, by name.  ``equilibrium``: the end forces of each element, and between its nodes what
+balances the inertia of the rigid and the elastic motion, weight and axial forces: what is wrong
+comes from the nodes alone.  ``shape``: derivatives of the shape functions times the stiffnesses,
+one or two orders of the element's length less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..beams.elements import placed_rotation, placed_shapes
+from ..beams.recovery_forms import LinearForm, stacked
+from ..beams.structure import Beam, PlacedElement, Structure
+from ..core.deferred import DeferredGroup
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import numbers
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import StationResult, in_motion, stations_on
+from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+METHODS = ("equilibrium", "shape")
+FORCES = ("axial", "shear", "moment")
+# Places per beam where none are asked for.
+_PLACES = 25
+# Exact for the shape functions (to degree 5) times the axial force (to degree 2) times x.
+_GAUSS_PLACES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
+
+
+@dataclass(frozen=True)
+class Station:
+    """A place on a beam.
+
+    Attributes
+    ----------
+    beam : str
+        Name of the beam.
+    place : float
+        x over the beam's length, 0 to 1.
+    element : int
+        Which of the structure's elements it lies on.
+    xi : float
+        x over the element's length, from its start.
+    """
+
+    beam: str
+    place: float
+    element: int
+    xi: float
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """Forces along beams as linear forms of a motion, at given crank angles.
+
+    Attributes
+    ----------
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    stations : tuple of Station
+        Places.
+    forms : mapping of str to LinearForm
+        ``axial`` and ``shear`` [N], ``moment`` [N m]; ``along``, ``across`` [m] and ``slope``
+        [rad] from the rigid beam, in its axes: rows are the stations.
+    acceleration : LinearForm
+        ``w^2 d2q/dtheta2`` by the equation of motion.
+    method : str
+        ``equilibrium`` or ``shape``.
+    """
+
+    theta: Array
+    stations: tuple[Station, ...]
+    forms: Mapping[str, LinearForm]
+    acceleration: LinearForm
+    method: str
+
+    def without_accelerations(self) -> Recovery:
+        """Return the same with the accelerations replaced by the equation of motion."""
+        forms = {name: form.eliminated(self.acceleration) for name, form in self.forms.items()}
+        return replace(self, forms=forms)
+
+    def values(
+        self, name: str, speed: float, q: Array, dq: Array, ddq: Array | None = None
+    ) -> Array:
+        """Return one quantity ``(nt, stations)`` in a motion.
+
+        Parameters
+        ----------
+        name : str
+            One of ``forms``.
+        speed : float
+            Crank speed [rad/s].
+        q, dq : ndarray, shape (nt, n)
+            Coordinates and their derivatives by the crank angle.
+        ddq : ndarray, shape (nt, n), optional
+            Second derivatives by the crank angle; by default from the equation of motion.
+        """
+        form = self.forms[name]
+        if ddq is None:
+            # Frames have no crank: any speed will do where nothing depends on it.
+            ddq = self.acceleration.values(speed, q, dq) / speed**2
+        return np.broadcast_to(
+            form.values(speed, q, dq, ddq), (len(self.theta), len(self.stations))
+        )
+
+
+def stations_of(
+    structure: Structure, stations: int | Mapping[str, ArrayLike] | None = None
+) -> tuple[Station, ...]:
+    """Return places on the beams of a structure.
+
+    Parameters
+    ----------
+    structure : Structure
+        The beams.
+    stations : int or mapping of str to array_like, optional
+        Number of places on each beam, its ends included; or by beam the places x/length.  By
+        default 25 on each.
+
+    Returns
+    -------
+    tuple of Station
+        Beam by beam.
+
+    Raises
+    ------
+    BadInput
+        If a beam is unknown or a place lies off it.
+    """
+    if stations is None or isinstance(stations, int):
+        count = _PLACES if stations is None else stations
+        if isinstance(stations, bool) or count < 2:
+            raise bad("stations", repr(stations), "2 places or more on each beam", "choose 25")
+        wanted: Mapping[str, ArrayLike] = {
+            beam.name: np.linspace(0.0, 1.0, count) for beam in structure.beams
+        }
+    elif isinstance(stations, Mapping):
+        wanted = stations
+    else:
+        found_type = type(stations).__name__
+        raise bad("stations", found_type, "a number, or places by beam", "give {'beam': [0.5]}")
+    problems, found = [], []
+    for name, given in wanted.items():
+        beam = structure.beam(name)
+        places = np.atleast_1d(numbers(f"stations on {name}", given))
+        if places.ndim != 1 or not places.size or not np.all((places >= 0.0) & (places <= 1.0)):
+            fix = "divide by the beam's length"
+            problems.append(Problem(f"stations on {name}", str(given), "places from 0 to 1", fix))
+            continue
+        found += [_station(structure, beam, float(place)) for place in places]
+    if problems or not found:
+        raise BadInput(*(problems or [Problem("stations", "none", "at least one", "name some")]))
+    return tuple(found)
+
+
+def _station(structure: Structure, beam: Beam, place: float) -> Station:
+    along = place * beam.length
+    own = [(e, p) for e, p in enumerate(structure.elements) if p.beam.name == beam.name]
+    e, placed = next((pair for pair in own if along <= pair[1].start + pair[1].length), own[-1])
+    xi = min(max((along - placed.start) / placed.length, 0.0), 1.0)
+    return Station(beam.name, place, e, xi)
+
+
+def require_method(method: str) -> None:
+    """Refuse a way to recover forces that is not known.
+
+    Raises
+    ------
+    BadInput
+        If it is none of ``METHODS``.
+    """
+    if method not in METHODS:
+        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+
+
+def recovery(
+    system: LinearPeriodic,
+    theta: ArrayLike,
+    stations: int | Mapping[str, ArrayLike] | tuple[Station, ...] | None = None,
+    method: str = "equilibrium",
+) -> Recovery:
+    """Return forces and displacements along the beams of a system as linear forms.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    theta : array_like, shape (nt,)
+        Crank angles [rad].
+    stations : int, mapping or tuple of Station, optional
+        As :func:`stations_of` takes them.
+    method : str
+        ``"equilibrium"`` or ``"shape"``.
+
+    Returns
+    -------
+    Recovery
+
+    Raises
+    ------
+    BadInput
+        If the method or a beam is unknown, or the system is not one of beams.
+    """
+    require_method(method)
+    structure = required_structure(system)
+    angles = np.atleast_1d(numbers("theta", theta))
+    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
+        raise bad("theta", f"shape {angles.shape}", "finite angles, shape (nt,)", "flatten them")
+    if isinstance(stations, tuple) and all(isinstance(s, Station) for s in stations):
+        chosen: tuple[Station, ...] = stations
+    else:
+        chosen = stations_of(structure, stations)  # type: ignore[arg-type]
+    forms = ElementForms(system, angles)
+    forms.require_same()
+    rows: dict[str, list[LinearForm]] = {name: [] for name in (*FORCES, *_FIELDS)}
+    by_element: dict[int, list[Station]] = {}
+    for station in dict.fromkeys(chosen):
+        by_element.setdefault(station.element, []).append(station)
+    for e, own in by_element.items():
+        xi = np.array([station.xi for station in own])
+        finder = _by_equilibrium if method == "equilibrium" else _by_shape
+        for name, form in {**finder(forms, e, xi), **_displacements(forms, e, xi)}.items():
+            rows[name].append(form)
+    met = [station for own in by_element.values() for station in own]
+    order = np.array([met.index(station) for station in chosen])
+    return Recovery(
+        theta=angles,
+        stations=chosen,
+        forms={name: stacked(found).ordered(order) for name, found in rows.items()},
+        acceleration=forms.acceleration,
+        method=method,
+    )
+
+
+_FIELDS = ("along", "across", "slope")
+
+
+def _displacements(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+    placed = forms.elements[e][0]
+    along, across = placed_shapes(placed, xi)
+    local = forms.local(e)
+    matrices = {"along": along, "across": across, "slope": placed_rotation(placed, xi)}
+    return {name: local.turned(matrix) for name, matrix in matrices.items()}
+
+
+def _by_shape(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+    """Return forces by derivatives of the shape functions: E A u', E I v'', -E I v'''."""
+    placed = forms.elements[e][0]
+    section, strain = placed.beam.section, forms.strain(e)
+    stretch, _ = placed_shapes(placed, xi, 1)
+    return {
+        "axial": strain.turned(section.axial_stiffness * stretch),
+        "shear": strain.turned(-section.bending_stiffness * placed_rotation(placed, xi, 2)),
+        "moment": strain.turned(section.bending_stiffness * placed_rotation(placed, xi, 1)),
+    }
+
+
+def _by_equilibrium(forms: ElementForms, e: int, xi: Array) -> dict[str, LinearForm]:
+    """Return forces that balance the part of an element before each place."""
+    placed = forms.elements[e][0]
+    share = forms.factor["distributed_mass"]
+    mass = share * placed.beam.section.mass_per_length
+    weights = _integrals(placed, xi)
+    direct, across = forms.direct(e), forms.across(e)
+    plain = direct - forms.centripetal(e)
+    ends = forms.end_forces(e)
+    size = len(forms.elements[e][1].mass)
+    pick = np.zeros((3, len(xi), size))
+    for row in range(3):
+        pick[row, :, row] = 1.0
+    lever = (placed.length * xi)[:, None]
+    # The inertia m a of the part: along, across, and its moment about the place.
+    along = plain.turned(mass * weights["u"]) - across.turned(mass * weights["v"])
+    sideways = plain.turned(mass * weights["v"]) + across.turned(mass * weights["u"])
+    moment = plain.turned(mass * weights["v lever"]) + across.turned(mass * weights["u lever"])
+    turned = ends.turned(lever * pick[1] - pick[2]) - moment
+    if placed.beam.kind == "timoshenko":
+        rotary = share * placed.beam.section.rotary_inertia
+        turned = turned + direct.turned(rotary * weights["rotation"])
+    for power, forces in forms.stiffening.items():
+        kernel = np.einsum("tk,kxn->txn", forces[:, e], weights["slope"])
+        turned = turned + forms.local(e).turned(kernel).faster(power)
+    return {
+        "axial": along - ends.turned(pick[0]),
+        "shear": sideways - ends.turned(pick[1]),
+        "moment": turned,
+    }
+
+
+def _integrals(placed: PlacedElement, xi: Array) -> dict[str, Array]:
+    """Return integrals of shape functions from the element's start to each place.
+
+    ``u``, ``v``, ``rotation``; ``u lever``, ``v lever`` times the distance to the place; ``slope``
+    of v' times 1, s and s^2, s the place over the element's length: ``(3, nx, n)``.
+    """
+    places = 0.5 * xi[:, None] * (1.0 + _GAUSS_PLACES)
+    weights = 0.5 * placed.length * xi[:, None] * _GAUSS_WEIGHTS
+    lever = placed.length * (xi[:, None] - places)
+    flat = np.clip(places.ravel(), 0.0, 1.0)
+    u, v = (value.reshape(*places.shape, -1) for value in placed_shapes(placed, flat))
+    slope = placed_shapes(placed, flat, 1)[1].reshape(*places.shape, -1)
+    rotation = placed_rotation(placed, flat).reshape(*places.shape, -1)
+    powers = np.stack([places**k for k in range(3)])
+    return {
+        "u": np.einsum("xg,xgn->xn", weights, u),
+        "v": np.einsum("xg,xgn->xn", weights, v),
+        "u lever": np.einsum("xg,xgn->xn", weights * lever, u),
+        "v lever": np.einsum("xg,xgn->xn", weights * lever, v),
+        "rotation": np.einsum("xg,xgn->xn", weights, rotation),
+        "slope": np.einsum("kxg,xgn->kxn", powers * weights, slope),
+    }
+
+
+QUANTITIES = ("along", "across", "slope", *FORCES)
+_UNITS = {"along": "m", "across": "m", "slope": "rad", "axial": "N", "shear": "N", "moment": "N m"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamForces(StationResult):
+    """Displacements and forces along the beams.
+
+    Speed, crank angles and stations: see :class:`StationResult`.
+
+    Attributes
+    ----------
+    along, across : ndarray
+        Displacements from the rigid beam, in its axes [m], shape ``(nt, stations)``.
+    slope : ndarray
+        Rotation of the section from the rigid beam [rad].
+    axial : ndarray
+        Axial force [N], tension positive.
+    shear : ndarray
+        Force across the rigid beam that the part behind exerts on the part before [N].
+    moment : ndarray
+        Bending moment [N m], positive where the beam is hollow on its positive side: E I v''.
+    error : ndarray
+        Largest error of axial force [N], shear force [N] and moment [N m] over angles and
+        stations: by the error of the motion, and by the difference to a finer mesh or, where that
+        is not to be had, of the two ways to recover them.
+    """
+
+    along: Array
+    across: Array
+    slope: Array
+    axial: Array
+    shear: Array
+    moment: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **StationResult.dimensions,
+        "error": ("force",),
+        **dict.fromkeys(QUANTITIES, ("sample", "station")),
+    }
+
+    def of(self, link: str, quantity: str) -> Array:
+        """Return one quantity along one beam, ``(nt, its stations)``.
+
+        Raises
+        ------
+        BadInput
+            If either is unknown.
+        """
+        if quantity not in QUANTITIES:
+            raise bad("quantity", repr(quantity), f"one of {QUANTITIES}", "correct the name")
+        return np.asarray(getattr(self, quantity)[:, stations_on(self.links, link)])
+
+    def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
+        """Draw one quantity along each beam, between its extremes over the angles."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for link in dict.fromkeys(self.links):
+            own = stations_on(self.links, link)
+            values = self.of(link, quantity)
+            lines = ax.plot(self.places[own], values.max(axis=0), label=link, linewidth=0.9)
+            ax.plot(self.places[own], values.min(axis=0), color=lines[0].get_color(), linewidth=0.9)
+        ax.axhline(0.0, color="0.7", linewidth=0.6)
+        ax.set_xlabel("place x/length")
+        ax.set_ylabel(f"extremes of {quantity} [{_UNITS[quantity]}]")
+        ax.legend()
+        return ax
+
+
+def recover(
+    system: LinearPeriodic,
+    motion: Motion | float | None = None,
+    *,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    method: str = "equilibrium",
+    finer_mesh: bool = True,
+) -> BeamForces:
+    """Return displacements and forces along the beams of a system in a motion.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        As :func:`beam_motion` takes it.
+    stations : int or mapping of str to array_like, optional
+        Places on each beam: how many, or by beam the places x/length; by default 25.
+    method : str
+        ``"equilibrium"``: end forces of the elements, and between nodes what balances inertia,
+        weight and axial force.  ``"shape"``: E I v'' of the shape functions, Aannaque's way.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
+
+    Returns
+    -------
+    BeamForces
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    require_method(method)
+    chosen = stations_of(required_structure(system), stations)
+    moving = beam_motion(system, motion)
+    own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
+    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own, finer_mesh))
+    return BeamForces(
+        method=method,
+        links=tuple(station.beam for station in chosen),
+        places=np.array([station.place for station in chosen]),
+        **in_motion(system, moving, doubt),
+        **own,
+    )
+
+
+def _doubt(
+    system: LinearPeriodic,
+    moving: BeamMotion,
+    stations: int | Mapping[str, ArrayLike] | None,
+    method: str,
+    own: Mapping[str, Array],
+    finer_mesh: bool,
+) -> dict[str, Any]:
+    """Return the error figure and its norm."""
+    norm = "largest error of axial force [N], shear force [N], moment [N m]"
+    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    if finer is None:
+        other = next(name for name in METHODS if name != method)
+        better = evaluated(system, moving, stations, other, FORCES)
+        norm = f"{norm}; that of the mesh's frequencies apart"
+    else:
+        better = evaluated(*finer, stations, "equilibrium", FORCES)
+    gaps = np.array([np.max(np.abs(own[name] - better[name])) for name in FORCES])
+    sizes = np.array([np.max(np.abs(own[name])) for name in FORCES])
+    share = 1.0 if finer is None else CAUTION
+    return {
+        "error": share * gaps + propagated(system, moving, stations) + ROUNDING * sizes,
+        "error_norm": norm,
+    }
+
+
+def evaluated(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    stations: int | Mapping[str, ArrayLike] | None,
+    method: str,
+    names: tuple[str, ...] = QUANTITIES,
+    *,
+    frozen: bool = False,
+) -> dict[str, Array]:
+    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates.
+
+    Parameters
+    ----------
+    system, stations, method
+        As :func:`recover` takes them.
+    motion : BeamMotion
+        The motion; a frozen one is taken for displacements without rates or accelerations.
+    names : tuple of str
+        Which quantities.
+    frozen : bool
+        Whether rates and accelerations of the coordinates are left out.
+    """
+    parts: dict[str, list[Array]] = {name: [] for name in names}
+    for chunk in chunks(motion):
+        made = recovery(system, motion.theta[chunk], stations, method)
+        q, slope = motion.q[chunk], motion.slope[chunk]
+        second = np.zeros_like(q) if frozen else None
+        slope = np.zeros_like(q) if frozen else slope
+        for name in names:
+            parts[name].append(made.values(name, motion.speed, q, slope, second))
+    return {name: np.concatenate(values) for name, values in parts.items()}
+
+
+def propagated(
+    system: LinearPeriodic, motion: BeamMotion, stations: int | Mapping[str, ArrayLike] | None
+) -> Array:
+    """Return what the error of the motion can do to axial force, shear force and moment.
+
+    The errors of the coordinates are taken to vary no faster than the crank turns, and not to
+    cancel each other.
+    """
+    if not np.any(motion.doubt):
+        return np.zeros(len(FORCES))
+    # A few angles tell the size of the coefficients.
+    picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
+    made: Recovery = recovery(system, motion.theta[picked], stations, "shape")
+    found = []
+    for name in FORCES:
+        rows = made.forms[name].at_speed(motion.speed)
+        found.append(max(float(np.max(np.abs(r) @ motion.doubt)) for r in (rows["q"],)))
+    return np.array(found)

@@ -1,0 +1,223 @@
+"""Motions of beams that forces are recovered from: computed ones, or arrays."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from ..beams.assembly import Array
+from ..beams.element_forms import required_structure
+from ..core.errors import BadInput, LinearRangeWarning, Problem, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
+
+if TYPE_CHECKING:
+    from ..periodic import SteadyState, Trajectory
+
+    Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
+
+# Mesh and equations err far more than this.
+_RTOL = 1e-7
+# Angles of one piece.
+_CHUNK = 256
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamMotion:
+    """Motion of the coordinates of a structure of beams.
+
+    Parameters
+    ----------
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    q, qd : ndarray
+        Coordinates and their time derivatives, shape ``(nt, n)``.
+    speed : float
+        Crank speed [rad/s], positive.
+    error : ndarray
+        Error of each coordinate, absolute, shape ``(n,)``; 0 where it is not known.
+    period : float or None
+        Period [rad] that the angles divide evenly, from 0; None where the motion is not periodic.
+    solved : str or None
+        Method of :func:`steady_state` that found it.
+    provenance : mapping
+        Of the motion.
+    checks : mapping of str to Check
+        Self-checks of the motion.
+
+    Raises
+    ------
+    BadInput
+        If shapes do not agree, a value is not finite, or the speed is not positive.
+    """
+
+    theta: Array
+    q: Array
+    qd: Array
+    speed: float
+    error: Array | None = None
+    period: float | None = None
+    solved: str | None = None
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    checks: Mapping[str, Check] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check shapes and values."""
+        problems = []
+        if (
+            self.q.ndim != 2
+            or self.q.shape != self.qd.shape
+            or self.theta.shape != self.q.shape[:1]
+        ):
+            found = f"shapes {self.theta.shape}, {self.q.shape}, {self.qd.shape}"
+            expected = "(nt,), (nt, n) and (nt, n)"
+            problems.append(Problem("theta, q, qd", found, expected, "give one row per angle"))
+        if not (np.isfinite(self.speed) and self.speed > 0):
+            problems.append(Problem("speed", repr(self.speed), "a positive number", "correct it"))
+        for name in ("theta", "q", "qd"):
+            if not np.all(np.isfinite(getattr(self, name))):
+                found = "a value that is not finite"
+                fix = "look at the motion's own checks: there may be no single periodic one"
+                problems.append(Problem(name, found, "finite numbers", fix))
+        if problems:
+            raise BadInput(*problems)
+
+    @property
+    def slope(self) -> Array:
+        """Dq/dtheta, ``(nt, n)``."""
+        return self.qd / self.speed
+
+    @property
+    def doubt(self) -> Array:
+        """Absolute error of each coordinate, ``(n,)``."""
+        return np.zeros(self.q.shape[1]) if self.error is None else self.error
+
+
+def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMotion:
+    """Return the motion of a structure of beams in one form.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        A computed motion at one speed; a crank speed [rad/s], for the steady state there; or
+        None, for the equilibrium of a structure that stands still.
+
+    Raises
+    ------
+    BadInput
+        If it is none of these, has another number of coordinates, holds many speeds, or has NaN.
+    """
+    # Loaded here: the response knows frequencies, and these know beams.
+    from ..periodic import SteadyState, Trajectory
+
+    structure = required_structure(system)
+    if motion is None or not structure.moving:
+        return standing(system, motion)
+    if isinstance(motion, (int, float, np.floating, np.integer)) and not isinstance(motion, bool):
+        motion = quiet_steady_state(system, float(motion))
+    if isinstance(motion, SteadyState):
+        made = _steady(motion)
+    elif isinstance(motion, Trajectory):
+        peak = np.max(np.abs(motion.q), axis=0)
+        made = BeamMotion(
+            theta=motion.theta,
+            q=motion.q,
+            qd=motion.qd,
+            speed=motion.speed,
+            error=np.asarray(motion.error) * peak,
+            provenance=motion.provenance,
+            checks=_checks(motion),
+        )
+    elif isinstance(motion, BeamMotion):
+        made = motion
+    else:
+        expected = "a SteadyState, a Trajectory, a BeamMotion or a speed"
+        raise bad("motion", type(motion).__name__, expected, "compute one first")
+    if made.q.shape[1] != system.size:
+        found = f"{made.q.shape[1]} coordinates"
+        raise bad("motion", found, f"{system.size}", "give the motion of this system")
+    return made
+
+
+def chunks(motion: BeamMotion) -> list[slice]:
+    """Return pieces of the many angles of a motion, so that the arrays of one fit the memory."""
+    return [slice(start, start + _CHUNK) for start in range(0, len(motion.theta), _CHUNK)]
+
+
+def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
+    """Return the steady state; the caller looks at the linear range.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    speed : float
+        Crank speed [rad/s].
+    """
+    from ..periodic import steady_state
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        return steady_state(system, speed, rtol=_RTOL)
+
+
+def _steady(motion: SteadyState) -> BeamMotion:
+    if motion.speed.size != 1:
+        found = f"{motion.speed.size} speeds"
+        raise bad("motion", found, "one", "take them one by one, or the curve over speeds")
+    q, qd = (value.reshape(value.shape[-2:]) for value in (motion.q, motion.qd))
+    return BeamMotion(
+        theta=motion.theta,
+        q=q,
+        qd=qd,
+        speed=float(motion.speed.reshape(())),
+        error=np.asarray(motion.error).reshape(-1) * np.max(np.abs(q), axis=0),
+        period=motion.period,
+        solved=motion.method,
+        provenance=motion.provenance,
+        checks=_checks(motion),
+    )
+
+
+def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
+    """Return the checks of a motion, less the linear range, and whether it is stable."""
+    found = {f"motion {k}": v for k, v in motion.checks.items() if k != "linear range"}
+    stable = getattr(motion, "stable", None)
+    if stable is not None:
+        found["motion stable"] = Check(0.0 if np.all(stable) else 1.0, 0.0)
+    return found
+
+
+def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
+    """Return the equilibrium of a structure that stands still under constant loads.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : object
+        None: a structure that stands still has no other.
+
+    Raises
+    ------
+    BadInput
+        If the structure moves, or a motion is given.
+    """
+    structure = required_structure(system)
+    if structure.moving or motion is not None:
+        raise bad(
+            "motion",
+            "none of a linkage" if structure.moving else "one of a structure that stands still",
+            "a motion of a linkage; None for a frame",
+            "give a speed" if structure.moving else "leave it out",
+        )
+    theta = np.zeros(1)
+    stiffness = system.array("K", theta)[0] + system.array("Kg", theta)[0]
+    q = np.linalg.solve(stiffness, system.array("p", theta)[0])
+    return BeamMotion(theta=theta, q=q[None, :], qd=np.zeros((1, len(q))), speed=1.0)

@@ -1,0 +1,187 @@
+"""Results of a structure of beams in one motion, and its forms along that motion."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms
+from ..beams.recovery_forms import LinearForm
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check, Result, provenance
+from .beam_motion import BeamMotion, chunks
+
+# Fields that are worked out when they are first looked at.
+_LATER = {name: DeferredField() for name in ("error", "error_norm")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamResult(Result):
+    """Base of what is found of a structure of beams in one motion.
+
+    Attributes
+    ----------
+    speed : float
+        Crank speed [rad/s].
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+
+    Notes
+    -----
+    The error figure is worked out when it is first looked at.
+    """
+
+    speed: float
+    theta: Array
+    error: Any = _LATER["error"]
+    error_norm: Any = _LATER["error_norm"]  # str
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {"theta": ("sample",)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class StationResult(BeamResult):
+    """Base of what is found at stations along the beams.
+
+    Attributes
+    ----------
+    links : tuple of str
+        Beam of each station.
+    places : ndarray
+        x over the beam's length of each station, shape ``(stations,)``.
+    """
+
+    links: tuple[str, ...]
+    places: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **BeamResult.dimensions,
+        "places": ("station",),
+    }
+
+
+def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:
+    """Return the places of a beam's stations among all.
+
+    Raises
+    ------
+    BadInput
+        If it has none.
+    """
+    if link not in links:
+        known = ", ".join(dict.fromkeys(links))
+        raise bad("link", repr(link), f"one of {known}", "choose one with stations")
+    return np.flatnonzero(np.array(links) == link).astype(np.int64)
+
+
+def in_motion(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    doubt: DeferredGroup,
+    checks: Mapping[str, Check] | None = None,
+) -> dict[str, Any]:
+    """Return the fields that a result takes from its motion, and its error figure to be.
+
+    Warns whoever called the caller where a deflection is beyond 5 % of the length of its beam.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : BeamMotion
+        Its motion.
+    doubt : DeferredGroup
+        Makes ``error`` and ``error_norm``.
+    checks : mapping of str to Check, optional
+        The result's own, beside those of the motion and of the linear range.
+
+    Returns
+    -------
+    dict of str to object
+        Fields of :class:`BeamResult` by name, all but the method.
+    """
+    return {
+        "error": doubt.later("error"),
+        "error_norm": doubt.later("error_norm"),
+        "checks": {**motion.checks, **(checks or {}), **_linear_range(system, motion)},
+        "provenance": provenance({**system.provenance, **motion.provenance}),
+        "speed": motion.speed,
+        "theta": motion.theta,
+    }
+
+
+def _linear_range(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Check]:
+    """Return the check of the largest deflection over the length of its beam."""
+    if system.relative_deflection is None:
+        return {}
+    largest = 0.0
+    for chunk in chunks(motion):
+        rows = system.relative_deflection(motion.theta[chunk])
+        largest = max(
+            largest, float(np.max(np.abs(np.einsum("tkn,tn->tk", rows, motion.q[chunk]))))
+        )
+    if largest > LINEAR_RANGE:
+        warnings.warn(
+            f"deflection reaches {largest:.3g} of the length of its beam; the linear equations "
+            f"hold to about {LINEAR_RANGE}: lower the speed or stiffen the beams",
+            LinearRangeWarning,
+            # Through in_motion and the function that was called, to its caller.
+            stacklevel=4,
+        )
+    return {"linear range": Check(largest, LINEAR_RANGE)}
+
+
+class MotionValues:
+    """Values of forms in a piece of a motion, accelerations by the equation of motion.
+
+    Parameters
+    ----------
+    forms : ElementForms
+        The structure at the angles of the piece.
+    motion : BeamMotion
+        The motion.
+    chunk : slice
+        Which of its angles.
+    """
+
+    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice) -> None:
+        self.speed = motion.speed
+        self.q, self.slope = motion.q[chunk], motion.slope[chunk]
+        second = forms.acceleration.values(self.speed, self.q, self.slope)
+        self.second = second / self.speed**2
+
+    def __call__(self, form: LinearForm) -> Array:
+        """Return the rows of a form ``(nt, rows)``."""
+        return form.values(self.speed, self.q, self.slope, self.second)
+
+
+def over_motion(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    piece: Callable[[ElementForms, MotionValues], dict[str, Array]],
+) -> dict[str, Array]:
+    """Return arrays over the angles of a motion by name, joined from its pieces.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : BeamMotion
+        The motion.
+    piece : callable
+        Returns the arrays of one piece from the structure at its angles, and values in it.
+    """
+    pieces = []
+    for chunk in chunks(motion):
+        forms = ElementForms(system, motion.theta[chunk])
+        forms.require_same()
+        pieces.append(piece(forms, MotionValues(forms, motion, chunk)))
+    return {name: np.concatenate([found[name] for found in pieces]) for name in pieces[0]}

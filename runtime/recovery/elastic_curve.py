@@ -1,0 +1,198 @@
+"""Curves of points of elastic links beside those of the rigid linkage (Aannaque 8.3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..beams.assembly import Array
+from ..beams.element_forms import required_structure
+from ..beams.structure import Beam
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import is_finite
+from ..core.results import Result
+from .beam_forces import recovery
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import in_motion
+from .finer_mesh import CAUTION, on_finer_mesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+# Fields that are worked out when they are first looked at; of its own and not of BeamResult, as in
+# its files the place comes before the speed.
+_LATER = {name: DeferredField() for name in ("error", "error_norm")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticCurve(Result):
+    """Curve that a point of an elastic link draws, and that of the rigid linkage.
+
+    Attributes
+    ----------
+    link : str
+        The link.
+    along, across : float
+        Place of the point in the link's own axes [m].
+    speed : float
+        Crank speed [rad/s].
+    theta : ndarray
+        Crank angles [rad], shape ``(nt,)``.
+    rigid, elastic : ndarray
+        Places of the point in the fixed axes [m], shape ``(nt, 2)``.
+    error : float
+        Largest error of a place [m]: by the error of the motion and, where it was found on a finer
+        mesh too, by that of the mesh.
+    """
+
+    link: str
+    along: float
+    across: float
+    speed: float
+    theta: Array
+    rigid: Array
+    elastic: Array
+    error: Any = _LATER["error"]
+    error_norm: Any = _LATER["error_norm"]  # str
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        "theta": ("sample",),
+        "rigid": ("sample", "direction"),
+        "elastic": ("sample", "direction"),
+    }
+
+    @property
+    def displacement(self) -> Array:
+        """Elastic displacement of the point along the fixed axes [m], ``(nt, 2)``."""
+        return np.asarray(self.elastic - self.rigid)
+
+    @property
+    def largest(self) -> float:
+        """Largest displacement [m]."""
+        return float(np.max(np.hypot(*self.displacement.T)))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw both curves, the rigid one dashed."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        for values, style, label in ((self.rigid, "--", "rigid"), (self.elastic, "-", "elastic")):
+            closed = np.vstack([values, values[:1]])
+            ax.plot(closed[:, 0], closed[:, 1], style, label=label, linewidth=0.9)
+        ax.set_aspect("equal")
+        ax.set_xlabel("x [m]")
+        ax.set_ylabel("y [m]")
+        ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
+        ax.legend()
+        return ax
+
+
+def elastic_coupler_curve(
+    system: LinearPeriodic,
+    motion: Motion | float,
+    along: float | None = None,
+    across: float = 0.0,
+    *,
+    link: str = "coupler",
+    finer_mesh: bool = True,
+) -> ElasticCurve:
+    """Return the curve of a point of an elastic link, beside that of the rigid linkage.
+
+    A point off the axis is carried by the section at its foot; one beyond the ends by the end
+    section.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a linkage of beams.
+    motion : SteadyState, Trajectory, BeamMotion or float
+        A computed motion, or a crank speed [rad/s], for the steady state there.
+    along, across : float, optional
+        Place of the point in the link's own axes [m]; by default the middle of the axis.
+    link : str
+        Which link.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
+
+    Returns
+    -------
+    ElasticCurve
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or the structure stands still.
+    """
+    structure = required_structure(system)
+    beam = structure.beam(link)
+    foot = 0.5 * beam.length if along is None else along
+    for name, value in (("along", foot), ("across", across)):
+        if not is_finite(value):
+            raise bad(name, repr(value), "a finite length [m]", "correct it")
+    moving = beam_motion(system, motion)
+    if not structure.moving:
+        raise bad("system", "a structure that stands still", "a linkage", "use recover()")
+    place = (float(foot), float(across))
+    shift, doubt = _shift(system, beam, moving, place)
+    later = DeferredGroup(partial(_doubt, system, moving, link, place, (shift, doubt), finer_mesh))
+    rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
+    return ElasticCurve(
+        method="shape functions",
+        link=link,
+        along=float(foot),
+        across=float(across),
+        rigid=rigid,
+        elastic=rigid + shift,
+        **in_motion(system, moving, later),
+    )
+
+
+def _doubt(
+    system: LinearPeriodic,
+    moving: BeamMotion,
+    link: str,
+    place: tuple[float, float],
+    own: tuple[Array, float],
+    finer_mesh: bool,
+) -> dict[str, float | str]:
+    """Return the error figure and its norm."""
+    shift, doubt = own
+    error, norm = float(np.sqrt(2.0)) * doubt, "largest error of a place [m]"
+    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    if finer is None:
+        norm = f"{norm}, by that of the coordinates; the mesh apart"
+    else:
+        better, _ = _shift(finer[0], required_structure(system).beam(link), finer[1], place)
+        error += CAUTION * float(np.max(np.hypot(*(better - shift).T)))
+    return {"error": error, "error_norm": norm}
+
+
+def _shift(
+    system: LinearPeriodic, beam: Beam, motion: BeamMotion, place: tuple[float, float]
+) -> tuple[Array, float]:
+    """Return the displacement of the point ``(nt, 2)``, and what the motion's error does to it."""
+    found, doubt = [], 0.0
+    for chunk in chunks(motion):
+        rows = _rows(system, beam, motion.theta[chunk], *place)
+        found.append(np.einsum("txn,tn->tx", rows, motion.q[chunk]))
+        doubt = max(doubt, float(np.max(np.abs(rows) @ motion.doubt)))
+    return np.concatenate(found), doubt
+
+
+def _rows(system: LinearPeriodic, beam: Beam, theta: Array, along: float, across: float) -> Array:
+    """Return what turns coordinates into the displacement of the point: ``(nt, 2, n)``."""
+    nearest = min(max(along, 0.0), beam.length)
+    made = recovery(system, theta, {beam.name: nearest / beam.length}, "shape")
+    u, v, turn = (made.forms[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
+    along_beam, across_beam = u - across * turn, v + (along - nearest) * turn
+    angle = required_structure(system).configuration(theta)[beam.name].angle[:, None]
+    x = np.cos(angle) * along_beam - np.sin(angle) * across_beam
+    y = np.sin(angle) * along_beam + np.cos(angle) * across_beam
+    return np.stack([x, y], axis=1)

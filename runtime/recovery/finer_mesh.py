@@ -1,0 +1,196 @@
+"""The same structure in the same motion on a finer mesh: how far the given mesh has it wrong.
+
+What counts as true is the beams' own model, the mesh refined without end, with the same law of
+damping: of modal damping the same ratio in every mode of the finer mesh too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..beams.assembly import Array
+from ..beams.structure import Beam, Structure
+from ..core.errors import BadInput
+from ..core.families import MATRICES, LinearPeriodic
+from ..core.trigonometric import differentiated
+from .beam_motion import BeamMotion, standing
+
+# The finer mesh is not the last one: where a resonance is near both may be off to one side.
+CAUTION = 3.0
+# Round-off of stiff structures, over the largest value.
+ROUNDING = 1e-10
+# Amplitude of a harmonic, over a coordinate's peak, from which it is followed, and intervals of
+# collocation of order 15 for each: what they miss is a thousandth of a coordinate or less.
+_SEEN = 1e-3
+_INTERVALS = 1.0
+_FEWEST = 8
+# Angles at which a system made anew is compared with the one given, over the period.
+_PROBES = np.array([0.1, 0.45, 0.8])
+_SAME = 1e-6
+_KEPT = "steady state on a finer mesh"
+
+
+def finer_structure(structure: Structure) -> Structure:
+    """Return the structure with more elements: a third more, two at least.
+
+    A single cubic becomes two quintics: of two cubics the lowest modes are still too far off.
+    More elements, and not only better ones, as the axial displacement is linear in all of them.
+
+    Parameters
+    ----------
+    structure : Structure
+        Beams and nodes.
+    """
+    return replace(structure, beams=tuple(_finer(beam) for beam in structure.beams))
+
+
+def _finer(beam: Beam) -> Beam:
+    if isinstance(beam.elements, tuple) and len(beam.elements) > 1:
+        return replace(beam, elements=tuple(0.5 * x for x in beam.elements for _ in range(2)))
+    count = beam.elements if isinstance(beam.elements, int) else 1
+    kind = "internal_node" if count == 1 and beam.kind == "cubic" else beam.kind
+    return replace(beam, kind=kind, elements=count + (count + 2) // 3)
+
+
+def finer_system(system: LinearPeriodic) -> LinearPeriodic | None:
+    """Return the same system on a finer mesh; None where its terms tell no other mesh.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    """
+    if system.remesh is None or not _is_remade(system):
+        return None
+    try:
+        made = system.remesh(finer_structure)
+    except (BadInput, ValueError):
+        # Terms of this mesh alone were added to the system.
+        return None
+    return replace(made, parameters=dict(system.parameters))
+
+
+def _is_remade(system: LinearPeriodic) -> bool:
+    """Return whether the system made anew on its own mesh is the one that is given."""
+    if system.remesh is None:
+        return False
+    theta = system.period * _PROBES
+    made = system.remesh(_as_it_is)
+    return len(made.terms) == len(system.terms) and all(
+        (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
+        and np.allclose(new(theta), own(theta), rtol=_SAME, atol=0.0)
+        for new, own in zip(made.terms, system.terms, strict=True)
+    )
+
+
+def _as_it_is(structure: Structure) -> Structure:
+    return structure
+
+
+def on_finer_mesh(
+    system: LinearPeriodic, motion: BeamMotion
+) -> tuple[LinearPeriodic, BeamMotion] | None:
+    """Return the system on a finer mesh, and its motion at the same angles.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : BeamMotion
+        A steady state that was computed, or the equilibrium of a structure that stands still.
+
+    Returns
+    -------
+    tuple of LinearPeriodic and BeamMotion, or None
+        None where the motion is none of these, or the system tells no other mesh.
+    """
+    still = system.structure is not None and not system.structure.moving
+    if not still and motion.solved is None:
+        return None
+    finer = finer_system(system)
+    if finer is None:
+        return None
+    if still:
+        return finer, standing(finer, None)
+    q, qd = _kept_or_found(system, finer, motion)
+    return finer, BeamMotion(
+        theta=motion.theta, q=q, qd=qd, speed=motion.speed, period=motion.period
+    )
+
+
+def _kept_or_found(
+    system: LinearPeriodic, finer: LinearPeriodic, motion: BeamMotion
+) -> tuple[Array, Array]:
+    """Return the steady state on the finer mesh; that of the last speed is kept."""
+    kept = system.kept.get(_KEPT)
+    if kept is None or kept[0][0] != motion.speed or len(kept[1]) != len(motion.theta):
+        found = solved(finer, motion.speed, intervals_for(motion.q), len(motion.theta))
+        kept = system.kept[_KEPT] = (np.array([motion.speed]), *found)
+    return kept[1], kept[2]
+
+
+def intervals_for(q: Array) -> int:
+    """Return how many intervals of collocation follow a periodic motion ``(nt, n)``."""
+    amplitude = np.abs(np.fft.rfft(q, axis=0))
+    largest = np.max(amplitude, axis=0)
+    seen = np.max(amplitude / np.where(largest > 0.0, largest, 1.0), axis=1) > _SEEN
+    highest = int(np.max(np.flatnonzero(seen), initial=1))
+    return max(_FEWEST, int(np.ceil(_INTERVALS * highest)))
+
+
+def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> tuple[Array, Array]:
+    """Return q and qd ``(count, n)`` of the steady state, on so many intervals and no more.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With forces.
+    speed : float
+        Crank speed [rad/s].
+    intervals : int
+        Intervals of collocation of order 15.
+    count : int
+        Even crank angles.
+    """
+    # Loaded here: only this error estimate of the beams needs motions.
+    from ..periodic.equation import equation_of
+    from ..periodic.periodic_motion import ring_motion
+    from ..periodic.transition import method
+
+    equation = equation_of(system, speed, {}, forcing=True)
+    q = answered(system, speed, ring_motion(method("radau", 8), count, equation, intervals)[0][0])
+    return q, speed * differentiated(q, system.period)
+
+
+def answered(system: LinearPeriodic, speed: float, q: Array) -> Array:
+    """Return a periodic motion with what it leaves of the equation answered statically.
+
+    A displacement that is wrong by a millionth, across the beams, may stretch them by far more
+    than they are: stiff directions are taken from the forces instead.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        With forces.
+    speed : float
+        Crank speed [rad/s].
+    q : ndarray, shape (nt, n)
+        Coordinates at even angles.
+    """
+    period = system.period
+    theta = period * np.arange(len(q)) / len(q)
+    at = {name: system.array(name, theta, speed) for name in (*MATRICES, "f", "h", "p")}
+
+    def acting(name: str, values: Array) -> Array:
+        return np.asarray((at[name] @ values[..., None])[..., 0])
+
+    slope = differentiated(q, period)
+    momentum = acting("M", slope) + acting("A", q)
+    back = (np.swapaxes(at["A"], -1, -2) @ slope[..., None])[..., 0] + acting("B", q)
+    inertia = speed**2 * (differentiated(momentum, period) - back - at["f"])
+    drag = speed * (acting("C", slope) + acting("D", q) - at["h"])
+    stiffness = at["K"] + at["Kg"]
+    rest = at["p"] - inertia - drag - (stiffness @ q[..., None])[..., 0]
+    return np.asarray(q + np.linalg.solve(stiffness, rest[..., None])[..., 0])

@@ -1,0 +1,274 @@
+"""Pin forces, ground reactions and driving torque of a structure of beams in a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..core.deferred import DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
+from .beam_forces import propagated
+from .beam_motion import BeamMotion, beam_motion
+from .beam_result import BeamResult, MotionValues, in_motion, over_motion
+from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+# Round-off of the balance of forces, over the largest end force of an element.
+_ROUNDING = 1e-9
+_PARTS = ("x", "y", "moment")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinReactions(BeamResult):
+    """Forces at the nodes of a structure of beams, linear in its elastic motion.
+
+    Speed and crank angles: see :class:`BeamResult`.
+
+    Attributes
+    ----------
+    on_beams : mapping of (str, str) to ndarray
+        By node and beam, what the node does to the end of the beam: force along the fixed axes
+        [N] and moment [N m], shape ``(nt, 3)``.
+    of_ground : mapping of str to ndarray
+        By node, what the ground does to it through supports, springs and dampers, likewise; only
+        nodes that the ground holds.
+    drag : ndarray
+        Forces [N] without a counterpart in the structure, such as those of modal damping: what
+        they do to the structure, shape ``(nt, 2)``.
+    momentum_rate : ndarray
+        Rate of change of the momentum less weight and constant loads [N], shape ``(nt, 2)``; the
+        ground and the drag bring it about.
+    error : float
+        Largest error of a force [N], moments over the longest beam's length: by the error of the
+        motion and, where it was found on a finer mesh too, by that of the mesh.
+    """
+
+    on_beams: Mapping[tuple[str, str], Array]
+    of_ground: Mapping[str, Array]
+    drag: Array
+    momentum_rate: Array
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **BeamResult.dimensions,
+        "drag": ("sample", "direction"),
+        "momentum_rate": ("sample", "direction"),
+    }
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the numeric fields, and the forces by node and beam."""
+        found = super().arrays()
+        for (node, beam), value in self.on_beams.items():
+            found |= {f"{node} on {beam} {p}": value[:, k] for k, p in enumerate(_PARTS)}
+        for node, value in self.of_ground.items():
+            found |= {f"ground on {node} {p}": value[:, k] for k, p in enumerate(_PARTS)}
+        return found
+
+    def force(self, node: str, beam: str) -> Array:
+        """Return the force of a node on a beam [N], ``(nt, 2)``.
+
+        Raises
+        ------
+        BadInput
+            If no beam of that name ends at that node.
+        """
+        if (node, beam) not in self.on_beams:
+            known = ", ".join(" on ".join(pair) for pair in self.on_beams)
+            raise bad("force", f"{node} on {beam}", f"one of {known}", "correct the names")
+        return self.on_beams[node, beam][:, :2]
+
+    def torque(self, node: str = "A") -> Array:
+        """Return the moment of the ground on a node [N m], ``(nt,)``: of a crank's shaft the drive.
+
+        Raises
+        ------
+        BadInput
+            If the ground does not hold the node.
+        """
+        if node not in self.of_ground:
+            known = ", ".join(self.of_ground)
+            raise bad("node", repr(node), f"one that the ground holds: {known}", "choose one")
+        return self.of_ground[node][:, 2]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the sizes of the forces of the ground and of the pins over the crank angle."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        degrees = np.degrees(self.theta)
+        for node, value in self.of_ground.items():
+            size = np.hypot(value[:, 0], value[:, 1])
+            ax.plot(degrees, size, label=f"ground on {node}", linewidth=0.9)
+        for (node, beam), value in self.on_beams.items():
+            if node not in self.of_ground:
+                size = np.hypot(value[:, 0], value[:, 1])
+                ax.plot(degrees, size, "--", label=f"{node} on {beam}", linewidth=0.9)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("force [N]")
+        ax.legend()
+        return ax
+
+
+def pin_reactions(
+    system: LinearPeriodic, motion: Motion | float | None = None, *, finer_mesh: bool = True
+) -> PinReactions:
+    """Return the forces at the nodes of a structure of beams, and of its ground.
+
+    They come from the end forces of the elements: stiffness, inertia of the rigid and the elastic
+    motion, geometric stiffness, weight.  A crank that is clamped to its shaft is driven by the
+    moment of the clamp.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does; of a motion
+        that is given, or marched, it cannot be, and ``error_norm`` says so.
+
+    Returns
+    -------
+    PinReactions
+        Its check ``balance`` compares the sum of all forces from outside with the rate of change
+        of the momentum, over the largest force: to round-off.  Moments balance only as far as
+        forces at displaced places are small of second order: linear equations know no more.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    moving = beam_motion(system, motion)
+    on_beams, of_ground, joined = _forces(system, moving)
+    drag, rate = joined["drag "], joined["momentum "]
+    total = sum((value[:, :2] for value in of_ground.values()), np.zeros_like(drag))
+    largest = max(float(np.max(np.abs(v[:, :2]))) for v in on_beams.values())
+    gap = float(np.max(np.abs(total + drag - rate)))
+    checks = {"balance": Check(gap / largest if largest else gap, _ROUNDING)}
+    doubt = DeferredGroup(partial(_doubt, system, moving, on_beams, finer_mesh))
+    return PinReactions(
+        method="end forces of the elements",
+        on_beams=on_beams,
+        of_ground=of_ground,
+        drag=drag,
+        momentum_rate=rate,
+        **in_motion(system, moving, doubt, checks),
+    )
+
+
+def _forces(
+    system: LinearPeriodic, motion: BeamMotion
+) -> tuple[dict[tuple[str, str], Array], dict[str, Array], dict[str, Array]]:
+    """Return forces by node and beam, of the ground by node, and all of them with the sums."""
+    structure = required_structure(system)
+    joined = over_motion(system, motion, _at_nodes)
+    on_beams = {
+        (node.name, beam.name): joined[f"{node.name} {beam.name}"]
+        for node in structure.nodes
+        for beam in structure.beams
+        if node.name in (beam.start, beam.end)
+    }
+    of_ground = {node.name: joined[node.name] for node in structure.nodes if node.name in joined}
+    return on_beams, of_ground, joined
+
+
+def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
+    """Return forces by node and beam, of the ground by node, drag and rate of momentum."""
+    structure, freedoms = forms.structure, forms.structure.freedoms
+    found: dict[str, Array] = {}
+    resisted = np.broadcast_to(
+        values(forms.node_inertia() - forms.node_loads()), (len(forms.theta), forms.arrays.count)
+    ).copy()
+    momentum = np.zeros((len(forms.theta), 2))
+    for e, (placed, _) in enumerate(forms.elements):
+        back = np.swapaxes(forms.turning[e].back, -1, -2)
+        fixed = values(forms.end_forces(e).turned(back))
+        resisted[:, placed.indices] += fixed
+        momentum += fixed[:, [0, 1]] + fixed[:, [3, 4]]
+        last = placed.number == len(placed.beam.places) - 2
+        if placed.number == 0:
+            found[f"{placed.beam.start} {placed.beam.name}"] = fixed[:, :3]
+        if last:
+            found[f"{placed.beam.end} {placed.beam.name}"] = fixed[:, 3:6]
+    lumped = np.broadcast_to(values(forms.node_inertia() - forms.node_loads()), resisted.shape)
+    for node in structure.nodes:
+        x, y = (freedoms.at(node.name, part) for part in ("x", "y"))
+        momentum += lumped[:, [x, y]]
+        if not (node.held or node.stiffness or node.damping):
+            continue
+        meeting = [b.name for b in structure.beams if node.name in (b.start, b.end)]
+        turning = {freedoms.at(node.name, name) for name in meeting}
+        moments = sum(resisted[:, place] for place in turning)
+        found[node.name] = np.stack([resisted[:, x], resisted[:, y], moments], axis=-1)
+    outside = _outside_forces(forms, values)
+    found["drag "] = -outside
+    found["momentum "] = momentum - outside
+    return found
+
+
+def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
+    """Return the sum of what drag from outside takes, counted among the inertia: ``(nt, 2)``."""
+    total = np.zeros((len(forms.theta), 2))
+    if not forms.outside.parts:
+        return total
+    share = forms.factor["distributed_mass"]
+    for e, (_, own) in enumerate(forms.elements):
+        at = forms.turning[e]
+        back = np.swapaxes(at.back, -1, -2)
+        force = values(forms.outside.turned(back @ (share * own.mass) @ at.own))
+        total += force[:, [0, 1]] + force[:, [3, 4]]
+    lumped = forms.factor["lumped_mass"] * forms.lumped
+    pick = np.zeros((forms.arrays.count, len(forms.arrays.free)))
+    pick[forms.arrays.free, np.arange(len(forms.arrays.free))] = 1.0
+    nodes = values(forms.outside.turned(lumped[:, None] * pick))
+    for node in forms.structure.nodes:
+        places = [forms.structure.freedoms.at(node.name, part) for part in ("x", "y")]
+        total += nodes[:, places]
+    return total
+
+
+def _doubt(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    on_beams: Mapping[tuple[str, str], Array],
+    finer_mesh: bool,
+) -> dict[str, float | str]:
+    """Return the error figure and its norm."""
+    finer = on_finer_mesh(system, motion) if finer_mesh else None
+    norm = "largest error of a force [N]; of a moment, over the longest beam's length"
+    return {
+        "error": _figure(system, motion, on_beams, finer),
+        "error_norm": norm if finer else f"{norm}; that of the mesh apart",
+    }
+
+
+def _figure(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    on_beams: Mapping[tuple[str, str], Array],
+    finer: tuple[LinearPeriodic, BeamMotion] | None,
+) -> float:
+    """Return the error of forces by that of the motion and by the mesh."""
+    doubt = propagated(system, motion, 2)
+    longest = max(beam.length for beam in required_structure(system).beams)
+    by_motion = float(np.hypot(doubt[0], doubt[1]) + doubt[2] / longest)
+    scale = np.array([1.0, 1.0, 1.0 / longest])
+    own = np.stack(list(on_beams.values())) * scale
+    figure = by_motion + ROUNDING * float(np.max(np.abs(own)))
+    if finer is None:
+        return figure
+    better = np.stack(list(_forces(*finer)[0].values())) * scale
+    return figure + CAUTION * float(np.max(np.linalg.norm(better - own, axis=-1)))

@@ -1,0 +1,430 @@
+"""Energies and powers of a structure of beams in a motion, by virtual work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..beams.recovery_forms import LinearForm
+from ..core.deferred import DeferredGroup
+from ..core.errors import bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import BeamResult, MotionValues, in_motion, over_motion
+from .finer_mesh import CAUTION, on_finer_mesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+# Least amplitude that counts, over the largest: that of round-off in solving for the forces.
+_RESOLVED = 1e-10
+_MOST = 4096
+
+Slopes = Mapping[int, Callable[[Array], Array]]
+
+
+def force_slopes(system: LinearPeriodic) -> Slopes:
+    """Return how the axial forces of the geometric stiffness change with the crank angle.
+
+    By power of the speed, from angles ``(nt,)`` to ``(nt, elements, 3)``.
+    """
+    powers = ElementForms(system, np.zeros(1)).stiffening
+    if not (system.structure and system.structure.moving):
+        return {power: _none(value.shape[1]) for power, value in powers.items()}
+
+    return {power: _slope(system, power) for power in powers}
+
+
+def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
+    """Return the derivative of the axial forces of one power by their Fourier series.
+
+    Raises
+    ------
+    BadInput
+        If 4096 samples do not resolve them.
+    """
+    count = 256
+    while True:
+        theta = system.period * np.arange(count) / count
+        forms = ElementForms(system, theta)
+        amplitudes = np.fft.rfft(forms.stiffening[power], axis=0) / count
+        tail = float(np.max(np.abs(amplitudes[count // 3 :])))
+        largest = float(np.max(np.abs(amplitudes)))
+        if power == 0:
+            # Supports may take all of a constant load: what is left is round-off of it.
+            largest += float(np.max(np.abs(forms.axial.force("static", theta))))
+            largest += float(np.max(np.abs(forms.axial.node_forces)))
+        if tail <= _RESOLVED * largest:
+            break
+        count *= 2
+        if count > _MOST:
+            found = f"axial forces that {_MOST} samples do not resolve"
+            raise bad("structure", found, "a smooth motion", "keep off dead points")
+    rates = 2j * np.pi / system.period * np.arange(count // 3)
+    weights = 2.0 * rates[:, None, None] * amplitudes[: count // 3]
+
+    def slope(angles: Array) -> Array:
+        waves = np.exp(angles[:, None] * rates)
+        return np.asarray(np.real(np.einsum("tk,kep->tep", waves, weights)))
+
+    return slope
+
+
+def _none(elements: int) -> Callable[[Array], Array]:
+    return lambda theta: np.zeros((len(theta), elements, 3))
+
+
+class Energies:
+    """Energies and powers of a motion at some of its angles.
+
+    Parameters
+    ----------
+    forms : ElementForms
+        At these angles.
+    values : MotionValues
+        The motion there.
+    slopes : mapping
+        As :func:`force_slopes` returns them.
+    """
+
+    def __init__(self, forms: ElementForms, values: MotionValues, slopes: Slopes) -> None:
+        self.forms, self.values = forms, values
+        self.speed, self.q, self.slope = values.speed, values.q, values.slope
+        self.rigid = forms.arrays.motion(forms.theta)
+        self.still = not forms.structure.moving
+        self.changing = {power: slope(forms.theta) for power, slope in slopes.items()}
+
+    def _spread(self, form: LinearForm, like: Array) -> Array:
+        return np.broadcast_to(self.values(form), like.shape)
+
+    def found(self) -> dict[str, Array]:
+        """Return the arrays by name, as :class:`BeamEnergies` has them."""
+        forms, count = self.forms, len(self.forms.theta)
+        links = [beam.name for beam in forms.structure.beams]
+        strain = np.zeros((count, len(links)))
+        sums = {
+            name: np.zeros(count)
+            for name in ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive")
+        }
+        for e, (placed, _) in enumerate(forms.elements):
+            strain[:, links.index(placed.beam.name)] += self._element(e, sums)
+        self._nodes(sums)
+        outside = self._outside_power()
+        sums["dissipated"] += outside
+        return {"strain": strain, **sums}
+
+    def _element(self, e: int, sums: dict[str, Array]) -> Array:
+        """Add what an element has to the sums; return its strain energy."""
+        forms, at = self.forms, self.forms.turning[e]
+        placed, own = forms.elements[e]
+        share, stiff = forms.factor["distributed_mass"], forms.factor["elasticity"]
+        mass, across, centre = (share * m for m in (own.mass, own.coupling, own.centripetal))
+        local = _times(at.own, self.q)
+        turned = at.rate[:, None] * _times(at.slope, self.q)
+        rate = _times(at.own, self.slope) + turned
+        first = np.einsum("tij,tj->ti", at.back, self.rigid.first[:, placed.indices])
+        first = np.zeros_like(first) if self.still else first
+        spun = at.rate[:, None] * local
+        w = self.speed
+        sums["kinetic"] += 0.5 * w**2 * _square(first + rate, mass, spun, across, centre)
+        # Accelerations, with gravity but without what acts from outside.
+        direct = self._spread(forms.direct(e) - forms.outside.turned(at.own), local)
+        sideways = self._spread(forms.across(e), local)
+        towards = self._spread(forms.centripetal(e), local)
+        virtual = first + turned
+        work = _dot(virtual, direct @ mass + sideways @ across.T - towards @ centre)
+        work += _dot(spun, direct @ across + sideways @ centre - towards @ across)
+        forces = self._spread(forms.strain(e), local) @ own.stiffness
+        # Rayleigh's damping knows the rates of the coordinates alone; it turns nothing.
+        passive = self._rayleigh(e) @ own.stiffness
+        work += _dot(turned, forces - passive)
+        work += self._stiffening(e, local, turned, rate, sums)
+        weight = self._weight(e)
+        carried = weight @ mass
+        power = w * _dot(first + rate, carried) + w * _dot(spun, weight @ across)
+        sums["loads"] += power
+        # The direct part holds the weight; the drive's own share is what is left without it.
+        sums["drive"] += w * work
+        elastic = stiff * (local @ own.stiffness)
+        lost = _dot(w * rate, forces - elastic - passive)
+        lost += w * _dot(_times(at.own, self.slope), passive)
+        sums["dissipated"] += lost
+        return 0.5 * _dot(local, elastic)
+
+    def _rayleigh(self, e: int) -> Array:
+        forms, at = self.forms, self.forms.turning[e]
+        if not forms.has_damping("rayleigh elastic"):
+            return np.zeros((len(forms.theta), at.own.shape[1]))
+        share = forms.factor["rayleigh_stiffness"] * forms.factor["elasticity"]
+        return np.asarray(share * self.speed * _times(at.own, self.slope))
+
+    def _weight(self, e: int) -> Array:
+        forms, at = self.forms, self.forms.turning[e]
+        field = forms.axial.weight_field(forms.theta)[:, forms.elements[e][0].indices]
+        return np.asarray(np.einsum("tij,tj->ti", at.back, field))
+
+    def _stiffening(
+        self, e: int, local: Array, turned: Array, rate: Array, sums: dict[str, Array]
+    ) -> Array:
+        """Add the energy of the axial forces; return the work that their change asks for."""
+        geometric = self.forms.elements[e][1].geometric
+        total = np.zeros(len(local))
+        for power, forces in self.forms.stiffening.items():
+            weights = forces[:, e] * self.speed**power
+            kernel = np.tensordot(weights, geometric, axes=1)
+            pull = np.einsum("tij,tj->ti", kernel, local)
+            slope = np.tensordot(self.changing[power][:, e] * self.speed**power, geometric, axes=1)
+            change = 0.5 * np.einsum("ti,tij,tj->t", local, slope, local) + _dot(turned, pull)
+            energy = 0.5 * _dot(local, pull)
+            if power == 0:
+                sums["stiffening"] += energy
+                total += change
+            else:
+                # Of inertia: the energy is kinetic, -1/2 td^2 q Kg q, and so is its momentum.
+                sums["stiffening"] -= energy
+                total -= change + 2.0 * _dot(rate - turned, pull)
+        return total
+
+    def _nodes(self, sums: dict[str, Array]) -> None:
+        """Add lumped masses, springs, dampers and loads."""
+        forms, free = self.forms, self.forms.arrays.free
+        lumped = forms.factor["lumped_mass"] * forms.lumped
+        count = (len(forms.theta), forms.arrays.count)
+        first = np.zeros(count) if self.still else self.rigid.first
+        speeds = first.copy()
+        speeds[:, free] += self.slope
+        speeds = self.speed * speeds
+        sums["kinetic"] += 0.5 * speeds**2 @ lumped
+        drag = forms.outside.values(self.speed, self.q, self.slope)
+        inertia = np.array(np.broadcast_to(self.values(forms.node_inertia()), count))
+        inertia[:, free] -= np.broadcast_to(drag, (count[0], len(free))) * lumped[free]
+        loads = np.zeros(count)
+        loads += np.broadcast_to(self.values(forms.node_loads()), count)
+        weight = forms.axial.weight_field(forms.theta) * lumped
+        sums["drive"] += self.speed * _dot(first, inertia - loads)
+        sums["loads"] += _dot(speeds, weight + loads)
+        q = np.zeros(count)
+        q[:, free] = self.q
+        sums["springs"] += 0.5 * q**2 @ forms.springs
+        holds = np.broadcast_to(self.values(forms.node_holds()), count)
+        rates = np.zeros(count)
+        rates[:, free] = self.speed * self.slope
+        sums["dissipated"] += _dot(rates, holds - q * forms.springs)
+
+    def _outside_power(self) -> Array:
+        """Return the power that drag from outside takes."""
+        forms = self.forms
+        if not forms.outside.parts:
+            return np.zeros(len(forms.theta))
+        force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
+        return _dot(self.speed * self.slope, np.broadcast_to(force, self.slope.shape))
+
+
+def _times(matrices: Array, vectors: Array) -> Array:
+    return np.asarray(np.matmul(matrices, vectors[..., None])[..., 0])
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return np.asarray(np.sum(left * right, axis=-1))
+
+
+def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Array) -> Array:
+    """Return the square of ``N direct + J N spun`` over the mass."""
+    plain = _dot(direct @ mass, direct) + _dot(spun @ centre, spun)
+    return plain + 2.0 * _dot(direct, spun @ across.T)
+
+
+# Round-off of energies that are sums of large parts, over the largest power.
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamEnergies(BeamResult):
+    """Energies of a structure of beams in a motion.
+
+    Speed and crank angles: see :class:`BeamResult`.
+
+    Attributes
+    ----------
+    links : tuple of str
+        The beams.
+    strain : ndarray
+        Strain energy of each beam [J], shape ``(nt, links)``.
+    springs : ndarray
+        Energy of springs at nodes [J], ``(nt,)``.
+    stiffening : ndarray
+        Energy that axial forces give to beams which bend [J]: of constant loads a potential, of
+        inertia what the shortening takes from the kinetic energy.
+    kinetic : ndarray
+        Kinetic energy [J] of the rigid and the elastic motion together.
+    dissipated : ndarray
+        Power that damping takes [W].
+    loads : ndarray
+        Power of weight and constant loads [W].
+    drive : ndarray
+        Power of the drive [W]: the generalised force of the crank angle times the speed.
+    error : float
+        Largest error of the whole strain energy [J]: by the error of the motion and, where it was
+        found on a finer mesh too, by that of the mesh.
+    """
+
+    links: tuple[str, ...]
+    strain: Array
+    springs: Array
+    stiffening: Array
+    kinetic: Array
+    dissipated: Array
+    loads: Array
+    drive: Array
+
+    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
+        **BeamResult.dimensions,
+        "strain": ("sample", "link"),
+        **dict.fromkeys(
+            ("springs", "stiffening", "kinetic", "dissipated", "loads", "drive", "total"),
+            ("sample",),
+        ),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("total",)
+
+    @property
+    def total(self) -> Array:
+        """Energy of all kinds [J], ``(nt,)``."""
+        stored = np.sum(self.strain, axis=1) + self.springs + self.stiffening
+        return np.asarray(stored + self.kinetic)
+
+    @property
+    def torque(self) -> Array:
+        """Torque of the drive [N m]: its power over the speed."""
+        return np.asarray(self.drive / self.speed)
+
+    @property
+    def peak(self) -> float:
+        """Largest strain energy of all beams together over the given angles [J]."""
+        return float(np.max(np.sum(self.strain, axis=1)))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the strain energy of each beam and of all over the crank angle."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        degrees = np.degrees(self.theta)
+        for link, values in zip(self.links, self.strain.T, strict=True):
+            ax.plot(degrees, values, label=link, linewidth=0.9)
+        ax.plot(degrees, np.sum(self.strain, axis=1), "k", label="all", linewidth=0.9)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("strain energy [J]")
+        ax.set_title(f"{self.speed:.4g} rad/s", fontsize="medium")
+        ax.legend()
+        return ax
+
+
+def beam_energies(
+    system: LinearPeriodic, motion: Motion | float | None = None, *, finer_mesh: bool = True
+) -> BeamEnergies:
+    """Return the energies of a structure of beams over the cycle.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    finer_mesh : bool
+        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
+
+    Returns
+    -------
+    BeamEnergies
+        Of a periodic motion in the full form its check ``balance`` compares the power of drive and
+        loads, less what damping takes, with the rate of the energy, over the largest power.  The
+        power of the drive comes from virtual work, the rate from the Fourier series of the energy.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+
+    Notes
+    -----
+    The energy holds the squares of the elastic motion; the moment that :func:`pin_reactions`
+    finds at the clamp is linear in it.  The two torques differ by these squares.
+
+    The instantaneous form has no energy that its equation keeps, and no check.
+    """
+    moving = beam_motion(system, motion)
+    structure = required_structure(system)
+    joined = _energies(system, moving)
+    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"], finer_mesh))
+    shared = in_motion(system, moving, doubt)
+    made = BeamEnergies(
+        method="element matrices",
+        links=tuple(beam.name for beam in structure.beams),
+        **shared,
+        **joined,
+    )
+    if moving.period is not None and system.has("A"):
+        shared["checks"]["balance"] = _balance(made, moving)
+    return made
+
+
+def _doubt(
+    system: LinearPeriodic, moving: BeamMotion, strain: Array, finer_mesh: bool
+) -> dict[str, float | str]:
+    """Return the error figure and its norm."""
+    error, norm = _figure(system, moving), "largest error of the strain energy of all beams [J]"
+    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    if finer is None:
+        norm = f"{norm}, by that of the motion; the mesh apart"
+    else:
+        both = [np.sum(own, axis=1) for own in (strain, _energies(*finer)["strain"])]
+        error += CAUTION * float(np.max(np.abs(both[1] - both[0])))
+    return {"error": error, "error_norm": norm}
+
+
+def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
+    """Return the energies and powers of a motion by name."""
+    slopes = force_slopes(system)
+    return over_motion(
+        system, motion, lambda forms, values: Energies(forms, values, slopes).found()
+    )
+
+
+def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
+    """Return the difference of power and rate of energy over the largest power."""
+    count = len(made.theta)
+    waves = np.arange(count // 2 + 1) * (2j * np.pi / (motion.period or 1.0))
+    if count % 2 == 0:
+        waves[-1] = 0.0
+    spectrum = made.speed * waves * np.fft.rfft(made.total)
+    rate = np.fft.irfft(spectrum, n=count)
+    power = made.drive + made.loads - made.dissipated
+    largest = float(np.max(np.abs(power)))
+    peaks = np.max(np.abs(motion.q), axis=0)
+    relative = float(np.max(motion.doubt / np.where(peaks > 0, peaks, 1.0)))
+    # The rate of the highest harmonic enlarges an error of the motion; squares of a motion have
+    # twice its harmonics, and those beyond the samples fall upon the upper ones.
+    beyond = 4.0 * float(np.sum(np.abs(spectrum[count // 3 :]))) / count
+    limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + _ROUNDING
+    return Check(float(np.max(np.abs(rate - power))) / largest if largest else 0.0, limit)
+
+
+def _figure(system: LinearPeriodic, motion: BeamMotion) -> float:
+    """Return what the error of the motion can do to the strain energy [J]."""
+    if not np.any(motion.doubt):
+        return 0.0
+    largest = 0.0
+    for chunk in chunks(motion):
+        stiffness = system.array("K", motion.theta[chunk])
+        force = np.einsum("tij,tj->ti", stiffness, motion.q[chunk])
+        largest = max(largest, float(np.max(np.abs(force) @ motion.doubt)))
+    return largest

@@ -1,0 +1,529 @@
+"""The largest stress of each link against the crank speed, at a thousand speeds at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..beams.element_forms import required_structure
+from ..beams.recovery_forms import RIGID, LinearForm
+from ..core.errors import LINEAR_RANGE, bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.inputs import numbers, require_whole
+from ..core.results import Check, Result, provenance
+from ..core.trigonometric import differentiated, even_angles
+from ..periodic.equation import equation_of
+from ..periodic.multipliers import floquet_multipliers
+from ..periodic.periodic_motion import by_segments
+from ..periodic.swept_motions import Growth, Truncations, speed_ranges
+from ..periodic.truncation import arrays_at
+from .beam_forces import METHODS, Recovery, recovery
+from .stresses import fibre_factors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+# Stations per link by default: with three elements their ends and middles.
+_STATIONS = 7
+# Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
+# over the largest, times the wanted error, that asks for more of them.
+_ANGLES, _MOST_ANGLES, _TAIL = 64, 1024, 0.01
+# Error of the transition matrices over the wanted error of the stress.
+_FLOW = 1e-4
+# At a few speeds a motion on the next larger number of modes tells what truncation changes; how
+# much larger it may be at other speeds (up to 1.5 times the fourfold in 216 random ones).
+_ELSEWHERE = 8.0
+# An error of the motion stresses a link as the motion does, times this at the most.
+_MARGIN = 3.0
+# How much finer the angles are at which the largest stress is sought, and how near to the largest
+# at the coarse angles a row has to come to be looked at.
+_FINER, _NEAR = 8, 0.6
+
+
+@dataclass(frozen=True, kw_only=True)
+class StressCurve(Result):
+    """The largest stress of each link against the crank speed.
+
+    The motion is the periodic one, stable or not: ``stable`` tells, at the speeds themselves.
+    What lies between two of them is seen where it is wider than their distance.
+
+    Attributes
+    ----------
+    speed : ndarray
+        Crank speeds [rad/s], shape ``(ns,)``.
+    links : tuple of str
+        The beams.
+    maximum : ndarray
+        Largest size of the stress [Pa] over stations, fibres and the cycle, ``(ns, links)``.
+    theta : ndarray
+        Crank angle of it [rad], ``(ns, links)``.
+    place : ndarray
+        x over the beam's length of its station, ``(ns, links)``.
+    fibre : ndarray
+        1 on the beam's positive side, to the left of its direction, -1 on the other.
+    error : ndarray
+        Of each maximum, relative, ``(ns, links)``: of the solution of the system's own equations,
+        not of its elements or of the choice of stations.
+    modes : ndarray of int
+        Modes kept at each speed, ``(ns,)``.
+    multiplier, multiplier_error : ndarray or None
+        Modulus of the largest Floquet multiplier, and its absolute error, ``(ns,)``; None where
+        that was not asked for.
+    """
+
+    speed: Array
+    links: tuple[str, ...]
+    maximum: Array
+    theta: Array
+    place: Array
+    fibre: Array
+    modes: NDArray[np.int64]
+    multiplier: Array | None = None
+    multiplier_error: Array | None = None
+
+    exported: ClassVar[tuple[str, ...]] = ("stable",)
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "speed": ("speed",),
+        "modes": ("speed",),
+        "stable": ("speed",),
+        "multiplier": ("speed",),
+        "multiplier_error": ("speed",),
+        **dict.fromkeys(("maximum", "theta", "place", "fibre", "error"), ("speed", "link")),
+    }
+
+    @property
+    def stable(self) -> NDArray[np.bool_] | None:
+        """Whether nearby motions stay near, ``(ns,)``; None where that was not asked for.
+
+        The largest multiplier is then within the unit circle by more than its error: what the
+        error leaves open is not called stable (see ``undecided``).
+        """
+        if self.multiplier is None or self.multiplier_error is None:
+            return None
+        return np.asarray(self.multiplier + self.multiplier_error < 1.0)
+
+    @property
+    def undecided(self) -> NDArray[np.bool_] | None:
+        """Where the error leaves open on which side of the unit circle the multiplier lies."""
+        if self.multiplier is None or self.multiplier_error is None:
+            return None
+        return np.asarray(np.abs(self.multiplier - 1.0) <= self.multiplier_error)
+
+    @property
+    def unstable_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Ranges not known to be stable [rad/s], rising, from stable speed to stable speed.
+
+        None are given where stability was not asked for.
+        """
+        if self.stable is None:
+            return ()
+        order = np.argsort(self.speed, kind="stable")
+        speed, off = self.speed[order], ~self.stable[order]
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
+        last = len(speed) - 1
+        return tuple(
+            (float(speed[max(a - 1, 0)]), float(speed[min(b, last)]))
+            for a, b in zip(edges[::2], edges[1::2], strict=True)
+        )
+
+    def of(self, link: str) -> Array:
+        """Return the largest stress of one link at each speed [Pa], ``(ns,)``.
+
+        Raises
+        ------
+        BadInput
+            If the link has no station.
+        """
+        if link not in self.links:
+            fix = "choose one with stations"
+            raise bad("link", repr(link), f"one of {', '.join(self.links)}", fix)
+        return np.asarray(self.maximum[:, self.links.index(link)])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the largest stress of each link over the speed, unstable ranges shaded."""
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        order = np.argsort(self.speed)
+        for link, values in zip(self.links, self.maximum.T, strict=True):
+            ax.semilogy(self.speed[order], values[order] / 1e6, label=link, linewidth=0.9)
+        shade_unstable(ax, self.unstable_ranges)
+        ax.set_xlabel("crank speed [rad/s]")
+        ax.set_ylabel("largest stress [MPa]")
+        ax.legend()
+        return ax
+
+
+def shade_unstable(ax: Axes, ranges: Iterable[tuple[float, float]]) -> None:
+    """Shade ranges of speeds [rad/s] in a picture; the first one is named."""
+    for k, (low, high) in enumerate(ranges):
+        # A colour that none of the lines has, with an edge that a narrow range needs.
+        label = None if k else "unstable"
+        ax.axvspan(low, high, color="tab:red", alpha=0.2, linewidth=0.5, label=label)
+
+
+def stress_curve(
+    system: LinearPeriodic,
+    speeds: ArrayLike,
+    *,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    rtol: float = 1e-4,
+    modes: int | None = None,
+    method: str = "equilibrium",
+    stability: bool = True,
+) -> StressCurve:
+    """Return the largest stress of each link of a structure of beams against the crank speed.
+
+    The motion is sought on the lowest modes of the mechanism, which move with it; all others
+    follow in equilibrium with their inertia.  The transition matrices of what is left are
+    polynomials of the inverse speed in ranges of it (Aannaque 8.5, Figs. 8.24-8.26, at all
+    speeds).
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams, damped: at a resonance without damping there is no answer.
+    speeds : array_like, shape (ns,)
+        Crank speeds [rad/s].
+    stations : int or mapping of str to array_like, optional
+        Places on each beam: how many, or by beam the places x/length; by default 7.
+    rtol : float
+        Wanted relative error of each maximum, 1e-6 to 1e-2.
+    modes : int, optional
+        Modes kept; by default as few as each range of speeds needs.
+    method : str
+        ``"equilibrium"`` or ``"shape"``, as :func:`elastolink.stress` takes it.
+    stability : bool
+        Whether the largest multiplier is computed at each speed too.
+
+    Returns
+    -------
+    StressCurve
+        Its checks: ``converged``, the largest error over ``rtol``; ``equation``, the largest
+        relative change of a maximum by solving the whole equation, at two speeds;
+        ``linear range``, the largest deflection over the length of its link.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, the system is not one of beams, nothing acts on it, or no
+        subspace of modes is smooth.
+    """
+    given = _checked(system, speeds, rtol, modes, method)
+    _require_damped(system)
+    rising, back = np.unique(given, return_inverse=True)
+    places = _STATIONS if stations is None else stations
+    work = _Work(system, Fibres(system, places, method), rtol, modes)
+    parts = [work.range_of(rising[part]) for part in speed_ranges(rising)]
+    size, error = (
+        np.concatenate([getattr(p, k) for p in parts], axis=1) for k in ("size", "error")
+    )
+    # The whole equation at the highest speed, and where the modes answer most.
+    most = int(np.argmax(np.max(size, axis=0) / rising**2))
+    change = np.max([work.changed(rising[k], size[:, k]) for k in {len(rising) - 1, most}], axis=0)
+    error = (error + 2.0 * change[:, None]).T[back]
+    checks = {
+        "converged": Check(float(np.max(error)), rtol),
+        "equation": Check(float(np.max(change)), rtol),
+    }
+    if system.relative_deflection is not None:
+        checks["linear range"] = Check(max(part.deflection for part in parts), LINEAR_RANGE)
+    growth = _growth(system, parts, rising) if stability else None
+    row = np.concatenate([part.row for part in parts], axis=1).T[back]
+    return StressCurve(
+        method="modal truncation, transition matrices in tables of the inverse speed",
+        error=error,
+        error_norm="of each link's largest stress, relative",
+        checks=checks,
+        provenance=provenance(system.provenance),
+        speed=given,
+        links=work.fibres.links,
+        maximum=size.T[back],
+        theta=np.concatenate([part.theta for part in parts], axis=1).T[back],
+        place=work.fibres.place[row],
+        fibre=work.fibres.sign[row],
+        modes=np.concatenate([np.full(part.size.shape[1], part.modes) for part in parts])[back],
+        multiplier=None if growth is None else growth[0][back],
+        multiplier_error=None if growth is None else growth[1][back],
+    )
+
+
+class Fibres:
+    """Stresses of both outer fibres at stations, as forms of the motion.
+
+    Attributes
+    ----------
+    links : tuple of str
+        The beams with stations.
+    link, place, sign : ndarray, shape (rows,)
+        Which of them, x over its length, +1 or -1 for the fibre: first all positive fibres, then
+        the negative ones.
+    """
+
+    def __init__(
+        self, system: LinearPeriodic, stations: int | Mapping[str, ArrayLike], method: str
+    ) -> None:
+        self._system, self._stations, self._method = system, stations, method
+        self._forms: dict[int, LinearForm] = {}
+        where = self._recovery(np.zeros(1)).stations
+        self.links = tuple(dict.fromkeys(station.beam for station in where))
+        link = np.array([self.links.index(station.beam) for station in where])
+        place = np.array([station.place for station in where])
+        self.link, self.place = np.tile(link, 2), np.tile(place, 2)
+        self.sign = np.repeat([1.0, -1.0], len(place))
+
+    def _recovery(self, theta: Array) -> Recovery:
+        return recovery(self._system, theta, self._stations, self._method)
+
+    def form(self, theta: Array) -> LinearForm:
+        """Return the stresses [Pa] at even angles of the period as a form of the motion."""
+        if len(theta) not in self._forms:
+            made = self._recovery(theta)
+            area, lever = fibre_factors(self._system, made.stations)
+            axial, moment = made.forms["axial"], made.forms["moment"]
+            parts = {}
+            for key in dict.fromkeys((*axial.parts, *moment.parts)):
+                tail = (1,) * (0 if key[0] == RIGID else 1)
+                along = axial.parts.get(key, 0.0) * area.reshape(-1, *tail)
+                across = moment.parts.get(key, 0.0) * lever.reshape(-1, *tail)
+                # The positive fibre is pressed where the beam is hollow on its positive side.
+                parts[key] = np.concatenate([along - across, along + across], axis=1)
+            self._forms[len(theta)] = LinearForm(parts)
+        return self._forms[len(theta)]
+
+    def peaks(self, theta: Array, q: Array, speeds: Array) -> Peaks:
+        """Return the largest stresses of motions ``(ns, nt, n)`` at even angles."""
+        period = self._system.period
+        motion = {"q": np.moveaxis(q, 0, -1)}
+        motion["dq"] = differentiated(motion["q"], period)
+        motion["ddq"] = differentiated(motion["dq"], period)
+        total = np.zeros((len(theta), len(self.link), len(speeds)))
+        for (name, power), rows in self.form(theta).parts.items():
+            values = rows[..., None] if name == RIGID else rows @ motion[name]
+            total += values * speeds**power
+        return _peaks(total, self.link, len(self.links), period)
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Largest stresses, each ``(links, ns)``: size [Pa], angle [rad], row, and error of the size.
+
+    The error is what the parabola through three angles may miss, over the size.
+    """
+
+    size: Array
+    theta: Array
+    row: NDArray[np.int64]
+    error: Array
+
+
+@dataclass(frozen=True)
+class _Range:
+    """What one range of speeds gives.
+
+    ``size``, ``theta``, ``row``, ``error``: of the largest stresses, ``(links, ns)``.  ``growth``:
+    the largest multipliers; ``defect``: what the modes left out change of one, over its condition.
+    ``deflection``: the largest one.
+    """
+
+    size: Array
+    theta: Array
+    row: NDArray[np.int64]
+    error: Array
+    modes: int
+    growth: Growth
+    defect: float
+    deflection: float
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """One number of modes at a few speeds: stresses ``(links, k)``, growth, upper harmonics."""
+
+    modes: int
+    size: Array
+    growth: Growth
+    tail: float
+
+
+class _Work:
+    """One call's work: range after range, with the numbers of modes and of angles reached so far.
+
+    Attributes
+    ----------
+    angles : int
+        Angles of a revolution at which motions are computed at present.
+    least : int
+        Number of modes that the next range begins with.
+    """
+
+    def __init__(
+        self, system: LinearPeriodic, fibres: Fibres, rtol: float, modes: int | None
+    ) -> None:
+        self.system, self.fibres, self.rtol, self.wanted = system, fibres, rtol, modes
+        self.truncations = Truncations(system, modes)
+        self.flow = max(1e-11, _FLOW * rtol)
+        self.angles, self.least = _ANGLES, self.truncations.numbers[0]
+
+    def range_of(self, speeds: Array) -> _Range:
+        """Return what one range of rising speeds gives."""
+        low, high = float(speeds[0]), float(speeds[-1])
+        few, many = self._trials(np.unique(speeds[[len(speeds) // 2, -1]]))
+        change = np.max(np.abs(few.size / many.size - 1.0), axis=1)
+        shift = np.abs(few.growth.modulus - many.growth.modulus)
+        defect = float(np.max(shift / many.growth.condition))
+        chosen = many.modes if self.wanted is None else self.wanted
+        moving = self.truncations.motions(chosen, self.angles, (low, high), self.flow)
+        theta = moving.truncated.theta
+        peaks, errors, norms, deflection = [], [], [], 0.0
+        for part, q, error in moving.blocks(speeds):
+            peaks.append(self.fibres.peaks(theta, q, speeds[part]))
+            errors.append(error)
+            norms.append(np.max(np.abs(q), axis=(1, 2)))
+            deflection = max(deflection, self._deflection(theta, q))
+        size, error = (
+            np.concatenate([getattr(p, k) for p in peaks], axis=1) for k in ("size", "error")
+        )
+        # A link that happens to be at rest is moved by an error as at its worst speed.
+        share = size / np.concatenate(norms)
+        weight = np.max(share, axis=1, keepdims=True) / share
+        return _Range(
+            size=size,
+            theta=np.concatenate([p.theta for p in peaks], axis=1),
+            row=np.concatenate([p.row for p in peaks], axis=1),
+            error=_MARGIN * weight * np.concatenate(errors) + error + _ELSEWHERE * change[:, None],
+            modes=chosen,
+            growth=moving.growth(speeds),
+            defect=defect,
+            deflection=deflection,
+        )
+
+    def changed(self, speed: float, size: Array) -> Array:
+        """Return the relative change of largest stresses by solving the whole equation."""
+        equation = equation_of(self.system, speed, {}, forcing=True)
+        q, *_ = by_segments(equation, max(1e-9, 0.01 * self.rtol), 4 * _ANGLES)
+        theta = even_angles(self.system.period, 4 * _ANGLES)
+        exact = self.fibres.peaks(theta, q, np.array([speed])).size[:, 0]
+        return np.asarray(np.abs(size / exact - 1.0))
+
+    def _trials(self, speeds: Array) -> tuple[_Trial, _Trial]:
+        """Return two numbers of modes that agree at some speeds of a range."""
+        while True:
+            numbers_ = self.truncations.usable(self.least, self.angles)
+            if not numbers_:
+                found = f"no smooth and periodic subspace of {self.least} modes or more"
+                expected = "modes whose frequencies keep their distance over the revolution"
+                raise bad("system", found, expected, "choose another number of modes")
+            trials = [self._trial(number, speeds) for number in numbers_]
+            if self.angles < _MOST_ANGLES and trials[-1].tail > _TAIL * self.rtol:
+                self.angles *= 2
+                continue
+            change = float(np.max(np.abs(trials[0].size / trials[-1].size - 1.0)))
+            if (
+                self.wanted is not None
+                or _ELSEWHERE * change <= 0.5 * self.rtol
+                or trials[-1].modes == self.truncations.numbers[-1]
+            ):
+                return trials[0], trials[-1]
+            self.least = trials[-1].modes
+
+    def _trial(self, modes: int, speeds: Array) -> _Trial:
+        tried = self.truncations.trial(modes, self.angles, speeds, self.flow)
+        size = self.fibres.peaks(tried.truncated.theta, tried.q, speeds).size
+        return _Trial(modes, size, tried.growth, tried.tail)
+
+    def _deflection(self, theta: Array, q: Array) -> float:
+        if self.system.relative_deflection is None:
+            return 0.0
+        rows = self.system.relative_deflection(theta)
+        return float(np.max(np.abs(rows @ np.moveaxis(q, 0, -1))))
+
+
+def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple[Array, Array]:
+    """Return the largest multipliers and their errors, by the whole equation at the last speed."""
+    modulus, condition, error = (
+        np.concatenate([getattr(part.growth, name) for part in parts])
+        for name in ("modulus", "condition", "error")
+    )
+    whole = floquet_multipliers(system, float(speeds[-1]), rtol=1e-8)
+    gap = abs(float(np.max(np.abs(whole.multipliers))) - modulus[-1]) / condition[-1]
+    defect = max(_ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
+    return modulus, error + defect * condition
+
+
+def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) -> Peaks:
+    """Return the largest size of stresses ``(nt, rows, ns)`` of each link at each speed.
+
+    Between the angles the Fourier series is taken at eight times as many, and a parabola between
+    these.
+    """
+    count, _, speeds = values.shape
+    coarse = np.max(np.abs(values), axis=0)
+    size, theta, error = (np.zeros((links, speeds)) for _ in range(3))
+    row = np.zeros((links, speeds), dtype=np.int64)
+    for k in range(links):
+        rows_of = np.flatnonzero(link == k)
+        rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
+        wave = np.fft.rfft(values[:, rows_of[rows], columns].T, axis=1)
+        wave[:, -1] *= 0.5
+        fine = np.abs(np.fft.irfft(wave, n=_FINER * count, axis=1)) * _FINER
+        place = np.argmax(fine, axis=1)
+        each = np.arange(len(place))
+        before = fine[each, place - 1]
+        at, after = fine[each, place], fine[each, (place + 1) % fine.shape[1]]
+        bend = np.minimum(before - 2.0 * at + after, -np.finfo(float).tiny)
+        shift = np.clip(0.5 * (before - after) / bend, -0.5, 0.5)
+        top = at - 0.25 * (before - after) * shift
+        # Of each speed the largest row, the first of equal ones.
+        order = np.lexsort((rows, -top, columns))
+        first = order[np.unique(columns[order], return_index=True)[1]]
+        size[k] = top[first]
+        theta[k] = (place[first] + shift[first]) % fine.shape[1] * (period / fine.shape[1])
+        row[k] = rows_of[rows[first]]
+        error[k] = _missed(fine[first], place[first]) / size[k]
+    return Peaks(size, theta, row, error)
+
+
+def _missed(values: Array, place: NDArray[np.intp]) -> Array:
+    """Return the most by which a parabola misses maxima of rows ``(k, angles)``, ``(k,)``.
+
+    With s steps from the middle angle to the maximum, at most a half, the third difference counts
+    ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.
+    """
+    each, count = np.arange(len(place)), values.shape[1]
+    around = np.array([values[each, (place + shift) % count] for shift in (-2, -1, 0, 1, 2)])
+    third = np.array([-0.5, 1.0, 0.0, -1.0, 0.5]) @ around
+    fourth = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) @ around
+    return np.asarray(np.abs(third) / 16.0 + np.abs(fourth) * (3.0 / 128.0))
+
+
+def _require_damped(system: LinearPeriodic) -> None:
+    """Refuse a system whose resonances nothing bounds."""
+    arrays = arrays_at(system, even_angles(system.period, 16))
+    if not any(name in DAMPING for name, _ in arrays):
+        found, fix = "a system without damping", "add some, with_modal_damping for example"
+        raise bad("system", found, "damping, which bounds the resonances", fix)
+
+
+def _checked(
+    system: LinearPeriodic, speeds: ArrayLike, rtol: float, modes: int | None, method: str
+) -> Array:
+    """Return the speeds; refuse arguments that are unusable."""
+    required_structure(system)
+    given = np.atleast_1d(numbers("speeds", speeds))
+    if given.ndim != 1 or not given.size or not np.all(np.isfinite(given) & (given > 0)):
+        raise bad("speeds", speeds, "positive finite speeds [rad/s], one row", "correct them")
+    if not (isinstance(rtol, Real) and 1e-6 <= rtol <= 1e-2):
+        raise bad("rtol", repr(rtol), "a number from 1e-6 to 1e-2", "choose 1e-4")
+    if modes is not None:
+        require_whole("modes", modes, 1, system.size)
+    if method not in METHODS:
+        raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
+    return given

@@ -1,0 +1,546 @@
+"""Stresses along the beams in a motion, with their errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..beams.assembly import Array
+from ..beams.element_forms import ElementForms, required_structure
+from ..beams.recovery_forms import LinearForm, stacked
+from ..core.deferred import DeferredField, DeferredGroup
+from ..core.errors import BadInput, Problem, bad
+from ..core.families import LinearPeriodic
+from ..core.inputs import is_finite
+from .beam_forces import (
+    METHODS,
+    Station,
+    evaluated,
+    propagated,
+    recovery,
+    require_method,
+    stations_of,
+)
+from .beam_motion import BeamMotion, beam_motion, chunks
+from .beam_result import StationResult, in_motion, stations_on
+from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .beam_motion import Motion
+
+Stations = int | Mapping[str, ArrayLike] | None
+# Places over each element for its energy: exact for the recovered polynomials' squares.
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+# Angles at which the energy is looked at.
+_ANGLES = 64
+
+
+def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[Array, Array]:
+    """Return 1/A [1/m^2] and c/I [1/m^3] of each station, c half the thickness.
+
+    Raises
+    ------
+    BadInput
+        If a section has no thickness.
+    """
+    structure = required_structure(system)
+    sections = {beam.name: beam.section for beam in structure.beams}
+    missing = [
+        name
+        for name in dict.fromkeys(station.beam for station in stations)
+        if sections[name].thickness is None
+    ]
+    if missing:
+        fix = "give Section.thickness, or use recover() for forces"
+        problems = [
+            Problem(f"section of {n}", "no thickness", "one, for stresses", fix) for n in missing
+        ]
+        raise BadInput(*problems)
+    own = [sections[station.beam] for station in stations]
+    levers = [0.5 * (section.thickness or 0.0) / section.second_moment for section in own]
+    return np.array([1.0 / section.area for section in own]), np.array(levers)
+
+
+def stresses(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    stations: Stations,
+    method: str,
+    factors: tuple[Array, Array],
+    *,
+    frozen: bool = False,
+) -> tuple[Array, Array]:
+    """Return axial stress and bending stress at the positive fibre [Pa], ``(nt, stations)``."""
+    names = ("axial", "moment")
+    found = evaluated(system, motion, stations, method, names, frozen=frozen)
+    return found["axial"] * factors[0], -found["moment"] * factors[1]
+
+
+def largest_difference(first: tuple[Array, Array], second: tuple[Array, Array]) -> float:
+    """Return the largest difference of the stresses of a fibre [Pa]."""
+    axial, bending = (np.abs(a - b) for a, b in zip(first, second, strict=True))
+    return float(np.max(axial + bending))
+
+
+def motion_error(
+    system: LinearPeriodic, motion: BeamMotion, stations: Stations, factors: tuple[Array, Array]
+) -> float:
+    """Return what the error of the motion can do to a stress [Pa]."""
+    doubt = propagated(system, motion, stations)
+    return float(np.max(factors[0]) * doubt[0] + np.max(factors[1]) * doubt[2])
+
+
+def frozen(system: LinearPeriodic, motion: BeamMotion) -> BeamMotion:
+    """Return the quasi-static motion: equilibrium at each angle without any rates."""
+    found = np.empty_like(motion.q)
+    for chunk in chunks(motion):
+        forms = ElementForms(system, motion.theta[chunk])
+        rows = forms.resisted.at_speed(motion.speed)
+        free = forms.arrays.free
+        load = rows.get("1", np.zeros((len(found[chunk]), forms.arrays.count)))
+        solved = np.linalg.solve(rows["q"][:, free], -load[:, free, None])
+        found[chunk] = solved[..., 0]
+    return replace(motion, q=found, qd=np.zeros_like(found))
+
+
+def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
+    """Return the energy of the difference of both recoveries over that of the forces.
+
+    Of a natural mode this is the relative error of its squared frequency on the mesh.
+    """
+    structure = required_structure(system)
+    picked = np.unique(np.linspace(0, len(motion.theta) - 1, _ANGLES).astype(int))
+    few = replace(
+        motion, theta=motion.theta[picked], q=motion.q[picked], qd=motion.qd[picked], period=None
+    )
+    places: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
+    weights: dict[str, list[Array]] = {beam.name: [] for beam in structure.beams}
+    for placed in structure.elements:
+        along = placed.start + 0.5 * placed.length * (1.0 + _PLACES)
+        places[placed.beam.name].append(along / placed.beam.length)
+        weights[placed.beam.name].append(0.5 * placed.length * _WEIGHTS)
+    stations = {name: np.concatenate(own) for name, own in places.items()}
+    first, second = (evaluated(system, few, stations, m, ("axial", "moment")) for m in METHODS)
+    scale = float(system.parameters.get("elasticity", 1.0))
+    wrong = total = 0.0
+    for name, key in (("axial", "axial_stiffness"), ("moment", "bending_stiffness")):
+        flat = [
+            weight / (scale * getattr(structure.beam(beam).section, key))
+            for beam, own in weights.items()
+            for weight in np.concatenate(own)
+        ]
+        wrong += float(np.sum((first[name] - second[name]) ** 2 @ np.array(flat)))
+        total += float(np.sum(first[name] ** 2 @ np.array(flat)))
+    return min(wrong / total, 0.5) if total else 0.0
+
+
+_MEGA = 1e-6
+
+
+def draw(result: StressResult, ax: Axes | None = None) -> Axes:
+    """Draw the stress at each beam's worst place over the crank angle, its static part dashed.
+
+    Of one angle alone, the largest stress along the beams.
+    """
+    from ..core.plotting import axes_or_new
+
+    ax = axes_or_new(ax)
+    if len(result.theta) == 1:
+        for link in result.maxima:
+            own = stations_on(result.links, link)
+            ax.plot(result.places[own], _MEGA * result.stress[0, own], label=link, linewidth=0.9)
+        ax.set_xlabel("place x/length")
+        ax.set_ylabel("largest stress [MPa]")
+        ax.legend()
+        return ax
+    period = result.period
+    closed = period is not None
+    angles = np.degrees(result.theta if period is None else np.append(result.theta, period))
+    for link, peak in result.maxima.items():
+        parts = [result.at(link, peak.place, peak.fibre, name) for name in ("all", "quasi-static")]
+        whole, still = (_MEGA * (np.append(p, p[:1]) if closed else p) for p in parts)
+        label = f"{link}, x/length = {peak.place:.3g}"
+        line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
+        ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
+        ax.plot(np.degrees(peak.theta), _MEGA * peak.value, "o", color=line.get_color(), ms=3)
+    ax.set_xlabel("crank angle [deg]")
+    ax.set_ylabel("stress at the worst fibre [MPa]")
+    ax.set_title(f"{result.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
+    ax.legend()
+    return ax
+
+
+FIBRES = ("positive", "negative")
+PARTS = ("all", "quasi-static", "dynamic")
+# Angles per given one at which a periodic stress is looked at for its maximum.
+_FINER = 8
+# Fields that are worked out when they are first looked at.
+_LATER = {
+    name: DeferredField()
+    for name in ("static_axial", "static_bending", "motion_error", "mesh_error")
+}
+
+
+@dataclass(frozen=True)
+class StressPeak:
+    """The largest size of a stress.
+
+    Attributes
+    ----------
+    value : float
+        Stress [Pa], tension positive.
+    theta : float
+        Crank angle [rad].
+    link : str
+        The beam.
+    place : float
+        x over its length.
+    fibre : str
+        ``positive``: the outer fibre on the beam's positive side, to the left of its direction;
+        or ``negative``.
+    """
+
+    value: float
+    theta: float
+    link: str
+    place: float
+    fibre: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StressResult(StationResult):
+    """Stresses along the beams over the cycle.
+
+    Speed, crank angles and stations: see :class:`StationResult`.
+
+    Attributes
+    ----------
+    axial, bending : ndarray
+        Stress [Pa] of the axial force, and of the bending moment at the outer fibre on the beam's
+        positive side, shape ``(nt, stations)``; on the other side it has the other sign.
+    static_axial, static_bending : ndarray
+        The same of the quasi-static motion: equilibrium at each angle under the inertia of the
+        rigid motion and the constant loads, no rates.
+    motion_error, mesh_error : float
+        The parts of the error figure [Pa]: of the motion's own error, and of the mesh.
+    period : float or None
+        Period [rad] that the angles divide evenly; None of a motion that is not periodic.
+
+    Notes
+    -----
+    The quasi-static part and the parts of the error figure are worked out when they are first
+    looked at, as the figure itself.
+    """
+
+    axial: Array
+    bending: Array
+    static_axial: Any = _LATER["static_axial"]  # Array
+    static_bending: Any = _LATER["static_bending"]  # Array
+    motion_error: Any = _LATER["motion_error"]  # float
+    mesh_error: Any = _LATER["mesh_error"]  # float
+    period: float | None = None
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **StationResult.dimensions,
+        **dict.fromkeys(
+            ("axial", "bending", "static_axial", "static_bending", "stress"), ("sample", "station")
+        ),
+    }
+    exported: ClassVar[tuple[str, ...]] = ("stress",)
+
+    @property
+    def stress(self) -> Array:
+        """Largest size of the stress over the section [Pa], ``(nt, stations)``."""
+        return np.asarray(np.abs(self.axial) + np.abs(self.bending))
+
+    @property
+    def quasi_static(self) -> Array:
+        """Largest size of the quasi-static stress over the section [Pa], ``(nt, stations)``."""
+        return np.asarray(np.abs(self.static_axial) + np.abs(self.static_bending))
+
+    def fibre(self, name: str = "positive", part: str = "all") -> Array:
+        """Return the stress of one outer fibre [Pa], ``(nt, stations)``.
+
+        Parameters
+        ----------
+        name : str
+            ``"positive"`` or ``"negative"``.
+        part : str
+            ``"all"``, ``"quasi-static"`` or ``"dynamic"``, the difference of these.
+
+        Raises
+        ------
+        BadInput
+            If either is unknown.
+        """
+        if name not in FIBRES:
+            raise bad("fibre", repr(name), f"one of {FIBRES}", "correct the name")
+        if part not in PARTS:
+            raise bad("part", repr(part), f"one of {PARTS}", "correct the name")
+        sign = 1.0 if name == "positive" else -1.0
+        whole = self.axial + sign * self.bending
+        if part == "all":
+            return np.asarray(whole)
+        still = self.static_axial + sign * self.static_bending
+        return np.asarray(still if part == "quasi-static" else whole - still)
+
+    def at(self, link: str, place: float, fibre: str = "positive", part: str = "all") -> Array:
+        """Return the stress of a fibre over the angles ``(nt,)`` at the station nearest a place.
+
+        Raises
+        ------
+        BadInput
+            If the link has no station, or a name is unknown.
+        """
+        own = stations_on(self.links, link)
+        nearest = own[int(np.argmin(np.abs(self.places[own] - place)))]
+        return np.asarray(self.fibre(fibre, part)[:, nearest])
+
+    @cached_property
+    def maximum(self) -> StressPeak:
+        """The largest stress of all, over angles, stations and fibres."""
+        return max(self.maxima.values(), key=lambda peak: abs(peak.value))
+
+    @cached_property
+    def maxima(self) -> dict[str, StressPeak]:
+        """The largest stress of each beam."""
+        return {link: self._peak(link) for link in dict.fromkeys(self.links)}
+
+    def _peak(self, link: str) -> StressPeak:
+        own = stations_on(self.links, link)
+        best: StressPeak | None = None
+        for fibre in FIBRES:
+            theta, values = self._finer(self.fibre(fibre)[:, own])
+            row, column = np.unravel_index(int(np.argmax(np.abs(values))), values.shape)
+            value = float(values[row, column])
+            if best is None or abs(value) > abs(best.value):
+                place = float(self.places[own[column]])
+                best = StressPeak(value, float(theta[row]), link, place, fibre)
+        if best is None:
+            raise bad("maximum", "no station", "at least one", "give stations")
+        return best
+
+    def _finer(self, values: Array) -> tuple[Array, Array]:
+        """Return values of a periodic stress at more angles, by its Fourier series."""
+        if self.period is None or len(self.theta) < 3:
+            return self.theta, values
+        count = _FINER * len(self.theta)
+        spectrum = np.fft.rfft(values, axis=0)
+        if len(self.theta) % 2 == 0:
+            spectrum[-1] *= 0.5
+        fine = np.fft.irfft(spectrum, n=count, axis=0) * _FINER
+        return self.period * np.arange(count) / count, fine
+
+    def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
+        """Return the factor of safety of each beam: allowed over largest stress.
+
+        Parameters
+        ----------
+        limit : float or mapping of str to float
+            Allowed stress [Pa], of all or by beam.
+
+        Returns
+        -------
+        dict of str to float
+            By beam; inf where there is no stress.
+
+        Raises
+        ------
+        BadInput
+            If a limit is missing or not positive.
+        """
+        found, problems = {}, []
+        for link, peak in self.maxima.items():
+            own = limit.get(link, np.nan) if isinstance(limit, Mapping) else limit
+            if not (is_finite(own) and own > 0):
+                fix = "give a positive limit for each beam"
+                problems.append(Problem(f"limit of {link}", repr(own), "a stress [Pa]", fix))
+            else:
+                found[link] = float(own) / abs(peak.value) if peak.value else np.inf
+        if problems:
+            raise BadInput(*problems)
+        return found
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the stress at each beam's worst place over the crank angle, its static part dashed.
+
+        Of a structure that stands still, the stress along the beams.
+        """
+        from .stresses import draw
+
+        return draw(self, ax)
+
+
+def stress(
+    system: LinearPeriodic,
+    motion: Motion | float | None = None,
+    *,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    method: str = "equilibrium",
+    finer_mesh: bool = True,
+) -> StressResult:
+    """Return the stresses along the beams of a linkage over the cycle, or of a frame.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams whose sections have a thickness.
+    motion : SteadyState, Trajectory, BeamMotion, float or None
+        A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
+    stations : int or mapping of str to array_like, optional
+        Places on each beam: how many, or by beam the places x/length; by default 25.
+    method : str
+        How forces are recovered: ``"equilibrium"`` or ``"shape"``, see :func:`recover`.
+    finer_mesh : bool
+        Whether the motion is found once more on a finer mesh, for the error figure; it takes a few
+        times as long as the motion itself.  The next call for the same system, speed and angles
+        has it at hand.
+
+    Returns
+    -------
+    StressResult
+        Its ``error`` is the largest error of a stress [Pa] over angles and stations.  What counts
+        as true is the same model of beams, the mesh refined without end and the same law of
+        damping: of modal damping the same ratio in every mode.  It is made of what the error of
+        the motion does, and three times the difference to the stresses on a finer mesh, by
+        ``equilibrium``: quintic elements in place of cubic ones, two at least on each beam.
+
+        Of a motion that is given, or marched, the mesh's part is the difference of the two
+        recoveries, for ``equilibrium`` times the square root of the mesh's relative error, and
+        says nothing about the frequencies of the mesh; likewise without ``finer_mesh``.
+
+    Warns
+    -----
+    LinearRangeWarning
+        If a deflection passes 5 % of the length of its beam.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable, or a section has no thickness.
+
+    Notes
+    -----
+    Without a finer mesh its relative error is taken for the square of the energy norm of the
+    difference of the two recoveries over that of the forces: for a natural mode this is the
+    relative error of the squared frequency.
+    """
+    require_method(method)
+    structure = required_structure(system)
+    chosen = stations_of(structure, stations)
+    levers = fibre_factors(system, chosen)
+    moving = beam_motion(system, motion)
+    own = stresses(system, moving, stations, method, levers)
+    still = DeferredGroup(partial(_still, system, moving, stations, method, levers))
+    doubt = DeferredGroup(
+        partial(_doubt, system, moving, stations, method, levers, own, finer_mesh)
+    )
+    return StressResult(
+        method=method,
+        links=tuple(station.beam for station in chosen),
+        places=np.array([station.place for station in chosen]),
+        axial=own[0],
+        bending=own[1],
+        static_axial=still.later("axial"),
+        static_bending=still.later("bending"),
+        motion_error=doubt.later("motion_error"),
+        mesh_error=doubt.later("mesh_error"),
+        period=moving.period,
+        **in_motion(system, moving, doubt),
+    )
+
+
+def _still(
+    system: LinearPeriodic,
+    moving: BeamMotion,
+    stations: Stations,
+    method: str,
+    levers: tuple[Array, Array],
+) -> dict[str, Array]:
+    """Return the stresses of the quasi-static motion."""
+    still = frozen(system, moving)
+    axial, bending = stresses(system, still, stations, method, levers, frozen=True)
+    return {"axial": axial, "bending": bending}
+
+
+def _doubt(
+    system: LinearPeriodic,
+    moving: BeamMotion,
+    stations: Stations,
+    method: str,
+    levers: tuple[Array, Array],
+    own: tuple[Array, Array],
+    finer_mesh: bool,
+) -> dict[str, float | str]:
+    """Return the error figure with its parts and its norm."""
+    by_motion = motion_error(system, moving, stations, levers)
+    norm = "largest error of a stress over angles and stations [Pa]"
+    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    if finer is None:
+        other = next(name for name in METHODS if name != method)
+        by_mesh = largest_difference(own, stresses(system, moving, stations, other, levers))
+        if method == "equilibrium":
+            by_mesh *= float(np.sqrt(energy_gap(system, moving)))
+        norm = f"{norm}, that of the mesh's frequencies apart"
+    else:
+        by_mesh = largest_difference(own, stresses(*finer, stations, "equilibrium", levers))
+    largest = float(np.max(np.abs(own[0]) + np.abs(own[1])))
+    return {
+        "error": by_motion + CAUTION * by_mesh + ROUNDING * largest,
+        "error_norm": norm,
+        "motion_error": by_motion,
+        "mesh_error": by_mesh,
+    }
+
+
+def stress_operator(
+    system: LinearPeriodic,
+    theta: ArrayLike,
+    stations: int | Mapping[str, ArrayLike] | None = None,
+    *,
+    method: str = "equilibrium",
+    accelerations: bool = False,
+) -> tuple[LinearForm, tuple[Station, ...]]:
+    """Return the stresses of both outer fibres as a linear form of the motion, for many speeds.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        Of a structure of beams whose sections have a thickness.
+    theta : array_like, shape (nt,)
+        Crank angles [rad].
+    stations : int or mapping of str to array_like, optional
+        Places on each beam, as :func:`stress` takes them.
+    method : str
+        ``"equilibrium"`` or ``"shape"``.
+    accelerations : bool
+        Whether d2q/dtheta2 stays in the form; else the equation of motion replaces it, so that the
+        form needs ``q`` and ``dq/dtheta`` alone.
+
+    Returns
+    -------
+    form : LinearForm
+        Parts ``(nt, 2 stations, n)`` by what they multiply and the power of the speed: first the
+        fibres on the positive sides of all stations, then those on the negative sides [Pa].
+    stations : tuple of Station
+        The places.
+
+    Raises
+    ------
+    BadInput
+        If an argument is unusable.
+    """
+    made = recovery(system, theta, stations, method)
+    if not accelerations:
+        made = made.without_accelerations()
+    areas, levers = fibre_factors(system, made.stations)
+    axial = made.forms["axial"].turned(np.diag(areas))
+    bending = made.forms["moment"].turned(np.diag(-levers))
+    return stacked([axial + bending, axial - bending]), made.stations

@@ -1,0 +1,24 @@
+"""Marching through a forced system with fixed steps of an integrator."""
+
+from __future__ import annotations
+
+import numpy as np
+from elastolink.runtime.periodic.equation import equation_of
+
+
+def marched(method, system, speed, steps, turns, *, start=0.0, q=None, slope=None):
+    """Return q ``(steps turns + 1, n)`` at the ends of even steps; from rest by default.
+
+    Coefficients repeat with each turn of the crank; ``slope`` is dq/dtheta.
+    """
+    equation, n = equation_of(system, speed, {}, forcing=True), system.size
+    step = 2 * np.pi / steps
+    theta = start + step * np.arange(steps)
+    maps = method.maps(lambda angles: equation.generator(angles)[0], theta, step)
+    rest = np.zeros(n)
+    first = equation.state(start, rest if q is None else q, rest if slope is None else slope)
+    states = [np.append(first, 1.0)]
+    for _ in range(turns):
+        for one in maps:
+            states.append(one @ states[-1])
+    return np.array(states)[:, :n] * equation.scale[0]

@@ -1,0 +1,92 @@
+"""Energies of beams: the balance of power, and strain energies by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
+from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linkage_system
+from elastolink.runtime.recovery.strain_energy import beam_energies
+from elastolink.runtime.systems import with_modal_damping
+
+VISCOUS = {name: replace(s, retardation=3e-5) for name, s in SECTIONS.items()}
+SPRUNG = {
+    "D": {"held": ("y",), "stiffness": {"x": 1e6}, "damping": {"x": 200.0}, "force": (3.0, 4.0)}
+}
+CASES = {
+    "modal": (SECTIONS, {}, 0.02),
+    "without axial forces": (SECTIONS, {"geometric_stiffness": False}, 0.02),
+    "weight and Rayleigh": (SECTIONS, {"rayleigh": (3.0, 1e-4), "gravity": (0.0, -9.81)}, None),
+    "viscous on springs": (VISCOUS, {"nodes": SPRUNG}, None),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_power_of_the_drive_is_rate_of_energy_and_loss(case):
+    sections, options, ratio = CASES[case]
+    system = linkage_system(FOUR_BAR, sections, joint_masses=JOINT_MASSES, elements=1, **options)
+    if ratio is not None:
+        system = with_modal_damping(system, ratio)
+    found = beam_energies(system, periodic_motion(system, 20.0, 128))
+    # Virtual work against the Fourier series of the energy, of 63 harmonics of squares of q.
+    assert found.checks["balance"].value <= 1e-6
+    assert np.mean(found.dissipated) > 0.0
+    # Over a cycle the drive and the loads pay for the loss.
+    paid = np.mean(found.drive + found.loads)
+    assert paid == pytest.approx(np.mean(found.dissipated), rel=1e-6)
+
+
+def test_power_of_the_drive_of_an_element_with_rotary_inertia():
+    system = turning_bar(rocking, kind="timoshenko", elements=2)
+    found = beam_energies(system, periodic_motion(system, 8.0, 64))
+    assert found.checks["balance"].value <= 1e-9
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_strain_energy_of_a_cantilever_by_hand(kind):
+    # F^2 L^3 / 6EI and N^2 L / 2EA; of shear F^2 L / 2kGA.
+    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0, poisson=0.3)
+    structure = frame(
+        {"O": (0, 0), "P": (1, 0)},
+        {"bar": ("O", "P")},
+        bar,
+        supports={"O": ("x", "y", "rotation")},
+        kind=kind,
+        nodes={"P": {"force": (700.0, 4.0)}},
+    )
+    found = beam_energies(linear_system(structure, geometric_stiffness=False))
+    expected = 16.0 / (6.0 * bar.bending_stiffness) + 700.0**2 / (2.0 * bar.axial_stiffness)
+    if kind == "timoshenko":
+        expected += 16.0 / (2.0 * bar.shear_stiffness)
+    assert found.peak == pytest.approx(expected, rel=1e-7)
+    assert found.kinetic[0] == 0.0
+
+
+def test_kinetic_energy_of_stiff_links_is_that_of_rigid_ones():
+    system = linkage_system(
+        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1
+    ).with_parameters(elasticity=1e8)
+    found = beam_energies(system, periodic_motion(system, 10.0))
+    total = np.zeros(len(found.theta))
+    motion = FOUR_BAR.motion(found.theta)
+    for name, section in SECTIONS.items():
+        length = FOUR_BAR.lengths[name]
+        for place, weight in zip(*np.polynomial.legendre.leggauss(3), strict=True):
+            speed = motion.link(name).point(0.5 * length * (1 + place)).velocity
+            total += 0.25 * weight * length * section.mass_per_length * np.sum(speed**2, axis=-1)
+    for link in ("crank", "follower"):
+        speed = motion.link(link).point(FOUR_BAR.lengths[link]).velocity
+        total += 0.5 * 0.174 * np.sum(speed**2, axis=-1)
+    np.testing.assert_allclose(found.kinetic, 100.0 * total, rtol=1e-8)
+
+
+def test_instantaneous_form_has_no_balance_and_a_picture_all_links():
+    system = linkage_system(
+        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1, form="instantaneous"
+    )
+    found = beam_energies(system, periodic_motion(system, 10.0))
+    assert "balance" not in found.checks
+    labels = [text.get_text() for text in found.plot().get_legend().get_texts()]
+    assert labels == ["crank", "coupler", "follower", "all"]

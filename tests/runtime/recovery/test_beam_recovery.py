@@ -1,0 +1,266 @@
+"""Forces along beams against statics by hand, and as linear forms of the motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from beam_motions import (
+    FOUR_BAR,
+    JOINT_MASSES,
+    SECTIONS,
+    fourier_derivative,
+    periodic_motion,
+    rocking,
+    steadily,
+    turning_bar,
+)
+from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linkage_system
+from elastolink.runtime.beams.element_forms import ElementForms
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.recovery import BeamMotion, recover
+from elastolink.runtime.recovery.beam_forces import recovery, stations_of
+from elastolink.runtime.simulation.spring_form import periodic_derivative
+from elastolink.runtime.systems import with_modal_damping
+
+# Round-off of forces that are differences of stiffness times displacement.
+ROUND = 1e-9
+BAR = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0, poisson=0.3)
+
+
+def cantilever(kind, elements, force=(0.0, 0.0), gravity=(0.0, 0.0), angle=0.4):
+    end = (2.0 * np.cos(angle), 2.0 * np.sin(angle))
+    structure = frame(
+        {"O": (0.0, 0.0), "P": end},
+        {"bar": ("O", "P")},
+        BAR,
+        supports={"O": ("x", "y", "rotation")},
+        elements=elements,
+        kind=kind,
+        nodes={"P": {"force": force}},
+    )
+    return linear_system(structure, gravity=gravity, geometric_stiffness=False)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("method", ["equilibrium", "shape"])
+def test_cantilever_under_a_load_at_its_end(kind, method):
+    # By hand: M = F (L - x), V = F, N = P; both ways are exact without a load between nodes.
+    along, across = 3.0, 5.0
+    c, s = np.cos(0.4), np.sin(0.4)
+    found = recover(
+        cantilever(kind, 2, (c * along - s * across, s * along + c * across)), method=method
+    )
+    x = 2.0 * found.places
+    np.testing.assert_allclose(found.moment[0], across * (2.0 - x), atol=ROUND * 2.0 * across)
+    np.testing.assert_allclose(found.shear[0], across, rtol=1e-7)
+    np.testing.assert_allclose(found.axial[0], along, rtol=1e-7)
+    # Deflection and slope of a beam with shear deformation: F L^3/3EI (+ F L/kGA), F L^2/2EI.
+    stiffness = BAR.bending_stiffness
+    sheared = across * 2.0 / BAR.shear_stiffness if kind == "timoshenko" else 0.0
+    assert found.across[0, -1] == pytest.approx(across * 8.0 / 3.0 / stiffness + sheared, rel=1e-7)
+    assert found.slope[0, -1] == pytest.approx(across * 4.0 / 2.0 / stiffness, rel=1e-7)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_cantilever_under_its_weight(kind):
+    # By hand: M = -m g cos(a) (L - x)^2 / 2, V = -m g cos(a) (L - x), N = -m g sin(a) (L - x).
+    found = recover(cantilever(kind, 1, gravity=(0.0, -9.81)))
+    weight, rest = 9.81 * BAR.mass_per_length, 2.0 - 2.0 * found.places
+    size = weight * 4.0
+    np.testing.assert_allclose(found.axial[0], -weight * np.sin(0.4) * rest, atol=1e-7 * size)
+    np.testing.assert_allclose(found.shear[0], -weight * np.cos(0.4) * rest, atol=1e-7 * size)
+    np.testing.assert_allclose(
+        found.moment[0], -0.5 * weight * np.cos(0.4) * rest**2, atol=1e-7 * size
+    )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bar_that_turns_steadily(kind):
+    # By hand: N = m w^2 (L^2 - x^2)/2; the stretch adds a share of (k L)^2, k^2 = m w^2/EA, which
+    # is (w/w_1)^2 of the first mode along the bar: 5e-5 at 50 rad/s.
+    system = turning_bar(steadily, kind=kind, elements=2)
+    found = recover(system, periodic_motion(system, 50.0, 8))
+    mass = BAR.mass_per_length
+    expected = 0.5 * mass * 2500.0 * (1.0 - found.places**2)
+    share = mass * 2500.0 / BAR.axial_stiffness
+    assert np.max(np.abs(found.axial - expected)) <= share * np.max(expected)
+    # Of the stretch itself: N = EA (cos(kx) + tan(kL) sin(kx) - 1 - ...) at the clamp, where
+    # u = sin(kx)/(k cos kL) - x gives N = EA (1/cos(kL) - 1).
+    k = np.sqrt(share)
+    exact = BAR.axial_stiffness * (np.cos(k * found.places) / np.cos(k) - 1.0)
+    assert np.max(np.abs(found.axial - exact)) <= 0.1 * share * np.max(expected)
+    assert np.max(np.abs(found.moment)) <= 1e-7 * np.max(expected)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pinned_bar_that_rocks(kind):
+    # By hand, of a stiff bar: M = m phi'' (L^2 x - x^3)/6, V = -dM/dx; rotary inertia and the
+    # elastic motion are of the order of (w/w_1)^2 and smaller.
+    system = turning_bar(rocking, pinned=True, modulus=210e15, kind=kind, elements=1)
+    motion = periodic_motion(system, 10.0, 16)
+    found = recover(system, motion)
+    x = found.places
+    force = BAR.mass_per_length * 100.0 * rocking(motion.theta)[2][:, None]
+    rotary = 0.0
+    if kind == "timoshenko":
+        # rho I phi'' per length takes a constant part of the shear force, and no moment at pins.
+        rotary = BAR.rotary_inertia * 100.0 * rocking(motion.theta)[2][:, None]
+    moment, shear = force * (x - x**3) / 6.0, -force * (1.0 - 3.0 * x**2) / 6.0 + rotary
+    size = np.max(np.abs(force))
+    np.testing.assert_allclose(found.moment, moment, atol=1e-5 * size)
+    np.testing.assert_allclose(found.shear, shear, atol=1e-5 * size)
+
+
+@pytest.mark.parametrize("form", ["full", "instantaneous"])
+@pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature"])
+def test_forces_of_the_elements_add_up_to_the_equation_of_motion(form, kind):
+    system = with_modal_damping(
+        linkage_system(
+            FOUR_BAR,
+            SECTIONS,
+            joint_masses=JOINT_MASSES,
+            elements=2,
+            kind=kind,
+            form=form,
+            rayleigh=(0.1, 1e-5),
+            gravity=(0.3, -9.81),
+        ),
+        0.02,
+    )
+    theta, speed = np.array([0.3, 1.7, 4.0]), 31.0
+    forms = ElementForms(system, theta)
+    assert forms.gravity == pytest.approx((0.3, -9.81), rel=1e-9)
+    q, slope, second = np.random.default_rng(0).normal(size=(3, 3, system.size))
+    found = forms.resisted.values(speed, q, slope, second)[:, forms.arrays.free]
+
+    def at(name):
+        return system.array(name, theta, speed=speed)
+
+    def rate(name):
+        function = periodic_derivative(
+            lambda angles: system.array(name, angles, speed=speed)[None], system.period
+        )
+        return function(theta)[0] if system.has(name) else 0.0
+
+    gyroscopic = rate("M") + at("A") - np.swapaxes(at("A"), 1, 2)
+    expected = (
+        speed**2 * _times(at("M"), second)
+        + speed * _times(at("C") + speed * gyroscopic, slope)
+        + _times(at("K") + at("Kg") + speed * at("D"), q)
+        + speed**2 * _times(rate("A") - at("B") if form == "full" else -at("B"), q)
+        - speed**2 * at("f")
+        - at("p")
+    )
+    np.testing.assert_allclose(found, expected, atol=1e-12 * np.max(np.abs(expected)))
+
+
+def _times(matrices, vectors):
+    return np.einsum("tij,tj->ti", matrices, vectors)
+
+
+def test_forces_jump_nowhere_between_elements():
+    system = with_modal_damping(
+        linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=2), 0.02
+    )
+    motion = periodic_motion(system, 20.0, 32)
+    beside = 0.5 + np.array([-1e-9, 1e-9])
+    found = recover(system, motion, stations={"coupler": beside, "follower": beside})
+    for name in ("axial", "shear", "moment"):
+        for link in ("coupler", "follower"):
+            values = found.of(link, name)
+            size = np.max(np.abs(values))
+            # What 2e-9 of the length changes, beside round-off.
+            assert np.max(np.abs(values[:, 1] - values[:, 0])) <= 1e-7 * size
+
+
+def test_pins_take_no_moment():
+    system = with_modal_damping(
+        linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1), 0.02
+    )
+    found = recover(system, periodic_motion(system, 20.0), stations={"coupler": [0.0, 1.0]})
+    largest = np.max(np.abs(recover(system, periodic_motion(system, 20.0)).moment))
+    assert np.max(np.abs(found.moment)) <= ROUND * largest
+
+
+def test_accelerations_from_the_series_and_from_the_equation_agree():
+    system = linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1)
+    motion = periodic_motion(system, 17.0)
+    made = recovery(system, motion.theta, 5)
+    second = fourier_derivative(len(motion.theta)) @ motion.slope
+    for name in ("axial", "shear", "moment"):
+        series = made.values(name, 17.0, motion.q, motion.slope, second)
+        equation = made.values(name, 17.0, motion.q, motion.slope)
+        eliminated = made.without_accelerations().forms[name].values(17.0, motion.q, motion.slope)
+        size = np.max(np.abs(series))
+        # The highest harmonic of an even number of samples has no derivative.
+        np.testing.assert_allclose(equation, series, atol=1e-5 * size)
+        np.testing.assert_allclose(eliminated, equation, atol=1e-10 * size)
+
+
+def test_the_two_ways_differ_by_their_error_figure():
+    system = linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=2)
+    motion = periodic_motion(system, 15.0)
+    first, second = (recover(system, motion, method=m) for m in ("equilibrium", "shape"))
+    for k, name in enumerate(("axial", "shear", "moment")):
+        gap = np.max(np.abs(getattr(first, name) - getattr(second, name)))
+        assert gap <= first.error[k] * (1 + 1e-12)
+
+
+def test_stations_keep_their_order_and_picture_has_the_links():
+    system = turning_bar(rocking, elements=3)
+    motion = periodic_motion(system, 5.0, 16)
+    places = [0.9, 0.1, 0.5]
+    found = recover(system, motion, stations={"bar": places})
+    assert found.places.tolist() == places
+    np.testing.assert_allclose(
+        found.moment[:, ::-1], recover(system, motion, stations={"bar": places[::-1]}).moment
+    )
+    labels = [text.get_text() for text in found.plot().get_legend().get_texts()]
+    assert labels == ["bar"]
+
+
+@pytest.mark.parametrize(
+    "stations",
+    [
+        1,
+        True,
+        "all",
+        {"bar": ["middle"]},
+        {"bar": [1.5]},
+        {"bar": []},
+        {"rod": [0.5]},
+        {"bar": [np.nan]},
+        {},
+    ],
+)
+def test_places_off_the_beams_are_refused(stations):
+    structure = turning_bar(rocking).structure
+    with pytest.raises(BadInput):
+        stations_of(structure, stations)
+
+
+def test_unusable_arguments_are_refused():
+    system = turning_bar(rocking, elements=1)
+    motion = periodic_motion(system, 5.0, 16)
+    with pytest.raises(BadInput, match="method"):
+        recover(system, motion, method="guess")
+    for theta in ("late", [np.nan], [[0.0]], []):
+        with pytest.raises(BadInput, match="theta"):
+            recovery(system, theta)
+    with pytest.raises(BadInput, match="coordinates"):
+        recover(turning_bar(rocking, elements=2), motion)
+    with pytest.raises(BadInput, match="motion"):
+        recover(system, None)
+    with pytest.raises(BadInput, match="without beams"):
+        recover(object(), motion)
+    with pytest.raises(BadInput, match="finite"):
+        BeamMotion(theta=motion.theta, q=motion.q * np.nan, qd=motion.qd, speed=5.0)
+    changed = system.with_changed_terms(
+        lambda term: (
+            type(term)(term.array, term.scale, lambda t: 2 * term(t), term.power)
+            if term.array == "K"
+            else term
+        )
+    )
+    with pytest.raises(BadInput, match="structure"):
+        recover(changed, motion)

@@ -1,0 +1,167 @@
+"""Stresses over the cycle: hand cases, the four-bar of Aannaque's Table 4.1, refusals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beam_motions import (
+    FOUR_BAR,
+    JOINT_MASSES,
+    SECTIONS,
+    periodic_motion,
+    rocking,
+    steadily,
+    turning_bar,
+)
+from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
+from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
+from elastolink.runtime.periodic import simulate, steady_state
+from elastolink.runtime.recovery import stress
+from elastolink.runtime.recovery.stresses import stress_operator
+from elastolink.runtime.systems import with_modal_damping
+
+
+def four_bar(elements=1, **options):
+    made = linkage_system(
+        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=elements, **options
+    )
+    return with_modal_damping(made, 0.02)
+
+
+@pytest.fixture(scope="module")
+def at_20():
+    system = four_bar()
+    motion = periodic_motion(system, 20.0, 128)
+    return system, motion, stress(system, motion)
+
+
+def test_cantilever_stress_by_hand():
+    # sigma = N/A -+ M c/I: 10 N along and 2 N across the end of 1 m, 20 mm by 10 mm.
+    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    structure = frame(
+        {"O": (0, 0), "P": (1, 0)},
+        {"bar": ("O", "P")},
+        bar,
+        supports={"O": ("x", "y", "rotation")},
+        elements=1,
+        nodes={"P": {"force": (10.0, 2.0)}},
+    )
+    found = stress(linear_system(structure, geometric_stiffness=False))
+    bending = 2.0 * 0.005 / (0.02 * 0.01**3 / 12)
+    axial = 10.0 / 2e-4
+    assert found.maximum.value == pytest.approx(axial + bending, rel=1e-7)
+    assert (found.maximum.link, found.maximum.place) == ("bar", 0.0)
+    assert found.maximum.fibre == "negative"
+    assert found.safety(250e6)["bar"] == pytest.approx(250e6 / (axial + bending), rel=1e-7)
+    np.testing.assert_allclose(found.at("bar", 0.0)[0], axial - bending, rtol=1e-7)
+    np.testing.assert_allclose(found.fibre("positive", "dynamic"), 0.0, atol=1e-7 * bending)
+    assert found.plot().get_xlabel() == "place x/length"
+
+
+def test_turning_bar_has_the_stress_of_the_centrifugal_force():
+    system = turning_bar(steadily, elements=1)
+    found = stress(system, periodic_motion(system, 50.0, 8))
+    # rho w^2 L^2 / 2, and a share (w/w_1)^2 of the stretch, below 1e-4.
+    assert found.maximum.value == pytest.approx(0.5 * 7850.0 * 2500.0, rel=1e-4)
+    assert found.maximum.place == 0.0
+
+
+def test_maximum_lies_between_the_samples(at_20):
+    _, motion, found = at_20
+    sampled = float(np.max(found.stress))
+    assert abs(found.maximum.value) >= sampled * (1 - 1e-12)
+    fine = found.maximum
+    sparse = replace(motion, theta=motion.theta[::2], q=motion.q[::2], qd=motion.qd[::2])
+    again = stress(at_20[0], sparse).maximum
+    # 64 angles hold the motion: 30 harmonics.
+    assert again.value == pytest.approx(fine.value, rel=1e-3)
+    assert again.link == fine.link == "crank"
+    assert abs(again.value) > np.max(np.abs(found.stress[::4]))
+
+
+def test_static_and_dynamic_part_add_up(at_20):
+    _, _, found = at_20
+    for fibre in ("positive", "negative"):
+        parts = [found.fibre(fibre, name) for name in ("all", "quasi-static", "dynamic")]
+        np.testing.assert_allclose(parts[0], parts[1] + parts[2], atol=1e-9 * np.max(found.stress))
+    assert np.max(found.quasi_static) < np.max(found.stress)
+
+
+def test_quasi_static_stress_is_that_of_rigid_links(at_20):
+    # Statically determinate: with a modulus a million times as large the whole is quasi-static.
+    system, _, _ = at_20
+    bare = system.without("C").without("Kg")
+    stiff = bare.with_parameters(elasticity=1e6)
+    whole = stress(stiff, periodic_motion(stiff, 20.0, 64))
+    still = stress(bare, periodic_motion(bare, 20.0, 64))
+    size = np.max(whole.stress)
+    # Elastic displacements turn no force in these equations without the axial forces; what is
+    # left is centripetal acceleration of the displacement, some 1e-4 of the rigid one.
+    np.testing.assert_allclose(still.static_bending, whole.bending, atol=2e-3 * size)
+
+
+def test_form_of_the_stresses_gives_the_stresses(at_20):
+    system, motion, found = at_20
+    form, stations = stress_operator(system, motion.theta, 25)
+    values = form.values(20.0, motion.q, motion.slope)
+    expected = np.concatenate([found.fibre("positive"), found.fibre("negative")], axis=1)
+    np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(found.stress))
+    assert tuple(s.beam for s in stations) == found.links
+    whole, _ = stress_operator(system, motion.theta, 25, accelerations=True)
+    assert ("ddq", 2) in whole.parts
+    assert not any(name == "ddq" for name, _ in form.parts)
+
+
+def test_steady_state_and_march_agree_with_collocation():
+    system = turning_bar(rocking, elements=1)
+    expected = stress(system, periodic_motion(system, 8.0, 32))
+    steady = steady_state(system, 8.0)
+    found = stress(system, steady)
+    assert found.maximum.value == pytest.approx(expected.maximum.value, rel=1e-6)
+    assert found.mesh_error > 0.0
+    assert stress(system, 8.0).maximum.value == pytest.approx(expected.maximum.value, rel=1e-5)
+    start = (steady.q[0], steady.qd[0])
+    march = simulate(system, 8.0, 0.125, initial=start, samples=len(steady.theta))
+    again = stress(system, march)
+    count = len(again.theta)
+    np.testing.assert_allclose(again.theta, found.theta[:count], atol=1e-12)
+    size = np.max(found.stress)
+    np.testing.assert_allclose(again.bending, found.bending[:count], atol=1e-4 * size)
+    assert "frequencies apart" in again.error_norm
+
+
+def test_left_linear_range_is_said():
+    system = turning_bar(rocking, modulus=1e8, elements=1)
+    with pytest.warns(LinearRangeWarning):
+        found = stress(system, periodic_motion(system, 8.0, 32))
+    assert not found.checks["linear range"].passed
+
+
+def test_picture_shows_each_link(at_20):
+    ax = at_20[2].plot()
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert [label.split(",")[0] for label in labels] == ["crank", "coupler", "follower"]
+
+
+def test_unusable_arguments_are_refused(at_20):
+    system, motion, found = at_20
+    bar = turning_bar(rocking, elements=1)
+    with pytest.raises(BadInput, match="limit"):
+        found.safety({"crank": 1e8})
+    with pytest.raises(BadInput, match="limit"):
+        found.safety(-1.0)
+    for call in (
+        lambda: found.fibre("top"),
+        lambda: found.fibre("positive", "half"),
+        lambda: found.at("rod", 0.5),
+        lambda: stress(system, motion, method="guess"),
+        lambda: stress(bar, steady_state(bar, [7.0, 8.0])),
+    ):
+        with pytest.raises(BadInput):
+            call()
+    thin = {name: replace(section, thickness=None) for name, section in SECTIONS.items()}
+    bare = linkage_system(FOUR_BAR, thin, joint_masses=JOINT_MASSES, elements=1)
+    with pytest.raises(BadInput, match="thickness"):
+        stress(bare, motion)

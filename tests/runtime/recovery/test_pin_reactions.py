@@ -1,0 +1,147 @@
+"""Pin forces and driving torque of elastic linkages: the rigid limit, and balances."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
+from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.linkages import SliderCrank
+from elastolink.runtime.recovery import pin_reactions
+from elastolink.runtime.recovery.strain_energy import beam_energies
+from elastolink.runtime.rigid import Machine, MassDistribution, rigid_forces
+from elastolink.runtime.systems import with_modal_damping
+
+SLIDER = SliderCrank(crank=0.1, coupler=0.37, offset=0.06)
+
+
+def machine(linkage, masses):
+    """Return the rigid machine: uniform bars, each joint mass on the link that is named."""
+    bars = {
+        name: MassDistribution.uniform_bar(
+            mass=SECTIONS[name].mass_per_length * linkage.lengths[name],
+            length=linkage.lengths[name],
+        )
+        for name in SECTIONS
+        if name in linkage.lengths
+    }
+    for link, mass in masses.items():
+        point = MassDistribution.point(mass, along=linkage.lengths.get(link, 0.0))
+        bars[link] = bars[link] + point if link in bars else point
+    return Machine(linkage, bars, gravity=(0.0, -9.81))
+
+
+def four_bar(elasticity, **options):
+    made = linkage_system(
+        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1, gravity=(0.0, -9.81), **options
+    )
+    return with_modal_damping(made, 0.02).with_parameters(elasticity=elasticity)
+
+
+def gaps_to_rigid(elasticity):
+    """Return the largest differences from the rigid machine, over the largest force or torque."""
+    system = four_bar(elasticity)
+    found = pin_reactions(system, periodic_motion(system, 30.0))
+    masses = {"crank": JOINT_MASSES["B"], "follower": JOINT_MASSES["C"]}
+    rigid = rigid_forces(machine(FOUR_BAR, masses), found.theta, 30.0)
+    pairs = {
+        "A": (found.of_ground["A"][:, :2], rigid.f12),
+        "B": (found.force("B", "coupler"), rigid.f23),
+        "C": (-found.force("C", "coupler"), rigid.f34),
+        "D": (-found.of_ground["D"][:, :2], rigid.f41),
+    }
+    size = np.max(np.abs(rigid.f12))
+    gaps = [np.max(np.abs(ours - theirs)) / size for ours, theirs in pairs.values()]
+    torque = np.max(np.abs(found.torque() - rigid.torque)) / np.max(np.abs(rigid.torque))
+    return np.array([*gaps, torque])
+
+
+def test_rigid_limit_of_the_four_bar():
+    # (w/w_1)^2 = (30/184)^2 = 0.027 over the factor of the modulus.
+    softer, stiffer = gaps_to_rigid(1e4), gaps_to_rigid(1e6)
+    assert np.all(stiffer <= 1e-6)
+    np.testing.assert_allclose(softer / stiffer, 100.0, rtol=0.05)
+
+
+def test_rigid_limit_of_the_slider_crank():
+    system = linkage_system(
+        SLIDER,
+        {name: SECTIONS[name] for name in ("crank", "coupler")},
+        joint_masses={"C": 0.3},
+        elements=2,
+        gravity=(0.0, -9.81),
+    ).with_parameters(elasticity=1e6)
+    found = pin_reactions(system, periodic_motion(system, 30.0))
+    rigid = rigid_forces(machine(SLIDER, {"slider": 0.3}), found.theta, 30.0)
+    size = np.max(np.abs(rigid.f12))
+    assert np.max(np.abs(found.force("B", "coupler") - rigid.f23)) <= 1e-5 * size
+    # The guide pushes across alone, and the ground there takes nothing along.
+    assert np.max(np.abs(found.of_ground["C"][:, 1] + rigid.f41[:, 1])) <= 1e-5 * size
+    assert np.max(np.abs(found.of_ground["C"][:, 0])) <= 1e-8 * size
+    assert np.max(np.abs(found.torque() - rigid.torque)) <= 1e-5 * np.max(np.abs(rigid.torque))
+
+
+@pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature"])
+def test_forces_balance_to_round_off(kind):
+    system = four_bar(1.0, kind=kind)
+    found = pin_reactions(system, periodic_motion(system, 25.0))
+    assert found.checks["balance"].value <= 1e-10
+    # Action and reaction with the joint's inertia: the coupler's and the follower's pin.
+    lumped = JOINT_MASSES["C"]
+    total = found.force("C", "coupler") + found.force("C", "follower")
+    assert np.max(np.abs(total)) > 0.01 * lumped * 25.0**2
+
+
+def test_reactions_of_a_frame_by_hand():
+    # A portal's support forces: weight of 3 bars and a push of 5 N at a corner.
+    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
+    structure = frame(
+        {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)},
+        {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")},
+        bar,
+        supports={"A": ("x", "y", "rotation"), "D": ("x", "y", "rotation")},
+        nodes={"B": {"force": (5.0, 0.0)}},
+    )
+    system = linear_system(structure, gravity=(0.0, -9.81), geometric_stiffness=False)
+    found = pin_reactions(system)
+    total = found.of_ground["A"][0] + found.of_ground["D"][0]
+    weight = 3.0 * bar.mass_per_length * 9.81
+    np.testing.assert_allclose(total[:2], [-5.0, weight], rtol=1e-7)
+    # Moments about A: the push at height 1, the weight at x = 1/2, the support at D.
+    moment = total[2] + found.of_ground["D"][0, 1] * 1.0
+    assert moment == pytest.approx(5.0 * 1.0 + 0.5 * weight, rel=1e-7)
+
+
+def test_torque_is_that_of_the_energy_to_second_order_with_the_axial_forces():
+    # With geometric stiffness the moment at the clamp and the generalised force of the crank
+    # angle differ by squares of the displacement; without it by its first power.
+    gaps = {}
+    for stiffening in (True, False):
+        for elasticity in (10.0, 100.0):
+            system = linkage_system(
+                FOUR_BAR,
+                SECTIONS,
+                joint_masses=JOINT_MASSES,
+                elements=1,
+                geometric_stiffness=stiffening,
+            ).with_parameters(elasticity=elasticity)
+            motion = periodic_motion(system, 10.0, 96)
+            ours = pin_reactions(system, motion).torque()
+            gaps[stiffening, elasticity] = np.max(
+                np.abs(ours - beam_energies(system, motion).torque)
+            )
+    assert gaps[True, 10.0] / gaps[True, 100.0] == pytest.approx(100.0, rel=0.5)
+    assert gaps[False, 10.0] / gaps[False, 100.0] == pytest.approx(10.0, rel=0.1)
+    assert gaps[True, 100.0] < 1e-3 * gaps[False, 100.0]
+
+
+def test_names_that_are_not_there_are_refused():
+    system = turning_bar(rocking, elements=1)
+    found = pin_reactions(system, periodic_motion(system, 5.0, 16))
+    with pytest.raises(BadInput, match="force"):
+        found.force("P", "rod")
+    with pytest.raises(BadInput, match="node"):
+        found.torque("P")
+    assert "ground on O moment" in found.arrays()
+    assert found.plot().get_ylabel() == "force [N]"

@@ -1,0 +1,129 @@
+"""The stress curve: the same answer in any order, against stress(), refusals."""
+
+import elastolink as el
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.recovery import stress_curve
+from elastolink.runtime.recovery.stresses import stress
+
+SPEEDS = np.linspace(18.0, 60.0, 90)
+
+
+@pytest.fixture(scope="module")
+def system():
+    overrides = {"mesh.elements": 1, "damping.ratio": 0.02}
+    return el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
+
+
+@pytest.fixture(scope="module")
+def curve(system):
+    return stress_curve(system, SPEEDS, stations=5)
+
+
+def test_it_passes_its_own_checks(curve):
+    assert set(curve.checks) == {"converged", "equation", "linear range"}
+    assert curve.checks["equation"].passed
+    assert curve.maximum.shape == curve.error.shape == (90, 3)
+    assert curve.links == ("crank", "coupler", "follower")
+
+
+def test_the_answer_does_not_depend_on_the_order(system, curve):
+    turned = stress_curve(system, SPEEDS[::-1], stations=5)
+    assert np.array_equal(turned.maximum, curve.maximum[::-1])
+    assert np.array_equal(turned.error, curve.error[::-1])
+
+
+@pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
+def test_it_agrees_with_stress_of_a_steady_state(system, curve):
+    """Another solver of the motion, and the recovery itself: maxima, places and angles."""
+    for k in (3, 77):
+        steady = el.steady_state(system, float(SPEEDS[k]), method="harmonic_balance")
+        found = stress(system, steady, stations=5)
+        for n, link in enumerate(curve.links):
+            peak = found.maxima[link]
+            # stress() looks at eight times its angles, without a parabola: 1e-5 of a maximum.
+            assert abs(peak.value) == pytest.approx(curve.maximum[k, n], rel=1e-4)
+            assert peak.place == curve.place[k, n]
+            assert np.cos(peak.theta - curve.theta[k, n]) > 0.999
+            assert peak.fibre == ("positive" if curve.fibre[k, n] > 0 else "negative")
+
+
+def test_a_single_speed_and_repeated_ones(system, curve):
+    one = stress_curve(system, float(SPEEDS[40]), stations=5)
+    assert one.maximum[0] == pytest.approx(curve.maximum[40], rel=1e-4)
+    twice = stress_curve(system, [30.0, 40.0, 30.0], stations=5)
+    assert np.array_equal(twice.maximum[0], twice.maximum[2])
+
+
+def test_stability_is_that_of_the_multipliers(system):
+    """Stable below 86.9 rad/s and unstable above, by the full system's own multipliers."""
+    speeds = [80.0, 86.0, 90.0]
+    found = stress_curve(system, speeds, rtol=1e-2, stations=3)
+    whole = el.floquet_multipliers(system, speeds, rtol=1e-6)
+    largest = np.max(np.abs(whole.multipliers), axis=1)
+    assert np.all(np.abs(found.multiplier - largest) <= found.multiplier_error)
+    assert found.stable.tolist() == whole.stable.tolist() == [True, True, False]
+    assert found.unstable_ranges == ((86.0, 90.0),)
+    assert not np.any(found.undecided)
+    assert "unstable" in [text.get_text() for text in found.plot().get_legend().get_texts()]
+
+
+def test_stability_can_be_left_out(system):
+    found = stress_curve(system, [40.0, 62.0], stations=5, stability=False)
+    assert found.stable is None and found.undecided is None and found.unstable_ranges == ()
+
+
+def test_more_modes_change_it_by_less_than_its_error(system, curve):
+    more = stress_curve(system, SPEEDS, stations=5, modes=8)
+    assert np.all(np.abs(more.maximum / curve.maximum - 1.0) <= curve.error + more.error)
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        ({"speeds": [0.0, 10.0]}, "speeds"),
+        ({"speeds": [[10.0]]}, "speeds"),
+        ({"speeds": []}, "speeds"),
+        ({"speeds": ["fast"]}, "speeds"),
+        ({"rtol": 0.5}, "rtol"),
+        ({"method": "guess"}, "method"),
+        ({"modes": 12}, "modes"),
+        ({"modes": 0}, "modes"),
+        ({"stations": {"crank": [2.0]}}, "crank"),
+    ],
+)
+def test_bad_input_is_one_clear_line(system, change, match):
+    given = {"speeds": [20.0, 30.0], **change}
+    with pytest.raises(BadInput, match=match):
+        stress_curve(system, **given)
+
+
+def test_no_damping_and_no_beams_are_refused(system):
+    with pytest.raises(BadInput, match="damping"):
+        stress_curve(system.with_parameters(damping_ratio=0.0), [20.0])
+    with pytest.raises(BadInput):
+        stress_curve(el.load_scene("smith_1972_5152_sixteenth_inch").system(), [20.0])
+
+
+@pytest.mark.slow
+def test_three_elements_and_usual_damping_have_an_unstable_range():
+    """27 freedoms at 2 %: unstable from 66.3 to 67.3 rad/s, by the whole system too."""
+    whole = el.load_scene("aannaque_1996_table_4_1").system()
+    speeds = np.linspace(60.0, 70.0, 101)
+    curve = stress_curve(whole, speeds, stations=3, rtol=1e-3)
+    ((low, high),) = curve.unstable_ranges
+    assert 66.1 < low < 66.35 and 67.25 < high < 67.45
+    picked = [0, 61, 68, 74, 100]
+    truth = el.floquet_multipliers(whole, speeds[picked], rtol=1e-8)
+    largest = np.max(np.abs(truth.multipliers), axis=1)
+    assert np.all(np.abs(curve.multiplier[picked] - largest) <= curve.multiplier_error[picked])
+    assert np.any(largest > 1.0) and np.any(largest < 1.0)
+
+
+def test_it_draws_itself_and_leaves_as_csv(curve, tmp_path):
+    ax = curve.plot()
+    assert len(ax.lines) == 3
+    text = curve.save(tmp_path / "curve.csv").read_text()
+    assert text.startswith("link,")
+    assert len(text.splitlines()) > 270

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
+from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
-from elastolink.runtime.simulation.spring_form import periodic_derivative
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
@@ -41,9 +41,9 @@ def periodic_motion(system, speed, count=64):
     def slope(name):
         if not system.has(name):
             return 0.0
-        return periodic_derivative(
-            lambda angles: system.array(name, angles, speed=speed)[None], system.period
-        )(theta)[0]
+        angles = even_angles(system.period, 256)
+        values = system.array(name, angles, speed=speed)
+        return interpolated(values, system.period).derivative(theta)
 
     first = fourier_derivative(count, system.period)
     gyroscopic = slope("M") + at("A") - np.swapaxes(at("A"), 1, 2)

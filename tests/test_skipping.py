@@ -16,7 +16,7 @@ import elastolink.generated
 import numpy as np
 import pytest
 from elastolink.derive.spec import read_manifest
-from elastolink.runtime import beams
+from elastolink.runtime import recovery
 from elastolink.runtime.cli.skipping import read_cost
 from elastolink.runtime.rigid import evaluation, forces
 from elastolink.runtime.systems import assembly
@@ -207,9 +207,9 @@ RESULTS = {
     "stress": lambda system, motion: el.stress(system, motion).maximum,
     "recover": lambda system, motion: el.recover(system, motion).moment,
     "pin_reactions": lambda system, motion: el.pin_reactions(system, motion).torque(),
-    "beam_energies": lambda system, motion: beams.beam_energies(system, motion).peak,
+    "beam_energies": lambda system, motion: recovery.beam_energies(system, motion).peak,
     "elastic_coupler_curve": lambda system, motion: (
-        beams.elastic_coupler_curve(system, motion).largest
+        recovery.elastic_coupler_curve(system, motion).largest
     ),
 }
 
@@ -218,7 +218,7 @@ RESULTS = {
 def test_asking_for_the_error_is_what_finds_it(name, steady_four_bar, monkeypatch):
     """A finer mesh takes longer than the motion: none is made for values alone."""
     system, motion = steady_four_bar
-    module = importlib.import_module(getattr(beams, name).__module__)
+    module = importlib.import_module(getattr(recovery, name).__module__)
     made = Counter()
     find = module.on_finer_mesh
 
@@ -227,13 +227,13 @@ def test_asking_for_the_error_is_what_finds_it(name, steady_four_bar, monkeypatc
         return find(*arguments)
 
     monkeypatch.setattr(module, "on_finer_mesh", counting)
-    found = getattr(beams, name)(system, motion)
+    found = getattr(recovery, name)(system, motion)
     RESULTS[name](system, motion)
     assert found.passed and not made
     assert np.all(np.asarray(found.error) > 0.0) and found.error_norm
     # What is found once is kept, and found alike by what is read first.
     assert made == {"finer": 1}
-    again = getattr(beams, name)(system, motion)
+    again = getattr(recovery, name)(system, motion)
     assert again.error_norm == found.error_norm
     assert np.array_equal(again.error, found.error)
     assert made == {"finer": 2}
@@ -242,7 +242,7 @@ def test_asking_for_the_error_is_what_finds_it(name, steady_four_bar, monkeypatc
 
 
 def test_asking_for_the_quasi_static_stress_is_what_computes_it(steady_four_bar, monkeypatch):
-    module = importlib.import_module("elastolink.runtime.beams.stress")
+    module = importlib.import_module("elastolink.runtime.recovery.stresses")
     made = Counter()
     for name in ("frozen", "motion_error"):
         own = getattr(module, name)

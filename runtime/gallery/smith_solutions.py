@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.errors import StepTooLongWarning
 from ..core.families import LinearPeriodic
 from ..hill import discriminant
-from ..periodic import Trajectory, simulate
+from ..integrators import de_vogelaere, kutta_merson
+from ..periodic import simulate
+from ..periodic.equation import equation_of
 from ..scenes import load_scene
 from .records import Drawn, Quoted
 from .smith_linkages import Array, f3_series, linkage_of
@@ -74,24 +75,72 @@ def _speed(system: LinearPeriodic) -> float:
     return float(np.sqrt(stiffness)) / _LAMBDA
 
 
+@dataclass(frozen=True)
+class _Run:
+    """A march: crank angles ``(nt,)``, coordinates and time derivatives ``(nt, 1)``, the speed."""
+
+    theta: Array
+    q: Array
+    qd: Array
+    speed: float
+
+
 @lru_cache(maxsize=32)
-def _march(step: float, turns: float, start: tuple[float, float] | None = None) -> Trajectory:
+def _march(step: float, turns: int, start: tuple[float, float] | None = None) -> _Run:
     """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not."""
+    system, h = _first_mode(), np.radians(step)
+    speed = _speed(system)
+    equation = equation_of(system, speed, {}, forcing=start is None)
+
+    def spring(theta: Array) -> Array:
+        # q'' = P q + F of one freedom, whose A has no skew part.
+        inertia = 1.0 / equation.at("mass", theta)[0]
+        out = np.zeros((len(theta), 1 + equation.forced, 1 + equation.forced))
+        stiffness = equation.at("stiffness", theta)[0]
+        if "gyroscopic" in equation.fields:
+            stiffness = stiffness - equation.slope("gyroscopic", theta)
+        out[:, :1, :1] = inertia * stiffness
+        if equation.forced:
+            out[:, 0, 1] = inertia[:, 0, 0] * equation.at("force", theta)[0, :, 0]
+        return out
+
+    count, unit = round(180.0 / step), float(equation.scale[0, 0])
+    maps = de_vogelaere.maps(spring, 2.0 * h * np.arange(float(count)), h)
+    q, rate = (0.0, 0.0) if start is None else start
+    one, zero = np.ones(int(equation.forced)), np.zeros(int(equation.forced))
+    first = np.append(q / unit, one), np.append(rate / unit, zero)
+    states = [de_vogelaere.start(spring, 0.0, h, *first)]
+    for _ in range(turns):
+        for matrix in maps:
+            states.append(matrix @ states[-1])
+    every = max(1, count // 360)
+    kept = unit * np.array(states)[::every]
+    theta = 2.0 * h * every * np.arange(float(len(kept)))
+    slope = kept[:, 1 + equation.forced] / h
+    return _Run(theta, kept[:, :1], speed * slope[:, None], speed)
+
+
+def _kutta_merson(turns: int) -> _Run:
+    """March from rest with the Kutta-Merson programme, values kept at each degree."""
     system = _first_mode()
     speed = _speed(system)
-    initial = None if start is None else (start[0], start[1] * speed)
-    with warnings.catch_warnings():
-        # Steps that are too long are what the figure is about.
-        warnings.simplefilter("ignore", StepTooLongWarning)
-        return simulate(
-            system,
-            speed,
-            turns,
-            "de_vogelaere",
-            steps=round(180.0 / step),
-            initial=initial,
-            forcing=start is None,
-        )
+    equation = equation_of(system, speed, {}, forcing=True)
+    unit = float(equation.scale[0, 0])
+    # The motion from rest has no size yet: that of the first quarter of a wave.
+    begin = simulate(system, speed, 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
+    peak = np.max(np.abs(begin.q)) / unit + np.max(np.abs(begin.qd)) / speed * unit
+    theta = np.radians(np.arange(360.0 * turns + 1.0))
+    run = kutta_merson.adaptive(
+        lambda angles: equation.generator(angles)[0],
+        theta,
+        np.array([0.0, 0.0, 1.0]),
+        _KUTTA_MERSON_RTOL,
+        np.full(3, 1e-2 * _KUTTA_MERSON_RTOL * peak),
+        stop=lambda state: False,
+        first=0.1 / _LAMBDA,
+    )
+    q = unit * run.states[:, :1]
+    return _Run(theta, q, np.full_like(q, np.nan), speed)
 
 
 def _remaining(step: float) -> float:
@@ -100,12 +149,12 @@ def _remaining(step: float) -> float:
     # Small enough to stay within the linear range, which a free vibration has no part in.
     size = 1e-3
     for start in ((size, 0.0), (0.0, size)):
-        run = _march(step, 1.0, start)
+        run = _march(step, 1, start)
         ends.append((run.q[-1, 0] / size, run.qd[-1, 0] / (size * run.speed)))
     return float(np.sqrt(abs(np.linalg.det(np.array(ends)))))
 
 
-def _phase(run: Trajectory, turn: int) -> complex:
+def _phase(run: _Run, turn: int) -> complex:
     """Return the fast vibration's complex amplitude over one turn, by a smooth window."""
     inside = (run.theta >= 2 * pi * (turn - 1)) & (run.theta <= 2 * pi * turn)
     theta, values = run.theta[inside], run.q[inside, 0]
@@ -113,12 +162,12 @@ def _phase(run: Trajectory, turn: int) -> complex:
     return complex(np.sum(values * window * np.exp(-1j * _LAMBDA * theta)))
 
 
-def _lag(one: Trajectory, other: Trajectory, turn: int) -> float:
+def _lag(one: _Run, other: _Run, turn: int) -> float:
     """Return the phase between two runs in degrees of the fast vibration, without sign."""
     return float(abs(np.degrees(np.angle(_phase(one, turn) / _phase(other, turn)))))
 
 
-def _line(ax: Axes, run: Trajectory, colour: str, label: str, style: str = "-") -> None:
+def _line(ax: Axes, run: _Run, colour: str, label: str, style: str = "-") -> None:
     ax.plot(np.degrees(run.theta), 1e3 * run.q[:, 0], style, color=colour, lw=1.0, label=label)
     ax.set_ylabel(r"$10^3\,U_1$")
 
@@ -126,7 +175,7 @@ def _line(ax: Axes, run: Trajectory, colour: str, label: str, style: str = "-") 
 def figure_28(axes: Sequence[Axes]) -> Drawn:
     """Draw solutions with a step that is too long and one that is short enough."""
     for ax, step, colour in zip(axes, (2.0, 1.0, 0.1), COLOURS, strict=False):
-        _line(ax, _march(step, 2.0), colour, f"h = {step:g} deg")
+        _line(ax, _march(step, 2), colour, f"h = {step:g} deg")
         crank_axis(ax, 2.0)
         panel_title(ax, f"step length {step:g} deg")
     for ax in axes[:-1]:
@@ -191,14 +240,12 @@ def _free_decay(step: float, lam: float) -> float:
     lam : float
         Vibrations in one turn.
     """
-    from ..integrators.de_vogelaere import maps
-
     h = np.radians(step)
 
     def generator(theta: Array) -> Array:
         return np.full((len(theta), 1, 1), -lam * lam)
 
-    step_map = maps(generator, np.zeros(1), h)[0]
+    step_map = de_vogelaere.maps(generator, np.zeros(1), h)[0]
     return float(np.max(np.abs(np.linalg.eigvals(step_map))) ** (pi / h))
 
 
@@ -214,7 +261,7 @@ def _cycles(axes: Sequence[Axes]) -> None:
 
 def figure_29(axes: Sequence[Axes]) -> Drawn:
     """Draw the first and the fourth crank cycle with steps of 1 and 0.5 degrees."""
-    long, short = _march(1.0, 4.0), _march(0.5, 4.0)
+    long, short = _march(1.0, 4), _march(0.5, 4)
     for ax in axes:
         _line(ax, long, COLOURS[1], "h = 1 deg", "--")
         _line(ax, short, COLOURS[0], "h = 0.5 deg")
@@ -235,9 +282,8 @@ def figure_29(axes: Sequence[Axes]) -> Drawn:
 
 def figure_30(axes: Sequence[Axes]) -> Drawn:
     """Draw de Vogelaere's and the Kutta-Merson solution over four crank cycles."""
-    ours = _march(0.5, 4.0)
-    system = _first_mode()
-    other = simulate(system, _speed(system), 4.0, "kutta_merson", rtol=_KUTTA_MERSON_RTOL)
+    ours = _march(0.5, 4)
+    other = _kutta_merson(4)
     for ax in axes:
         _line(ax, ours, COLOURS[0], "de Vogelaere, h = 0.5 deg")
         _line(ax, other, COLOURS[1], "Kutta-Merson, variable step", "--")

@@ -316,7 +316,7 @@ def by_segments(
 
 
 def ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tuple[Array, ...]:
-    """Return q and dq/dtheta ``(nb, nt, n)`` at even angles, and sensitivities."""
+    """Return q and dq/dtheta ``(nb, nt, n)`` at even angles and sensitivities ``(nb,)``."""
     n = equation.size
     segments = segments_of(equation, count, way, slopes=True)
     flow, load = segments.maps[..., : 2 * n, : 2 * n], segments.maps[..., : 2 * n, 2 * n]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from ..core.lazy import on_first_use
+from ..core.workers import WorkersLost, process_pool
 
 _PUBLIC = {
     "Sweep": "result",
     "SweepEstimate": "estimate",
-    "WorkersLost": ".core.workers",
     "estimate_sweep": "estimate",
-    "process_pool": ".core.workers",
     "sweep": "sweeping",
 }
 

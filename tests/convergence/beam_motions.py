@@ -41,9 +41,9 @@ def periodic_motion(system, speed, count=64):
     def slope(name):
         if not system.has(name):
             return 0.0
-        angles = even_angles(system.period, 256)
-        values = system.array(name, angles, speed=speed)
-        return interpolated(values, system.period).derivative(theta)
+        angles = even_angles(system.period, 1024)
+        series = interpolated(system.array(name, angles, speed=speed), system.period)
+        return series.derivative(theta)
 
     first = fourier_derivative(count, system.period)
     gyroscopic = slope("M") + at("A") - np.swapaxes(at("A"), 1, 2)

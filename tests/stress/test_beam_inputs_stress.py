@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from elastolink.runtime import beams, frequencies
+from elastolink.runtime import beams, frequencies, recovery
 from elastolink.runtime import frequencies as dynamic_stiffness
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Transcendental
@@ -85,16 +85,16 @@ CALLS = (
     (dynamic_stiffness.member_matrices, {"omega": 1.0, **MEMBER}),
     (dynamic_stiffness.wittrick_williams, {"problem": problem, "count": 1, "rtol": 1e-10}),
     (shape, {"mode": 0, "beam": "crank", "eta": [0.5]}),
-    (beams.beam_energies, {"system": system, "motion": 10.0}),
-    (beams.stress, {"system": system, "motion": 10.0, "stations?": 3}),
-    (beams.recover, {"system": system, "motion": 10.0, "stations?": 3}),
-    (beams.pin_reactions, {"system": system, "motion": 10.0}),
+    (recovery.beam_energies, {"system": system, "motion": 10.0}),
+    (recovery.stress, {"system": system, "motion": 10.0, "stations?": 3}),
+    (recovery.recover, {"system": system, "motion": 10.0, "stations?": 3}),
+    (recovery.pin_reactions, {"system": system, "motion": 10.0}),
     (
-        beams.elastic_coupler_curve,
+        recovery.elastic_coupler_curve,
         {"system": system, "motion": 10.0, "along?": 0.1, "across": 0.0, "link": "coupler"},
     ),
     (
-        beams.stress_operator,
+        recovery.stress_operator,
         {"system": system, "theta": [0.1], "stations?": 3, "method": "equilibrium"},
     ),
     (beams.without_stretching, {"system": standing}),

@@ -96,7 +96,7 @@ def test_the_settled_motion_is_the_steady_state(place):
     _, first, settled = beale_tip.damped_tip(HEAVY, place, 3)
     system = rod(HEAVY, "polynomial", 3, **beale_tip._DAMPINGS[place][1])
     with pytest.warns(LinearRangeWarning):
-        steady = steady_state(system, 90.0)
+        steady = steady_state(system, 90.0, samples=1024)
     x = np.append(steady.theta, 2 * np.pi)
     y = np.append(steady.deflection(), steady.deflection()[0])
     angle = np.linspace(0.0, 2 * np.pi, len(settled))

@@ -95,7 +95,7 @@ def test_maxima_are_refined_between_samples():
 def test_midpoints_by_the_recovery_of_displacements():
     for elements in (2, 3):
         system = aannaque_models.beams(elements)
-        motion = aannaque_models.periodic(system, 20.0, intervals=32)
+        motion = aannaque_models.periodic(system, 20.0)
         for link in ("coupler", "follower") if elements == 2 else ("follower",):
             found = recover(system, motion, stations={link: [0.5]}, method="shape")
             ours = aannaque_models.moved(system, link, motion.theta, motion.q)

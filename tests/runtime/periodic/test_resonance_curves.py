@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from elastolink import frozen_frequencies, resonance_curve, steady_peaks, steady_state
@@ -45,10 +47,24 @@ def test_peaks_of_many_speeds_are_those_of_the_motions():
     assert steady_peaks(_system(), speeds[:2]).place[0] == 1.0
     with pytest.raises(BadInput, match="places"):
         steady_peaks(_system(), speeds, x=1.5)
-    with pytest.raises(BadInput, match="fewer speeds"):
-        steady_peaks(_system(), np.full(200, 0.01), c=1e4)
+    with pytest.raises(BadInput, match="mode shapes"):
+        steady_peaks(replace(_system(), shape=None), speeds)
     with pytest.raises(BadInput, match="row of speeds"):
         steady_peaks(_system(), [])
+
+
+def test_strong_damping_and_a_slow_crank_cost_nothing():
+    peaks = steady_peaks(_system(mu=0.0), np.full(200, 0.01), c=1e4)
+    # Harmonic k of the load, 2 (1.5 - r)^k / r with r = sqrt(5/4), over 9.3 + 100 i k.
+    theta, root = np.linspace(0, 2 * np.pi, 4000), np.sqrt(1.25)
+    q = 1 / root / 9.3 + sum(
+        2
+        * (1.5 - root) ** k
+        / root
+        * np.real(np.exp(1j * k * theta) / (9.3 - 1e-4 * k**2 + 100j * k))
+        for k in range(1, 40)
+    )
+    np.testing.assert_allclose(peaks.peak, 2e-4 * np.max(np.abs(q)), rtol=1e-5)
 
 
 def test_peaks_beyond_the_linear_range_are_told_once():

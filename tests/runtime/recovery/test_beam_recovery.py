@@ -139,9 +139,9 @@ def test_forces_of_the_elements_add_up_to_the_equation_of_motion(form, kind):
     def rate(name):
         if not system.has(name):
             return 0.0
-        angles = even_angles(system.period, 256)
-        values = system.array(name, angles, speed=speed)
-        return interpolated(values, system.period).derivative(theta)
+        angles = even_angles(system.period, 1024)
+        series = interpolated(system.array(name, angles, speed=speed), system.period)
+        return series.derivative(theta)
 
     gyroscopic = rate("M") + at("A") - np.swapaxes(at("A"), 1, 2)
     expected = (

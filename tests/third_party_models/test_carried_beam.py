@@ -116,7 +116,7 @@ def test_every_solver_takes_it_unchanged(beam):
     found = floquet_multipliers(system, [6.0, 14.0])
     assert monodromy(system, [6.0, 14.0]).checks["symplectic"].passed
     assert found.checks["reciprocal pairs"].passed
-    moved = simulate(beam(3, damping=0.5), 6.0, 2.0)
+    moved = simulate(beam(3, damping=0.5), 6.0, 2.0, samples=1024)
     assert moved.success
     assert moved.checks["energy balance"].passed
     assert np.max(np.abs(moved.q)) > 0.0

@@ -9,7 +9,7 @@ import scipy.linalg
 from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.core.families import LinearPeriodic, Term, array_function
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
-from elastolink.runtime.stability import speed_boundaries
+from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from scipy.integrate import solve_ivp
 
 UNIT = {

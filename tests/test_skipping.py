@@ -25,74 +25,6 @@ PACKAGED = Path(elastolink.generated.__path__[0])
 SPECS = {entry.module: entry.spec for entry in read_manifest(PACKAGED).values()}
 COSTS = {name: read_cost(PACKAGED / f"{name}.py") for name in SPECS}
 
-# The tension of the rod is two terms: its work in Buckens' frame, and in the rotation of that
-# frame.  One of them alone is the whole less the other, which has to be subtracted.
-HALVES = {
-    "quick_return_rod_moving_basis_without_frame",
-    "quick_return_rod_moving_basis_without_tension",
-}
-# A drive is a constraint; without it the crank is free, and its torque a force that is added.
-EXCHANGED = {name for name in SPECS if name.endswith("multibody_without_drive")}
-
-
-def restricts(less, more):
-    """Return True where a spec asks for a part of what another one asks for."""
-    same = all(
-        getattr(less, part) == getattr(more, part)
-        for part in ("mechanism", "formulation", "flexible", "modes")
-    )
-    dropped = set(more.drop) <= set(less.drop) and set(more.balanced) <= set(less.balanced)
-    wanted = not more.outputs or (less.outputs and set(less.outputs) <= set(more.outputs))
-    return bool(same and dropped and wanted and less != more)
-
-
-PAIRS = [
-    (less, more)
-    for less, more in itertools.permutations(sorted(SPECS), 2)
-    if restricts(SPECS[less], SPECS[more])
-]
-FEWER_MODES = [
-    (less, more)
-    for less, more in itertools.permutations(sorted(SPECS), 2)
-    if (SPECS[less].modes or 0) < (SPECS[more].modes or 0)
-    and SPECS[less].with_(modes=None) == SPECS[more].with_(modes=None)
-]
-
-
-def test_every_packaged_restriction_is_looked_at():
-    """Three modules of forces give three pairs, four of the moving basis five, and so on."""
-    dropping = [name for name, spec in SPECS.items() if spec.drop or spec.balanced or spec.outputs]
-    assert {less for less, _ in PAIRS} == set(dropping) and len(PAIRS) >= 3 * 3 + 5 + 3 + 5
-    assert len(FEWER_MODES) == 2 * 10
-
-
-@pytest.mark.parametrize(("less", "more"), PAIRS, ids=lambda name: name)
-def test_a_module_that_leaves_something_out_is_smaller(less, more):
-    small, large = COSTS[less], COSTS[more]
-    if less in HALVES and more not in HALVES:
-        # Nothing but the subtraction of the other half has been added.
-        assert set(small.operations) - set(large.operations) == {"basis_products"}
-        assert all(small.operations[name] <= n for name, n in large.operations.items())
-        return
-    assert small.size < large.size
-    if less in EXCHANGED:
-        assert small.total <= large.total
-        rows = {key: n for key, (_, n) in small.entries.items()}
-        assert all(rows[key] <= n for key, (_, n) in large.entries.items())
-        assert sum(rows.values()) < sum(n for _, n in large.entries.values())
-        return
-    assert small.total < large.total
-    assert set(small.operations) <= set(large.operations)
-    assert all(n <= large.operations[name] for name, n in small.operations.items())
-
-
-@pytest.mark.parametrize(("less", "more"), FEWER_MODES, ids=lambda name: name)
-def test_fewer_modes_cost_less_in_every_function(less, more):
-    small, large = COSTS[less], COSTS[more]
-    assert small.size < large.size
-    assert all(small.operations[name] < n for name, n in large.operations.items())
-
-
 # Functions that one calls for a part of what another one gives.
 PARTS = {
     "forces": ("pin_forces", "driving_torque", "shaking_force", "shaking_moment", "load_forces"),
@@ -196,15 +128,6 @@ def test_every_set_of_outputs_costs_no_more_than_a_larger_one(counted, accelerat
         assert cost <= everything if len(wanted) > 1 else cost < everything
         larger = [other for other in costs if set(wanted) <= set(other)]
         assert all(cost <= costs[other] for other in larger)
-
-
-def test_a_machine_at_constant_speed_takes_the_module_without_acceleration(counted):
-    costs = {}
-    for name, acceleration in (("steady", 0.0), ("accelerated", 2.0)):
-        counted.clear()
-        el.driving_torque(machine(), 0.4, 10.0, acceleration)
-        costs[name] = operations(counted)
-    assert costs["steady"] < costs["accelerated"]
 
 
 def test_checks_and_error_figure_of_forces_cost_nothing_until_they_are_read(counted):
@@ -394,9 +317,9 @@ def test_what_is_not_used_is_not_loaded(what):
         assert not inside
 
 
-@pytest.mark.parametrize("method", ["harmonic_balance", "cyclic"])
+@pytest.mark.parametrize("method", ["auto", "harmonic_balance"])
 def test_asking_for_the_stability_of_a_response_is_what_computes_it(method, monkeypatch):
-    module = importlib.import_module("elastolink.runtime.response.steady_state")
+    module = importlib.import_module("elastolink.runtime.periodic.periodic_motion")
     made = Counter()
     find = module.floquet_multipliers
 

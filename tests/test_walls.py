@@ -31,8 +31,6 @@ LAZY = {
     "sksundae",
     "rainflow",
 }
-# Proofs of emitted functions at many digits; nothing else of derive/ may import the module.
-CHECKS = "derive/checks.py"
 
 
 def sources(*folders: str) -> list[Path]:
@@ -86,13 +84,10 @@ def relative(path: Path) -> str:
 @pytest.mark.parametrize("path", sources("derive"), ids=relative)
 def test_derive_imports_sympy_and_jinja_alone(path):
     allowed = STANDARD | {"sympy", "jinja2"}
-    if relative(path) == CHECKS:
-        allowed |= {"numpy", "mpmath"}
     for name, _ in imports(path):
         if top(name) == "elastolink":
             within = ("elastolink.derive", "elastolink._files")
             assert name == "elastolink" or inside(name, *within), name
-            assert not inside(name, "elastolink.derive.checks"), name
         else:
             assert top(name) in allowed, name
 

@@ -164,7 +164,10 @@ def _explanation(
         model=scene.model_spec().name(),
         terms=_terms(scene),
         outputs=_outputs(scene),
-        emitted={name: _use(cost, entries[name], known, counted) for name, cost in costs.items()},
+        emitted={
+            name: _use(cost, _as_used(entries[name], scene.model_spec()), known, counted)
+            for name, cost in costs.items()
+        },
         packaged=(
             len(packaged),
             sum(cost.size for cost in packaged),
@@ -247,6 +250,12 @@ def _outputs(scene: Scene) -> dict[str, str]:
     return {
         name: "wanted" if name in wanted else "not wanted" for name in sorted(scene.layout.outputs)
     }
+
+
+def _as_used(spec: ModelSpec, wanted: ModelSpec) -> ModelSpec:
+    """Return the spec of a module, with the terms that it leaves out itself for a scene."""
+    general = wanted.with_(drop=(), modes=spec.modes)
+    return spec.with_(drop=wanted.drop) if spec == general else spec
 
 
 def _use(

@@ -54,7 +54,7 @@ def _emission(found: Explanation) -> Iterator[str]:
 
 
 def _beside(use: EmittedUse) -> str:
-    if use.full_operations is None or not use.dropped:
+    if use.full_operations is None or use.full_size == use.size:
         return ""
     return f" (with every term {use.full_size} bytes, {use.full_operations} operations)"
 

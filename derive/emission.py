@@ -168,15 +168,20 @@ def _docstring(kernel: Kernel) -> Iterator[str]:
     yield f'    """{kernel.summary}.'
     yield ""
     for names, shape in _by_shape(kernel.arguments):
-        yield f"    {names} : {shape}"
+        yield from _shaped(f"    {names} : {shape}")
     shapes = _by_shape(kernel.results)
     if len(shapes) == 1:
         yield f"    Returns {shapes[0][1]}{' each' if len(kernel.results) > 1 else ''}."
     else:
         yield "    Returns"
         for names, shape in shapes:
-            yield f"        {names} : {shape}"
+            yield from _shaped(f"        {names} : {shape}")
     yield '    """'
+
+
+def _shaped(line: str) -> list[str]:
+    margin = " " * (len(line) - len(line.lstrip()) + 4)
+    return textwrap.wrap(line, _WIDTH, subsequent_indent=margin, break_long_words=False)
 
 
 def _by_shape(items: Iterable[Argument | Result]) -> list[tuple[str, str]]:

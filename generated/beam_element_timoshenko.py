@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 216 operations
-Content hash f96a6ab94b00dbe6043fa55bfad12c21; derived with SymPy 1.14.0.
+Content hash 497ddd9da0ac2ab2f3ef92208364e56c; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_element",'
     '"modes":null,"outputs":[]}'
 )
-CONTENT = "f96a6ab94b00dbe6043fa55bfad12c21"
+CONTENT = "497ddd9da0ac2ab2f3ef92208364e56c"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -136,7 +136,8 @@ def element(
 ):
     """Return the arrays of the element.
 
-    length, mass_per_length, axial_stiffness, bending_stiffness, shear_stiffness, rotary_inertia : float
+    length, mass_per_length, axial_stiffness, bending_stiffness, shear_stiffness, rotary_inertia :
+        float
     Returns float or ndarray each.
     """
     x0 = length**2

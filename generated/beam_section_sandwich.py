@@ -10,7 +10,7 @@ core_shear_modulus (1 + i core_loss), shears and carries no axial force.
 
 Cost per evaluation:
     sandwich: 58 operations
-Content hash 7229e88a4b26da6a25c1c00cbb7a94a6; derived with SymPy 1.14.0.
+Content hash 21ca259977e8c9efcac116585ec4fab0; derived with SymPy 1.14.0.
 """
 
 __all__ = ["sandwich"]
@@ -19,7 +19,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"sandwich","mechanism":"beam_section","m'
     'odes":null,"outputs":[]}'
 )
-CONTENT = "7229e88a4b26da6a25c1c00cbb7a94a6"
+CONTENT = "21ca259977e8c9efcac116585ec4fab0"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

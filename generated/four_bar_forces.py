@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 166 operations
     shaking_moment: 149 operations
     load_forces: 99 operations
-Content hash 02f2deebbac43b03c657dc5eeacd8f24; derived with SymPy 1.14.0.
+Content hash 993c4acc51885a7fb8f3ded3bd883bee; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"four_bar","modes":'
     'null,"outputs":[]}'
 )
-CONTENT = "02f2deebbac43b03c657dc5eeacd8f24"
+CONTENT = "993c4acc51885a7fb8f3ded3bd883bee"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

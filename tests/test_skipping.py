@@ -334,10 +334,3 @@ def test_asking_for_the_stability_of_a_response_is_what_computes_it(method, monk
     assert not made
     assert found.stable.shape == found.distance.shape == (2,)
     assert found.multipliers.shape == (2, 2) and made == {"multipliers": 1}
-    asked = el.steady_state(system, [30.0, 40.0], method=method, stability=True)
-    assert made == {"multipliers": 2}
-    assert np.array_equal(asked.multipliers, found.multipliers)
-    assert np.array_equal(asked.distance, found.distance)
-    without = el.steady_state(system, [30.0, 40.0], method=method, stability=False)
-    assert without.stable is None and np.all(np.isnan(without.distance))
-    assert made == {"multipliers": 2}

@@ -19,7 +19,6 @@ QUICK = {
     "hill_recursion",
     "quick_return_kinematics",
     "quick_return_multibody",
-    "quick_return_rod_moving_basis",
     "slider_crank_kinematics",
 }
 

@@ -176,6 +176,7 @@ def returned(space, name, numbers, gone):
     return {key: value for key, value in found.items() if np.any(np.asarray(value) != 0)}
 
 
+QUICK_TERM = ("four_bar_coupler_reduced", "follower_end_load")
 COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
 
 
@@ -185,7 +186,7 @@ COUPLER = [s for s in WHOLE if s.formulation in coupler.MODEL.formulations]
         pytest.param(
             spec,
             term,
-            marks=() if spec.name() in QUICK else pytest.mark.slow,
+            marks=() if (spec.name(), term) == QUICK_TERM else pytest.mark.slow,
             id=f"{spec.name()}-{term}",
         )
         for spec in COUPLER

@@ -25,7 +25,7 @@ VALUES = {a: sp.Rational(13, 10), b: sp.Rational(7, 10), L: sp.Rational(9, 5)}
 def quadrature(integrand: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> mpmath.mpf:
     function = sp.lambdify(x, integrand.subs(VALUES), "mpmath")
     ends = [mpmath.mpf(sp.N(sp.sympify(e).subs(VALUES), 40)) for e in (lower, upper)]
-    points = mpmath.linspace(*ends, 9)
+    points = mpmath.linspace(*ends, 4)
     return mpmath.quad(function, points)
 
 
@@ -65,7 +65,7 @@ def test_random_products_against_quadrature():
     draw = random.Random(20240611)
     waves = [sp.sin, sp.cos, sp.sinh, sp.cosh, sp.exp]
     with mpmath.workdps(40):
-        for _ in range(25):
+        for _ in range(10):
             integrand = sp.Integer(1)
             for _ in range(draw.randint(1, 3)):
                 slope = sp.Rational(draw.randint(-9, 9), 4)
@@ -93,9 +93,9 @@ MODAL = [
 
 @pytest.mark.parametrize("integrand", MODAL, ids=str)
 def test_mode_integrals_for_all_small_mode_numbers(integrand):
-    entries = mode_integral(integrand, x, m, n).matrix(4)
+    entries = mode_integral(integrand, x, m, n).matrix(3)
     with mpmath.workdps(40):
-        for i, j in itertools.product(range(4), repeat=2):
+        for i, j in itertools.product(range(3), repeat=2):
             explicit = integrand.subs({m: i + 1, n: j + 1})
             assert close(entries[i, j], quadrature(explicit, sp.S.Zero, sp.S.One))
 
@@ -105,9 +105,9 @@ def test_mode_integral_on_a_link_of_symbolic_length():
     found = mode_integral(wave, x, m, n, sp.S.Zero, L)
     assert (found.diagonal, found.off_diagonal) == (L / 2, 0)
     # up to an interior point nothing simplifies, but the value is right
-    part = mode_integral(wave * x, x, m, n, sp.S.Zero, L / 3).matrix(3)
+    part = mode_integral(wave * x, x, m, n, sp.S.Zero, L / 3).matrix(2)
     with mpmath.workdps(40):
-        for i, j in itertools.product(range(3), repeat=2):
+        for i, j in itertools.product(range(2), repeat=2):
             explicit = (wave * x).subs({m: i + 1, n: j + 1})
             assert close(part[i, j], quadrature(explicit, sp.S.Zero, L / 3))
 

@@ -280,6 +280,7 @@ def test_operations_are_counted_by_what_is_evaluated():
 
 # ---------------------------------------------------------------- determinism and layout
 
+
 def test_lines_fit():
     for path in sorted(HERE.glob("*.py")):
         lines = path.read_text().splitlines()

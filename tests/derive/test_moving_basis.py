@@ -309,6 +309,7 @@ def test_unknown_terms_are_refused(drop):
         rod.action(SPEC.with_(drop=drop))
 
 
+@pytest.mark.slow
 def test_stability_alone_has_no_forcing():
     text = module_text(SPEC.with_(outputs=("stability",)), rod.MODEL, "0" * 32)
     assert "forcing" not in text.split("SPEC =")[1].split("\n\n")[1]
@@ -365,6 +366,7 @@ def test_the_table_defines_the_names_of_the_protocol():
     assert used | vectors == {row[0] for row in module.BASIS}
 
 
+@pytest.mark.slow
 def test_a_tip_mass_in_the_action_moves_the_emitted_numbers(tmp_path):
     """A third of the rod's mass at its tip: by Newton's law, its pull on the rod included."""
     share = sp.Rational(1, 3)

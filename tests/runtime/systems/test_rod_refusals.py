@@ -76,8 +76,6 @@ def test_terms_to_drop_and_names_of_bases():
             free_free_rod(1, **NUMBERS, speed=10.0, drop=drop)
     with pytest.raises(BadInput, match="basis: found 'hermite'"):
         rod_system("hermite", **NUMBERS)
-    with pytest.raises(BadInput, match="regenerate-equations"):
-        free_free_rod(9, **NUMBERS, speed=10.0)
 
 
 @pytest.mark.parametrize("name", sorted(NUMBERS))

@@ -227,7 +227,7 @@ def test_damping_through_d_alone_counts_as_damping():
 def test_multipliers_with_d_multiply_to_liouvilles_determinant():
     """trace(M^-1 C) alone: with viscous damping c/m for each coordinate, whatever D does."""
     system = rod_system(PlainBasis(3), **{**FLEXIBLE, "damping": 50.0})
-    found = el.floquet_multipliers(system, 300.0)
+    found = el.floquet_multipliers(system, 300.0, rtol=1e-11)
     expected = np.exp(-3 * 50.0 / 7.15 * 2 * np.pi / 300.0)
     assert np.prod(found.multipliers) == pytest.approx(expected, rel=1e-10)
     assert found.passed

@@ -27,7 +27,7 @@ def rod(modes: int, ratio: float, speed: float, drop: Collection[str] = ()) -> F
 def linear(modes: int, ratio: float, speed: float, drop: Collection[str] = ()):
     """Multipliers of the linear form on the small-angle basis that the paper conjectures."""
     system = rod_system(FreeFreeBasis(modes), crank_ratio=ratio, drop=drop, **ROD)
-    return floquet_multipliers(system, speed)
+    return floquet_multipliers(system, speed, rtol=1e-13)
 
 
 def loaded(bare: FreeFreeRod, load: Load) -> FreeFreeRod:

@@ -90,7 +90,7 @@ class SecondOrder:
         drift = at("A")
         turn = self.slope["M"](theta) + drift - np.swapaxes(drift, 1, 2)
         stiff = at("K") + at("Kg") + at("D", 1)
-        stiff = stiff + w**2 * (self.slope["A"](theta)[0] - at("B")) + a * (drift - at("S"))
+        stiff = stiff + w**2 * (self.slope["A"](theta) - at("B")) + a * (drift - at("S"))
         force = at("f", 2) + a[:, 0] * at("g")
         sides = np.concatenate([-stiff, -(at("C") + w * turn), force[:, :, None]], axis=2)
         found = np.zeros((len(time), 2 * n + 1, 2 * n + 1))

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 # As the conftest of the tests does, for the helpers that some rows import.
-sys.path.append(str(Path(__file__).resolve().parents[1] / "derive"))
+sys.path += [str(Path(__file__).resolve().parents[1] / name) for name in ("derive", "convergence")]
 
 from seed_ledger import TARGET, page
 

@@ -71,10 +71,6 @@ class ElastolinkWarning(UserWarning):
     """Base of every warning that elastolink issues."""
 
 
-class StepTooLongWarning(ElastolinkWarning):
-    """A fixed step is longer than the rule ``h < 18/lambda`` of Smith section 6.2.3.1 allows."""
-
-
 class LinearRangeWarning(ElastolinkWarning):
     """A deflection left the range in which the linear equations hold."""
 

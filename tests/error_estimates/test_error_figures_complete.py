@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib import import_module
 from pathlib import Path
 
 import elastolink
@@ -93,9 +94,17 @@ def _descendants(kind):
         yield from _descendants(child)
 
 
+# Rooms with solvers beside those that `elastolink` itself names.
+ROOMS = ("beams", "design", "frequencies", "periodic", "stability", "sweeps")
+
+
 def _solvers():
-    """Return the public functions that return a result."""
+    """Return the public functions that return a result; of the rooms, those listed here."""
+    listed = {*COVERED, *DELEGATED, *WITHOUT}
     public = {name: getattr(elastolink, name) for name in elastolink.__all__}
+    for room in ROOMS:
+        module = import_module(f"elastolink.runtime.{room}")
+        public |= {name: getattr(module, name) for name in listed & set(module.__all__)}
     names = {kind.__name__ for kind in _descendants(Result)} | {"Prepared", "ReducedSystem"}
     return {
         name

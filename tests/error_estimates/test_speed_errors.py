@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from elastolink import frozen_frequencies, resonance_curve, steady_peaks
+from elastolink import resonance_curve
 from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.frequencies import campbell, critical_speeds
+from elastolink.runtime.frequencies import campbell, critical_speeds, frozen_frequencies
+from elastolink.runtime.periodic import steady_peaks
 from honesty import verdict
 from manufactured import manufactured
 

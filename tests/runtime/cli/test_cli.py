@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from elastolink.runtime.cli import application, linkages, main, options, stability
-from elastolink.runtime.core.errors import BadInput, SelfCheckFailed, StepTooLongWarning
+from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, SelfCheckFailed
 from elastolink.runtime.core.results import Check, Result
 from elastolink.runtime.scenes import list_scenes
 
@@ -297,7 +297,7 @@ def test_warnings_are_one_line_each(capsys, monkeypatch):
     import warnings
 
     def warn(_):
-        warnings.warn("the step is too long", StepTooLongWarning, stacklevel=1)
+        warnings.warn("the step is too long", LinearRangeWarning, stacklevel=1)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(options, "load", warn)

@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from elastolink import frozen_frequencies, resonance_curve, steady_peaks, steady_state
+from elastolink import resonance_curve, steady_state
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
+from elastolink.runtime.frequencies import frozen_frequencies
+from elastolink.runtime.periodic import steady_peaks
 
 EPS = float(np.finfo(float).eps)
 METHODS = ("auto", "harmonic_balance")

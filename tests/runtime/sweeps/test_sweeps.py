@@ -15,7 +15,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.sweeps import Sweep, WorkersLost
+from elastolink.runtime.sweeps import Sweep, WorkersLost, estimate_sweep
 from elastolink.runtime.sweeps.pieces import grid_of
 from elastolink.runtime.sweeps.requests import digest
 
@@ -388,7 +388,7 @@ def test_what_cannot_be_sent_is_told(pool):
 
 
 def test_an_estimate_counts_what_the_sweep_holds(mathieu, chart):
-    found = el.estimate_sweep("stability_chart", mathieu, VALUES, chunk=150, workers=2)
+    found = estimate_sweep("stability_chart", mathieu, VALUES, chunk=150, workers=2)
     assert (found.points, found.pieces) == (len(MU) * len(LAM2), chart.pieces)
     assert found.bytes == sum(array.nbytes for array in chart.outputs.values())
     assert found.piece_bytes > 0

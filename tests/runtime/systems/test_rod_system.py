@@ -13,6 +13,7 @@ from elastolink.runtime.hill.form import is_hill
 from elastolink.runtime.periodic.energy import energy_balance
 from elastolink.runtime.periodic.equation import equation_of
 from elastolink.runtime.periodic.first_order import canonical_form
+from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss
 from rod_newton import PlainBasis, Rod, linear_forces, second_order
@@ -309,10 +310,10 @@ def test_a_tongue_sees_internal_damping():
     """Internal damping on a mode that changes with the block: ends to order 6, exact ends."""
     numbers = {**FLEXIBLE, "crank_ratio": 0.05, "internal_damping": 1.0}
     system, span = rod_system("overhang", 1, **numbers), (1500.0, 1900.0)
-    (resonance,) = el.resonances(system, span)
+    (resonance,) = resonances(system, span)
     exact = el.stability_edges(system, span)
-    found = el.tongue(system, resonance, order=6)
-    without = el.tongue(system.without("D"), resonance, order=6)
+    found = tongue(system, resonance, order=6)
+    without = tongue(system.without("D"), resonance, order=6)
     for end in ("lower", "upper"):
         value, truth = getattr(found, end), getattr(exact, end)[0]
         assert abs(value - truth) < found.error

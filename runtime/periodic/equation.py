@@ -565,7 +565,10 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
                     int(np.max(np.nonzero(amplitude > _SEEN * tops)[0], initial=0)),
                 )
         if last:
-            return [np.zeros((1, *shape)) for shape in shapes], -1, _MOST // 2
+            # The mean alone: units of the coordinates are chosen by it.
+            parts = np.split(spectrum[:1].real, firsts[1:-1], axis=1)
+            means = [part.reshape(1, *shape) for part, shape in zip(parts, shapes, strict=True)]
+            return means, -1, _MOST // 2
         before = tails
         new = _rows(system, terms, system.period * (np.arange(float(count)) + 0.5) / count)
         table = np.stack([table, new], axis=1).reshape(2 * count, -1)

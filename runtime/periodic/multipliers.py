@@ -310,7 +310,7 @@ def rounding_error(equation: Equation, segments: int) -> Array:
     """
     living = equation.frequency * np.exp(-equation.decay)
     turning = np.max(living, axis=1, initial=0.0) * equation.period
-    value: Array = _EPS * (96.0 + 2.0 * segments + 2.0 * turning)
+    value: Array = _EPS * (128.0 + 3.0 * segments + 3.0 * turning)
     return value
 
 

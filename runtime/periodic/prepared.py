@@ -20,14 +20,13 @@ from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
 from .motion import Trajectory
-from .multipliers import Monodromy, conditions
+from .multipliers import Monodromy, conditions, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
 from .transition import Method, levels_for, method, rung
 
 Array = NDArray[np.float64]
 
-_EPS = float(np.finfo(float).eps)
 # Ratio of the speeds of one table.
 _RATIO = 1.5
 # Places of each table at which other segments tell its error, and the margin.
@@ -54,8 +53,8 @@ class Prepared:
     tables : tuple of Table
         By rising speed.
     error : float
-        Error of a monodromy matrix over its largest entry, in scaled variables: four times the
-        difference to other segments, and round-off.
+        Error of a monodromy matrix over its largest entry, or over 1 where that is larger, in scaled
+        variables: four times the difference to other segments, and round-off.
     flow_error : ndarray
         Error of the entries of a transition matrix that give coordinates, shape ``(n, m)``.
     motion_error : ndarray
@@ -107,10 +106,13 @@ class Prepared:
         speeds = self._speeds(speed)
         m = 2 * self.system.size
         scale = self.scale[:m]
-        matrix = self._whole(speeds.reshape(-1))[:, :m, :m] * scale[:, None] / scale
+        scaled = self._whole(speeds.reshape(-1))[:, :m, :m]
+        # What decays keeps the error of what it came from.
+        error = self.error * np.maximum(1.0, 1.0 / np.max(np.abs(scaled), axis=(1, 2)))
+        matrix = scaled * scale[:, None] / scale
         return Monodromy(
             method=_METHOD,
-            error=np.full(speeds.shape, self.error),
+            error=error.reshape(speeds.shape),
             error_norm="largest entry of the error, relative to the largest entry of the matrix, "
             "both in scaled variables",
             checks={"converged": Check(self.error, 1e-9)},
@@ -235,7 +237,7 @@ class Prepared:
         m = 2 * self.system.size
         values, vectors = np.linalg.eig(whole[:, :m, :m])
         values = values.astype(complex)
-        size = self.error * np.max(np.abs(whole), axis=(1, 2))
+        size = self.error * np.maximum(1.0, np.max(np.abs(whole), axis=(1, 2)))
         error = conditions(vectors) * size[:, None]
         # An error that says nothing leaves stability unproved.
         slack = np.where(error < 0.1, error, -error)
@@ -448,8 +450,9 @@ class TableMaker:
         table = table_of(
             self.equation, span, segments, way, 0.1 * rtol, samples=samples, nodes=nodes
         )
-        whole = 16.0 * _EPS + table.tail
-        flow, motion = np.full((n, len(self.scale)), 16.0 * _EPS), np.full(n, 16.0 * _EPS)
+        rounding = float(np.max(rounding_error(slowest, segments)))
+        whole = rounding + table.tail
+        flow, motion = np.full((n, len(self.scale)), rounding), np.full(n, rounding)
         tried = low + np.array(_TRIED if high > low else _TRIED[:1]) * (high - low)
         count = next_rung(segments)
         ours = table.flows(tried)

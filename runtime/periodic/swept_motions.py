@@ -111,7 +111,7 @@ def growth_of(matrices: Array, relative: float) -> Growth:
     modulus = np.abs(values)
     which = np.argmax(modulus, axis=1)[:, None]
     condition = np.take_along_axis(conditions(vectors), which, axis=1)[:, 0]
-    size = relative * np.max(np.abs(matrices), axis=(1, 2))
+    size = relative * np.maximum(1.0, np.max(np.abs(matrices), axis=(1, 2)))
     return Growth(np.take_along_axis(modulus, which, axis=1)[:, 0], condition, condition * size)
 
 

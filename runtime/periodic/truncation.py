@@ -200,9 +200,8 @@ def truncated_on(
     )
     across = np.swapaxes(phi, -1, -2)
     held = across @ stiffness @ phi
-    flexibility: Array = np.asarray(
-        np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across), dtype=np.float64
-    )
+    rest = np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across)
+    flexibility: Array = np.asarray(_symmetric(rest), dtype=np.float64)
     sums: dict[tuple[str, int], Array] = {}
     for (array, power), values in arrays.items():
         for name, part in _projections(array, values, phi, slope):
@@ -365,14 +364,18 @@ def _followed(
             pushed = (forth @ other.load[..., None])[..., 0]
             yield "f", power, load - differentiated(pushed, period)
             if k == j and k != 1:
-                yield "M", power, forth @ other.rate
+                yield "M", power, _symmetric(forth @ other.rate)
                 yield "A", power, forth @ other.place
-                yield "B", power, back @ other.place
+                yield "B", power, _symmetric(back @ other.place)
                 continue
             mass = forth @ other.rate
-            yield "M", power, 0.5 * (mass + np.swapaxes(mass, -1, -2))
+            yield "M", power, _symmetric(mass)
             yield "C", power + 1, forth @ other.place - back @ other.rate
             yield "D", power + 1, differentiated(forth @ other.place, period) - back @ other.place
+
+
+def _symmetric(matrices: Array) -> Array:
+    return np.asarray(0.5 * (matrices + np.swapaxes(matrices, -1, -2)))
 
 
 def _shapes(system: LinearPeriodic, basis: MovingBasis, x: Array, theta: Array) -> Array:

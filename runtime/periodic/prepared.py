@@ -53,8 +53,8 @@ class Prepared:
     tables : tuple of Table
         By rising speed.
     error : float
-        Error of a monodromy matrix over its largest entry, or over 1 where that is larger, in scaled
-        variables: four times the difference to other segments, and round-off.
+        Error of a monodromy matrix in scaled variables, over its largest entry or over 1, whichever
+        is larger: four times the difference to other segments, and round-off.
     flow_error : ndarray
         Error of the entries of a transition matrix that give coordinates, shape ``(n, m)``.
     motion_error : ndarray

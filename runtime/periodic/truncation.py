@@ -201,7 +201,7 @@ def truncated_on(
     across = np.swapaxes(phi, -1, -2)
     held = across @ stiffness @ phi
     rest = np.linalg.inv(stiffness) - phi @ np.linalg.solve(held, across)
-    flexibility: Array = np.asarray(_symmetric(rest), dtype=np.float64)
+    flexibility = _symmetric(np.asarray(rest, dtype=np.float64))
     sums: dict[tuple[str, int], Array] = {}
     for (array, power), values in arrays.items():
         for name, part in _projections(array, values, phi, slope):

@@ -40,7 +40,7 @@ _FIELD = {
 }
 # Even angles to begin with, by the number of coordinates up to which, so that a narrow wave of a
 # small system is seen; and at the most.  A Fourier series has ended where its last quarter is
-# below the first bound, or does not fall any more and is below the second: round-off of the terms.
+# below the first bound, or as large as the quarter before and below the second: round-off.
 _FIRST, _MOST = {4: 256, 12: 128}, 4096
 _FEWEST = 64
 _ENDED, _ROUNDING = 16.0 * float(np.finfo(float).eps), 1e-12
@@ -532,14 +532,15 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
     between, table = values[: len(_BETWEEN)], values[len(_BETWEEN) :]
     shapes = [(system.size,) * (1 if term.array in "fhp" else 2) for term in terms]
     firsts = np.concatenate([[0], np.cumsum([int(np.prod(shape)) for shape in shapes])])
-    before = np.full(len(terms), np.inf)
     while True:
         count = len(table)
         spectrum = np.fft.rfft(table, axis=0) / count
         amplitude = np.maximum.reduceat(np.abs(spectrum), firsts[:-1], axis=1)
         tops = np.max(amplitude, axis=0)
         tops = np.where(tops > 0.0, tops, 1.0)
-        tails = np.max(amplitude[3 * len(amplitude) // 4 :], axis=0) / tops
+        quarter = len(amplitude) // 4
+        before = np.max(amplitude[2 * quarter : 3 * quarter], axis=0) / tops
+        tails = np.max(amplitude[3 * quarter :], axis=0) / tops
         last = 2 * count > _MOST
         ended = (tails <= _ENDED) | ((tails <= _ROUNDING) & ((tails > 0.1 * before) | last))
         if np.all(ended):
@@ -569,16 +570,21 @@ def fourier_series(system: LinearPeriodic, terms: Sequence[Term]) -> tuple[list[
             parts = np.split(spectrum[:1].real, firsts[1:-1], axis=1)
             means = [part.reshape(1, *shape) for part, shape in zip(parts, shapes, strict=True)]
             return means, -1, _MOST // 2
-        before = tails
         new = _rows(system, terms, system.period * (np.arange(float(count)) + 0.5) / count)
         table = np.stack([table, new], axis=1).reshape(2 * count, -1)
 
 
 def waves(harmonics: int, phase: Array) -> Array:
     """Return ``1, cos k phase ..., sin k phase ...``, shape ``(nt, 2 harmonics + 1)``."""
-    order = np.arange(1.0, harmonics + 1.0)
-    turns = phase[:, None] * order
-    return np.concatenate([np.ones((len(phase), 1)), np.cos(turns), np.sin(turns)], axis=1)
+    powers = np.empty((len(phase), harmonics), dtype=complex)
+    powers[:, :1] = np.exp(1j * phase)[:, None]
+    known = 1
+    while known < harmonics:
+        # Errors grow with the order, as those of cos(k phase) do by the rounding of k phase.
+        part = powers[:, known : 2 * known]
+        np.multiply(powers[:, : part.shape[1]], powers[:, known - 1 : known], out=part)
+        known *= 2
+    return np.concatenate([np.ones((len(phase), 1)), powers.real, powers.imag], axis=1)
 
 
 @lru_cache(maxsize=24)

@@ -113,9 +113,7 @@ def monodromy(
     """
     equation = equation_of(system, speed, _checked(rtol, parameters))
     way, m = choose(equation, rtol), 2 * equation.size
-    solutions, errors, segments = refined(
-        equation, way, rtol, partial(_matrices, way), _gap, least=0.3 if equation.damped else 0.025
-    )
+    solutions, errors, segments = refined(equation, way, rtol, partial(_matrices, way), _gap)
     scaled, exponent, rounding = _stacked(solutions, (m, m), (), ())
     exponent, error = exponent.astype(np.int64), errors[:, 0]
     allowed = np.minimum(np.maximum(rtol, 100.0 * rounding), 1e-2)

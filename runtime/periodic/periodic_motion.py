@@ -38,6 +38,12 @@ _ENDS = np.array([0.0, 1.0])
 _MOST_FLOATS = 2**26
 # Harmonics that the motion is likely to have: where the first rung of the ladder lies.
 _LIKELY = 12.0
+# Errors of rates over their peaks that are allowed, over those of the coordinates.
+_RATES = 10.0
+# Angles at which the motions of two rungs are compared, at the least.
+_COMPARED = 128
+# Round-off over the unit of round-off times the sensitivity: near resonances up to 26 was seen.
+_ROUNDED = 48.0
 # Change of a motion over that of the flow, times the unit of round-off, from which it is lost.
 _LOST = 1.0 / 16.0
 
@@ -57,7 +63,7 @@ class SteadyState(Result):
         Crank angles [rad] that divide the period evenly, from 0, shape ``(nt,)``.
     q, qd : ndarray
         Coordinates and their time derivatives [1/s], shape ``(*batch, nt, n)``; NaN where there is
-        no single periodic motion.
+        no single periodic motion.  Rates over their peaks are within ten times ``error``.
     error : ndarray
         Largest error of each coordinate over its peak, shape ``(*batch, n)``; inf where q is NaN.
     multipliers : ndarray of complex
@@ -270,7 +276,7 @@ def steady_state(
         q, slope, error, sensitivity = solve(equation, rtol, int(samples), tick)
     lost = ~(_EPS * sensitivity < _LOST) | ~np.all(np.isfinite(q), axis=(1, 2))
     lost |= ~(np.max(error, axis=1, initial=0.0) < 1.0)
-    allowed = np.minimum(np.maximum(rtol, 16.0 * _EPS * sensitivity), 1e-2)
+    allowed = np.minimum(np.maximum(rtol, _ROUNDED * _EPS * sensitivity), 1e-2)
     single = Check(16.0 * _EPS * float(np.max(np.where(lost, np.inf, sensitivity))), 1.0)
     q[lost], slope[lost], error[lost] = np.nan, np.nan, np.inf
     theta = equation.period * np.arange(float(samples)) / samples
@@ -307,12 +313,14 @@ def by_segments(
     equation: Equation, rtol: float, samples: int, tick: Callable[[int], None] | None = None
 ) -> _Motion:
     """Return q and dq/dtheta ``(nb, nt, n)``, errors ``(nb, n)`` and sensitivities ``(nb,)``."""
-    way = method("radau", 5 if rtol > 1e-4 else 7 if rtol > 1e-8 else 10)
+    way = method("radau", 7 if rtol > 1e-5 else 10)
     likely = equation.with_slow_modes(_LIKELY)
-    solve = partial(ring_motion, way, samples)
-    solutions, error, _ = refined(likely, way, rtol, solve, _change, least=1.0, tick=tick)
+    # A few angles may lie where the polynomials of a rung happen to be exact.
+    finer = -(-_COMPARED // samples)
+    solve = partial(ring_motion, way, finer * samples)
+    solutions, error, _ = refined(likely, way, rtol, solve, _change, tick=tick)
     q, slope, sensitivity = (np.array(part) for part in zip(*solutions, strict=True))
-    return q, slope, error, sensitivity
+    return q[:, ::finer], slope[:, ::finer], error, sensitivity
 
 
 def ring_motion(way: Method, samples: int, equation: Equation, count: int) -> tuple[Array, ...]:
@@ -342,7 +350,8 @@ def along_segments(
     starts : ndarray
         Coordinates at the left ends of the segments, shape ``(nb, segments, n)``.
     slopes : ndarray
-        dq/dtheta at the nodes, shape ``(nb, segments, s, n)``.
+        dq/dtheta at the nodes, shape ``(nb, segments, s, n)``, the last at the right end; that of
+        the segment before is the slope at the left end, one node more.
     samples : int
         Number of angles, from 0.
 
@@ -353,7 +362,8 @@ def along_segments(
     """
     count = starts.shape[1]
     places, rise, values = _dense_output(way, count, samples)
-    chosen = slopes[:, places]
+    before = np.roll(slopes[:, :, -1:], 1, axis=1)
+    chosen = np.concatenate([before, slopes], axis=2)[:, places]
     q = starts[:, places] + (period / count) * np.sum(rise[:, :, None] * chosen, axis=2)
     return q, np.sum(values[:, :, None] * chosen, axis=2)
 
@@ -364,19 +374,19 @@ def _dense_output(way: Method, count: int, samples: int) -> tuple[NDArray[np.int
     at = np.arange(float(samples)) * count / samples
     places = np.minimum(at.astype(np.intp), count - 1)
     inside = 2.0 * (at - places) - 1.0
-    legendre = np.polynomial.legendre.legvander(2.0 * way.c - 1.0, way.stages - 1)
-    back = np.linalg.inv(legendre)
-    rise = 0.5 * legendre_integrals(inside, way.stages) @ back
-    values = np.polynomial.legendre.legvander(inside, way.stages - 1) @ back
+    nodes = np.concatenate([[-1.0], 2.0 * way.c - 1.0])
+    back = np.linalg.inv(np.polynomial.legendre.legvander(nodes, way.stages))
+    rise = 0.5 * legendre_integrals(inside, way.stages + 1) @ back
+    values = np.polynomial.legendre.legvander(inside, way.stages) @ back
     return places, rise, values
 
 
 def _change(coarse: tuple[Array, ...], fine: tuple[Array, ...], part: Array) -> Array:
-    """Return the difference of two motions over the peaks of the finer, with round-off."""
-    size = peaks(fine[0])
+    """Return the difference of two motions and rates over the finer's peaks, with round-off."""
     with np.errstate(invalid="ignore"):
-        gap = np.max(np.abs(coarse[0] - fine[0]), axis=1) / size
-    error = part[:, None] * gap + 16.0 * _EPS * np.minimum(fine[2], 1.0 / _EPS)[:, None]
+        gap, rate = (np.max(np.abs(coarse[k] - fine[k]), axis=1) / peaks(fine[k]) for k in (0, 1))
+    gap = np.maximum(gap, rate / _RATES)
+    error = part[:, None] * gap + _ROUNDED * _EPS * np.minimum(fine[2], 1.0 / _EPS)[:, None]
     return np.where(np.isfinite(error), error, 1.0)
 
 

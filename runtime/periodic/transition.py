@@ -42,6 +42,9 @@ _ROUGH_SEGMENTS = 2**14
 # difference that is taken for the error of the finer one: over 200 springs seen in wavy coordinates
 # and five tolerances 99 of 100 errors are covered, the worst by half (five and 0.01 cover 96).
 _MARGIN, _LEAST = 12.0, 0.025
+# The same over the ratio of the segments to the power of the stages, where modes that no segment
+# resolves count: with that order at least they converge.
+_STIFF = 3.0
 # Floats of the collocation matrices that are solved in one batch.
 _BLOCK = 4_000_000
 
@@ -297,10 +300,17 @@ def predicted_error(equation: Equation, way: Method, segments: NDArray[Any]) -> 
     return value
 
 
-def share(equation: Equation, way: Method, coarse: int, fine: int, least: float) -> Array:
+def least_share(way: Method, coarse: Any, fine: Any) -> Any:
+    """Return the least part of the difference of two rungs that the finer one's error may be."""
+    if not way.ends:
+        return _LEAST
+    return np.minimum(_STIFF * (coarse / fine) ** way.stages, 1.0)
+
+
+def share(equation: Equation, way: Method, coarse: int, fine: int) -> Array:
     """Return which part of the difference of two rungs the error of the finer one is, ``(nb,)``.
 
-    Twelve times what is predicted, between ``least`` and one; of coefficients that are not smooth
+    Twelve times what is predicted, between the least and one; of coefficients that are not smooth
     four times the difference.
     """
     if equation.harmonics < 0:
@@ -309,11 +319,12 @@ def share(equation: Equation, way: Method, coarse: int, fine: int, least: float)
     first, second = (
         predicted_error(equation, way, np.full(count, number)) for number in (coarse, fine)
     )
+    least = least_share(way, coarse, fine)
     return np.clip(_MARGIN * second / np.maximum(first, 1e-300), least, 1.0)
 
 
 def levels_for(
-    equation: Equation, way: Method, rtol: float, least: float = _LEAST
+    equation: Equation, way: Method, rtol: float, least: float | None = None
 ) -> NDArray[np.intp]:
     """Return the rung on which each member is likely solved, and known to be, to a wanted error.
 
@@ -325,7 +336,8 @@ def levels_for(
     counts = np.array([rung(level) for level in range(_RUNGS)])
     errors = predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
     enough = _MARGIN * errors[:, 1:] <= rtol
-    enough &= least * errors[:, :-1] <= rtol
+    part = least_share(way, counts[:-1], counts[1:]) if least is None else least
+    enough &= part * errors[:, :-1] <= rtol
     enough &= counts[1:] <= _MOST_SEGMENTS
     # The nodes of the rung below too have to see every wave of the coefficients twice.
     enough &= way.stages * counts[:-1] >= 2 * equation.reach
@@ -349,7 +361,6 @@ def refined(
     solve: Callable[[Equation, int], tuple[Array, ...]],
     distance: Callable[[tuple[Array, ...], tuple[Array, ...], Array], Array],
     *,
-    least: float = _LEAST,
     tick: Callable[[int], None] | None = None,
 ) -> tuple[list[tuple[Array, ...]], Array, Whole]:
     """Solve every member on two neighbouring rungs, and on finer ones until they agree.
@@ -367,9 +378,6 @@ def refined(
     distance : callable
         From two solutions of some members, coarse and fine, and the :func:`share` of their
         difference, to the errors of the fine ones, ``(nb, k)``.
-    least : float
-        Least share: 0.3 where stiff modes that no segment resolves count too, whose initial layer
-        converges with the order of the stages alone.
     tick : callable, optional
         Called with how many members are done.
 
@@ -384,7 +392,7 @@ def refined(
     nb = len(equation.speed)
     solutions: list[tuple[Array, ...]] = [()] * nb
     error: list[Array] = [np.zeros(0)] * nb
-    segments, level = np.zeros(nb, dtype=np.int64), levels_for(equation, way, rtol, least)
+    segments, level = np.zeros(nb, dtype=np.int64), levels_for(equation, way, rtol)
     together = max(1, _BLOCK // (way.stages * equation.size) ** 2 // 8)
     finished, most = 0, _MOST_SEGMENTS if equation.harmonics >= 0 else _ROUGH_SEGMENTS
     for first in np.unique(level):
@@ -396,7 +404,7 @@ def refined(
             before = np.full(len(members), np.inf)
             while len(members):
                 fine = solve(part, rung(at))
-                gaps = distance(coarse, fine, share(part, way, rung(at - 1), rung(at), least))
+                gaps = distance(coarse, fine, share(part, way, rung(at - 1), rung(at)))
                 gap = np.max(gaps, axis=1)
                 # Round-off, where all modes are resolved and nothing is gained any more.
                 likely = predicted_error(part, way, np.full(len(gap), rung(at)))

@@ -91,3 +91,20 @@ def steadily(theta):
 def rocking(theta):
     """Return an angle that swings by 0.4 rad, and its derivatives."""
     return 0.4 * np.sin(theta), 0.4 * np.cos(theta), -0.4 * np.sin(theta)
+
+
+def rocking_bar(rng, elements):
+    """Return a random rocking bar and its speed, over its first frequency."""
+    size, second = rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2)
+
+    def angle(theta):
+        phi = size * np.sin(theta) + second * np.cos(2 * theta)
+        rate = size * np.cos(theta) - 2 * second * np.sin(2 * theta)
+        return phi, rate, -size * np.sin(theta) - 4 * second * np.cos(2 * theta)
+
+    pinned = bool(rng.integers(2))
+    # (lambda L)^2 of a pinned and of a clamped bar of 1 m, 10 mm thick: sqrt(EI/m) = 14.93 m^2/s.
+    first = (9.870 if pinned else 3.516) * 14.93
+    drag = rng.uniform(0.01, 0.1) * first
+    system = turning_bar(angle, pinned=pinned, drag=drag, elements=elements)
+    return system, rng.uniform(0.03, 0.6) * first

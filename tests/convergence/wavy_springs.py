@@ -81,10 +81,3 @@ def tame(scene):
     """True where the coordinates are nowhere near singular."""
     value, _ = scene.transform(np.linspace(0.0, 2 * np.pi, 64))
     return np.max(np.linalg.cond(value)) < 30
-
-
-def verdict(actual, figure):
-    """Return the share of covered scenes and the median of figure over actual error."""
-    actual, figure = np.asarray(actual), np.asarray(figure)
-    kept = actual > 0
-    return np.mean(actual <= figure), np.median(figure[kept] / actual[kept])

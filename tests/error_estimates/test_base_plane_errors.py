@@ -10,9 +10,8 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages.base_planes import base_plane
 from elastolink.runtime.linkages.classification import SYMBOLS, classify
-from honesty import verdict
+from honesty import SCENES, verdict
 
-SOME = [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]
 LEAST, MIDDLE = 3.0**-0.5, 3.0**0.5
 
 
@@ -90,7 +89,7 @@ def errors_of(plane):
     return max(actual), max(left_out, default=0.0)
 
 
-@pytest.mark.parametrize("scenes", SOME)
+@SCENES
 def test_bound_of_all_corners(scenes):
     rng = np.random.default_rng(33)
     ratios = []

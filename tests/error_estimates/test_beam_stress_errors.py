@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beam_motions import STEEL, periodic_motion, turning_bar
+from beam_motions import STEEL, periodic_motion, rocking_bar
 from elastolink.runtime.beams import Section, linkage_system
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning
 from elastolink.runtime.linkages import FourBar, SliderCrank
@@ -24,27 +24,9 @@ from elastolink.runtime.systems import with_modal_damping
 
 BARS, SLIDER_CRANKS, FOUR_BARS = 185, 12, 3
 COUNT, PLACES = 32, 7
-FIRST = {False: 3.516, True: 9.870}  # (lambda L)^2 of a clamped and of a pinned bar
 # Cubics per link of the mesh that is taken for the limit: an h^4 of the mesh of one, two or three
 # elements is less there by a factor of 39 at least, an h^2 by 6.
 TRUE = {1: 4, 2: 5, 3: 8}
-
-
-def rocking_bar(rng, elements):
-    """Return a random rocking bar and its speed, over its first frequency."""
-    size, second = rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2)
-
-    def angle(theta):
-        phi = size * np.sin(theta) + second * np.cos(2 * theta)
-        rate = size * np.cos(theta) - 2 * second * np.sin(2 * theta)
-        return phi, rate, -size * np.sin(theta) - 4 * second * np.cos(2 * theta)
-
-    pinned = bool(rng.integers(2))
-    # Of the bar of 1 m, 10 mm thick: sqrt(EI/m) = 14.93 m^2/s.
-    first = FIRST[pinned] * 14.93
-    drag = rng.uniform(0.01, 0.1) * first
-    system = turning_bar(angle, pinned=pinned, drag=drag, elements=elements)
-    return system, rng.uniform(0.03, 0.6) * first
 
 
 def random_linkage(rng, kind):

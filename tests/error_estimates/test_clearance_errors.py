@@ -8,9 +8,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.linkages.clearance import clearance_range
+from honesty import SCENES, verdict
 
 ASSEMBLIES = ("open", "crossed")
-SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 
 
 def within(cosine):
@@ -59,7 +59,7 @@ def exact_rod(linkage, play, theta):
 
 
 def ratios(cases):
-    """Return actual errors over estimates, the worse of below and above."""
+    """Return estimates over actual errors, the worse of below and above."""
     found = []
     with mpmath.workdps(50):
         for linkage, clearance, theta, link in cases:
@@ -73,7 +73,9 @@ def ratios(cases):
                 exact = exact_four_bar(linkage, play, theta, link)
             given = float(result.below), float(result.above)
             wrong = max(abs(mpmath.mpf(a) - b) for a, b in zip(given, exact, strict=True))
-            found.append(float(wrong / mpmath.mpf(float(result.error))))
+            found.append(
+                float(mpmath.mpf(float(result.error)) / max(wrong, mpmath.mpf(10) ** -300))
+            )
     return np.array(found)
 
 
@@ -112,6 +114,4 @@ def random_cases(count, seed, kind):
     "kind, seed", [("follower", 41), ("coupler", 42), ("slider", 43), ("rod", 44)]
 )
 def test_figure_covers_the_error_and_is_not_idle(kind, seed, scenes):
-    found = ratios(random_cases(scenes, seed, kind))
-    assert np.mean(found <= 1.0) >= 0.99
-    assert np.median(found) >= 1e-3
+    verdict(ratios(random_cases(scenes, seed, kind)), scenes)

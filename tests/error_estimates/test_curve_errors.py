@@ -9,6 +9,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.curves import coupler_curve
 from elastolink.runtime.linkages.harmonic_analysis import harmonics
+from honesty import SCENES, verdict
 
 
 def random_linkage(rng):
@@ -44,9 +45,8 @@ def test_positions_of_turning_cranks():
             for i in rng.integers(0, 97, 3):
                 exact = exact_place(linkage, curve.theta2[i], curve.branch[i], place)
                 found = mpmath.mpc(*map(float, curve.position[i]))
-                ratios.append(float(abs(found - exact) / curve.error[i]))
-    assert np.mean(np.array(ratios) <= 1) >= 0.99
-    assert np.median(ratios) >= 1e-3
+                ratios.append(float(curve.error[i] / abs(found - exact)))
+    verdict(ratios)
 
 
 @pytest.mark.slow
@@ -75,12 +75,13 @@ def test_lengths_and_areas():
     assert np.mean(np.array(areas) <= 1) >= 0.99
 
 
-def test_harmonics_of_known_series():
+@SCENES
+def test_harmonics_of_known_series(scenes):
     # 1/(1 - 2 r cos(t - s) + r^2): coefficients 2 r^m cos ms/(1 - r^2), and with sines.
     rng = np.random.default_rng(7)
     ratios = []
     with mpmath.workdps(30):
-        for _ in range(200):
+        for _ in range(scenes):
             r, s, size = rng.uniform(0.05, 0.97), rng.uniform(0, 6), 10 ** rng.uniform(-6, 6)
             accuracy = 10 ** rng.uniform(-13, -3)
 
@@ -93,6 +94,5 @@ def test_harmonics_of_known_series():
                 scale = (1 if m == 0 else 2) * mpmath.mpf(size) / (1 - mpmath.mpf(r) ** 2)
                 exact = scale * mpmath.mpf(r) ** m * mpmath.expj(m * mpmath.mpf(s))
                 worst = max(worst, abs(found.a[m] - exact.real), abs(found.b[m] - exact.imag))
-            ratios.append(float(worst) / float(found.error))
-    assert np.mean(np.array(ratios) <= 1) >= 0.99
-    assert np.median(ratios) >= 1e-3
+            ratios.append(float(found.error) / float(worst))
+    verdict(ratios)

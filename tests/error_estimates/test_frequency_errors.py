@@ -1,4 +1,4 @@
-"""Error figures of held frequencies, of their means and of least gaps, over random systems."""
+"""Error estimates of held frequencies, of their means and of least gaps, over random systems."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.frequencies.held import cycle_mean, held_frequencies
+from honesty import SCENES, verdict
 
 
 def _exact(mass, stiffness):
@@ -18,10 +19,11 @@ def _exact(mass, stiffness):
         return [mpmath.sqrt(square) for square in squares]
 
 
-def test_figures_of_held_frequencies():
+@SCENES
+def test_errors_of_held_frequencies(scenes):
     rng = np.random.default_rng(11)
     ratio = []
-    for _ in range(200):
+    for _ in range(scenes):
         n = int(rng.integers(2, 5))
         turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
         stiffness = turn @ np.diag(10.0 ** rng.uniform(0, 8, n)) @ turn.T
@@ -35,15 +37,14 @@ def test_figures_of_held_frequencies():
         exact = _exact(mass, stiffness)
         for found, figure, true in zip(frequency[0], error[0], exact, strict=True):
             ratio.append(float(figure / max(abs(found - true), mpmath.mpf(found) * 2**-60)))
-    ratio = np.array(ratio)
-    assert np.mean(ratio >= 1.0) >= 0.99
-    assert np.median(ratio) <= 1e3
+    verdict(ratio)
 
 
-def test_figures_of_means():
+@SCENES
+def test_errors_of_means(scenes):
     rng = np.random.default_rng(12)
     ratio = []
-    for _ in range(200):
+    for _ in range(scenes):
         depth, harmonic = rng.uniform(0.05, 0.95), int(rng.integers(1, 4))
         phase = rng.uniform(0, 2 * np.pi)
 
@@ -55,13 +56,14 @@ def test_figures_of_means():
         # The mean of 1/(1 - a cos x) is 1/sqrt(1 - a^2).
         actual = abs(mean[0] - 1.0 / np.sqrt(1.0 - depth**2))
         ratio.append(error[0] / max(actual, 1e-17))
-    assert np.mean(np.array(ratio) >= 1.0) >= 0.99
+    verdict(ratio)
 
 
-def test_figures_of_means_with_a_kink():
+@SCENES
+def test_errors_of_means_with_a_kink(scenes):
     rng = np.random.default_rng(13)
     ratio = []
-    for _ in range(200):
+    for _ in range(scenes):
         at = rng.uniform(0.0, 2 * np.pi)
 
         def values(theta, at=at):
@@ -70,15 +72,14 @@ def test_figures_of_means_with_a_kink():
 
         mean, error = cycle_mean(values, 2 * np.pi, [at + np.pi], enough=1e-9)
         ratio.append(error[0] / max(abs(mean[0] - 2.0 - 2.0 / np.pi), 1e-16))
-    ratio = np.array(ratio)
-    assert np.mean(ratio >= 1.0) >= 0.99
-    assert np.median(ratio) <= 1e3
+    verdict(ratio)
 
 
-def test_figures_of_least_gaps():
+@SCENES
+def test_errors_of_least_gaps(scenes):
     rng = np.random.default_rng(14)
     ratio = []
-    for _ in range(40):
+    for _ in range(scenes // 5):
         coupling, at = 10.0 ** rng.uniform(-6, -1), rng.uniform(0, 2 * np.pi)
 
         def stiffness(theta, coupling=coupling, at=at):
@@ -94,6 +95,4 @@ def test_figures_of_least_gaps():
             # sqrt(16 + c) - sqrt(16 - c), free of cancellation.
             exact = 2 * coupling / (np.sqrt(16 + coupling) + np.sqrt(16 - coupling))
             ratio.append(one.gap_error / max(abs(one.gap - exact), 1e-17))
-    ratio = np.array(ratio)
-    assert np.mean(ratio >= 1.0) >= 0.99
-    assert np.median(ratio) <= 1e3
+    verdict(ratio)

@@ -18,14 +18,13 @@ from elastolink.runtime.frequencies import (
     wittrick_williams,
 )
 from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
-from honesty import verdict
+from honesty import SCENES, verdict
 
-SOME = [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]
 DIGITS = 40
 CLAMPED = ("x", "y", "rotation")
 
 
-@pytest.mark.parametrize("scenes", SOME)
+@SCENES
 def test_bounds_hold_and_are_not_idle(scenes):
     """Against frequencies with bounds of 1e-13, themselves held against determinants elsewhere."""
     rng = np.random.default_rng(31)
@@ -44,7 +43,7 @@ def test_bounds_hold_and_are_not_idle(scenes):
     assert far > 0.1 * scenes
 
 
-@pytest.mark.parametrize("scenes", SOME)
+@SCENES
 def test_last_digits_against_determinants(scenes):
     """One secant between two determinants next to the frequency: what is left is its square."""
     rng = np.random.default_rng(32)

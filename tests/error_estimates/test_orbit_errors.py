@@ -12,6 +12,7 @@ from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems import find_module
+from honesty import SCENES, verdict
 
 MODEL = Path(__file__).parents[1] / "third_party_models" / "cycloid.py"
 
@@ -35,7 +36,7 @@ def random_bead(rng: np.random.Generator) -> Cycloid:
     return Cycloid(mass, radius, gravity, drag, arc * reply, speed)
 
 
-@pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
+@SCENES
 def test_estimates_hold_and_are_not_idle(module, scenes):
     rng = np.random.default_rng(20)
     orbit_ratio, ratio = [], []
@@ -53,10 +54,9 @@ def test_estimates_hold_and_are_not_idle(module, scenes):
             for q, qd in ((orbit.q, orbit.qd), bead.state(orbit.t))
         )
         away = np.max(np.abs(state - exact)) / np.max(np.abs(exact))
-        orbit_ratio.append(away / orbit.error)
+        orbit_ratio.append(orbit.error / away)
         found = orbit_multipliers(orbit)
         gap = np.abs(found.physical[:, None] - bead.multipliers()).min(axis=1)
-        ratio.extend(gap / found.error)
-    for actual in (np.array(orbit_ratio), np.array(ratio)):
-        assert np.mean(actual <= 1.0) >= 0.99
-        assert np.median(actual) >= 1e-3
+        ratio.extend(found.error / gap)
+    verdict(orbit_ratio)
+    verdict(ratio)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.stability.charts.invariants import characteristic
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
+from honesty import verdict
 
 _CHARTS, _POINTS = 10, 21
 
@@ -29,7 +30,7 @@ def _random_rod(rng, number):
 def test_errors_of_invariants_are_within_their_figures():
     """The reference is collocation of order 16 to 1e-13, point by point."""
     rng = np.random.default_rng(1992)
-    covered, ratios = [], []
+    ratios = []
     for number in range(_CHARTS):
         system = _random_rod(rng, number)
         low = float(rng.uniform(600.0, 1500.0))
@@ -46,8 +47,5 @@ def test_errors_of_invariants_are_within_their_figures():
             wanted = characteristic(direct.scaled, reduced=reduced)
             size = np.maximum(1.0, np.max(np.abs(wanted), axis=-1))
             actual = np.max(np.abs(chart.invariants[i, picked] - wanted), axis=-1) / size
-            covered += (actual <= chart.error).tolist()
             ratios += (chart.error / np.maximum(actual, 1e-17)).tolist()
-    assert len(covered) >= 200
-    assert np.mean(covered) >= 0.99
-    assert np.median(ratios) <= 1e3
+    verdict(ratios, 200)

@@ -155,6 +155,7 @@ def ratio(rng, modes=None):
     return np.array([figure / max(actual, 1e-12)])
 
 
+@pytest.mark.slow
 def test_the_reference_is_one():
     """Shorter steps change it by far less than the figures are."""
     rng = np.random.default_rng(8000)

@@ -10,9 +10,9 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.length_tolerances import tolerances
+from honesty import SCENES, covers
 from linkage_truth import motion, random_linkage
 
-SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 _OUTPUTS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")
 
 
@@ -35,7 +35,7 @@ def _extreme(lengths, widths, theta, assembly):
 @SCENES
 def test_worst_cases(scenes):
     random = np.random.default_rng(41)
-    actual, figures, drawn = [], [], 0
+    actual, estimates, drawn = [], [], 0
     with mpmath.workdps(40):
         while drawn < scenes:
             shape = random_linkage(random, ("rocker", "drag")[drawn % 2])
@@ -55,11 +55,8 @@ def test_worst_cases(scenes):
             exact = _extreme(linkage.lengths, widths, theta, shape.assembly)
             for row, name in enumerate(found.outputs):
                 actual.append(float(abs(found.worst_case[row, 0] - exact[name])))
-                figures.append(float(found.error[row, 0]))
-    off, figure = np.array(actual), np.array(figures)
-    assert np.mean(off <= figure) >= 0.99
-    known = off > 0.0
-    assert np.median(figure[known] / off[known]) <= 1e3
+                estimates.append(float(found.error[row, 0]))
+    covers(estimates, actual)
 
 
 @SCENES

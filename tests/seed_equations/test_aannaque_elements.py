@@ -9,8 +9,7 @@ import sympy as sp
 from elastolink.derive.models import beam_elements as elements
 from elastolink.derive.models.beam_shapes import t, u, v
 from elastolink.derive.variational import hamilton
-from elastolink.runtime.beams.elements import element_arrays
-from seed_elements import EA, EI, L, arrays, letters, places, rho, shape_rows, x, zeta
+from seed_elements import EA, EI, L, arrays, letters, rho, shape_rows, x, zeta
 from seed_ledger import Ledger, hold, holds, quoted, same
 
 row = Ledger("Aannaque", __file__)
@@ -227,51 +226,6 @@ row(
     check=curvatures("stiffness", ("17.1", "145.5")),
     derived=latex_of("curvature", "stiffness"),
 )
-
-
-def test_shapes_of_the_element_with_curvatures():
-    """Nodal values; and the printed ones, whose first has the curvature -46/L^2 at its end."""
-    found = shape_rows("curvature")[1]
-    for k, (order, end) in enumerate((o, e) for e in (0, 1) for o in (0, 1, 2)):
-        values = (found.diff(zeta, order) / L**order).subs(zeta, end)
-        assert sp.simplify(values - sp.eye(6)[k, :]).is_zero_matrix
-    first = sp.expand(found[0].diff(zeta, 2))
-    assert first == -60 * zeta + 180 * zeta**2 - 120 * zeta**3
-    assert derived("internal_node")["v", 2](0.0)[0, 0] == pytest.approx(-46 / LENGTH**2)
-    assert [shape.subs({zeta: sp.Rational(1, 2), L: 1}) for shape in (found[2],)] == [
-        sp.Rational(1, 64)
-    ]
-
-
-def test_matrices_of_the_element_with_curvatures():
-    """From the derived shapes by other integration; and they span the other element's space."""
-    shape = shape_rows("curvature")[1]
-    change = np.array(
-        [
-            [(form / L**k).subs(zeta, at).subs(SIZES) for form in shape.diff(zeta, k)]
-            for at in (0, sp.Rational(1, 2), 1)
-            for k in (0, 1)
-        ],
-        dtype=float,
-    )
-    for name in ("mass", "stiffness"):
-        other = change.T @ derived("internal_node")[name] @ change
-        same(other, derived("curvature")[name], 1e-9)
-
-
-@pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature"])
-def test_emitted_elements_hold_the_same_numbers(kind):
-    """The slips are not in the package; the first frequency of a pinned beam within 0.03 %."""
-    sizes = {"length": LENGTH, "mass_per_length": SIZES[rho], "axial_stiffness": SIZES[EA]}
-    found = element_arrays(kind, **sizes, bending_stiffness=SIZES[EI])
-    order = np.ix_(places(kind), places(kind))
-    for name in ("mass", "stiffness"):
-        same(getattr(found, name)[order], derived(kind)[name], 1e-12)
-    if kind != "cubic":
-        kept = np.ix_([2, 5, 6, 7], [2, 5, 6, 7])
-        square = scipy.linalg.eigvalsh(found.stiffness[kept], found.mass[kept])[0]
-        exact = (np.pi / LENGTH) ** 4 * SIZES[EI] / SIZES[rho]
-        assert abs(np.sqrt(square / exact) - 1) < 3e-4
 
 
 test_row, test_falsified_row = row.tests()

@@ -8,11 +8,9 @@ from fractions import Fraction
 from functools import cache
 
 import numpy as np
-import pytest
 import sympy as sp
 from elastolink.derive.lagrange import euler_lagrange
 from elastolink.derive.records import Lagrangian
-from elastolink.runtime.systems.rod import PolynomialBasis
 from seed_ledger import Ledger, quoted, same
 
 row = Ledger("Beale & Scott", __file__)
@@ -245,31 +243,6 @@ def forcing(entry):
     assert exactly(entry.printed, 5, singles, slip=powers)
     at = {"x_1": 0.6, "L": 1.0, "i": 1}
     quoted([entry.printed.value(**at), entry.corrected.value(**at)], "0.269", "0.031")
-
-
-def test_the_library_has_the_corrected_matrices():
-    """The runtime's integrals, dimensional again with L != 1, against the derived entries."""
-    size, length, place, speed, acceleration = 4, 2.5, 0.64, 0.3, -0.7
-    basis = PolynomialBasis(size, orthogonal=False)
-    step = 1e-5
-    names = ("overlap", "drift", "drift_drift", "bending", "moment")
-    at = {name: basis.array(name, np.array([place]))[0] for name in names}
-    ahead, behind = (basis.array("drift", np.array([place + s]))[0] for s in (step, -step))
-    second = (ahead - behind) / (2 * step) - at["drift_drift"]
-    values = {L: length, x1: place * length, v1: speed, a1: acceleration}
-    n = np.arange(1, size + 1)
-    power = length ** (n[:, None] + n)
-    pairs = {
-        1: at["overlap"] * power * length**3,
-        2: at["drift"] * power * length**2 * speed,
-        3: power * length * (at["drift"] * length * acceleration + second * speed**2),
-        4: at["bending"] * power / length,
-    }
-    for kind, ours in pairs.items():
-        truth = [[float(gamma(kind, a, b).subs(values)) for b in n] for a in n]
-        assert ours == pytest.approx(np.array(truth), rel=1e-8 if kind == 3 else 1e-12)
-    forcing = [float(gamma(5, a).subs(values)) for a in n]
-    assert at["moment"] * length ** (n + 3) == pytest.approx(forcing, rel=1e-12)
 
 
 test_row, test_falsified_row = row.tests()

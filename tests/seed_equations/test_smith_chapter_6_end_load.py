@@ -88,13 +88,6 @@ def force_of_the_follower_alone(entry):
         assert np.abs(true - printed).max() / np.abs(true).max() == pytest.approx(size, abs=2e-4)
 
 
-COEFFICIENT = (
-    "F_x/(mu*omega2**2)*(m*pi/l3)**2 = I3*m**2*pi**2/(mu*l3**3)*(-alpha3/(omega2**2"
-    "*tan(theta3 - theta4))) + m**2*pi**2*{}*l2/l3**2*(sin(theta2 - theta3)/tan(theta3 - theta4)) "
-    "+ I4*m**2*pi**2/(mu*l3**2*l4)*(-alpha4/(omega2**2*sin(theta3 - theta4)))"
-)
-
-
 @row("6.2.2 F_x term of the coefficient")
 def term_of_the_coefficient(entry):
     fast = [

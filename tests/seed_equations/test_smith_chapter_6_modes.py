@@ -76,14 +76,6 @@ def shapes():
 row("6.7", check=holds(lambda: [shapes()]))
 
 
-def test_natural_conditions_are_those_of_the_modes():
-    x = sp.Symbol("x", real=True)
-    assert all(condition.has(machine.y_xx) for condition in machine.end_conditions())
-    clamped = x**2 * (l3 - x) ** 2  # satisfies the values and their rates, yet is no pinned shape
-    assert clamped.subs(x, 0) == clamped.subs(x, l3) == 0
-    assert sp.diff(clamped, x, 2).subs(x, 0) != 0
-
-
 row("6.8", check=holds(modal))
 
 

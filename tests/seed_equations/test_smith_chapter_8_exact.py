@@ -1,14 +1,17 @@
-"""The effective operator in exact arithmetic: published series, determinants at 60 digits."""
+"""Boundaries in exact arithmetic: Bloch's operator against published series and other routes."""
 
 from __future__ import annotations
 
+import random
 from fractions import Fraction
 
 import mpmath
 import pytest
-from elastolink.derive import bloch as bloch
+from elastolink.derive import bloch
 from smith_chapter_8.exact import exact_operator, exact_series
-from smith_chapter_8.surd import ExactHarmonics
+from smith_chapter_8.strained import strained_boundaries
+from smith_chapter_8.surd import ExactHarmonics, combine
+from strained_truth import PUBLISHED, published, random_function
 
 FIRST = ExactHarmonics.of(
     Fraction(1, 3), [Fraction(1, 2), Fraction(-2, 3)], [Fraction(1, 5), Fraction(3, 4)]
@@ -20,73 +23,77 @@ EVEN = ExactHarmonics.of(0, [Fraction(3, 2), Fraction(-1, 4), Fraction(2, 7)])
 MATHIEU = ExactHarmonics.of(0, [0, -2])  # y'' + (a - 2 q cos 2x) y = 0
 
 
-def fractions(text):
-    return [Fraction(part) for part in text.split()]
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_mathieus_published_series(name):
+    """DLMF 28.6.1-28.6.13: a_1 with -q for q is b_1."""
+    wanted, n = published(name), 2 * int(name[1:])
+    series = exact_series(exact_operator([MATHIEU], n, len(wanted)), [1])
+    assert list(series.upper if name[0] == "a" else series.lower) == wanted
+    assert series.split == (n // 2 if 0 < n <= 2 * len(wanted) else None)
 
 
-# DLMF 28.6.1-28.6.13: coefficients of q, q^2, ...; a_1 with -q for q is b_1.
-PUBLISHED = {
-    (0, "upper"): "0 -1/2 0 7/128 0 -29/2304 0 68687/18874368",
-    (2, "upper"): "1 -1/8 -1/64 -1/1536 11/36864 49/589824 55/9437184 -83/35389440",
-    (2, "lower"): "-1 -1/8 1/64 -1/1536 -11/36864 49/589824 -55/9437184 -83/35389440",
-    (4, "upper"): "0 5/12 0 -763/13824 0 1002401/79626240 0 -1669068401/458647142400",
-    (4, "lower"): "0 -1/12 0 5/13824 0 -289/79626240 0 21391/458647142400",
-    (6, "upper"): "0 1/16 1/64 13/20480 -5/16384 -1961/23592960 -609/104857600",
-    (6, "lower"): "0 1/16 -1/64 13/20480 5/16384 -1961/23592960 609/104857600",
-    (8, "upper"): "0 1/30 0 433/864000 0 -5701/2721600000",
-    (8, "lower"): "0 1/30 0 -317/864000 0 10049/2721600000",
+# ---------------------------------------------------------------- against strained parameters
+
+KINDS = {
+    "mixed": lambda seed: random_function(seed, count=4),
+    "even": lambda seed: ExactHarmonics.of(Fraction(1, 7), random_function(seed, 4).cosine),
+    "odd": lambda seed: ExactHarmonics.of(Fraction(-1, 7), [], random_function(seed, 4).sine),
+    "gaps": lambda seed: random_function(seed, count=6).without(1).without(2).without(4),
 }
 
 
-@pytest.mark.parametrize("n, branch", PUBLISHED)
-def test_mathieus_published_series(n, branch):
-    wanted = fractions(PUBLISHED[n, branch])
-    found = exact_series(exact_operator([MATHIEU], n, len(wanted)), [1])
-    assert list(getattr(found, branch)) == wanted
-    assert found.split == (None if n == 0 else n // 2)
+def same(series, strained):
+    assert series.split == strained.split
+    assert (series.upper, series.lower) == tuple(branch.alpha for branch in strained.branches)
 
 
-# ---------------------------------------------------------------- against determinants
+@pytest.mark.parametrize("n", range(5))
+@pytest.mark.parametrize("kind", KINDS)
+def test_strained_parameters_give_the_same_series(kind, n):
+    """Real, trigonometric and order by order, as Smith prints them."""
+    f, order = KINDS[kind](100 + n), 5
+    same(exact_series(exact_operator([f], n, order), [1]), strained_boundaries(f, n, order))
+    if kind != "gaps":
+        beta = Fraction(random.Random(n).randint(1, 9), 1000)
+        series = exact_series(exact_operator([f], n, order, damped=True), [1, beta])
+        same(series, strained_boundaries(f, n, order, beta))
 
 
-def coefficient(parts, values, m):
-    """Return c_m of the combined function."""
-    total = mpmath.mpc(0)
-    for part, value in zip(parts, values, strict=True):
-        a, b = part.harmonic(abs(m))
-        size = 1 if m == 0 else mpmath.mpf(1) / 2
-        sign = 1 if m > 0 else -1
-        total += value * size * (mpmath.mpf(a.numerator) / a.denominator)
-        total -= 1j * sign * value * size * (mpmath.mpf(b.numerator) / b.denominator)
-    return total
+@pytest.mark.parametrize("n", range(1, 5))
+@pytest.mark.parametrize("count", [2, 3])
+def test_several_parameters_are_strained_along_a_ray(n, count):
+    rng = random.Random(10 * n + count)
+    parts = [random_function(300 + 10 * n + i, count=3 + 2 * i) for i in range(count)]
+    ray = [Fraction(rng.choice((-1, 1)) * rng.randint(1, 9), rng.randint(1, 9)) for _ in parts]
+    beta = Fraction(1, 500) if any(combine(parts, ray).harmonic(n)) else Fraction(0)
+    series = exact_series(exact_operator(parts, n, 4, damped=True), [*ray, beta])
+    same(series, strained_boundaries(combine(parts, ray), n, 4, beta))
 
 
-def matrix(parts, n, values, damping, reach):
-    """Return Hill's matrix ``k^2 - 2 i K k - F`` for m = -reach ... n + reach, without n^2/4."""
-    numbers = range(-reach, n + reach + 1)
-    out = mpmath.matrix(len(numbers))
-    for i, m in enumerate(numbers):
-        for j, other in enumerate(numbers):
-            out[i, j] = -coefficient(parts, values, m - other)
-        out[i, i] += m * (m - n) - 1j * damping * (2 * m - n)
-    return out
+# ---------------------------------------------------------------- both columns, plain matrices
 
 
 def rational(value):
     return mpmath.mpf(value.numerator) / value.denominator
 
 
-# ---------------------------------------------------------------- both columns, plain matrices
+def coefficient(part, m):
+    """Return c_m of a function."""
+    a, b = map(rational, part.harmonic(abs(m)))
+    return a if m == 0 else mpmath.mpc(a, -b if m > 0 else b) / 2
 
 
 class Matrices:
     """The recursion's algebra with dense matrices of many digits: Omega has both columns."""
 
     def __init__(self, parts, n, values, damping, reach):
-        self.v = matrix(parts, n, values, damping, reach)
         numbers = list(range(-reach, n + reach + 1))
+        self.v = mpmath.matrix(len(numbers))
         for i, m in enumerate(numbers):
-            self.v[i, i] -= m * (m - n)
+            for j, other in enumerate(numbers):
+                for part, value in zip(parts, values, strict=True):
+                    self.v[i, j] -= value * coefficient(part, m - other)
+            self.v[i, i] -= 1j * damping * (2 * m - n)
         self.levels = [m * (m - n) for m in numbers]
         self.resonant = [numbers.index(m) for m in dict.fromkeys((n, 0))]
         self.start = mpmath.matrix(len(numbers), len(self.resonant))

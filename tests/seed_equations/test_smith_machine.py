@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import seed_machine as machine
 import sympy as sp
-from elastolink.generated import four_bar_kinematics
 from seed_derivations import (
     EI,
     alpha3,
@@ -24,14 +23,8 @@ from seed_derivations import (
 )
 from seed_truth import (
     CRANK_ROCKERS,
-    DRAG_LINK,
-    LONG_CRANK,
-    boundaries,
-    fourier,
-    motion,
     pin_force_on_coupler,
 )
-from smith_chapter_8.first_order import boundaries as first_order_boundaries
 
 
 def test_field_equation_and_tension():
@@ -75,29 +68,3 @@ def test_modes():
     coupling = machine.coupling_coefficient(1, 2)
     assert number(coupling) == pytest.approx(number(projected(1, 2)[1] / omega2**2), rel=1e-12)
     assert mu not in coefficient.subs(EI, 0).free_symbols
-
-
-@pytest.mark.parametrize("assembly", ["open", "crossed"])
-@pytest.mark.parametrize("lengths", [*CRANK_ROCKERS.values(), LONG_CRANK, DRAG_LINK])
-def test_emitted_kinematics(lengths, assembly):
-    m = motion(lengths, assembly, 1024)
-    sign, winding = (1.0 if assembly == "open" else -1.0), float(lengths[1] > lengths[0])
-    found = four_bar_kinematics.motion(m.theta2, *lengths, sign, winding)
-    for ours, theirs in zip((m.theta3, m.theta4), found[:2], strict=True):
-        assert np.abs(np.exp(1j * ours) - np.exp(1j * theirs)).max() < 1e-11
-    true = (m.omega3, m.omega4, m.alpha3, m.alpha4)
-    for ours, theirs in zip(true, found[2:6], strict=True):
-        assert np.abs(ours - theirs).max() < 1e-8 * max(1.0, np.abs(ours).max())
-
-
-def test_emitted_first_order_boundaries():
-    angle = 2 * np.pi * np.arange(128) / 128
-    samples = 0.2 + np.cos(angle) - 0.5 * np.sin(2 * angle) + 0.3 * np.cos(2 * angle)
-    c = fourier(samples)
-    for n in (1, 2):
-        an, bn = 2 * c[n].real, -2 * c[n].imag
-        for mu_value in (1e-3, 1e-4):
-            centre, square = first_order_boundaries()(n, mu_value, c[0].real, an, bn, 0.0)
-            found = centre + np.sqrt(square) * np.array([-1.0, 1.0])
-            exact = boundaries(mu_value * samples, n)
-            assert np.allclose(found, exact, rtol=0, atol=2 * mu_value**2)

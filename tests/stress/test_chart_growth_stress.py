@@ -7,14 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.charts.invariants import (
-    instability_kind,
-    largest_modulus,
-    weighed_characteristic,
-)
-from elastolink.runtime.stability.charts.lines import Lines
-from elastolink.runtime.stability.charts.sampling import Sampler, Series
-from elastolink.runtime.stability.charts.verdict import undecided, verdict
+from elastolink.runtime.stability.charts.invariants import weighed_characteristic
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 
 
@@ -49,7 +42,7 @@ def rod(basis):
     )
 
 
-@pytest.mark.parametrize("modes", [2, 3, 5])
+@pytest.mark.parametrize("modes", [2, pytest.param(5, marks=pytest.mark.slow)])
 def test_growth_that_overflows_is_unstable(modes):
     """At 0.005 rad/s the state grows by exp(2 pi sqrt(k) / speed), 1e385 and more."""
     speeds = np.array([0.005, 0.5, 1.0])
@@ -80,11 +73,11 @@ def test_one_growing_point_leaves_the_others_decided():
 
 def test_stable_points_beside_overflow_are_found():
     """One chart from a spring that holds to one that pushes, over speeds down to 0.004 rad/s."""
-    speeds = np.concatenate([[0.004], np.linspace(0.7, 3.0, 60)])
+    speeds = np.concatenate([[0.004], np.linspace(0.7, 3.0, 30)])
     system = divergent(2, first=1.0)
-    stiff = np.linspace(-1.0, 1.0, 12)
+    stiff = np.linspace(-1.0, 1.0, 6)
     chart = el.stability_chart(system, ("speed", speeds), ("k", stiff))
-    assert np.all(chart.largest[:3, 0] == np.inf)
+    assert np.all(chart.largest[:2, 0] == np.inf)
     direct = el.floquet_multipliers(system, speeds[None, 1:], k=stiff[:, None])
     modulus = np.max(np.abs(direct.multipliers), axis=-1)
     clear = np.abs(modulus - 1.0) > 1e-6
@@ -110,51 +103,6 @@ def test_waves_alone_move_a_system_whose_mean_stiffness_vanishes():
     assert not chart.stable[1, 0]
 
 
-def test_lines_are_not_made_again_and_again_where_nothing_settles(monkeypatch):
-    made = []
-    plain = Lines._piece
-    monkeypatch.setattr(Lines, "_piece", lambda *a: made.append(1) or plain(*a))
-    rows = np.linspace(0.5, 2.0, 10)
-    chart = el.stability_chart(
-        divergent(2), ("speed", np.linspace(0.02, 1.0, 100)), ("k", rows), boundaries=False
-    )
-    assert chart.nodes == (0, 0)
-    assert not np.any(chart.stable)
-    # Two ends to judge by, up to nine to begin with, one per row, four for the error.
-    assert len(made) <= 2 + 9 + len(rows) + 4
-
-
-def test_a_matrix_that_is_not_a_number_is_undecided():
-    values = np.array([[[-1.0, 0.5], [np.nan, 0.5]], [[np.inf, np.inf], [-np.inf, -np.inf]]])
-    largest, stable, slack = largest_modulus(values, reduced=True)
-    assert np.isnan(largest[0, 1])
-    assert np.all(largest[1] == np.inf)
-    assert not np.any(stable[[0, 1, 1], [1, 0, 1]])
-    assert slack[0, 1] == np.inf
-    assert np.all(slack[1] == 0.0)
-    system = divergent(2)
-    axes = (np.array([0.5, 1.0]), np.array([0.5, 1.0]))
-    sampler = Sampler(system, ("speed", "k"), axes, 1e-11)
-    series = Series(values, np.zeros((2, 2)), 0.0, (0, 0), "")
-    found = verdict(sampler, series)
-    assert undecided(sampler, series, found).tolist() == [[False, True], [False, False]]
-    kind = instability_kind(values, found[1], hill=False, reduced=True)
-    assert kind[1].tolist() == [-1, 1]
-    assert kind[0, 1] == 0
-
-
-@pytest.mark.parametrize("basis", [PolynomialBasis(3), OverhangBasis(2)])
-def test_the_second_solution_is_another_one(basis):
-    """Fast cranks want the least number of segments, of which the second solution has more."""
-    system = rod(basis).with_geometry(crank_ratio=0.2)
-    speeds = np.array([3000.0, 4000.0])
-    sampler = Sampler(system, ("speed", "damping"), (speeds, np.array([0.0, 1e-9])), 1e-11)
-    lines = Lines(sampler)
-    low, high = 1.0 / speeds[1] ** 2, 1.0 / speeds[0] ** 2
-    one, other = (lines._line(0.0, low, high, None, f).pieces[0] for f in (1.0, 1.37))
-    assert other.segments > one.segments
-
-
 def _characteristic_in_many_digits(matrix):
     """Faddeev and LeVerrier in 80 digits."""
     with mpmath.workdps(80):
@@ -168,12 +116,11 @@ def _characteristic_in_many_digits(matrix):
         return np.array([float(c) for c in found])
 
 
-@pytest.mark.parametrize("modes", [2, 4, 6])
-def test_coefficients_keep_their_digits_beside_a_large_multiplier(modes):
+def test_coefficients_keep_their_digits_beside_a_large_multiplier():
     """Random matrices with multipliers from 0.03 to 30: within round-off of the matrices."""
-    rng = np.random.default_rng(modes)
-    size = 2 * modes
-    basis = rng.normal(size=(40, size, size)) + 3.0 * np.eye(size)
+    rng = np.random.default_rng(4)
+    size = 8
+    basis = rng.normal(size=(10, size, size)) + 3.0 * np.eye(size)
     spread = np.geomspace(0.03, 30.0, size)
     matrices = basis @ (spread[:, None] * np.linalg.inv(basis))
     found, weight = weighed_characteristic(matrices, size)
@@ -185,7 +132,7 @@ def test_error_figures_of_circulatory_systems_hold():
     """Undamped: the last coefficient is the determinant, 1; the others from multipliers."""
     rng = np.random.default_rng(4)
     covered = []
-    for _ in range(6):
+    for _ in range(3):
         turn = rng.normal(size=(4, 4))
         waves = rng.normal(size=(4, 4)) * 0.6
         terms = (
@@ -195,7 +142,7 @@ def test_error_figures_of_circulatory_systems_hold():
             Term("K", None, lambda t, w=waves + waves.T: np.cos(t)[:, None, None] * w),
         )
         system = LinearPeriodic(4, terms, {"k": 1.0}, _scales)
-        axes = ("speed", np.linspace(0.7, 3.0, 40)), ("k", np.linspace(0.5, 1.5, 5))
+        axes = ("speed", np.linspace(0.7, 3.0, 20)), ("k", np.linspace(0.5, 1.5, 5))
         chart = el.stability_chart(system, *axes)
         direct = el.floquet_multipliers(system, chart.x[None, :], k=chart.y[:, None])
         wanted = np.array([[np.poly(v).real[1:] for v in row] for row in direct.multipliers])

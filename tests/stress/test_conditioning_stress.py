@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.beams import Section, frame, linear_system
+from elastolink.runtime.beams import Section, frame
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.frequencies import dynamic_stiffness, natural_frequencies, wittrick_williams
+from elastolink.runtime.frequencies import dynamic_stiffness, wittrick_williams
 from elastolink.runtime.periodic import floquet_multipliers, steady_state
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -20,7 +20,7 @@ BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)
 
 @pytest.mark.parametrize(
     "exponent",
-    [*range(1, 6), *(pytest.param(k, marks=pytest.mark.slow) for k in (6, 7)), 8],
+    [1, 3, 5, pytest.param(7, marks=pytest.mark.slow), 8],
 )
 def test_coordinates_that_hardly_differ(exponent):
     """Danger: a basis nearly dependent.  Figure: that of the multipliers."""
@@ -47,29 +47,6 @@ def test_coordinates_that_hardly_differ(exponent):
             assert np.min(np.abs(exact - value)) <= error + data
 
 
-@pytest.mark.parametrize("exponent", range(1, 9))
-def test_an_element_whose_length_vanishes(exponent):
-    """Danger: stiffness entries as 1/h^3.  Figure: that of natural frequencies, by round-off."""
-    short = 10.0**-exponent
-    places = {"A": (0.0, 0.0), "B": (0.5, 0.0), "C": (0.5 + short, 0.0), "D": (1.0, 0.0)}
-    members = {"one": ("A", "B"), "tiny": ("B", "C"), "two": ("C", "D")}
-    structure = frame(places, members, BAR, supports={"A": CLAMPED}, elements=1)
-    try:
-        found = natural_frequencies(linear_system(structure), 0.0, 2)
-    except BadInput:
-        assert exponent >= 5
-        return
-    places.pop("C")
-    whole = frame(
-        places, {"one": ("A", "B"), "two": ("B", "D")}, BAR, supports={"A": CLAMPED}, elements=1
-    )
-    plain = natural_frequencies(linear_system(whole), 0.0, 2)
-    assert np.all(np.isfinite(found.frequency)) and np.all(np.isfinite(found.error))
-    # One more node makes the mesh no worse, and lets it be better by its share of the bar alone.
-    gap = np.abs(found.frequency - plain.frequency) / plain.frequency
-    assert np.all(gap <= found.error / found.frequency + 0.01 * 10.0 * short)
-
-
 def test_every_mode_from_the_first_to_the_hundredth():
     """Danger: cosh and sinh lose every digit by mode 12.  Figure: the bound of each frequency."""
     structure = frame({"A": (0, 0), "B": (1, 0)}, {"bar": ("A", "B")}, BAR, supports={"A": CLAMPED})
@@ -86,9 +63,12 @@ def test_every_mode_from_the_first_to_the_hundredth():
         )
     gap = np.abs(found.frequencies - root**2).astype(float)
     assert np.all(gap <= found.error)
+    shape = found.shape(99, "bar", np.linspace(0.0, 1.0, 401))
+    # Unit mass of the whole bar: 2 over the square root of it at the tip.
+    assert abs(shape.across[-1]) == pytest.approx(2.0, rel=1e-9)
 
 
-@pytest.mark.parametrize("exponent", range(1, 16))
+@pytest.mark.parametrize("exponent", range(1, 16, 2))
 def test_a_hair_from_an_undamped_resonance(exponent):
     """Danger: a motion that grows without bound.  Figure: that of the steady state."""
     speed = 1.0 + 10.0**-exponent

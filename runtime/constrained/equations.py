@@ -65,8 +65,8 @@ class Step:
         Largest size of the coordinates inside.
     inner : ndarray
         Times inside at which to look for what stops a motion.
-    error : ndarray, shape (n,), or None
-        Largest error estimate of the coordinates inside; None where the method has none.
+    error : ndarray, shape (n,)
+        Largest error estimate of the coordinates inside.
     """
 
     before: State
@@ -74,7 +74,7 @@ class Step:
     at: Callable[[Array], tuple[Array, Array]]
     reach: Array
     inner: Array
-    error: Array | None = None
+    error: Array
 
 
 @dataclass(frozen=True)
@@ -87,14 +87,11 @@ class Tolerance:
         Relative tolerance of the error of one step.
     place, speed : float
         Sizes of scaled coordinates and velocities that are added to their own ones.
-    longest : float
-        Longest step of an explicit method [s].
     """
 
     rtol: float
     place: float
     speed: float
-    longest: float = np.inf
 
 
 class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is

@@ -778,7 +778,7 @@ def _followed(system: Constrained, guess: _Guess, samples: int) -> _Guess:
     columns = equations.columns
     x, v = equations.nearest(0.0, guess.q[0] / columns, guess.qd[0] / columns)
     times = np.linspace(0.0, guess.period, samples + 1)
-    path = march(Run(system, x * columns, v * columns, times, "collocation", 1e-8, (), 1e6))
+    path = march(Run(system, x * columns, v * columns, times, 1e-8, (), 1e6))
     if path.status:
         raise _no_guess(f"the motion from the guess ends: {path.message}")
     return replace(guess, q=path.q[:-1], qd=path.qd[:-1])

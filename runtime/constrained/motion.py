@@ -37,7 +37,7 @@ Watch = Callable[[Array, Array], ArrayLike]
 Energy = Callable[[Array, Array, Array], ArrayLike]
 
 LINEAR_RANGE = 0.05
-# Estimates are enlarged: from 5 on they cover 99 of 100 random pendulums, rods and forces that jump.
+# Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
 _SAFETY = 5.0
 _MOST_SAMPLES = 2_000_000
 _HALVINGS = 60

@@ -34,17 +34,10 @@ class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
 
 @dataclass(frozen=True)
 class State:
-    """A state that meets the constraints at all three levels, scaled.
+    """A state that meets the constraints at all three levels, scaled."""
 
-    Attributes
-    ----------
-    t : float
-        Time [s].
-    x, v, a : ndarray, shape (n,)
-        Coordinates and their time derivatives.
-    """
-
-    t: float
+    t: float  # time [s]
+    # x, v, a: (n,): coordinates and their time derivatives
     x: Array
     v: Array
     a: Array
@@ -52,44 +45,25 @@ class State:
 
 @dataclass(frozen=True)
 class Step:
-    """One accepted step of a motion, scaled.
+    """One accepted step of a motion, scaled."""
 
-    Attributes
-    ----------
-    before, after : State
-        Its ends.
-    at : callable
-        Times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
-        constraints.
-    reach : ndarray, shape (n,)
-        Largest size of the coordinates inside.
-    inner : ndarray
-        Times inside at which to look for what stops a motion.
-    error : ndarray, shape (n,)
-        Largest error estimate of the coordinates inside.
-    """
-
+    # before, after: its ends
     before: State
     after: State
+    # times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
+    # constraints
     at: Callable[[Array], tuple[Array, Array]]
-    reach: Array
-    inner: Array
-    error: Array
+    reach: Array  # (n,): largest size of the coordinates inside
+    inner: Array  # times inside at which to look for what stops a motion
+    error: Array  # (n,): largest error estimate of the coordinates inside
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How exact the steps are to be.
+    """How exact the steps are to be."""
 
-    Attributes
-    ----------
-    rtol : float
-        Relative tolerance of the error of one step.
-    place, speed : float
-        Sizes of scaled coordinates and velocities that are added to their own ones.
-    """
-
-    rtol: float
+    rtol: float  # relative tolerance of the error of one step
+    # place, speed: sizes of scaled coordinates and velocities that are added to their own ones
     place: float
     speed: float
 
@@ -104,24 +78,16 @@ class Linearised:
 
     The constraints hold at acceleration level for every neighbour, whether or not it meets them at
     the levels below.
-
-    Attributes
-    ----------
-    a : ndarray, shape (*batch, n)
-        Accelerations.
-    multipliers : ndarray, shape (*batch, k)
-        Multipliers.
-    by_x, by_v : ndarray, shape (*batch, n, n)
-        Derivatives of the accelerations by coordinates and velocities.
-    terms, variations : mapping
-        Arrays of the dynamics and of their variation, not scaled; the latter empty where the
-        system has none.
     """
 
-    a: Array
-    multipliers: Array
+    a: Array  # (*batch, n): accelerations
+    multipliers: Array  # (*batch, k): multipliers
+    # by_x, by_v: (*batch, n, n): derivatives of the accelerations by coordinates and
+    # velocities
     by_x: Array
     by_v: Array
+    # terms, variations: arrays of the dynamics and of their variation, not scaled; the latter empty
+    # where the system has none
     terms: Mapping[str, Array]
     variations: Mapping[str, Array]
 
@@ -164,13 +130,7 @@ class Equations:
         return self.system.dynamics(x * self.columns, v * self.columns, t)
 
     def accelerations(self, t: float | Array, x: Array, v: Array) -> tuple[Array, Array]:
-        """Return accelerations and multipliers.
-
-        Raises
-        ------
-        NoConvergence
-            If they do not exist.
-        """
+        """Return accelerations and multipliers."""
         return self._accelerations(self.terms(t, x, v))[1:]
 
     def _accelerations(self, at: Mapping[str, Array]) -> tuple[Array, Array, Array]:
@@ -188,11 +148,6 @@ class Equations:
             M dqdd + D dqd + K dq = J^T dlam,      J dqdd + 2 Jd dqd + Jdd dq = 0.
 
         Where the system has no variational equations, differences stand for them.
-
-        Raises
-        ------
-        NoConvergence
-            If the accelerations do not exist.
         """
         n, columns, rows = self.n, self.columns, self.rows
         at = self.terms(t, x, v)
@@ -246,13 +201,7 @@ class Equations:
         return defect
 
     def nearest(self, t: float | Array, x: Array, v: Array) -> tuple[Array, Array]:
-        """Return coordinates and velocities on the constraints, nearest by the masses.
-
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
-        """
+        """Return coordinates and velocities on the constraints, nearest by the masses."""
         if not self.k:
             return x, v
         x, _ = self.positions(t, x, self.terms(t, x, v)["mass"])
@@ -273,11 +222,6 @@ class Equations:
             Metric, not scaled.
         free : ndarray, shape (n,), optional
             1 for the coordinates that may move, 0 for those that are held.
-
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
         """
         at = self._violation(t, x)
         last = np.inf
@@ -332,13 +276,7 @@ class Equations:
         return solved(self._outer * matrix, right)[..., :n, 0]
 
     def state(self, t: float, x: Array, v: Array) -> State:
-        """Return the state on the constraints nearest to a predicted one.
-
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
-        """
+        """Return the state on the constraints nearest to a predicted one."""
         return self.at(t, *self.nearest(t, x, v))
 
     def at(self, t: float, x: Array, v: Array) -> State:
@@ -347,13 +285,7 @@ class Equations:
 
 
 def solved(matrix: Array, right: Array) -> Array:
-    """Return the solution of linear equations.
-
-    Raises
-    ------
-    NoConvergence
-        If they are singular or it is not finite.
-    """
+    """Return the solution of linear equations."""
     try:
         solution = np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError as singular:
@@ -364,13 +296,7 @@ def solved(matrix: Array, right: Array) -> Array:
 
 
 def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]]:
-    """Return the variational equations of a system.
-
-    Raises
-    ------
-    BadInput
-        If it has none.
-    """
+    """Return the variational equations of a system."""
     if system.variations is None:
         raise bad(
             "system",

@@ -52,25 +52,14 @@ _NOISES, _ENLARGED = 4, 4.0
 
 @dataclass(frozen=True)
 class Ring:
-    """A motion over one period as even collocation steps, each from a state of its own; scaled.
+    """A motion over one period as even collocation steps, each from a state of its own; scaled."""
 
-    Attributes
-    ----------
-    period : float
-        Period [s].
-    advance : ndarray, shape (n,)
-        What the coordinates gain over a period.
-    x, v : ndarray, shape (m, n)
-        States at the beginnings of the steps.
-    a : ndarray, shape (m, s, n)
-        Accelerations at the Gauss points of each step.
-    """
-
-    period: float
-    advance: Array
+    period: float  # period [s]
+    advance: Array  # (n,): what the coordinates gain over a period
+    # x, v: (m, n): states at the beginnings of the steps
     x: Array
     v: Array
-    a: Array
+    a: Array  # (m, s, n): accelerations at the Gauss points of each step
 
     @property
     def step(self) -> float:
@@ -135,27 +124,17 @@ class Sweep:
     """The steps of a ring linearised: what each passes on, and what is wrong with it.
 
     States are ``(x, v / rate)``.
-
-    Attributes
-    ----------
-    slopes : Linearised
-        At the Gauss points, shape ``(m, s)`` in front.
-    maps : ndarray, shape (m, 2n, 2n)
-        Derivative of the end of each step by its beginning.
-    gap : ndarray, shape (m, 2n)
-        End of each step, its stages corrected, less the beginning of the next.
-    change, response : ndarray, shape (m, s, n), (m, s, n, 2n)
-        Correction of the stage accelerations, and their derivative by the beginning.
-    defect : float
-        Largest defect of a stage or a junction.
     """
 
-    slopes: Linearised
-    maps: Array
+    slopes: Linearised  # at the Gauss points, shape ``(m, s)`` in front
+    maps: Array  # (m, 2n, 2n): derivative of the end of each step by its beginning
+    # (m, 2n): end of each step, its stages corrected, less the beginning of the next
     gap: Array
+    # change, response: (m, s, n), (m, s, n, 2n): correction of the stage accelerations, and
+    # their derivative by the beginning
     change: Array
     response: Array
-    defect: float
+    defect: float  # largest defect of a stage or a junction
 
 
 def sweep(equations: Equations, ring: Ring, rate: float) -> Sweep:
@@ -189,21 +168,12 @@ def sweep(equations: Equations, ring: Ring, rate: float) -> Sweep:
 
 @dataclass(frozen=True)
 class Tangent:
-    """The manifold of the constraints, at states: what leaves it and what stays.
+    """The manifold of the constraints, at states: what leaves it and what stays."""
 
-    Attributes
-    ----------
-    normals : ndarray, shape (*batch, 2k, 2n)
-        Derivatives of ``Phi`` and of ``dPhi/dt / rate`` by the state.
-    along : ndarray, shape (*batch, 2n, 2n - 2k)
-        Orthonormal basis of the tangent space.
-    across : ndarray, shape (*batch, 2n, 2k)
-        Orthonormal basis of its complement.
-    """
-
+    # (*batch, 2k, 2n): derivatives of ``Phi`` and of ``dPhi/dt / rate`` by the state
     normals: Array
-    along: Array
-    across: Array
+    along: Array  # (*batch, 2n, 2n - 2k): orthonormal basis of the tangent space
+    across: Array  # (*batch, 2n, 2k): orthonormal basis of its complement
 
 
 def tangent(equations: Equations, slopes: Linearised, rate: float) -> Tangent:
@@ -220,27 +190,13 @@ def tangent(equations: Equations, slopes: Linearised, rate: float) -> Tangent:
 
 @dataclass(frozen=True)
 class Shot:
-    """Where the iteration came to.
+    """Where the iteration came to."""
 
-    Attributes
-    ----------
-    ring : Ring
-        The motion.
-    sweep : Sweep
-        Its linearisation.
-    residual : float
-        Largest defect of a stage or junction, relative to the motion's size.
-    iterations : int
-        Newton steps.
-    reason : str
-        Empty where the iteration converged, else why not.
-    """
-
-    ring: Ring
-    sweep: Sweep
-    residual: float = np.inf
-    iterations: int = 0
-    reason: str = ""
+    ring: Ring  # the motion
+    sweep: Sweep  # its linearisation
+    residual: float = np.inf  # largest defect of a stage or junction, relative to the motion's size
+    iterations: int = 0  # Newton steps
+    reason: str = ""  # empty where the iteration converged, else why not
 
 
 @dataclass(frozen=True)
@@ -249,17 +205,10 @@ class Shooting:
 
     The unknowns are the stage accelerations of all steps and the tangent coordinates of the
     states where steps meet; after each Newton step these states are moved onto the constraints.
-
-    Attributes
-    ----------
-    equations : Equations
-        The system.
-    rate : float
-        Of motions, which makes velocities comparable with coordinates [rad/s].
     """
 
-    equations: Equations
-    rate: float
+    equations: Equations  # the system
+    rate: float  # of motions, which makes velocities comparable with coordinates [rad/s]
 
     def state(self, x: Array, v: Array) -> Array:
         """Return whole states, shape ``(*batch, 2n)``."""
@@ -739,11 +688,6 @@ def _first(system: Constrained, guess: _Guess) -> tuple[Shooting, Ring]:
     The rate that makes velocities comparable is the geometric mean of the frozen vibrations:
     between the slowest and the fastest mode no other unit of time leaves the eigenvectors of the
     flow better conditioned.
-
-    Raises
-    ------
-    BadInput
-        If the motion cannot be followed, or has vibrations that are too fast.
     """
     from scipy.interpolate import CubicHermiteSpline
 

@@ -296,13 +296,7 @@ def _function(source: Source) -> tuple[str, Function, dict[str, str]]:
 
 
 def _without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], float, float]:
-    """Return the function less its whole turns in a turn, how many these are, and what is left.
-
-    Raises
-    ------
-    BadInput
-        If it neither comes back to itself nor differs by whole turns.
-    """
+    """Return the function less its whole turns in a turn, how many these are, and what is left."""
     ends = values_at(f, np.array([0.5, 0.5 + _TURN]), name)
     growth = float(ends[1] - ends[0])
     turns = float(np.rint(growth / _TURN))

@@ -25,39 +25,24 @@ _TINY = float(np.finfo(float).tiny)
 
 @dataclass(frozen=True)
 class Play:
-    """Nominal place of an output, and how far play lets it move to either side.
+    """Nominal place of an output, and how far play lets it move to either side."""
 
-    Attributes
-    ----------
-    nominal : ndarray
-        Without play [rad or length].
-    below, above : ndarray
-        Way from there to the least and to the greatest place.
-    small : ndarray
-        The whole way by the approximation of the first order; infinite at a fold.
-    folds, free : ndarray of bool
-        True where the play reaches the other assembly, and where it reaches it on both ways.
-    error, nominal_error : ndarray
-        Of ``below`` and ``above`` (the worse), and of ``nominal``.
-    margin : ndarray
-        Radius of the play at which the linkage first folds; negative where it cannot close.
-    blur : ndarray
-        Round-off of ``margin``.
-    place : ndarray
-        The variable that the play depends on: diagonal, gap or slide.
-    """
-
-    nominal: Array
+    nominal: Array  # without play [rad or length]
+    # below, above: way from there to the least and to the greatest place
     below: Array
     above: Array
-    small: Array
+    small: Array  # the whole way by the approximation of the first order; infinite at a fold
+    # folds, free: True where the play reaches the other assembly, and where it reaches it on both
+    # ways
     folds: Flags
     free: Flags
+    # error, nominal_error: of ``below`` and ``above`` (the worse), and of ``nominal``
     error: Array
     nominal_error: Array
+    # radius of the play at which the linkage first folds; negative where it cannot close
     margin: Array
-    blur: Array
-    place: Array
+    blur: Array  # round-off of ``margin``
+    place: Array  # the variable that the play depends on: diagonal, gap or slide
 
 
 Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
@@ -65,27 +50,14 @@ Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
 
 @dataclass(frozen=True)
 class Route:
-    """One output of one linkage.
+    """One output of one linkage."""
 
-    Attributes
-    ----------
-    at : callable
-        Play at crank angles: (theta, radius, guide).
-    measure : callable
-        Play at values of the one variable that it depends on, its direction left out.
-    interval : tuple of 2 floats
-        Ends of that variable.
-    candidates : callable
-        Values of the variable where the play may be extreme: (radius, guide).
-    crank : callable
-        Crank angle of a value of the variable.
-    """
-
-    at: Kernel
-    measure: Kernel
-    interval: tuple[float, float]
+    at: Kernel  # play at crank angles: (theta, radius, guide)
+    measure: Kernel  # play at values of the one variable that it depends on, its direction left out
+    interval: tuple[float, float]  # ends of that variable
+    # values of the variable where the play may be extreme: (radius, guide)
     candidates: Callable[[float, float], tuple[float, ...]]
-    crank: Callable[[float], float]
+    crank: Callable[[float], float]  # crank angle of a value of the variable
 
 
 @dataclass(frozen=True)
@@ -384,15 +356,7 @@ def _across_coupler(
 
 
 def quick_return(sizes: Sizes, nominal: Callable[[ArrayLike], tuple[Array, Array]]) -> Route:
-    """Return the play of the rod's angle.
-
-    Parameters
-    ----------
-    sizes : mapping
-        Frame, crank and rod.
-    nominal : callable
-        Rod angle and its error at crank angles.
-    """
+    """Return the play of the rod's angle."""
     frame, crank, rod = sizes["frame"], sizes["crank"], sizes["rod"]
     short, long = abs(frame - crank), frame + crank
 

@@ -345,13 +345,7 @@ def tolerances(
 
 
 def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
-    """Return the tolerances as floats.
-
-    Raises
-    ------
-    BadInput
-        If a name is unknown, or a number is not finite, negative, or as large as its length.
-    """
+    """Return the tolerances as floats."""
     if not isinstance(tolerance, Mapping):
         given = type(tolerance).__name__
         raise bad("tolerance", given, "a mapping from name to number", "write {'crank': 1e-4}")
@@ -458,12 +452,6 @@ def margin(box: Box, theta: Array, width: float = 0.0) -> Array:
         Crank angles [rad].
     width : float
         Tolerance of the crank angles [rad], less than a quarter turn.
-
-    Returns
-    -------
-    ndarray
-        Positive where every linkage of the box reaches the angle; exact, for the distances are
-        convex functions of the lengths, and extreme in the angle at dead centres alone.
     """
     if width > 0.0:
         start = np.pi / 2 if "offset" in box else 0.0

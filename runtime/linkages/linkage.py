@@ -544,13 +544,7 @@ def require_linkage(linkage: object) -> None:
 def drive_of(
     theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
 ) -> tuple[Array, tuple[Array, Array]]:
-    """Return the angles, and speed and acceleration in the shape of all three.
-
-    Raises
-    ------
-    BadInput
-        If one of them is no array of finite numbers, or their shapes do not fit together.
-    """
+    """Return the angles, and speed and acceleration in the shape of all three."""
     angles = finite_array("theta", theta, "angles [rad]")
     given = (
         finite_array("speed", speed, "crank speeds [rad/s]"),

@@ -25,16 +25,11 @@ class Parametric:
     """The motion of a linkage at given crank angles as a function of its lengths.
 
     The numbers may be arrays (of samples), or complex ones (of derivatives).
-
-    Attributes
-    ----------
-    linkage : Linkage
-        Lengths and assembly.
-    theta, speed, acceleration : ndarray, shape (...)
-        Crank angle [rad], speed [rad/s], acceleration [rad/s^2], of one shape.
     """
 
-    linkage: Linkage
+    linkage: Linkage  # lengths and assembly
+    # theta, speed, acceleration: (...): crank angle [rad], speed [rad/s], acceleration
+    # [rad/s^2], of one shape
     theta: Array
     speed: Array
     acceleration: Array

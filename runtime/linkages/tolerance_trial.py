@@ -69,13 +69,7 @@ class ToleranceTrial(Result):
 def trial(
     nominal: Tolerances, samples: int, seed: int, distribution: Distribution
 ) -> ToleranceTrial:
-    """Return the outcome of a Monte Carlo trial; see :meth:`Tolerances.monte_carlo`.
-
-    Raises
-    ------
-    BadInput
-        If a number is out of range or the distribution is unknown.
-    """
+    """Return the outcome of a Monte Carlo trial; see :meth:`Tolerances.monte_carlo`."""
     if distribution not in _SPREADS:
         raise bad("distribution", repr(distribution), f"one of {sorted(_SPREADS)}", "choose one")
     for name, number, fewest in (("samples", samples, 2), ("seed", seed, 0)):

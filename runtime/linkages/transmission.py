@@ -268,13 +268,7 @@ def transmission_angle(
 
 @dataclass(frozen=True)
 class _Special:
-    """Special positions; the words of :class:`TransmissionAngle` apply.
-
-    Attributes
-    ----------
-    round_off : float
-        Of a cosine by the plain law of cosines.
-    """
+    """Special positions; the words of :class:`TransmissionAngle` apply."""
 
     least: float
     greatest: float
@@ -285,7 +279,7 @@ class _Special:
     output_range: tuple[float, float] | None
     swing: float | None
     time_ratio: float | None
-    round_off: float = 0.0
+    round_off: float = 0.0  # of a cosine by the plain law of cosines
 
 
 @dataclass(frozen=True)

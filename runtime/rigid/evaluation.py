@@ -70,13 +70,7 @@ class Evaluation:
         self.numbers = self._numbers(speed, acceleration)
 
     def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:
-        """Return the wanted forces by name.
-
-        Raises
-        ------
-        BadInput
-            If one is not finite.
-        """
+        """Return the wanted forces by name."""
         # Two functions of a part repeat what they share: the one of everything costs less.
         function = _KERNELS[wanted[0]] if len(wanted) == 1 else "forces"
         kept = {name for output in wanted for name in _NAMES.get(output, ())}

@@ -235,16 +235,6 @@ def wrenches(
     part : {"all", "outside", "springs", "nonconservative"}
         Everything; loads and weights; springs and dampers; or what no potential energy accounts
         for: loads and dampers.
-
-    Returns
-    -------
-    dict of str to (ndarray, ndarray, ndarray)
-        Force components [N] in the fixed frame and couple [N m].
-
-    Raises
-    ------
-    BadInput
-        As :meth:`Load.wrenches` and :meth:`Spring.wrenches`.
     """
     crank_speed = np.asarray(speed, dtype=float)
     sources: list[dict[str, Wrench]] = []

@@ -60,13 +60,7 @@ class OneFreedom:
         self._bare = Machine(machine.linkage, machine.masses)
 
     def coefficients(self, theta: Any) -> tuple[Array, Array]:
-        """Return J and J'/2 [kg m^2] at crank angles [rad].
-
-        Raises
-        ------
-        BadInput
-            If the linkage cannot reach an angle.
-        """
+        """Return J and J'/2 [kg m^2] at crank angles [rad]."""
         angles = np.asarray(theta, dtype=float)[..., np.newaxis]
         batch = (*angles.shape[:-1], 2)
         torque = Evaluation(self._bare, angles, _FIRST, _SECOND, batch).values(("torque",))[
@@ -75,13 +69,7 @@ class OneFreedom:
         return torque[..., 0], torque[..., 1]
 
     def load(self, theta: Any, speed: Any) -> Array:
-        """Return the torque [N m] that weights, loads, springs and dampers require.
-
-        Raises
-        ------
-        BadInput
-            As :meth:`Machine.wrenches`.
-        """
+        """Return the torque [N m] that weights, loads, springs and dampers require."""
         return self._required(theta, speed, "all")[0]
 
     def _required(self, theta: Any, speed: Any, *parts: Part) -> list[Array]:
@@ -205,15 +193,10 @@ class OneFreedom:
 
 @dataclass(frozen=True)
 class _Series:
-    """A function of the crank angle as a Fourier series: what an integrator evaluates often.
+    """A function of the crank angle as a Fourier series: what an integrator evaluates often."""
 
-    Attributes
-    ----------
-    orders, terms : ndarray, shape (k,)
-        ``i`` times the harmonics, and complex coefficients; the function is the real part of their
-        sum with the waves.
-    """
-
+    # orders, terms: (k,): ``i`` times the harmonics, and complex coefficients; the function
+    # is the real part of their sum with the waves
     orders: NDArray[np.complexfloating]
     terms: NDArray[np.complexfloating]
 

@@ -51,20 +51,12 @@ _UNFELT = 1e-9
 
 @dataclass(frozen=True)
 class Room:
-    """Where a link's counterweight may be, in scaled lengths: greatest mass and offset are 1.
+    """Where a link's counterweight may be, in scaled lengths: greatest mass and offset are 1."""
 
-    Attributes
-    ----------
-    nearest : float
-        Least offset, from 0 to 1.
-    stiffness : float
-        Inertia about the centre over mass squared: ``1/(2 pi h rho)`` of a cylinder; 0 for a point.
-    free : float
-        Greatest inertia about the centre over mass of a disc with free radius: half its square.
-    """
-
-    nearest: float = 0.0
+    nearest: float = 0.0  # least offset, from 0 to 1
+    # inertia about the centre over mass squared: ``1/(2 pi h rho)`` of a cylinder; 0 for a point
     stiffness: float = 0.0
+    # greatest inertia about the centre over mass of a disc with free radius: half its square
     free: float = 0.0
 
     @property
@@ -90,17 +82,11 @@ class Room:
 
 @dataclass(frozen=True)
 class Cones:
-    """``|fixed + basis p| <= t[bound]`` at n angles, the force having d components.
+    """``|fixed + basis p| <= t[bound]`` at n angles, the force having d components."""
 
-    Attributes
-    ----------
-    bound : int
-        Which of the bounds t.
-    fixed, basis : ndarray (n, d), ndarray (n, d, 4 links)
-        Force without counterweights, and of each unit parameter.
-    """
-
-    bound: int
+    bound: int  # which of the bounds t
+    # fixed, basis: (n, d), ndarray (n, d, 4 links): force without counterweights, and of each
+    # unit parameter
     fixed: Array
     basis: Array
 
@@ -116,20 +102,11 @@ class Cones:
 
 @dataclass(frozen=True)
 class PeakProblem:
-    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks.
+    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks."""
 
-    Attributes
-    ----------
-    rooms : sequence of Room
-        One per link.
-    cones : sequence of Cones
-        The forces.
-    cost, ceilings : ndarray
-        Weight of each bound t, and its greatest value, ``inf`` where free.
-    """
-
-    rooms: Sequence[Room]
-    cones: Sequence[Cones]
+    rooms: Sequence[Room]  # one per link
+    cones: Sequence[Cones]  # the forces
+    # cost, ceilings: weight of each bound t, and its greatest value, ``inf`` where free
     cost: Array
     ceilings: Array
 
@@ -466,27 +443,15 @@ class _Epigraph:
 
 @dataclass(frozen=True)
 class ForceBasis:
-    """A machine at one speed: the forces at any angle, and what each unit of mass adds.
+    """A machine at one speed: the forces at any angle, and what each unit of mass adds."""
 
-    Attributes
-    ----------
-    machine : Machine
-        Without the counterweights.
-    links : sequence of str
-        Links that carry counterweights.
-    speed, acceleration : float
-        Of the crank [rad/s, rad/s^2].
-    terms : sequence of str
-        Which forces.
-    masses, lengths : ndarray
-        Units of mass [kg] and length [m] of each link's parameters.
-    """
-
-    machine: Machine
-    links: Sequence[str]
+    machine: Machine  # without the counterweights
+    links: Sequence[str]  # links that carry counterweights
+    # speed, acceleration: of the crank [rad/s, rad/s^2]
     speed: float
     acceleration: float
-    terms: Sequence[str]
+    terms: Sequence[str]  # which forces
+    # masses, lengths: units of mass [kg] and length [m] of each link's parameters
     masses: Array
     lengths: Array
 
@@ -546,33 +511,17 @@ class ForceBasis:
 
 @dataclass(frozen=True)
 class Search:
-    """Everything about one search that stays as it is.
+    """Everything about one search that stays as it is."""
 
-    Attributes
-    ----------
-    basis : ForceBasis
-        The forces that count.
-    theta : ndarray
-        Sampled angles.
-    between : bool
-        True where peaks between the samples count.
-    unbalanced : mapping of str to float
-        Peaks of every force without counterweights [N; N m].
-    rooms : sequence of Room
-        One for each link of the basis.
-    weights, limits : mapping of str to float
-        Of the relative peaks.
-    measure : {"peak", "rms"}
-        What counts of each force: its peak, or its root mean square over the sampled angles.
-    """
-
-    basis: ForceBasis
-    theta: Array
-    between: bool
-    unbalanced: Mapping[str, float]
-    rooms: Sequence[Room]
+    basis: ForceBasis  # the forces that count
+    theta: Array  # sampled angles
+    between: bool  # True where peaks between the samples count
+    unbalanced: Mapping[str, float]  # peaks of every force without counterweights [N; N m]
+    rooms: Sequence[Room]  # one for each link of the basis
+    # weights, limits: of the relative peaks
     weights: Mapping[str, float]
     limits: Mapping[str, float]
+    # what counts of each force: its peak, or its root mean square over the sampled angles
     measure: Measure = "peak"
 
     @property
@@ -677,13 +626,7 @@ def _mean_square(cone: Cones) -> Cones:
 
 
 def best_counterweights(search: Search) -> Candidate:
-    """Return the best counterweights that are known, and the proof of how good they are.
-
-    Raises
-    ------
-    BadInput
-        If no counterweights meet the limits.
-    """
+    """Return the best counterweights that are known, and the proof of how good they are."""
     problem, p, bound = _hull(search)
     design = Design(search.rooms)
     unfelt = _unfelt(problem)

@@ -22,18 +22,10 @@ _GROWTH = {"mass": 1, "along": 2, "across": 1, "inertia": 3}
 
 @dataclass(frozen=True)
 class ParametricMachine(Parametric):
-    """Motion and forces of a machine at given crank angles as functions of its numbers.
+    """Motion and forces of a machine at given crank angles as functions of its numbers."""
 
-    Attributes
-    ----------
-    machine : Machine
-        Its loads must be constant.
-    bars : bool
-        Whether the masses grow with the links' lengths as those of bars.
-    """
-
-    machine: Machine
-    bars: bool = False
+    machine: Machine  # its loads must be constant
+    bars: bool = False  # whether the masses grow with the links' lengths as those of bars
 
     @property
     def values(self) -> dict[str, float]:
@@ -118,13 +110,7 @@ class ParametricMachine(Parametric):
 
 
 def require_constant_loads(machine: Machine) -> None:
-    """Refuse what has no known derivative: loads that are functions.
-
-    Raises
-    ------
-    BadInput
-        If the machine has one.
-    """
+    """Refuse what has no known derivative: loads that are functions."""
     if any(callable(item.force) or callable(item.couple) for item in machine.loads):
         raise bad(
             "tolerances",

@@ -33,21 +33,13 @@ _FASTEST = 1e9
 
 @dataclass(frozen=True)
 class Run:
-    """A run as its integrator leaves it.
+    """A run as its integrator leaves it."""
 
-    Attributes
-    ----------
-    system : OneFreedom
-        The machine.
-    solution : callable
-        Times, shape (n,), to angle, ``sqrt(J + flywheel) omega`` and work, shape (3, n); ``ts``
-        are the ends of its steps.
-    status, message : str
-        How it ended.
-    """
-
-    system: OneFreedom
+    system: OneFreedom  # the machine
+    # times, (n,), to angle, ``sqrt(J + flywheel) omega`` and work, (3, n); ``ts`` are
+    # the ends of its steps
     solution: Any
+    # status, message: how it ended
     status: Status
     message: str
 
@@ -96,22 +88,13 @@ class Run:
 
 @dataclass(frozen=True)
 class Goals:
-    """Where a run ends, and what it may do.
+    """Where a run ends, and what it may do."""
 
-    Attributes
-    ----------
-    revolutions, duration : float or None
-        Ends.
-    reversals : bool
-        Whether the run goes on where the crank turns back.
-    max_steps : int
-        Most steps.
-    """
-
+    # revolutions, duration: ends
     revolutions: float | None
     duration: float | None
-    reversals: bool
-    max_steps: int
+    reversals: bool  # whether the run goes on where the crank turns back
+    max_steps: int  # most steps
 
 
 def integrate(
@@ -122,29 +105,7 @@ def integrate(
     longest: float,
     goals: Goals,
 ) -> Run:
-    """Integrate until a goal is reached, the crank stalls or folds, or the steps are used up.
-
-    Parameters
-    ----------
-    system : OneFreedom
-        The machine.
-    law : callable
-        Motor torque of speed, angle, time.
-    start : tuple of float
-        Crank angle and speed.
-    tolerance : float
-        Of a step: in the angle [rad], and relative to the largest energy so far.
-    longest : float
-        The angle [rad] that no step exceeds, so that none passes over what a revolution brings.
-    goals : Goals
-        Ends of the run.
-
-    Raises
-    ------
-    BadInput
-        If the linkage cannot reach the first angle, the torque law fails, or the run leaves the
-        range of numbers.
-    """
+    """Integrate until a goal is reached, the crank stalls or folds, or the steps are used up."""
     theta0, speed0 = start
     if not abs(speed0) < _FASTEST:
         raise _too_fast(speed0, 0.0)

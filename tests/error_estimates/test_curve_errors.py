@@ -30,12 +30,12 @@ def exact_place(linkage, theta, branch, place):
     return pin + mpmath.mpc(place) * line * mpmath.mpc(along, across) / (square * m)
 
 
-@pytest.mark.slow
-def test_positions_of_turning_cranks():
+@pytest.mark.parametrize("count", [30, pytest.param(300, marks=pytest.mark.slow)])
+def test_positions_of_turning_cranks(count):
     rng = np.random.default_rng(5)
     ratios = []
     with mpmath.workdps(40):
-        while len(ratios) < 300:
+        while len(ratios) < count:
             linkage = random_linkage(rng)
             if not linkage.crank_turns:
                 continue
@@ -54,7 +54,7 @@ def test_lengths_and_areas():
     # Reference: the trapezoidal rule, which converges geometrically on a closed analytic path.
     rng = np.random.default_rng(6)
     lengths, areas = [], []
-    while len(lengths) < 200:
+    while len(lengths) < 100:
         linkage = random_linkage(rng)
         if not linkage.crank_turns:
             continue
@@ -75,12 +75,13 @@ def test_lengths_and_areas():
     assert np.mean(np.array(areas) <= 1) >= 0.99
 
 
-def test_harmonics_of_known_series():
+@pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
+def test_harmonics_of_known_series(scenes):
     # 1/(1 - 2 r cos(t - s) + r^2): coefficients 2 r^m cos ms/(1 - r^2), and with sines.
     rng = np.random.default_rng(7)
     ratios = []
     with mpmath.workdps(30):
-        for _ in range(200):
+        for _ in range(scenes):
             r, s, size = rng.uniform(0.05, 0.97), rng.uniform(0, 6), 10 ** rng.uniform(-6, 6)
             accuracy = 10 ** rng.uniform(-13, -3)
 

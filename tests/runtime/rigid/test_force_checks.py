@@ -70,12 +70,6 @@ def test_a_peak_between_the_places_is_looked_at() -> None:
     assert not driving_torque(Machine(linkage, {"coupler": coupler}), theta, 1.0).passed
 
 
-def test_json_holds_every_array_once() -> None:
-    told = rigid_forces(machine_of(LINKAGES[0]), [0.0, 1.0], 5.0).to_dict()
-    assert "values" not in told
-    assert len(told["x12"]) == 2
-
-
 def test_a_force_along_one_axis_is_drawn_over_the_turn() -> None:
     found = rigid_forces(machine_of(LINKAGES[2]), np.linspace(0.0, 6.0, 61), 5.0)
     axes = found.plot(joint="41")

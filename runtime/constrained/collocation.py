@@ -22,7 +22,6 @@ from .equations import (
     Tolerance,
 )
 
-_EPS = float(np.finfo(float).eps)
 _ITERATIONS = 25
 # A Newton correction of this relative size leaves derivatives that need not be made anew; what
 # they are off lets error estimates grow with the number of windows, so that it is less where there

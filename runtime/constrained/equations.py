@@ -14,6 +14,7 @@ from ..core.families.multipliers import kkt_matrix, scaling
 
 Array = NDArray[np.float64]
 
+EPS = float(np.finfo(float).eps)
 # Part of the largest scaled coordinate below which the tolerance of one is absolute.
 SMALL = 0.01
 # Newton corrections of positions, and halvings of one that would raise the defect.
@@ -22,7 +23,6 @@ _CORRECTIONS, _HALVINGS = 60, 12
 _LAST = 1e-9
 # ... and one below this that no longer falls is round-off.
 _ROUND_OFF = 1e-12
-_EPS = float(np.finfo(float).eps)
 # Relative differences of the equations where their derivatives were not emitted: about the square
 # root of the rounding, where rounding and second derivatives do equal harm.
 _APART = 2.0**-20
@@ -228,7 +228,7 @@ class Equations:
         for count in range(_CORRECTIONS):
             change = self._least_change(mass, at["jacobian"], -at["constraints"][..., 0], free)
             size = np.max(np.abs(change), axis=-1)
-            small = size / (np.max(np.abs(x + change), axis=-1) + _EPS)
+            small = size / (np.max(np.abs(x + change), axis=-1) + EPS)
             if np.all((small <= _LAST) | ((small <= _ROUND_OFF) & (size >= 0.5 * last))):
                 return x + change, count + 1
             x, at = self._damped(t, x, change, at)

@@ -19,6 +19,7 @@ from ..core.results import Check, Result, provenance
 from .collocation import collocation
 from .consistent import consistent_state
 from .equations import (
+    EPS,
     SMALL,
     Array,
     Equations,
@@ -41,7 +42,6 @@ LINEAR_RANGE = 0.05
 _SAFETY = 5.0
 _MOST_SAMPLES = 2_000_000
 _HALVINGS = 60
-_EPS = float(np.finfo(float).eps)
 # Roundings of a long window, which may all lie on one side.
 _WINDOW = 20.0
 # Constraints count as kept where their scaled defect is below this.
@@ -276,7 +276,7 @@ def march(run: Run, progress: bool = False) -> Path:
         t, x, v, a, multipliers = _on_constraints(equations, parts)
     # Rounding changes the speeds too, which acts over the rest of the motion.
     way = np.max(np.abs(x), axis=0) + np.max(np.abs(v), axis=0) * (t[-1] - t[0])
-    rounding = _EPS * (8.0 + _WINDOW * steps) * way
+    rounding = EPS * (8.0 + _WINDOW * steps) * way
     return Path(
         time=t,
         q=x * columns,

@@ -16,6 +16,7 @@ from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
 from .collocation import Nodes, integrals, nodes, stage_matrix
 from .equations import (
+    EPS,
     Array,
     Equations,
     Linearised,
@@ -29,7 +30,6 @@ from .motion import Run, Watch, linear_range, march
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EPS = float(np.finfo(float).eps)
 STAGES = 12
 # Phase of the fastest motion that a first step covers [rad]; 12 stages err 1e-14 a step at 5.
 _PHASE = 5.0
@@ -43,7 +43,7 @@ _SAME = 1e-9
 _ITERATIONS, _LEAST_DAMPING = 40, 1.0 / 256
 # Newton has arrived where its step, relative to the orbit, is rounding, or where it stops shrinking
 # below the second; the defect that is left passes below the third.
-_ROUNDING, _SMALL, _ARRIVED = 64 * _EPS, 1e-8, 1e-9
+_ROUNDING, _SMALL, _ARRIVED = 64 * EPS, 1e-8, 1e-9
 # Of the difference between a grid and one twice as fine, in the finer one (order 24: 2^-24).
 LEFT = 1.0 / 64
 # Rounding of one step of the motion's size: random samples, enlarged for the largest of more.
@@ -299,7 +299,7 @@ class Shooting:
         along = self.junctions(ring).along
         back = np.swapaxes(ring.following(along), -1, -2)
         shape = (*shot.sweep.gap.shape, _NOISES)
-        noise = np.random.default_rng(0).normal(size=shape) * size * _EPS
+        noise = np.random.default_rng(0).normal(size=shape) * size * EPS
         moved = closed_chain(back @ shot.sweep.maps @ along, back @ noise)
         return np.inf if moved is None else _ENLARGED * float(np.max(np.abs(moved))) / size
 

@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .linkage import Array
+from .linkage import EPS, Array
 
 Category = Literal["Grashof", "non-Grashof", "change point"]
 
@@ -138,7 +138,7 @@ _ROWS = np.array(
     [number_of_signs(signs) for signs in itertools.product((-1, 0, 1), repeat=3)], dtype=np.int64
 )
 # More than the three roundings of a sum of four, over the sum of their magnitudes.
-_ROUNDED = 4.0 * float(np.finfo(float).eps)
+_ROUNDED = 4.0 * EPS
 
 
 def class_numbers(lengths: Array) -> NDArray[np.int64]:

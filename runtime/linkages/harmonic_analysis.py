@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import values_at
-from .linkage import Array
+from .linkage import EPS, TURN, Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
 Function = Callable[[Array], ArrayLike]
 Source: TypeAlias = Function | tuple[Any, ...]
 
-_EPS = float(np.finfo(float).eps)
-_TURN = 2.0 * pi
 _FEWEST, _MOST = 64, 2**17
 _GOLDEN = 0.6180339887498949
 _PROBES = 257
@@ -194,7 +191,7 @@ def _doubled(
 ) -> tuple[Array, Array, _Found]:
     """Double the angles until the coefficients stay."""
     count = max(_FEWEST, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
-    probes = np.asarray(_TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
+    probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
     at_probes = values_at(f, probes, name)
     largest, asked = float(np.max(np.abs(at_probes))), _PROBES
     before: np.ndarray[Any, Any] | None = None
@@ -208,7 +205,7 @@ def _doubled(
         ends = [int(np.argmin(values)), int(np.argmax(values))]
         probes = np.concatenate([probes, theta[ends]])
         at_probes = np.concatenate([at_probes, values[ends]])
-        constant = bool(np.ptp(at_probes) <= 4.0 * _EPS * largest)
+        constant = bool(np.ptp(at_probes) <= 4.0 * EPS * largest)
         low = full[: order + 1]
         if before is not None:
             changes.append(float(np.max(np.abs(low - before))))
@@ -226,7 +223,7 @@ def _doubled(
         count *= 2
     rest = float(np.max(np.abs(at_probes - _evaluate(low, probes))))
     dropped = float(np.sum(np.abs(full[order + 1 :])))
-    error = 2.0 * _last_change(changes, settled) + 2.0 * _EPS * largest
+    error = 2.0 * _last_change(changes, settled) + 2.0 * EPS * largest
     if constant:
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
@@ -259,10 +256,10 @@ def _coefficients(
 ) -> tuple[Array, Array, np.ndarray[Any, Any]]:
     """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
     start = (_GOLDEN * np.log2(count)) % 1.0
-    theta = np.asarray(_TURN * (np.arange(count) + start) / count, dtype=np.float64)
+    theta = np.asarray(TURN * (np.arange(count) + start) / count, dtype=np.float64)
     values = values_at(f, theta, name)
     spectrum = np.fft.rfft(values) / count
-    spectrum *= np.exp(-1j * _TURN * start / count * np.arange(len(spectrum)))
+    spectrum *= np.exp(-1j * TURN * start / count * np.arange(len(spectrum)))
     spectrum[1:] *= 2.0
     # The highest one is known in part alone.
     return theta, values, spectrum[:-1]
@@ -297,10 +294,10 @@ def _function(source: Source) -> tuple[str, Function, dict[str, str]]:
 
 def _without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], float, float]:
     """Return the function less its whole turns in a turn, how many these are, and what is left."""
-    ends = values_at(f, np.array([0.5, 0.5 + _TURN]), name)
+    ends = values_at(f, np.array([0.5, 0.5 + TURN]), name)
     growth = float(ends[1] - ends[0])
-    turns = float(np.rint(growth / _TURN))
-    gap = abs(growth - turns * _TURN)
+    turns = float(np.rint(growth / TURN))
+    gap = abs(growth - turns * TURN)
     if gap > _SAME * max(float(np.max(np.abs(ends))), 5e-324):
         raise bad(
             f"function {name!r}",

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .linkage import Array, Linkage, drive_of
+from .linkage import EPS, Array, Linkage, drive_of
 from .parametric import ANGLE, Parametric
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ Masses = Literal["fixed", "bars"]
 Limits: TypeAlias = tuple[float, float]
 Box: TypeAlias = Mapping[str, Limits]
 
-_EPS = float(np.finfo(float).eps)
 # A common factor of all lengths may turn the links by so much of what each length alone does.
 _SCALED = 1e-9
 # What round-off does to a worst case, in units of the last place, away from the folds.
@@ -417,7 +416,7 @@ def _remainder(model: Parametric, sizes: Mapping[str, float], slopes: dict[str, 
         changes = [np.sum(widths * np.abs(other[o] - here[o]), axis=0) for o in model.outputs]
         worst = np.maximum(worst, np.stack(changes))
     first = np.stack([np.sum(widths * np.abs(here[o]), axis=0) for o in model.outputs])
-    return np.asarray(worst + _ROUNDING * _EPS * first)
+    return np.asarray(worst + _ROUNDING * EPS * first)
 
 
 def _checks(model: Parametric, sensitivity: Array) -> dict[str, Check]:

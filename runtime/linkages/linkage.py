@@ -25,8 +25,9 @@ Assembly: TypeAlias = Literal["open", "crossed"]
 Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
+EPS = float(np.finfo(float).eps)
 # A round-off of each of the numbers that an expression comes from, three times.
-ROUND_OFFS = 1.5 * float(np.finfo(float).eps)
+ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
 # However large the angles, a loop that gapes wider than this is no motion.
@@ -545,20 +546,25 @@ def drive_of(
     theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
 ) -> tuple[Array, tuple[Array, Array]]:
     """Return the angles, and speed and acceleration in the shape of all three."""
+    *given, shape = checked_drive(theta, speed, acceleration)
+    first, second = (np.array(np.broadcast_to(item, shape)) for item in given[1:])
+    return given[0], (first, second)
+
+
+def checked_drive(
+    theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
+) -> tuple[Array, Array, Array, tuple[int, ...]]:
+    """Return finite angles, speeds and accelerations, and the shape to which they broadcast."""
     angles = finite_array("theta", theta, "angles [rad]")
-    given = (
-        finite_array("speed", speed, "crank speeds [rad/s]"),
-        finite_array("acceleration", acceleration, "crank accelerations [rad/s^2]"),
-    )
+    speeds = finite_array("speed", speed, "crank speeds [rad/s]")
+    changes = finite_array("acceleration", acceleration, "crank accelerations [rad/s^2]")
     try:
-        shape = np.broadcast_shapes(angles.shape, *(item.shape for item in given))
+        shape = np.broadcast_shapes(angles.shape, speeds.shape, changes.shape)
     except ValueError as refusal:
-        shapes = ", ".join(str(item.shape) for item in (angles, *given))
-        raise bad(
-            "theta, speed, acceleration", f"shapes {shapes}", "shapes that broadcast", "correct one"
-        ) from refusal
-    first, second = (np.array(np.broadcast_to(item, shape)) for item in given)
-    return angles, (first, second)
+        shapes = f"shapes {angles.shape}, {speeds.shape}, {changes.shape}"
+        fix = "give one speed, or one for each angle"
+        raise bad("theta, speed, acceleration", shapes, "shapes that broadcast", fix) from refusal
+    return angles, speeds, changes, shape
 
 
 def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import quick_return_kinematics
 from ..core.errors import BadInput, Problem, bad
 from .linkage import (
+    EPS,
     ROUND_OFFS,
     UNDECIDED,
     Array,
@@ -25,7 +26,7 @@ from .linkage import (
     turning,
 )
 
-_ROUND = 4.0 * float(np.finfo(float).eps)
+_ROUND = 4.0 * EPS
 
 
 @dataclass(frozen=True, kw_only=True)

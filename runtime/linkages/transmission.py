@@ -18,18 +18,17 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
 from .four_bar import FourBar
-from .linkage import Array, require_linkage
+from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EPS = float(np.finfo(float).eps)
 _RECOMMENDED = (math.radians(40.0), math.radians(140.0))
 # The half-angle formulas: every sum is rounded once, and so are two roots, their products, a
 # quotient and the arctangent, to 3.5 eps in all; the rest is for the library's arctangent.
-_ROUND_OFF = 5.0 * _EPS
+_ROUND_OFF = 5.0 * EPS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -333,7 +332,7 @@ def _four_bar(linkage: FourBar) -> _Special:
         output_range=output_range,
         swing=None if output_range is None else output_range[1] - output_range[0],
         time_ratio=None if inner or outer else _time_ratio(centres),
-        round_off=8.0 * _EPS * s.total**2 / (coupler * follower),
+        round_off=8.0 * EPS * s.total**2 / (coupler * follower),
     )
 
 
@@ -380,7 +379,7 @@ def _slider_crank(linkage: SliderCrank) -> _Special:
     high = _arcsine(offset + coupler, over, reach[1]) if upper else pi / 2
     low = _arcsine(offset - coupler, under, reach[0]) if lower else -pi / 2
     far = math.sqrt(reach[0]) * math.sqrt(reach[1])
-    branch, round_off = linkage.branch, 8.0 * _EPS * reach[1 if offset >= 0 else 0] / coupler
+    branch, round_off = linkage.branch, 8.0 * EPS * reach[1 if offset >= 0 else 0] / coupler
     centres, outputs = {"extended": math.atan2(offset, branch * far)}, {"extended": branch * far}
     if over * under >= 0 and crank != coupler:
         folded = _root(over, under)
@@ -489,14 +488,14 @@ def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> t
         sine = np.abs(np.sin(motion.transmission_angle))
         aligned = np.abs(np.cos(motion.theta4 - motion.theta3))
         passed_on = linkage.crank / linkage.follower + np.abs(ratio) * aligned
-        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * _EPS * np.abs(ratio)
+        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * EPS * np.abs(ratio)
     if isinstance(linkage, SliderCrank):
         ratio = motion.slider_velocity
         cosine = np.abs(np.cos(motion.theta3))
-        turned = 2.0 * _EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
-        return ratio, linkage.crank * turned + 4.0 * _EPS * np.abs(ratio)
+        turned = 2.0 * EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
+        return ratio, linkage.crank * turned + 4.0 * EPS * np.abs(ratio)
     ratio = motion.omega4
-    turned = _EPS * (np.abs(motion.theta2) + 4.0)
+    turned = EPS * (np.abs(motion.theta2) + 4.0)
     lever = (linkage.frame + linkage.crank) / motion.slide
     return ratio, turned * lever**2 * (1.0 + np.abs(ratio))
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.results import Check
-from ..linkages.linkage import Array
+from ..linkages.linkage import EPS, Array
 from ..linkages.parametric import ANGLE
 from .evaluation import BLOCK
 from .loads import Load, Spring, TorsionSpring, Wrench, at_first_joint, frozen
@@ -23,7 +23,7 @@ NORM = (
     " entrywise"
 )
 
-_UNIT = float(np.finfo(float).eps) / 2.0
+_UNIT = EPS / 2.0
 # The emitted functions are off by a few round-offs of everything they are given.  Of 5700
 # random machines near folds, near change points and with short links the worst needed 18.4 against
 # 60 digits, all others less than 9 (tests/error_estimates has a part of them).

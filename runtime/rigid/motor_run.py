@@ -12,7 +12,7 @@ import numpy as np
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import is_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ..linkages.linkage import Array
+from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
 from .inputs import not_finite
 from .machine import Machine
@@ -23,13 +23,12 @@ from .stepping import Goals, Run, Status, integrate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_TURN = 2.0 * np.pi
 # The run that tells the error has so much more tolerance, and steps twice as long.  Over 200 random
 # slider-cranks at tolerances of 1e-11 to 1e-4 the estimate was 1.2 times the error or more, 168
 # times in the median; with 10 it fell below the error in three of them.  Steps of a twelfth of a
 # revolution fool DOP853's own estimate now and then, and a torque may act over a few degrees only.
 _LOOSER = 100.0
-_LONGEST = _TURN / 24.0
+_LONGEST = TURN / 24.0
 # Share of the largest energy that may be lost, whatever the tolerance.
 _ENERGY_LIMIT = 1e-6
 # Times at which the speeds of the last revolution are taken.
@@ -96,13 +95,13 @@ class RunUp(Result):
         """
         last = float(self.angle[-1])
         nodes = self.run.at(self.run.times)[0]
-        before = np.nonzero(np.abs(nodes - last) >= _TURN * (1.0 - 1e-12))[0]
+        before = np.nonzero(np.abs(nodes - last) >= TURN * (1.0 - 1e-12))[0]
         if before.size == 0:
             return None
         begin = int(before[-1])
         time = np.linspace(self.run.times[begin], self.run.end, _LAST)
         angle, speed, _ = self.run.at(time)
-        speeds = np.abs(speed[np.abs(angle - last) <= _TURN * (1.0 + 1e-12)])
+        speeds = np.abs(speed[np.abs(angle - last) <= TURN * (1.0 + 1e-12)])
         high, low = float(np.max(speeds)), float(np.min(speeds))
         return 2.0 * (high - low) / (high + low)
 

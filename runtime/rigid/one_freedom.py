@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..linkages.linkage import Array
+from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
 from .machine import Machine, Part, wrenches
 
@@ -21,7 +21,6 @@ _SECOND = np.array([1.0, 0.0])
 _LEAST_SHARE = 1e-12
 # A series is good to 1e-12 of the largest inertia: below this share it is not used.
 _TABLE_SHARE = 1e-5
-_TURN = 2.0 * np.pi
 _SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
 _FEWEST, _MOST = 64, 1024
 # A series ends in round-off, and meets its function off the samples, or is not used.
@@ -145,9 +144,9 @@ class OneFreedom:
         if linkage.crank_turns:
             return -np.inf, np.inf
         for low, high in linkage.crank_ranges():
-            turns = _TURN * np.floor((theta - low) / _TURN)
+            turns = TURN * np.floor((theta - low) / TURN)
             if low + turns <= theta <= high + turns:
-                if high - low >= _TURN:  # a fold at whole turns is none for the interval
+                if high - low >= TURN:  # a fold at whole turns is none for the interval
                     continue
                 return float(low + turns), float(high + turns)
         return -np.inf, np.inf
@@ -177,7 +176,7 @@ class OneFreedom:
     def _scan(self, low: float = -np.inf, high: float = np.inf) -> Array:
         """Return angles over a turn or a range; they miss its ends, and special positions."""
         if not np.isfinite(high - low):
-            low, high = 0.0, _TURN
+            low, high = 0.0, TURN
         return low + (high - low) * (np.arange(_SCANNED) + 0.5) / _SCANNED
 
     def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
@@ -208,7 +207,7 @@ def _series(function: Callable[[Array], Array]) -> _Series | None:
     """Return a function as harmonics down to round-off; None where there are too many."""
     count = _FEWEST
     while count <= _MOST:
-        values = np.asarray(function(_TURN * np.arange(count) / count))
+        values = np.asarray(function(TURN * np.arange(count) / count))
         harmonics = np.fft.rfft(values) * (2.0 / count)
         harmonics[0] /= 2.0
         sizes, largest = np.abs(harmonics), float(np.max(np.abs(values)))

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..linkages.linkage import Array
+from ..linkages.linkage import TURN, Array
 from .forces import OUTPUTS, rigid_forces
 from .machine import Machine
 
 TERMS = ("shaking_force", "shaking_moment", "torque", "f12", "f23", "f34", "f41")
 COUPLES = ("couple34", "couple41")
 
-_TURN = 2.0 * np.pi
 _FEWEST, _MOST = 721, 23041
 # Sampled peaks lower than this, over the highest, cannot be the highest one.
 _CANDIDATE = 0.75
@@ -54,7 +53,7 @@ def force_peaks(
     speed: float,
     acceleration: float = 0.0,
     *,
-    span: tuple[float, float] = (0.0, _TURN),
+    span: tuple[float, float] = (0.0, TURN),
 ) -> dict[str, ForcePeak]:
     """Return the peak of every pin force, of torque, shaking force, moment and couple.
 

@@ -15,14 +15,12 @@ from typing import Any, Literal
 import numpy as np
 
 from ..core.errors import BadInput, bad
-from ..linkages.linkage import Array
+from ..linkages.linkage import EPS, TURN, Array
 from .motors import TorqueLaw
 from .one_freedom import OneFreedom
 
 Status = Literal["finished", "stalled", "fold", "step limit"]
 
-_TURN = 2.0 * np.pi
-_EPS = float(np.finfo(float).eps)
 # So near to an end of the crank's range the reduced inertia grows beyond all bounds.
 _FOLD = 1e-6
 # Steps that fail this near to an end of the range failed because of it.
@@ -126,7 +124,7 @@ def _stepped(motion: _Motion, state: Array, tolerance: float, longest: float, go
     first = motion.longest_step(state, motion(0.0, state), longest)
     small: Any = tolerance * scale
     # The relative tolerance is left to the sizes: an angle of many turns is not allowed more.
-    solver: Any = DOP853(motion, 0.0, state, bound, max_step=first, rtol=128.0 * _EPS, atol=small)
+    solver: Any = DOP853(motion, 0.0, state, bound, max_step=first, rtol=128.0 * EPS, atol=small)
     events = _Events(motion.system, state, goals)
     times: list[float] = [0.0]
     pieces: list[Any] = []
@@ -233,7 +231,7 @@ class _Events:
 
     def __init__(self, system: OneFreedom, state: Array, goals: Goals) -> None:
         self.theta, self.reversals = float(state[0]), goals.reversals
-        self.goal = np.inf if goals.revolutions is None else _TURN * goals.revolutions
+        self.goal = np.inf if goals.revolutions is None else TURN * goals.revolutions
         self.direction = float(np.sign(state[1]))
         self.range = system.range_about(self.theta)
 

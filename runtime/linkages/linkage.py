@@ -531,7 +531,7 @@ def _checks(linkage: Linkage, m: Mapping[str, Array], error: Array) -> dict[str,
     for name, terms in zip(("speeds", "accelerations"), rates, strict=True):
         size = np.maximum(sum(np.abs(term) for term in terms), np.finfo(float).tiny)
         worst = float(np.max(np.abs(sum(terms)) / (size * error), initial=0.0))
-        checks[f"closure of {name} over the figure"] = Check(worst, _RATES_LIMIT)
+        checks[f"closure of {name} over its error"] = Check(worst, _RATES_LIMIT)
     return checks
 
 

@@ -14,7 +14,7 @@ from ..linkages.linkage import EPS, Array, Linkage, Motion
 from ..linkages.parametric import ANGLE
 from .evaluation import BLOCK
 from .loads import Load, Spring, Wrench, at_first_joint, frozen
-from .machine import Machine, wrenches
+from .machine import Machine, power_of, wrenches
 from .parametric import ParametricMachine
 
 NORM = (
@@ -206,7 +206,7 @@ def checks(
             "values that are not finite": Check(float(broken), 0.0),
             "error over what is added up": Check(share, _MEANINGFUL),
         } | {
-            f"{name} over the figure": Check(float(np.max(np.abs(gap) / allowed)), 1.0)
+            f"{name} over its error": Check(float(np.max(np.abs(gap) / allowed)), 1.0)
             for name, gap in gaps.items()
         }
 
@@ -235,7 +235,7 @@ class _Balance:
         """Return by how much each balance that can be made fails [N]."""
         gaps = {}
         if "torque" in forces:
-            power = self._power(self.acting) - self._power(self.inertia)
+            power = power_of(self.acting, self.unit) - power_of(self.inertia, self.unit)
             gaps["power balance"] = (forces["torque"] + power) / self.longest
         if "shaking_x" in forces:
             fx, fy, _ = self._frame()
@@ -260,15 +260,6 @@ class _Balance:
             mass.mass * ay + alpha * x - square * y,
             mass.inertia * alpha + x * ay - y * ax,
         )
-
-    def _power(self, by_link: Mapping[str, Wrench]) -> Array:
-        """Return the power at a crank speed of 1 rad/s."""
-        total: Array = np.zeros(np.shape(self.motion.theta2))
-        for link, (fx, fy, couple) in by_link.items():
-            moving = self.unit.link(link)
-            vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
-            total = total + fx * vx + fy * vy + couple * moving.speed
-        return total
 
     def _frame(self) -> Wrench:
         """Return what the momenta and the outside leave for the frame, moment about A."""

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_whole
+from ..core.inputs import is_finite, is_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
-from .inputs import not_finite
-from .machine import Machine
+from .machine import Machine, require_machine
 from .motors import TorqueLaw, TorqueLine, torque_law
 from .one_freedom import OneFreedom
 from .stepping import Goals, Run, Status, integrate
@@ -208,8 +207,8 @@ def run_up(
     ('finished', 2.0)
     """
     ends = {"revolutions": revolutions, "duration": duration}
-    _require(machine, ends, {"speed0": speed0, "theta0": theta0}, tolerance)
-    _require_whole(samples, max_steps)
+    numbers = {"speed0": speed0, "theta0": theta0, "tolerance": tolerance}
+    _require(machine, ends, {**numbers, "samples": samples, "max_steps": max_steps})
     law, system = torque_law(torque), OneFreedom(machine, flywheel)
     system.require_inertia(float(theta0))
     start = (float(theta0), float(speed0))
@@ -275,37 +274,24 @@ def _name(torque: object) -> str:
     return repr(torque) if plain else str(getattr(torque, "__name__", type(torque).__name__))
 
 
-def _require(
-    machine: object,
-    ends: Mapping[str, object],
-    state: Mapping[str, object],
-    tolerance: object,
-) -> None:
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one")
+def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, object]) -> None:
+    """Raise BadInput with everything that makes a run impossible."""
+    require_machine(machine)
     if all(value is None for value in ends.values()):
         raise bad("run_up", "no end", "revolutions or duration", "give revolutions=10, for example")
+    given = {name: value for name, value in ends.items() if value is not None}
+    limits = {name: (5e-324, np.inf, "a finite number above 0") for name in given}
+    limits |= dict.fromkeys(("speed0", "theta0"), (-np.inf, np.inf, "a finite number"))
+    limits["tolerance"] = 1e-12, 1e-3, "a number from 1e-12 to 1e-3"
     problems = []
-    for name, value in ends.items():
-        if value is not None and (not_finite("run_up", {name: value}) or not _positive(value)):
-            found = repr(value)[:60]
-            problems.append(Problem(name, found, "a finite number above 0", "correct it"))
-    for name, value in state.items():
-        if not_finite("run_up", {name: value}):
-            problems.append(Problem(name, repr(value)[:60], "a finite number", "correct it"))
-    if not_finite("run_up", {"tolerance": tolerance}, 1e-12) or not _positive(tolerance, 1e-3):
-        found = repr(tolerance)[:60]
-        problems.append(Problem("tolerance", found, "a number from 1e-12 to 1e-3", "correct it"))
+    for name, value in (given | dict(numbers)).items():
+        if name in limits:
+            least, most, expected = limits[name]
+            fits = is_finite(value) and least <= value <= most  # type: ignore[operator]
+        else:
+            least = 2 if name == "samples" else 1
+            fits, expected = is_whole(value, least), f"a whole number, {least} or more"
+        if not fits:
+            problems.append(Problem(name, repr(value)[:60], expected, "correct it"))
     if problems:
         raise BadInput(*problems)
-
-
-def _positive(value: Any, most: float = np.inf) -> bool:
-    return bool(0 < value <= most)
-
-
-def _require_whole(samples: object, max_steps: object) -> None:
-    for name, value, least in (("samples", samples, 2), ("max_steps", max_steps, 1)):
-        if not is_whole(value, least):
-            found = repr(value)[:60]
-            raise bad(name, found, f"a whole number, {least} or more", "correct it")

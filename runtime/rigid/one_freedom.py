@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
-from .machine import Machine, Part, wrenches
+from .machine import Machine, Part, power_of, wrenches
 
 _FIRST = np.array([0.0, 1.0])
 _SECOND = np.array([1.0, 0.0])
@@ -79,15 +79,9 @@ class OneFreedom:
             return [none] * len(parts)
         unit = self.machine.linkage.motion(angles)
         motion = self.machine.linkage.motion(angles, speeds) if self.hasty else unit
-        required = []
-        for part in parts:
-            total: Array = none
-            for link, (fx, fy, couple) in wrenches(self.machine, motion, speeds, part).items():
-                moving = unit.link(link)
-                vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
-                total = total - (fx * vx + fy * vy + couple * moving.speed)
-            required.append(total)
-        return required
+        return [
+            none - power_of(wrenches(self.machine, motion, speeds, part), unit) for part in parts
+        ]
 
     def tables(
         self,

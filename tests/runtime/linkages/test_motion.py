@@ -580,5 +580,5 @@ def test_checks_see_a_rate_that_is_wrong():
     for name, which in (("omega3", "speeds"), ("slider_acceleration", "accelerations")):
         wrong = {**m, name: m[name] * (1 + 1e-13)}
         assert not _checks(slider, wrong, motion.error)[
-            f"closure of {which} over the figure"
+            f"closure of {which} over its error"
         ].passed

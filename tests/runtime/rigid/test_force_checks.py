@@ -57,7 +57,7 @@ def test_a_wrong_force_is_out_of_balance(linkage, name) -> None:
     values = dict(rigid_forces(machine, theta, 5.0).values)
     assert all(check.passed for check in checks(*given, values).values())
     values[name] = values[name] + 1e-9
-    assert not checks(*given, values)["equilibrium of the links over the figure"].passed
+    assert not checks(*given, values)["equilibrium of the links over its error"].passed
 
 
 def test_a_peak_between_the_places_is_looked_at() -> None:

@@ -328,7 +328,7 @@ def _legs_apart(change: Array, total: Array, blur: Array) -> tuple[Array, Array]
 
 
 def _across_coupler(
-    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float, gap_blur: float
+    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float | Array, gap_blur: float
 ) -> Play:
     """Return the play of the angle between the normal of the guide and the coupler.
 
@@ -376,28 +376,18 @@ def quick_return(sizes: Sizes, nominal: Callable[[ArrayLike], tuple[Array, Array
 
 
 def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
-    """Return the play of a line about D that passes B at most so far beside it."""
-    x, r, w = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (slide, radius, guide)))
-    play = r + w
-    free = play >= x
-    along = np.sqrt(np.maximum((x - play) * (x + play), 0.0))
-    angle = np.where(free, np.pi, np.arctan2(play, along))
-    # The sine play/x is uncertain by 5 round-offs of itself; near 1 its angle moves as the root.
-    root = np.maximum(along / np.maximum(x, _TINY), np.sqrt(5.0 * EPS))
-    moved = 5.0 * EPS * np.minimum(_over(play, x, 1.0), 1.0) / root
-    return Play(
-        nominal=np.zeros_like(x),
-        below=angle,
-        above=angle,
-        small=np.where(play == 0.0, 0.0, _over(2.0 * play, x, np.inf)),
-        folds=free,
-        free=free,
-        error=np.where(free, EPS * np.pi, moved + EPS * angle),
-        nominal_error=np.zeros_like(x),
-        margin=x,
-        blur=4.0 * EPS * x,
-        place=x,
-    )
+    """Return the play of a line about D that passes B at most so far beside it.
+
+    As of a coupler as long as the slide, whose end is free as far across a guide through D.
+    """
+    x, r, w = _together(slide, radius, guide)
+    play = _across_coupler(np.zeros_like(x), r, w, coupler=np.maximum(x, _TINY), gap_blur=0.0)
+    # The slide is uncertain by 5 round-offs of itself; the sine of the angle is play over slide.
+    unsure = 5.0 * EPS
+    slope = np.minimum(np.tan(np.minimum(play.above, np.pi / 2.0)), unsure**-0.5)
+    error = np.where(play.free, EPS * np.pi, play.error + unsure * slope)
+    none = np.zeros_like(x)
+    return replace(play, nominal=none, nominal_error=none, error=error, blur=4.0 * EPS * x, place=x)
 
 
 def _placed(play: Play, nominal: Array, error: Array, turn: float, moved: Array) -> Play:

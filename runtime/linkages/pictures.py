@@ -124,47 +124,21 @@ def check_animation_path(path: str | Path) -> Path:
 
 def _gif(motion: Circuit, curves: Sequence[CouplerCurve], frames: int, fps: int) -> bytes:
     """Return the bytes of the moving picture: one palette, what stands still drawn once."""
-    film = _Film(motion, curves)
+    from PIL import Image
+
+    film, plain = _Film(motion, curves), Image.Dither.NONE
     # Slanting bars, whose edges have mixed colours.
-    palette = _Palette(np.stack([film.picture(0.3 + k * 2.0 * pi / 5.0) for k in range(5)]))
+    slanting = np.concatenate([film.picture(0.3 + k * 2.0 * pi / 5.0) for k in range(5)])
+    covering = Image.Quantize.MAXCOVERAGE
+    palette = Image.fromarray(slanting).quantize(256, method=covering, dither=plain)
     turn = np.arange(frames) * 2.0 * pi / frames
-    first, *rest = (palette.image(film.picture(float(s))) for s in turn)
+    first, *rest = (
+        Image.fromarray(film.picture(float(s))).quantize(palette=palette, dither=plain)
+        for s in turn
+    )
     buffer = io.BytesIO()
     first.save(buffer, "GIF", save_all=True, append_images=rest, duration=1000 // fps, loop=0)
     return buffer.getvalue()
-
-
-class _Palette:
-    """The 256 commonest colours of some pictures; any other colour becomes the nearest of them."""
-
-    def __init__(self, pictures: Any) -> None:
-        colours, counts = np.unique(_packed(pictures), return_counts=True)
-        packed = colours[np.argsort(-counts, kind="stable")[:256]]
-        self._colours = np.stack([packed >> 16, packed >> 8 & 255, packed & 255], axis=-1)
-        self._place = np.full(1 << 24, -1, dtype=np.int16)
-        self._place[packed] = np.arange(len(packed))
-
-    def image(self, picture: Any) -> Any:
-        """Return a picture, bytes of shape (height, width, 3), as a Pillow image of the palette."""
-        from PIL import Image
-
-        packed = _packed(picture)
-        new = np.unique(packed[self._place[packed] < 0])
-        apart = np.stack([new >> 16, new >> 8 & 255, new & 255], axis=-1)[:, np.newaxis]
-        distances = np.sum((apart - self._colours) ** 2, axis=-1)
-        self._place[new] = np.argmin(distances, axis=-1)
-        image = Image.fromarray(self._place[packed].astype(np.uint8), "P")
-        image.putpalette(self._colours.astype(np.uint8).tobytes())
-        return image
-
-
-def _packed(pictures: Any) -> Any:
-    """Return red, green and blue of the last axis, rounded to multiples of 5, as one number.
-
-    White and black stay; the edges of a bar have 50 mixed colours then, and a palette holds them.
-    """
-    wide = 5 * ((pictures.astype(np.int64) + 2) // 5)
-    return wide[..., 0] << 16 | wide[..., 1] << 8 | wide[..., 2]
 
 
 class _Film:

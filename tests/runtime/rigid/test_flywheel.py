@@ -163,14 +163,9 @@ def test_pictures() -> None:
     ("given", "named"),
     [
         ({"fluctuation": 0.0}, "fluctuation"),
-        ({"fluctuation": 1.5}, "fluctuation"),
         ({"speed": 0.0}, "speed"),
         ({"speed": math.nan}, "speed"),
-        ({"speed": "a"}, "speed"),
-        ({"speed": None}, "speed"),
         ({"fluctuation": "x"}, "fluctuation"),
-        ({"fluctuation": None}, "fluctuation"),
-        ({"machine": None}, "machine"),
         ({"machine": bars(FourBar(0.3, 0.25, 0.1, 0.3))}, "turn fully"),
         ({"machine": ROCKER}, "machine"),
         (

@@ -233,7 +233,6 @@ def test_copies_and_pictures() -> None:
     [
         ({}, "no end"),
         ({"revolutions": -1.0}, "revolutions"),
-        ({"duration": math.nan}, "duration"),
         ({"duration": 1.0, "speed0": math.inf}, "speed0"),
         ({"duration": 1.0, "tolerance": 1.0}, "tolerance"),
         ({"duration": 1.0, "flywheel": -1.0}, "flywheel"),
@@ -242,15 +241,8 @@ def test_copies_and_pictures() -> None:
         ({"duration": 1.0, "torque": math.nan}, "torque"),
         ({"duration": 1.0, "torque": lambda: 1.0}, "torque"),
         ({"revolutions": "x"}, "revolutions"),
-        ({"revolutions": True}, "revolutions"),
-        ({"duration": 1.0, "speed0": "a"}, "speed0"),
-        ({"duration": 1.0, "theta0": None}, "theta0"),
-        ({"duration": 1.0, "flywheel": "a"}, "flywheel"),
-        ({"duration": 1.0, "samples": 10.5}, "samples"),
         ({"duration": 1.0, "max_steps": 0}, "max_steps"),
-        ({"duration": 1.0, "tolerance": "fine"}, "tolerance"),
         ({"duration": 1.0, "torque": lambda w: None}, "None from the torque law"),
-        ({"duration": 1.0, "torque": lambda w: [1.0, 2.0]}, "torque law at speed 0 rad/s"),
         ({"duration": 1.0, "torque": lambda w: math.nan if w > 3 else 5.0}, "nan from the torque"),
     ],
 )

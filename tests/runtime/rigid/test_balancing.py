@@ -134,42 +134,6 @@ def test_full_balance_leaves_no_momentum(machine, case):
     assert len(case_counterweights(machine, case)) == 2
 
 
-# What chapter 5 says of Figs. 21-23, for the data of Figs. 12-16; read off by the author, to the
-# words quoted.  "Torque on the frame" in Fig. 22 is his (4.13), l1 Y41: with it (b) rises by half
-# and (d) by 109 %, as he says; the driving torque rises by a third and by two thirds.
-def test_what_chapter_5_says_of_the_cases():
-    def peak(forces, name):
-        value = forces["f41"][:, 1:] if name == "y41" else forces[name]
-        return np.max(np.linalg.norm(value, axis=1) if value.ndim == 2 else np.abs(value))
-
-    base = nine_equations(smith(), TURN, SPEED)
-
-    def rises(case, name, offset=6.0):
-        forces = nine_equations(cased(smith(), case, offset * truth.INCH), TURN, SPEED)
-        return round(peak(forces, name) / peak(base, name), 3)
-
-    # Partial balance halves the force on the frame.
-    assert rises("b", "shaking_force") == 0.530
-    # "Nearer 100 %" is true of (d); three counterweights cost 59 % only.
-    assert [rises(case, "y41") for case in "bcd"] == [1.517, 1.593, 2.093]
-    assert [rises(case, "torque") for case in "bcd"] == [1.328, 1.235, 1.656]
-    assert [rises(case, "shaking_moment") for case in "bcd"] == [1.345, 1.337, 1.777]
-    # As point masses, the nearer the better: 3 in. is no optimum.
-    assert [rises("d", "f23", offset) for offset in (1.0, 3.0, 6.0)] == [1.101, 1.302, 1.605]
-
-
-def test_figure_23_d_needs_counterweights_with_an_inertia_of_their_own():
-    # Steel discs half an inch thick: the follower's inertia S r + S^2/(2 pi h rho r^2) is least at
-    # r = (S/(pi h rho))^(1/3), 3.00 in for the first moment S = 12 lbf in.
-    steel = {"density": 0.283 * truth.POUND / truth.INCH**3, "thickness": 0.5 * truth.INCH}
-    assert (12.0 / (np.pi * 0.5 * 0.283)) ** (1 / 3) == pytest.approx(3.0, abs=0.001)
-    offsets = np.linspace(1.0, 6.0, 11)
-    cases = [balance(smith(), SPEED, case="d", offsets=r * truth.INCH, **steel) for r in offsets]
-    assert offsets[int(np.argmin([one.relative["f23"] for one in cases]))] == pytest.approx(
-        3, abs=0.51
-    )
-
-
 def test_a_crank_counterweight_turns_the_primary_force_across_the_guide():
     machine = slider_crank(offset=0.0, across=0.0)
     coupler = machine.mass("coupler").along / machine.linkage.coupler

@@ -8,6 +8,7 @@ import pickle
 import numpy as np
 import pytest
 import rigid_truth
+from balancing_machines import nine_equations, smith
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.rigid import (
@@ -35,10 +36,6 @@ LINKAGES = {
     "quick-return, turning rod": QuickReturn(0.1, 0.3, 0.6),
 }
 EVERY = pytest.mark.parametrize("linkage", LINKAGES.values(), ids=LINKAGES)
-INCH, POUND = 0.0254, 4.4482216152605
-# Smith, beside Figs. 12-16: weights 0.5, 1, 1 lbf (standard gravity); I3B = I4D = 0.125 lbf in s^2.
-SMITH_MASSES = tuple(weight * POUND / 9.80665 for weight in (0.5, 1.0, 1.0))
-SMITH_INERTIA = 0.125 * POUND * INCH
 
 
 def masses_of(linkage, straight=False):
@@ -75,51 +72,13 @@ def derivative(values):
     return np.fft.irfft(1j * order * harmonics, n=len(values), axis=0)
 
 
-def smith() -> Machine:
-    linkage = FourBar(12 * INCH, 6 * INCH, 12 * INCH, 12 * INCH)
-    crank, coupler, follower = SMITH_MASSES
-    return Machine(
-        linkage,
-        {
-            "crank": MassDistribution.uniform_bar(crank, 6 * INCH),
-            "coupler": MassDistribution(coupler, coupler * 6 * INCH, 0.0, SMITH_INERTIA),
-            "follower": MassDistribution(follower, follower * 6 * INCH, 0.0, SMITH_INERTIA),
-        },
-    )
-
-
-def nine_equations(machine, theta, speed, acceleration):
-    """Solve Aannaque's (3.12): moments about each centre of mass, halfway along uniform links."""
-    motion = machine.linkage.motion(theta, speed, acceleration)
-    names = ["x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "torque"]
-    matrix, right = np.zeros((len(theta), 9, 9)), np.zeros((len(theta), 9))
-    angles = (motion.theta2, motion.theta3, motion.theta4)
-    for n, (link, angle) in enumerate(zip(machine.linkage.links, angles, strict=True)):
-        own = machine.mass(link)
-        half = machine.linkage.lengths[link] / 2
-        centre = motion.point(link, half)
-        matrix[:, 3 * n, 2 * n] = matrix[:, 3 * n + 1, 2 * n + 1] = 1
-        matrix[:, 3 * n, 2 * n + 2] = matrix[:, 3 * n + 1, 2 * n + 3] = -1
-        # The joint ahead is at the near end of crank and coupler, at the far end of the follower.
-        side = half if link == "follower" else -half
-        cos, sin = np.cos(angle), np.sin(angle)
-        for column, sign in ((2 * n, 1), (2 * n + 2, -1)):
-            matrix[:, 3 * n + 2, column] = -sign * sign * side * sin
-            matrix[:, 3 * n + 2, column + 1] = sign * sign * side * cos
-        right[:, 3 * n : 3 * n + 2] = own.mass * centre.acceleration
-        right[:, 3 * n + 2] = own.inertia_about_centre * motion.link(link).angular_acceleration
-    matrix[:, 2, 8] = 1
-    solved = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-    return dict(zip(names, solved.T, strict=True))
-
-
 @pytest.mark.parametrize("acceleration", [0.0, 40.0])
 def test_the_machine_of_figs_12_to_16_against_nine_equations(acceleration) -> None:
     machine = smith()
     found = rigid_forces(machine, THETA, 10.0, acceleration)
     for name, expected in nine_equations(machine, THETA, 10.0, acceleration).items():
-        scale = np.max(np.abs(expected))
-        np.testing.assert_allclose(found[name], expected, atol=1e-12 * scale, err_msg=name)
+        allowed = 1e-12 * np.max(np.abs(expected))
+        np.testing.assert_allclose(getattr(found, name), expected, atol=allowed, err_msg=name)
     assert found.passed
 
 

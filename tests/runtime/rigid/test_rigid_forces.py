@@ -23,6 +23,7 @@ from elastolink.runtime.rigid import (
     shaking_force,
     shaking_moment,
 )
+from elastolink.runtime.rigid.force_errors import checks
 
 TURN = 2.0 * np.pi
 THETA = np.linspace(0.0, TURN, 256, endpoint=False)
@@ -294,3 +295,41 @@ def test_pictures() -> None:
     torque = found.plot(joint="torque")
     np.testing.assert_array_equal(torque.lines[0].get_ydata(), found.torque)
     assert found.plot().get_title() == "force on the frame"
+
+
+@EVERY
+def test_a_single_angle_has_checks_and_a_file(linkage, tmp_path) -> None:
+    found = rigid_forces(loaded(linkage), 1.0, 5.0, 2.0)
+    assert found.passed
+    saved = json.loads(found.save(tmp_path / "f.json").read_text())
+    assert saved["torque"] == float(found.torque)
+    assert saved["passed"] and "values" not in saved
+
+
+@EVERY
+@pytest.mark.parametrize("name", ["x12", "y41", "torque"])
+def test_a_wrong_force_is_out_of_balance(linkage, name) -> None:
+    machine, theta = loaded(linkage), np.linspace(0.1, 6.0, 9)
+    given = (machine, theta, np.full(9, 5.0), np.zeros(9))
+    values = dict(rigid_forces(machine, theta, 5.0).values)
+    assert all(check.passed for check in checks(*given, values).values())
+    values[name] = values[name] + 1e-9
+    assert not checks(*given, values)["equilibrium of the links over its error"].passed
+
+
+def test_a_peak_between_the_places_is_looked_at() -> None:
+    """One angle among a thousand beside a fold."""
+    linkage = FourBar(0.3, 0.25, 0.1, 0.1)
+    low, high = linkage.crank_ranges()[0]
+    theta = np.full(1000, 0.5 * (low + high))
+    theta[517] = high
+    coupler = MassDistribution.uniform_bar(1.0, 0.1)
+    assert not driving_torque(Machine(linkage, {"coupler": coupler}), theta, 1.0).passed
+
+
+def test_a_force_along_one_axis_is_drawn_over_the_turn() -> None:
+    linkage = LINKAGES["slider-crank"]
+    found = rigid_forces(Machine(linkage, masses_of(linkage)), np.linspace(0.0, 6.0, 61), 5.0)
+    axes = found.plot(joint="41")
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), found["y41"])
+    assert axes.get_ylabel() == "pin force 41, Y [N]"

@@ -155,12 +155,12 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
     periodic, secular, gap = _without_growth(f, name)
-    a, b, sums = _doubled(periodic, name, int(order), accuracy)
+    sums = _doubled(periodic, name, int(order), accuracy)
     scale = max(sums.largest, 5e-324)
     return Harmonics(
         name=name,
-        a=a,
-        b=b,
+        a=sums.series.a,
+        b=sums.series.b,
         secular=secular,
         largest=sums.largest,
         remainder=sums.remainder,
@@ -176,9 +176,10 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
 
 
 @dataclass(frozen=True)
-class _Found:
-    """What the doubling met: last change of a coefficient, figures, and what it cost."""
+class _Sums:
+    """What the doubling met: series, last change of a coefficient, errors, and what it cost."""
 
+    series: PeriodicFunction
     change: float
     error: float
     largest: float
@@ -186,9 +187,7 @@ class _Found:
     evaluations: int
 
 
-def _doubled(
-    f: Callable[[Array], Array], name: str, order: int, accuracy: float
-) -> tuple[Array, Array, _Found]:
+def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> _Sums:
     """Double the angles until the coefficients stay."""
     count = max(_FEWEST, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
     probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
@@ -212,7 +211,7 @@ def _doubled(
         before = low
         goal = accuracy * largest
         if len(changes) > 1 and max(changes[-2:]) <= goal:
-            gap = float(np.max(np.abs(at_probes - _evaluate(full, probes))))
+            gap = float(np.max(np.abs(at_probes - _series(full)(probes))))
             # What the samples do not show may be folded into a coefficient whole.
             settled = gap <= max(1e3 * goal, 1e-11 * largest)
             # Nothing but a constant: a pulse may lie between the samples.
@@ -221,17 +220,21 @@ def _doubled(
         if 2 * count > _MOST:
             break
         count *= 2
-    rest = float(np.max(np.abs(at_probes - _evaluate(low, probes))))
+    rest = float(np.max(np.abs(at_probes - _series(low)(probes))))
     dropped = float(np.sum(np.abs(full[order + 1 :])))
     error = 2.0 * _last_change(changes, settled) + 2.0 * EPS * largest
     if constant:
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
-    a, b = low.real.copy(), -low.imag
-    b[0] = 0.0
     remainder = max(2.0 * rest, min(dropped, 4.0 * rest)) + error
-    found = _Found(max(changes[-2:]), error, largest, remainder, asked)
-    return a, b, found
+    return _Sums(_series(low), max(changes[-2:]), error, largest, remainder, asked)
+
+
+def _series(coefficients: np.ndarray[Any, Any]) -> PeriodicFunction:
+    """Return the function of coefficients ``a - i b``."""
+    b = -coefficients.imag
+    b[0] = 0.0
+    return PeriodicFunction(coefficients.real, b)
 
 
 def _last_change(changes: list[float], settled: bool) -> float:
@@ -263,14 +266,6 @@ def _coefficients(
     spectrum[1:] *= 2.0
     # The highest one is known in part alone.
     return theta, values, spectrum[:-1]
-
-
-def _evaluate(coefficients: np.ndarray[Any, Any], theta: Array) -> Array:
-    total = np.zeros(theta.shape, dtype=complex)
-    z = np.exp(1j * theta)
-    for c in coefficients[:0:-1]:
-        total = (total + c) * z
-    return np.asarray((total + coefficients[0]).real)
 
 
 def _function(source: Source) -> tuple[str, Function, dict[str, str]]:

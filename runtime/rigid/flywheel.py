@@ -11,6 +11,7 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.results import Check, DeferredChecks, Result, provenance
+from ..core.trigonometric import interpolated
 from ..linkages.linkage import EPS, TURN, Array
 from .forces import driving_torque
 from .inputs import not_finite
@@ -27,7 +28,6 @@ _TAIL = 1e-12
 _CONFIRMED = 1e-5
 _ITERATIONS = 60
 _MOST_TOPS = 16
-_TO_POWERS = np.linalg.inv(np.vander(np.arange(-3.0, 4.0), increasing=True))
 _WILD = 10.0
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
 _SETTLED, _UNSETTLED = 16.0 * EPS, 1e-12
@@ -129,7 +129,7 @@ def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
         slowest=fastest,
         fastest=slowest,
         method=f"{theta.size} samples, integrated by harmonics",
-        error=tail + 32.0 * EPS * size + _polish_error(energy),
+        error=tail + 32.0 * EPS * size,
         error_norm="energy fluctuation [J]",
         checks=DeferredChecks(partial(_mean_check, machine, speed, mean, size)),
         provenance=provenance(machine.provenance),
@@ -358,41 +358,25 @@ def _integral(values: Array) -> Array:
 def _extreme(values: Array) -> tuple[float, float]:
     """Return the greatest value of a periodic function between its samples, and its angle.
 
-    Every local maximum that may be the greatest is polished: a sample is lower than the summit
-    beside it by an eighth of the second differences.
+    By Newton's method on the trigonometric interpolant, from every local maximum that may be the
+    greatest: a sample is lower than the summit beside it by an eighth of the second differences.
     """
     before, after = np.roll(values, 1), np.roll(values, -1)
     lower = float(np.max(values) - np.max(np.abs(before - 2.0 * values + after)))
     tops = np.flatnonzero((values >= before) & (values >= after) & (values >= lower))
     # Of a function that all but stays the same, the highest samples are enough.
-    highest = tops[np.argsort(-values[tops], kind="stable")[:_MOST_TOPS]]
-    return max((_summit(values, int(top)) for top in highest), key=lambda each: each[0])
-
-
-def _summit(values: Array, top: int) -> tuple[float, float]:
-    """Return value and angle of the summit beside a sample."""
-    n = values.size
-    # Seven samples about the top; the polynomial through them is off by the eighth power.
-    y = values[(top + np.arange(-3, 4)) % n] - values[top]
-    polynomial = np.polynomial.Polynomial(_TO_POWERS @ y)
-    slope = polynomial.deriv()
-    curve = slope.deriv()
-    at = 0.0
-    for _ in range(8):
-        bend = curve(at)
-        if bend == 0.0:
-            break
-        at = float(np.clip(at - slope(at) / bend, -1.0, 1.0))
-    value = float(values[top] + max(float(polynomial(at)), 0.0))
-    return value, float((top + at) * TURN / n % TURN)
-
-
-def _polish_error(energy: Array) -> float:
-    """Return how far half the samples would put the extremes, over what halving gains."""
-    half = energy[::2]
-    gap = _extreme(energy)[0] - _extreme(half)[0]
-    other = _extreme(-energy)[0] - _extreme(-half)[0]
-    return (abs(gap) + abs(other)) / 16.0
+    tops = tops[np.argsort(-values[tops], kind="stable")[:_MOST_TOPS]]
+    series = interpolated(values, TURN).coefficients
+    waves, step = 1j * np.arange(series.size), TURN / values.size
+    at = start = tops * step
+    for _ in range(6):
+        terms = np.exp(np.multiply.outer(at, waves)) * series
+        slope, bend = (terms @ waves).real, (terms @ waves**2).real
+        moved = at - slope / np.where(bend < 0.0, bend, -np.inf)
+        at = np.clip(moved, start - step, start + step)
+    summits = np.maximum((np.exp(np.multiply.outer(at, waves)) @ series).real, values[tops])
+    best = int(np.argmax(summits))
+    return float(summits[best]), float(at[best] % TURN)
 
 
 def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dict[str, Check]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
+from ..core.trigonometric import even_angles, interpolated, tail
 from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
 from .machine import Machine, Part, power_of, wrenches
@@ -201,15 +202,11 @@ def _series(function: Callable[[Array], Array]) -> _Series | None:
     """Return a function as harmonics down to round-off; None where there are too many."""
     count = _FEWEST
     while count <= _MOST:
-        values = np.asarray(function(TURN * np.arange(count) / count))
-        harmonics = np.fft.rfft(values) * (2.0 / count)
-        harmonics[0] /= 2.0
-        sizes, largest = np.abs(harmonics), float(np.max(np.abs(values)))
-        if float(np.max(sizes[-max(1, sizes.size // 4) :])) <= _TAIL * largest:
-            kept = int(np.max(np.nonzero(sizes > 1e-17 * largest)[0], initial=0)) + 1
-            kept = min(kept, 3 * sizes.size // 4)
-            series = _Series(1j * np.arange(kept), harmonics[:kept])
+        values = np.asarray(function(even_angles(TURN, count)))
+        if tail(values) <= _TAIL:
+            terms = interpolated(values, TURN).coefficients
+            series = _Series(1j * np.arange(len(terms)), terms)
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
-            return series if gap <= _OFF * largest else None
+            return series if gap <= _OFF * float(np.max(np.abs(values))) else None
         count *= 2
     return None

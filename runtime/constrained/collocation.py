@@ -22,26 +22,12 @@ from .equations import (
     Tolerance,
 )
 
-_ITERATIONS = 25
-# A Newton correction of this relative size leaves derivatives that need not be made anew; what
-# they are off lets error estimates grow with the number of windows, so that it is less where there
-# are more than the next number.
-_NEAR, _FEW = 1e-3, 30.0
-# Before its last correction the iteration may leave this part of the tolerance.
-_LEFT = 0.1
 # Terms at the end of the series of the accelerations whose size and fall decide a window's length.
 _TAIL = 2
 # A factor of the length of the next window, and bounds of it.
 _CAUTION, _SHORTER, _LONGER = 0.9, 0.2, 3.0
-# A looser tolerance makes no window cheaper.
-_LOOSEST = 1e-4
-# How much shorter a window becomes in which a force jumps.
-_JUMP = 2.0
 # Every so many nodes what may stop a motion is looked at.
 _EACH = 3
-# An evaluation costs nearly the same for few nodes and many, the solution of a window the third
-# power of nodes times coordinates: fastest on the rod of 1 to 5 modes with 24 down to 20 nodes.
-_UNKNOWNS, _LEAST_NODES, _MOST_NODES = 160, 8, 24
 # Some five minutes of windows of the rod.
 _MOST_WINDOWS = 100_000
 
@@ -304,7 +290,7 @@ def _solved(
     t, rtol = before.t + h * points.c, tolerance.rtol
     a, last = guess, np.inf
     slopes: Linearised | None = None
-    for _ in range(_ITERATIONS):
+    for _ in range(25):
         x = before.x + h * (points.c[:, None] * before.v + h * (points.twice @ a))
         v = before.v + h * (points.once @ a)
         fresh = slopes is None
@@ -325,7 +311,8 @@ def _solved(
             break
         part = min(10.0 * size if fresh else size / last, 1.0)
         tail, fall = _tail(points.series @ a, h, units)
-        if (part < 0.5 and size * part <= _LEFT * rtol) or (size <= 1e-9 and part >= 0.25):
+        # Before its last correction the iteration may leave this part of the tolerance.
+        if (part < 0.5 and size * part <= 0.1 * rtol) or (size <= 1e-9 and part >= 0.25):
             # The terms that are not there fall on as those before them.
             if tail * fall > rtol:
                 raise _TooLong(tail * fall / rtol, points.series @ a)
@@ -410,8 +397,11 @@ def collocation(
 
     Beside the motion goes its error, linearised inside the windows and projected at their ends.
     """
-    points = nodes(int(np.clip(_UNKNOWNS // max(equations.n, 1), _LEAST_NODES, _MOST_NODES)))
-    tolerance = replace(tolerance, rtol=min(tolerance.rtol, _LOOSEST))
+    # An evaluation costs nearly the same for few nodes and many, the solution of a window the third
+    # power of nodes times coordinates: fastest on the rod of 1 to 5 modes with 24 down to 20 nodes.
+    points = nodes(int(np.clip(160 // max(equations.n, 1), 8, 24)))
+    # A looser tolerance makes no window cheaper.
+    tolerance = replace(tolerance, rtol=min(tolerance.rtol, 1e-4))
     s, rtol = len(points.c), tolerance.rtol
     h = _first(equations, start, end, rtol, s)
     state, guess = start, None
@@ -425,12 +415,16 @@ def collocation(
             )
         try:
             first = np.tile(state.a, (s, 1)) if guess is None else guess
-            near = _NEAR * min(1.0, _FEW * h / (end - start.t))
+            # A Newton correction of this relative size leaves derivatives that need not be made
+            # anew; what they are off lets error estimates grow with the number of windows, so that
+            # it is less where there are more than the next number.
+            near = 1e-3 * min(1.0, 30.0 * h / (end - start.t))
             window = _solved(equations, state, h, points, first, tolerance, near)
             after = equations.state(t, *window.end())
             astray = _Astray.of(window, after, *(begin or (0.0 * state.x, 0.0 * state.x)))
             if astray.added(window) > rtol:
-                raise _TooLong(_JUMP**s, window.terms)
+                # How much shorter a window becomes in which a force jumps.
+                raise _TooLong(2.0**s, window.terms)
         except _TooLong as reason:
             part = max(_SHORTER, _CAUTION * reason.size ** (-1.0 / s))
             spread = np.polynomial.legendre.legvander(2.0 * part * points.c - 1.0, s - 1)

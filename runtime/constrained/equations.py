@@ -17,15 +17,8 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 # Part of the largest scaled coordinate below which the tolerance of one is absolute.
 SMALL = 0.01
-# Newton corrections of positions, and halvings of one that would raise the defect.
-_CORRECTIONS, _HALVINGS = 60, 12
 # Newton squares the defect: a correction of this relative size leaves none ...
 _LAST = 1e-9
-# ... and one below this that no longer falls is round-off.
-_ROUND_OFF = 1e-12
-# Relative differences of the equations where their derivatives were not emitted: about the square
-# root of the rounding, where rounding and second derivatives do equal harm.
-_APART = 2.0**-20
 
 
 class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
@@ -181,7 +174,9 @@ class Equations:
         n = self.n
         wide = float(np.max(np.abs(x), initial=0.0)) or 1.0
         fast = float(np.max(np.abs(v), initial=0.0)) or wide
-        steps = _APART * np.exp2(np.round(np.log2([wide, fast])))
+        # Relative differences of the equations where their derivatives were not emitted: about the
+        # square root of the rounding, where rounding and second derivatives do equal harm.
+        steps = 2.0**-20 * np.exp2(np.round(np.log2([wide, fast])))
         lead = (2 * n, *(1,) * (x.ndim - 1), n)
         change = np.eye(2 * n)
         places = x + steps[0] * change[:, :n].reshape(lead)
@@ -225,11 +220,13 @@ class Equations:
         """
         at = self._violation(t, x)
         last = np.inf
-        for count in range(_CORRECTIONS):
+        # Newton corrections of positions, and halvings of one that would raise the defect.
+        for count in range(60):
             change = self._least_change(mass, at["jacobian"], -at["constraints"][..., 0], free)
             size = np.max(np.abs(change), axis=-1)
             small = size / (np.max(np.abs(x + change), axis=-1) + EPS)
-            if np.all((small <= _LAST) | ((small <= _ROUND_OFF) & (size >= 0.5 * last))):
+            # A correction below 1e-12 that no longer falls is round-off.
+            if np.all((small <= _LAST) | ((small <= 1e-12) & (size >= 0.5 * last))):
                 return x + change, count + 1
             x, at = self._damped(t, x, change, at)
             last = size
@@ -251,7 +248,7 @@ class Equations:
         """Return positions after a correction, halved where it would raise the defect."""
         before = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
         factor = np.ones(np.shape(before))
-        for _ in range(_HALVINGS):
+        for _ in range(12):
             trial = x + factor[..., None] * change
             at = self._violation(t, trial)
             after = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)

@@ -38,14 +38,7 @@ Watch = Callable[[Array, Array], ArrayLike]
 Energy = Callable[[Array, Array, Array], ArrayLike]
 
 LINEAR_RANGE = 0.05
-# Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
-_SAFETY = 5.0
 _MOST_SAMPLES = 2_000_000
-_HALVINGS = 60
-# Roundings of a long window, which may all lie on one side.
-_WINDOW = 20.0
-# Constraints count as kept where their scaled defect is below this.
-_KEPT = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -276,14 +269,16 @@ def march(run: Run, progress: bool = False) -> Path:
         t, x, v, a, multipliers = _on_constraints(equations, parts)
     # Rounding changes the speeds too, which acts over the rest of the motion.
     way = np.max(np.abs(x), axis=0) + np.max(np.abs(v), axis=0) * (t[-1] - t[0])
-    rounding = EPS * (8.0 + _WINDOW * steps) * way
+    # Roundings of a long window, which may all lie on one side.
+    rounding = EPS * (8.0 + 20.0 * steps) * way
+    # Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
     return Path(
         time=t,
         q=x * columns,
         qd=v * columns,
         qdd=a * columns,
         multipliers=multipliers * equations.rows,
-        error=columns * (_SAFETY * error + rounding),
+        error=columns * (5.0 * error + rounding),
         steps=steps,
         evaluations=equations.evaluations,
         status=status,
@@ -348,7 +343,7 @@ def _stop(
 def _crossing(equations: Equations, step: Step, guard: Guard, before: State, after: State) -> State:
     """Return the state at which a guard is met between two states, by halving."""
     low = before.t
-    for _ in range(_HALVINGS):
+    for _ in range(60):
         middle = 0.5 * (low + after.t)
         if not low < middle < after.t:
             break
@@ -367,8 +362,9 @@ def _crossing(equations: Equations, step: Step, guard: Guard, before: State, aft
 def _result(run: Run, path: Path, watch: Watch | None, energy: Energy | None) -> ConstrainedMotion:
     norms = constraint_norms(run.system, path.time, path.q, path.qd, path.qdd)
     levels = ("position", "velocity", "acceleration")
+    # Constraints count as kept where their scaled defect is below this.
     checks = {
-        f"{level} constraints": Check(float(np.max(norm)), _KEPT)
+        f"{level} constraints": Check(float(np.max(norm)), 1e-12)
         for level, norm in zip(levels, norms, strict=True)
     }
     checks["end reached"] = Check(float(path.status), 0.0)

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 ComplexArray = NDArray[np.complex128]
 
-# Error from which a multiplier says nothing about stability.
-_TELLING = 0.1
 # In place of an error that is not finite.
 _HOPELESS = 1e6
 
@@ -93,7 +91,8 @@ class ConstrainedMultipliers(Result):
         Never True where that is not known: an error of 0.1 or more says nothing, the multiplier
         then has to be inside by its error.
         """
-        slack = np.where(self.error < _TELLING, self.error, -self.error)
+        # Error from which a multiplier says nothing about stability.
+        slack = np.where(self.error < 0.1, self.error, -self.error)
         return bool(np.all(np.abs(self.physical) <= 1.0 + slack))
 
     @property

@@ -34,20 +34,14 @@ STAGES = 12
 # Phase of the fastest motion that a first step covers [rad]; 12 stages err 1e-14 a step at 5.
 _PHASE = 5.0
 _FEWEST, _MOST_STEPS = 12, 8192
-# Numbers of a batch of stage matrices that stay in a cache while they are solved.
-_CACHE = 1 << 18
 # States at which the guess is looked at, and at which a reference motion is one.
 _WATCHED, _SAMPLES = 24, 64
-# A system that differs by more after a period has another period.
-_SAME = 1e-9
 _ITERATIONS, _LEAST_DAMPING = 40, 1.0 / 256
 # Newton has arrived where its step, relative to the orbit, is rounding, or where it stops shrinking
 # below the second; the defect that is left passes below the third.
 _ROUNDING, _SMALL, _ARRIVED = 64 * EPS, 1e-8, 1e-9
 # Of the difference between a grid and one twice as fine, in the finer one (order 24: 2^-24).
 LEFT = 1.0 / 64
-# Rounding of one step of the motion's size: random samples, enlarged for the largest of more.
-_NOISES, _ENLARGED = 4, 4.0
 
 
 @dataclass(frozen=True)
@@ -150,7 +144,8 @@ def sweep(equations: Equations, ring: Ring, rate: float) -> Sweep:
     late = (h * points.c)[:, None, None] * slopes.by_x + slopes.by_v
     right = np.concatenate([wrong[..., None], slopes.by_x, rate * late], axis=-1)
     stages = np.empty((m, s * n, 1 + 2 * n))
-    chunk = max(_CACHE // (s * n) ** 2, 1)
+    # Numbers of a batch of stage matrices that stay in a cache while they are solved.
+    chunk = max((1 << 18) // (s * n) ** 2, 1)
     for first in range(0, m, chunk):
         part = slice(first, first + chunk)
         matrix = stage_matrix(slopes.by_x[part], slopes.by_v[part], h, points)
@@ -298,10 +293,12 @@ class Shooting:
         ring, size = shot.ring, self.size(shot.ring)
         along = self.junctions(ring).along
         back = np.swapaxes(ring.following(along), -1, -2)
-        shape = (*shot.sweep.gap.shape, _NOISES)
+        # Rounding of one step of the motion's size: random samples, enlarged for the largest of
+        # more.
+        shape = (*shot.sweep.gap.shape, 4)
         noise = np.random.default_rng(0).normal(size=shape) * size * EPS
         moved = closed_chain(back @ shot.sweep.maps @ along, back @ noise)
-        return np.inf if moved is None else _ENLARGED * float(np.max(np.abs(moved))) / size
+        return np.inf if moved is None else 4.0 * float(np.max(np.abs(moved))) / size
 
     def error(self, coarse: Shot, fine: Shot) -> float:
         """Return the error of the finer motion: what refinement changed, and rounding."""
@@ -673,7 +670,8 @@ def _check_period(system: Constrained, guess: _Guess) -> None:
     for name, values in now.items():
         size = max(float(np.max(np.abs(values), initial=0.0)), beside.get(name, 0.0))
         gap = float(np.max(np.abs(later[name] - values), initial=0.0))
-        if not gap <= _SAME * size:
+        # A system that differs by more after a period has another period.
+        if not gap <= 1e-9 * size:
             raise bad(
                 "period",
                 f"{guess.period:.9g} s, after which {name} differs by {gap:.3g}",

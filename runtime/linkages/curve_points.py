@@ -17,11 +17,8 @@ Path = Callable[[Array, int], Taylor]
 _UNIFORM = 720
 # Samples draw near a sharp turn by this ratio, down to this distance.
 _GRADING, _NEAREST = 1.6, 1e-9
-# Loops up to this half-width in the parameter are solved for as series about their middle.
-_SMALL_LOOP = 0.02
 _SERIES = 16
 _ODD = range(1, _SERIES, 2)
-_STEPS, _LOOP_STEPS = 40, 12
 _MOST_SEEDS = 3000
 # A point whose speed falls below this part of its largest is said to stop: a cusp.
 _STILL = 1e-11
@@ -117,7 +114,7 @@ def double_points(path: Path, slow: Slow, sharp: Array, size: float) -> Doubles:
     """
     loops, reach = _small_loops(path, slow, size)
     first, second = _seeds(path, _graded(np.concatenate([sharp, slow.parameter])))
-    for _ in range(_STEPS if first.size else 0):
+    for _ in range(40 if first.size else 0):
         first, second = _newton(path, first, second)
     apart = (second - first + pi) % TURN - pi
     middle, half = first + 0.5 * apart, np.abs(np.sin(0.5 * apart))
@@ -163,12 +160,13 @@ def _small_loops(path: Path, slow: Slow, size: float) -> tuple[Array, Array]:
     """
     c = path(slow.parameter, _SERIES).c
     last = np.maximum(np.abs(c[_SERIES - 1]), 1e-300)
-    reach = np.minimum(_SMALL_LOOP, (EPS * size / last) ** (1.0 / (_SERIES - 2)))
+    # Loops up to this half-width in the parameter are solved for as series about their middle.
+    reach = np.minimum(0.02, (EPS * size / last) ** (1.0 / (_SERIES - 2)))
     widest = reach**2
     middle, across = slow.parameter, 1j * c[2]
     lift = (across.conj() * c[3]).real
     square = -(across.conj() * c[1]).real / np.where(lift != 0, lift, 1.0)
-    for _ in range(_LOOP_STEPS):
+    for _ in range(12):
         # Beyond the reach of the series there is no small loop.
         square = np.clip(square, -widest, widest)
         value, by_middle, by_square = _loop_series(path(middle, _SERIES).c, square)

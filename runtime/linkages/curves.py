@@ -21,12 +21,7 @@ from .linkage import EPS, Array, Linkage, require_linkage
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_POINTS = 10**6
-# Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are halved.
-_FEW, _MANY = 10, 16
 _PANELS, _HALVINGS = 24, 60
-# More panels than this at once: what is left is the round-off of the integrands.
-_MOST_PANELS = 2000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,7 +214,7 @@ def coupler_curve(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     place = _place(linkage, link, along, across)
-    require_whole("points", points, 16, _MOST_POINTS)
+    require_whole("points", points, 16, 10**6)
     motion.check()
     trace = _Trace(motion, link, place / motion.scale)
     trace.require_motion()
@@ -505,14 +500,17 @@ def _integrate_turn(
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
     for level in range(_HALVINGS):
-        few, _ = _panels(f, low, high, _FEW)
-        many, size = _panels(f, low, high, _MANY)
+        # Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are
+        # halved.
+        few, _ = _panels(f, low, high, 10)
+        many, size = _panels(f, low, high, 16)
         difference = np.abs(many - few)
         if level == 0:
             scale = np.sum(size, axis=1)
             total, error, whole = (np.zeros(len(many)) for _ in range(3))
         good = np.all(difference <= relative * scale[:, None] / 8, axis=0)
-        if level == _HALVINGS - 1 or np.count_nonzero(~good) > _MOST_PANELS:
+        # More panels than this at once: what is left is the round-off of the integrands.
+        if level == _HALVINGS - 1 or np.count_nonzero(~good) > 2000:
             good[:] = True
         total = total + np.sum(many[:, good], axis=1)
         error = error + np.sum(difference[:, good], axis=1)

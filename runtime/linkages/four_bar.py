@@ -26,9 +26,6 @@ from .linkage import (
     turning,
 )
 
-# Round-offs of the square of BD and of the area of the triangle BCD, thrice a unit each.
-_SQUARE = 2.0
-
 
 @dataclass(frozen=True, kw_only=True)
 class FourBarMotion(Motion):
@@ -244,7 +241,9 @@ class FourBar(Linkage):
         ):
             beside = m["theta" + other]
             moved = crank * np.abs(np.cos(theta2 - beside)) + frame * np.abs(np.cos(beside))
-            moved += length * aligned + opposite + _SQUARE * (leaning + opposite * lying)
+            # Round-offs of the square of BD and of the area of the triangle BCD, thrice a unit
+            # each.
+            moved += length * aligned + opposite + 2.0 * (leaning + opposite * lying)
             turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
             errors.append(turned + moved / (length * sine))
         return np.asarray(ROUND_OFFS * np.maximum(*errors))

@@ -22,12 +22,8 @@ if TYPE_CHECKING:
 Function = Callable[[Array], ArrayLike]
 Source: TypeAlias = Function | tuple[Any, ...]
 
-_FEWEST, _MOST = 64, 2**17
 _GOLDEN = 0.6180339887498949
 _PROBES = 257
-_HIGHEST = 4096
-# A gap over one turn up to this part of the function's size is noise, and enters the error.
-_SAME = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +147,7 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     ends, the whole series is compared with the function at irregular angles.
     """
     name, f, known = _function(source)
-    require_whole("order", order, 1, _HIGHEST)
+    require_whole("order", order, 1, 4096)
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
     periodic, secular, gap = _without_growth(f, name)
@@ -189,7 +185,7 @@ class _Sums:
 
 def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> _Sums:
     """Double the angles until the coefficients stay."""
-    count = max(_FEWEST, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
+    count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
     probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
     at_probes = values_at(f, probes, name)
     largest, asked = float(np.max(np.abs(at_probes))), _PROBES
@@ -217,7 +213,7 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
             # Nothing but a constant: a pulse may lie between the samples.
             if settled and not constant:
                 break
-        if 2 * count > _MOST:
+        if 2 * count > 2**17:
             break
         count *= 2
     rest = float(np.max(np.abs(at_probes - _series(low)(probes))))
@@ -293,7 +289,8 @@ def _without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], f
     growth = float(ends[1] - ends[0])
     turns = float(np.rint(growth / TURN))
     gap = abs(growth - turns * TURN)
-    if gap > _SAME * max(float(np.max(np.abs(ends))), 5e-324):
+    # A gap over one turn up to this part of the function's size is noise, and enters the error.
+    if gap > 1e-5 * max(float(np.max(np.abs(ends))), 5e-324):
         raise bad(
             f"function {name!r}",
             f"a change of {growth:.6g} over one turn",

@@ -27,10 +27,6 @@ Distribution = Literal["normal", "uniform"]
 Limits: TypeAlias = tuple[float, float]
 Box: TypeAlias = Mapping[str, Limits]
 
-# A common factor of all lengths may turn the links by so much of what each length alone does.
-_SCALED = 1e-9
-# What round-off does to a worst case, in units of the last place, away from the folds.
-_ROUNDING = 64.0
 _SCALE_FREE = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 _PREFERRED = ("theta4", "position", "theta3")
 _NAMES = {"theta2": "crank angle"}
@@ -38,10 +34,6 @@ _SYMBOLS = {"theta3": r"$\theta_3$", "theta4": r"$\theta_4$"}
 
 # Standard deviations over the tolerance.
 _SPREADS = {"normal": 1.0 / 3.0, "uniform": 1.0 / math.sqrt(3.0)}
-# Numbers in one array at a time.
-_CHUNK = 200_000
-# Chance that one of all the comparisons fails where both sides are right.
-_CHANCE = 1e-6
 
 
 class Varied(Protocol):
@@ -422,7 +414,8 @@ def _remainder(model: Parametric, sizes: Mapping[str, float], slopes: dict[str, 
         changes = [np.sum(widths * np.abs(other[o] - here[o]), axis=0) for o in model.outputs]
         worst = np.maximum(worst, np.stack(changes))
     first = np.stack([np.sum(widths * np.abs(here[o]), axis=0) for o in model.outputs])
-    return np.asarray(worst + _ROUNDING * EPS * first)
+    # What round-off does to a worst case, in units of the last place, away from the folds.
+    return np.asarray(worst + 64.0 * EPS * first)
 
 
 def _checks(model: Parametric, sensitivity: Array) -> dict[str, Check]:
@@ -435,7 +428,8 @@ def _checks(model: Parametric, sensitivity: Array) -> dict[str, Check]:
     most = np.max(np.abs(np.sum(terms, axis=1)), axis=rows, initial=0.0)
     size = np.max(np.sum(np.abs(terms), axis=1), axis=rows, initial=0.0)
     worst = float(np.max(most / np.maximum(size, np.finfo(float).tiny), initial=0.0))
-    return {"a common factor of all lengths leaves the angles": Check(worst, _SCALED)}
+    # A common factor of all lengths may turn the links by so much of what each length alone does.
+    return {"a common factor of all lengths leaves the angles": Check(worst, 1e-9)}
 
 
 def box_of(lengths: Mapping[str, float], tolerances: Mapping[str, float]) -> dict[str, Limits]:
@@ -553,7 +547,8 @@ def _trial(
     total = np.zeros_like(unit)
     squares, kept, done = np.zeros_like(total), 0, 0
     least, greatest = np.full_like(total, np.inf), np.full_like(total, -np.inf)
-    chunk = max(1, _CHUNK // max(1, nominal.theta2.size))
+    # Numbers in one array at a time.
+    chunk = max(1, 200_000 // max(1, nominal.theta2.size))
     while done < samples:
         count = min(chunk, samples - done)
         deviation = _deviations(nominal, random, count, distribution) / unit
@@ -629,7 +624,8 @@ def _trial_checks(
 ) -> dict[str, Check]:
     """Compare with the first order: within the statistical error and the error."""
     # |Z| exceeds z with a chance below exp(-z^2/2); every output and angle is one comparison.
-    quantile = math.sqrt(2.0 * math.log(max(spread.size, 1) / _CHANCE))
+    # Chance that one of all the comparisons fails where both sides are right.
+    quantile = math.sqrt(2.0 * math.log(max(spread.size, 1) / 1e-6))
     axes = tuple(range(1, nominal.nominal.ndim))
     size = np.max(np.abs(nominal.nominal), axis=axes, initial=0.0, keepdims=True)
     allowed = np.asarray(nominal.error) + 64.0 * np.finfo(float).eps * size

@@ -30,10 +30,6 @@ EPS = float(np.finfo(float).eps)
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
-# However large the angles, a loop that gapes wider than this is no motion.
-_WIDEST_GAP = 1e-8
-# Rates may leave their closure by so many times what the error of the angles would do.
-_RATES_LIMIT = 4.0
 
 
 @dataclass(frozen=True)
@@ -524,14 +520,16 @@ def _checks(linkage: Linkage, m: Mapping[str, Array], error: Array) -> dict[str,
     longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)
     limit = 64 * np.finfo(float).eps * np.max(np.abs(m["theta2"]), initial=1.0)
+    # However large the angles, a loop that gapes wider than this is no motion.
     checks = {
-        "loop closure over longest link": Check(closure, min(float(limit), _WIDEST_GAP)),
+        "loop closure over longest link": Check(closure, min(float(limit), 1e-8)),
         "folds within the angles": Check(float(linkage._folds(m["theta2"])), 0.0),
     }
     for name, terms in zip(("speeds", "accelerations"), rates, strict=True):
         size = np.maximum(sum(np.abs(term) for term in terms), np.finfo(float).tiny)
         worst = float(np.max(np.abs(sum(terms)) / (size * error), initial=0.0))
-        checks[f"closure of {name} over its error"] = Check(worst, _RATES_LIMIT)
+        # Rates may leave their closure by so many times what the error of the angles would do.
+        checks[f"closure of {name} over its error"] = Check(worst, 4.0)
     return checks
 
 

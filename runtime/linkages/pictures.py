@@ -31,10 +31,6 @@ _COLOURS = {
     "rod": "tab:blue",
 }
 _GREY = "0.45"
-_MOST_FRAMES, _FASTEST = 2000, 50
-_TRACE_POINTS = 721
-# Artists above this order may be covered by moving ones, or cover them: drawn in every frame.
-_MOVING = 2
 
 
 def draw_curve(ax: Axes, curve: CouplerCurve) -> None:
@@ -98,8 +94,8 @@ def animate(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     motion.check()
-    require_whole("frames", frames, 2, _MOST_FRAMES)
-    require_whole("fps", fps, 1, _FASTEST)
+    require_whole("frames", frames, 2, 2000)
+    require_whole("fps", fps, 1, 50)
     for curve in curves:
         if not hasattr(curve, "double_position"):
             raise bad("curves", type(curve).__name__, "coupler curves", "use coupler_curve")
@@ -164,7 +160,9 @@ class _Film:
             bar = _point_bar(motion, 0.0, curve.link, place)
             self._arms += ax.plot(bar.real, bar.imag, color=_COLOURS[curve.link], lw=1.0, zorder=2)
             self._dots += ax.plot(bar[1:2].real, bar[1:2].imag, "o", color="k", ms=4, zorder=6)
-        above = [line for line in ax.lines if line.get_zorder() >= _MOVING]
+        # Artists above this order may be covered by moving ones, or cover them: drawn in every
+        # frame.
+        above = [line for line in ax.lines if line.get_zorder() >= 2]
         self._moving = sorted(above, key=lambda line: line.get_zorder())
         for line in self._moving:
             line.set_animated(True)
@@ -189,7 +187,7 @@ class _Film:
 
 def _trace(motion: Circuit, curve: CouplerCurve) -> Complex:
     """Return the path of a curve's point."""
-    s = np.linspace(0.0, 2.0 * pi, max(_TRACE_POINTS, len(curve.parameter) + 1))
+    s = np.linspace(0.0, 2.0 * pi, max(721, len(curve.parameter) + 1))
     place = complex(curve.along, curve.across) / motion.scale
     return np.asarray(motion.scale * motion.path(s, curve.link, place, 0).c[0])
 

@@ -34,8 +34,6 @@ _NAMES = {
 # What springs and dampers bring to the frame, its pins bring back: they change none of these.
 _FRAME_NAMES = (*FRAME_FORCE, "shaking_moment")
 _MOMENTS = ("torque", "shaking_moment", "couple34", "couple41")
-# Lengths from 2^-60 to 2^60 keep their powers within what a float holds; others are scaled.
-_SAFE_EXPONENT = 60
 
 
 @cache
@@ -64,7 +62,8 @@ class Evaluation:
         self.machine, self.batch, self.theta = machine, batch, theta
         longest = max(abs(size) for size in machine.linkage.lengths.values())
         exponent = int(np.frexp(longest)[1])
-        self.exponent = exponent if abs(exponent) > _SAFE_EXPONENT else 0
+        # Lengths from 2^-60 to 2^60 keep their powers within what a float holds; others are scaled.
+        self.exponent = exponent if abs(exponent) > 60 else 0
         self.kernels = force_kernels(machine.linkage.mechanism)
         self.numbers = self._numbers(speed, acceleration)
 

@@ -22,17 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FEWEST, _MOST = 1024, 2**15
-# The tail of the torque's harmonics is taken as round-off below this share of the largest one.
-_TAIL = 1e-12
-# Forward dynamics confirm the coefficient of fluctuation to this share of it.
-_CONFIRMED = 1e-5
 _ITERATIONS = 60
-_MOST_TOPS = 16
-_WILD = 10.0
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
 _SETTLED, _UNSETTLED = 16.0 * EPS, 1e-12
-# Flywheels tried from the lightest up, so that the least of all that will do is found.
-_TRIED, _LIGHTEST = 33, 1e-4
 # Turns between which a torque must repeat, and angles that no regular pattern meets twice.
 _TURNS = np.array([0.0, 1.0, 2.0, 3.0, 7.0])
 _SCATTERED = TURN * np.mod(np.sqrt(2.0) * np.arange(1.0, 32.0), 1.0)
@@ -275,7 +267,7 @@ class _Balance:
             motor = float(np.mean(load))
             changed = self._speeds(inertia, -_integral(load))
             if changed is None:
-                return _WILD, self.sign * speeds, motor, 0.0
+                return 10.0, self.sign * speeds, motor, 0.0
             moved = float(np.max(np.abs(changed - speeds))) / self.speed
             speeds = changed
             if self.still is not None:
@@ -320,7 +312,8 @@ class _Balance:
         while excess(most) > 0:
             most *= 2.0
         light = 0.0
-        for heavy in (*np.geomspace(_LIGHTEST * most, most, _TRIED)[:-1], most):
+        # Flywheels tried from the lightest up, so that the least of all that will do is found.
+        for heavy in (*np.geomspace(1e-4 * most, most, 33)[:-1], most):
             if excess(heavy) <= 0:
                 break
             light = float(heavy)
@@ -335,7 +328,9 @@ def _sampled(machine: Machine, speed: float) -> tuple[Array, Array, float]:
         torque = driving_torque(machine, theta, speed).torque
         size = np.abs(np.fft.rfft(torque)) * (2.0 / count)
         top = size[-max(1, size.size // 8) :]
-        if float(np.sum(top)) <= _TAIL * float(np.max(np.abs(torque))):
+        # The tail of the torque's harmonics is taken as round-off below this share of the largest
+        # one.
+        if float(np.sum(top)) <= 1e-12 * float(np.max(np.abs(torque))):
             return theta, torque, 0.0
         if count >= _MOST:
             # Folded down, each is added to a lower harmonic k, and divided by k: a sum of 1/k.
@@ -365,7 +360,7 @@ def _extreme(values: Array) -> tuple[float, float]:
     lower = float(np.max(values) - np.max(np.abs(before - 2.0 * values + after)))
     tops = np.flatnonzero((values >= before) & (values >= after) & (values >= lower))
     # Of a function that all but stays the same, the highest samples are enough.
-    tops = tops[np.argsort(-values[tops], kind="stable")[:_MOST_TOPS]]
+    tops = tops[np.argsort(-values[tops], kind="stable")[:16]]
     series = interpolated(values, TURN).coefficients
     waves, step = 1j * np.arange(series.size), TURN / values.size
     at = start = tops * step
@@ -411,8 +406,9 @@ def _confirmed(
     speeds = np.abs(run.speed)
     middle = (np.max(speeds) + np.min(speeds)) / 2.0
     gap = abs((np.max(speeds) - np.min(speeds)) / middle - reached) / max(reached, 1e-12)
+    # Forward dynamics confirm the coefficient of fluctuation to this share of it.
     return {
-        "fluctuation by forward dynamics, relative": Check(float(gap), _CONFIRMED + share),
+        "fluctuation by forward dynamics, relative": Check(float(gap), 1e-5 + share),
         "speeds not settled, relative": Check(moved, _UNSETTLED),
     }
 

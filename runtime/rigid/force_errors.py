@@ -22,15 +22,9 @@ NORM = (
     " entrywise"
 )
 
-# The emitted functions are off by a few round-offs of everything they are given.  Of 5700
-# random machines near folds, near change points and with short links the worst needed 18.4 against
-# 60 digits, all others less than 9 (tests/error_estimates has a part of them).
-_FACTOR = 24.0
 # Where the error is as large as this share of what is added up, the linkage folds, and first
 # order tells nothing: the forces may be as large as one likes.
 _MEANINGFUL = 0.5
-# Places at which the checks are made, beside those where a force is largest.
-_PLACES = 24
 
 
 def error(machine: Machine, theta: Array, speed: Array, acceleration: Array) -> Array:
@@ -118,7 +112,10 @@ def _of_block(
             moved = np.fmax(moved, (sum(terms[:split]) + parts) / arm)
             size = np.fmax(size, parts / arm)
         pulls = _pulls(machine, loads, longest, linkage.motion(theta, speed, change))
-        errors, size = _FACTOR * EPS / 2.0 * (moved + pulls), size + pulls
+        # The emitted functions are off by a few round-offs of everything they are given.  Of 5700
+        # random machines near folds, near change points and with short links the worst needed 18.4
+        # against 60 digits, all others less than 9 (tests/error_estimates has a part of them).
+        errors, size = 24.0 * EPS / 2.0 * (moved + pulls), size + pulls
         known = np.isfinite(errors) & (_share_of(errors, size) <= _MEANINGFUL)
     return np.where(known, errors, np.inf), size
 
@@ -214,7 +211,8 @@ def checks(
 def _places(values: Mapping[str, Array]) -> NDArray[np.intp]:
     """Return places all over, and those at which each of the values is largest."""
     size = next(iter(values.values())).size
-    spread = np.linspace(0, size - 1, _PLACES).astype(int)
+    # Places at which the checks are made, beside those where a force is largest.
+    spread = np.linspace(0, size - 1, 24).astype(int)
     peaks = [int(np.argmax(np.abs(value))) for value in values.values()]
     return np.unique(np.concatenate([spread, np.array(peaks, dtype=int)]))
 

@@ -35,8 +35,6 @@ _CURVES = {
     "moment": ("shaking_moment", "shaking moment about A [N m]"),
 }
 _DEFAULTS = ("frame", "34", "torque", "moment")
-# Labels keep this share of the picture away from each other.
-_APART = 0.06
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -308,7 +306,8 @@ def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
     if theta.size < 2 or not np.all(np.diff(theta) > 0):
         return
     written: list[tuple[float, float]] = []
-    apart = _APART * float(max(np.ptp(x), np.ptp(y)))
+    # Labels keep this share of the picture away from each other.
+    apart = 0.06 * float(max(np.ptp(x), np.ptp(y)))
     for degrees in range(0, 360, 30):
         angle = np.radians(degrees)
         angle += TURN * np.ceil((theta[0] - angle) / TURN - 1e-12)

@@ -22,16 +22,7 @@ from .stepping import Goals, Run, Status, integrate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# The run that tells the error has so much more tolerance, and steps twice as long.  Over 200 random
-# slider-cranks at tolerances of 1e-11 to 1e-4 the estimate was 1.2 times the error or more, 168
-# times in the median; with 10 it fell below the error in three of them.  Steps of a twelfth of a
-# revolution fool DOP853's own estimate now and then, and a torque may act over a few degrees only.
-_LOOSER = 100.0
 _LONGEST = TURN / 24.0
-# Share of the largest energy that may be lost, whatever the tolerance.
-_ENERGY_LIMIT = 1e-6
-# Times at which the speeds of the last revolution are taken.
-_LAST = 2001
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +89,8 @@ class RunUp(Result):
         if before.size == 0:
             return None
         begin = int(before[-1])
-        time = np.linspace(self.run.times[begin], self.run.end, _LAST)
+        # Times at which the speeds of the last revolution are taken.
+        time = np.linspace(self.run.times[begin], self.run.end, 2001)
         angle, speed, _ = self.run.at(time)
         speeds = np.abs(speed[np.abs(angle - last) <= TURN * (1.0 + 1e-12)])
         high, low = float(np.max(speeds)), float(np.min(speeds))
@@ -256,14 +248,20 @@ def _compared(
         return fine
     if fine.status == "step limit":  # no further than the other one came
         goals = Goals(goals.revolutions, fine.end, goals.reversals, goals.max_steps)
-    looser = min(_LOOSER * tolerance, 1e-2)
+    # The run that tells the error has so much more tolerance, and steps twice as long.  Over 200
+    # random slider-cranks at tolerances of 1e-11 to 1e-4 the estimate was 1.2 times the error or
+    # more, 168 times in the median; with 10 it fell below the error in three of them.  Steps of a
+    # twelfth of a revolution fool DOP853's own estimate now and then, and a torque may act over a
+    # few degrees only.
+    looser = min(100.0 * tolerance, 1e-2)
     return integrate(fine.system, law, start, looser, 2.0 * _LONGEST, goals)
 
 
 def _checks(defect: float, status: Status, other: Status) -> dict[str, Check]:
     cut = status == "step limit"
+    # Share of the largest energy that may be lost, whatever the tolerance.
     return {
-        "energy less work, relative": Check(defect, _ENERGY_LIMIT),
+        "energy less work, relative": Check(defect, 1e-6),
         "run cut short": Check(float(cut), 0.0),
         "longer steps end otherwise": Check(float(not cut and status != other), 0.0),
     }

@@ -18,14 +18,7 @@ from .machine import Machine, Part, power_of, wrenches
 
 _FIRST = np.array([0.0, 1.0])
 _SECOND = np.array([1.0, 0.0])
-# A reduced inertia below this share of its median gives no usable acceleration.
-_LEAST_SHARE = 1e-12
-# A series is good to 1e-12 of the largest inertia: below this share it is not used.
-_TABLE_SHARE = 1e-5
 _SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
-_FEWEST, _MOST = 64, 1024
-# A series ends in round-off, and meets its function off the samples, or is not used.
-_TAIL, _OFF = 1e-14, 1e-12
 _PROBES = (0.37, 1.91, 4.05, 5.83, 7.77)
 
 
@@ -97,7 +90,8 @@ class OneFreedom:
         inertia: Callable[[float], float] | None = None
         if self.machine.linkage.crank_turns:
             scanned = self.coefficients(self._scan())[0]
-            if np.min(scanned) + self.flywheel >= _TABLE_SHARE * np.max(scanned):
+            # A series is good to 1e-12 of the largest inertia: below this share it is not used.
+            if np.min(scanned) + self.flywheel >= 1e-5 * np.max(scanned):
                 inertia = _series(lambda theta: self.coefficients(theta)[0])
         exact = inertia or (lambda theta: float(self.coefficients(theta)[0]))
         return (lambda theta: exact(theta) + self.flywheel), self._torques(inertia is not None)
@@ -163,7 +157,8 @@ class OneFreedom:
         for dip in angles[dips]:
             ends = max(dip - spacing, low), min(dip + spacing, high)
             least, at = self._least_inertia(*ends)
-            if not least > _LEAST_SHARE * middle:
+            # A reduced inertia below this share of its median gives no usable acceleration.
+            if not least > 1e-12 * middle:
                 none = f"none at {at:.6g} rad, where the links that have mass stand still"
                 fix = "give the crank an inertia, or add a flywheel"
                 raise bad("Machine.masses", none, "inertia at every crank angle", fix)
@@ -200,13 +195,14 @@ class _Series:
 
 def _series(function: Callable[[Array], Array]) -> _Series | None:
     """Return a function as harmonics down to round-off; None where there are too many."""
-    count = _FEWEST
-    while count <= _MOST:
+    count = 64
+    while count <= 1024:
         values = np.asarray(function(even_angles(TURN, count)))
-        if tail(values) <= _TAIL:
+        # A series ends in round-off, and meets its function off the samples, or is not used.
+        if tail(values) <= 1e-14:
             terms = interpolated(values, TURN).coefficients
             series = _Series(1j * np.arange(len(terms)), terms)
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
-            return series if gap <= _OFF * float(np.max(np.abs(values))) else None
+            return series if gap <= 1e-12 * float(np.max(np.abs(values))) else None
         count *= 2
     return None

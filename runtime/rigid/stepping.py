@@ -21,10 +21,6 @@ from .one_freedom import OneFreedom
 
 Status = Literal["finished", "stalled", "fold", "step limit"]
 
-# So near to an end of the crank's range the reduced inertia grows beyond all bounds.
-_FOLD = 1e-6
-# Steps that fail this near to an end of the range failed because of it.
-_NEAR_FOLD = 1e-3
 # No crank turns as fast: a centimetre of it would outrun half the light.
 _FASTEST = 1e9
 
@@ -238,7 +234,8 @@ class _Events:
     def failed(self, state: Array) -> tuple[Status, str]:
         """Return status and message where the integrator cannot go on."""
         low, high = self.range
-        if min(float(state[0]) - low, high - float(state[0])) < _NEAR_FOLD:
+        # Steps that fail this near to an end of the range failed because of it.
+        if min(float(state[0]) - low, high - float(state[0])) < 1e-3:
             return "fold", "the crank came to an end of its range"
         return "step limit", "the steps became too short to go on: the torques are too uneven"
 
@@ -250,7 +247,8 @@ class _Events:
             self.direction = float(np.sign(state[1]))
         events: list[tuple[float, Status, str]] = []
         low, high = self.range
-        margin = _FOLD
+        # So near to an end of the crank's range the reduced inertia grows beyond all bounds.
+        margin = 1e-6
         watched: list[tuple[Callable[[Array], float], Status, str]] = [
             (
                 lambda y: abs(float(y[0]) - self.theta) - self.goal,

@@ -81,7 +81,7 @@ def test_energy_fluctuations(scenes):
     verdict([one.astype(float) for one in ratios], scenes)
 
 
-@pytest.mark.parametrize("scenes", [6, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [6, pytest.param(40, marks=pytest.mark.slow)])
 def test_flywheels(scenes):
     """Without motor and load the energy stays: the inertias' ratio is that of squared speeds."""
     rng = np.random.default_rng(52)

@@ -84,14 +84,13 @@ def _verdict(orbit: PeriodicOrbit, found: ConstrainedMultipliers) -> str:
 
 def simulate(options: argparse.Namespace, scene: Scene) -> int:
     """Integrate the constrained equations from the undeformed rod."""
-    from ..constrained import METHODS, constrained_motion
+    from ..constrained import constrained_motion
 
     if options.initial is not None:
         fix = "leave it out: the motion starts from the undeformed rod"
         raise bad("--initial", "a value", "none for constrained equations", fix)
-    method = options.method or "collocation"
-    if method not in METHODS:
-        raise bad("--method", repr(method), f"one of {sorted(METHODS)}", "choose one")
+    if options.method not in (None, "collocation"):
+        raise bad("--method", repr(options.method), "collocation alone", "leave it out")
     rod = at_speed(options, scene)
     revolutions = options.revolutions
     if not 0 < revolutions < inf:
@@ -99,7 +98,6 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
     result = constrained_motion(
         rod,
         span=revolutions * (2.0 * pi / abs(rod.speed)),
-        method=method,
         samples=max(1, round(_SAMPLES * revolutions)),
         progress=sys.stderr.isatty(),
     )

@@ -10,9 +10,8 @@ from . import options as opt
 from .linkages import speed_of
 
 if TYPE_CHECKING:
-    from ..linkages.length_tolerances import Tolerances
+    from ..linkages.length_tolerances import Tolerances, ToleranceTrial
     from ..linkages.linkage import Linkage
-    from ..linkages.tolerance_trial import ToleranceTrial
     from ..scenes import Scene
 
 _WHOLE_TURN = "0:360:721deg"

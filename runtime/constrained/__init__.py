@@ -1,7 +1,7 @@
 """Constrained systems: consistent initial values, motion on the constraints, its stability.
 
 - ``consistent_state`` moves a state onto the constraints.
-- ``constrained_motion`` integrates, by one of ``METHODS``.
+- ``constrained_motion`` integrates.
 - ``periodic_orbit`` computes a motion that repeats, ``orbit_multipliers`` its stability.
 
 All take a :class:`~elastolink.runtime.core.families.Constrained`, such as ``free_free_rod`` makes.
@@ -10,12 +10,11 @@ All take a :class:`~elastolink.runtime.core.families.Constrained`, such as ``fre
 from __future__ import annotations
 
 from .consistent import consistent_state
-from .motion import METHODS, constrained_motion
+from .motion import constrained_motion
 from .multipliers import orbit_multipliers
 from .orbits import periodic_orbit
 
 __all__ = [
-    "METHODS",
     "consistent_state",
     "constrained_motion",
     "orbit_multipliers",

@@ -22,27 +22,12 @@ from .equations import (
     Tolerance,
 )
 
-_EPS = float(np.finfo(float).eps)
-_ITERATIONS = 25
-# A Newton correction of this relative size leaves derivatives that need not be made anew; what
-# they are off lets error estimates grow with the number of windows, so that it is less where there
-# are more than the next number.
-_NEAR, _FEW = 1e-3, 30.0
-# Before its last correction the iteration may leave this part of the tolerance.
-_LEFT = 0.1
 # Terms at the end of the series of the accelerations whose size and fall decide a window's length.
 _TAIL = 2
 # A factor of the length of the next window, and bounds of it.
 _CAUTION, _SHORTER, _LONGER = 0.9, 0.2, 3.0
-# A looser tolerance makes no window cheaper.
-_LOOSEST = 1e-4
-# How much shorter a window becomes in which a force jumps.
-_JUMP = 2.0
 # Every so many nodes what may stop a motion is looked at.
 _EACH = 3
-# An evaluation costs nearly the same for few nodes and many, the solution of a window the third
-# power of nodes times coordinates: fastest on the rod of 1 to 5 modes with 24 down to 20 nodes.
-_UNKNOWNS, _LEAST_NODES, _MOST_NODES = 160, 8, 24
 # Some five minutes of windows of the rod.
 _MOST_WINDOWS = 100_000
 
@@ -53,40 +38,28 @@ class Nodes:
 
     Both together integrate to degree 2s, and show what a polynomial through values at the Gauss
     points lacks: its next Legendre term is zero at the ones and extremal at the others.
-
-    Attributes
-    ----------
-    c, b : ndarray, shape (s,)
-        Gauss points and weights.
-    once, twice : ndarray, shape (s, s)
-        Integrals from 0 to the points of the polynomial, and twofold ones.
-    series : ndarray, shape (s, s)
-        Legendre terms of the polynomial.
-    all : ndarray, shape (2s + 1,)
-        Gauss points, then Lobatto's.
-    values, all_once, all_twice : ndarray, shape (2s + 1, s)
-        The polynomial at all points, its integral from 0 and the twofold one.
-    terms_once, terms_twice : ndarray, shape (2s + 1, s + 2)
-        Integrals of Legendre terms from 0 to all points, and twofold ones.
-    project : ndarray, shape (s + 2, 2s + 1)
-        Legendre terms of a function by its values at all points.
-    smooth : ndarray, shape (s, 2s + 1)
-        The first s of these terms at the Gauss points.
     """
 
+    # c, b: (s,): Gauss points and weights
     c: Array
     b: Array
+    # once, twice: (s, s): integrals from 0 to the points of the polynomial, and twofold ones
     once: Array
     twice: Array
-    series: Array
-    all: Array
+    series: Array  # (s, s): Legendre terms of the polynomial
+    all: Array  # (2s + 1,): Gauss points, then Lobatto's
+    # values, all_once, all_twice: (2s + 1, s): the polynomial at all points, its integral
+    # from 0 and the twofold one
     values: Array
     all_once: Array
     all_twice: Array
+    # terms_once, terms_twice: (2s + 1, s + 2): integrals of Legendre terms from 0 to all
+    # points, and twofold ones
     terms_once: Array
     terms_twice: Array
+    # (s + 2, 2s + 1): Legendre terms of a function by its values at all points
     project: Array
-    smooth: Array
+    smooth: Array  # (s, 2s + 1): the first s of these terms at the Gauss points
 
 
 @lru_cache(maxsize=64)
@@ -196,42 +169,20 @@ class _TooLong(ArithmeticError):  # noqa: N818 - reads as what it is
 
 @dataclass(frozen=True)
 class _Window:
-    """A window of collocation that was solved; everything is scaled.
+    """A window of collocation that was solved; everything is scaled."""
 
-    Attributes
-    ----------
-    before : State
-        Its beginning.
-    h : float
-        Length [s].
-    points : Nodes
-        Its nodes.
-    terms : ndarray, shape (s, n)
-        Legendre terms of the accelerations.
-    defect : ndarray, shape (2s + 1, n)
-        Accelerations of the motion at all points less those of the series; not yet at the ends.
-    size : float
-        What the series leaves away, over the tolerance.
-    left : float
-        What the iteration may have left, relative.
-    units : _Units
-        What relative sizes are relative to.
-    slopes : Linearised
-        How the accelerations vary along the window.
-    unwind : callable
-        Solves the linearised window for accelerations at the nodes.
-    """
-
-    before: State
-    h: float
-    points: Nodes
-    terms: Array
+    before: State  # its beginning
+    h: float  # length [s]
+    points: Nodes  # its nodes
+    terms: Array  # (s, n): Legendre terms of the accelerations
+    # (2s + 1, n): accelerations of the motion at all points less those of the series; not yet
+    # at the ends
     defect: Array
-    size: float
-    left: float
-    units: _Units
-    slopes: Linearised
-    unwind: Callable[[Array], Array]
+    size: float  # what the series leaves away, over the tolerance
+    left: float  # what the iteration may have left, relative
+    units: _Units  # what relative sizes are relative to
+    slopes: Linearised  # how the accelerations vary along the window
+    unwind: Callable[[Array], Array]  # solves the linearised window for accelerations at the nodes
 
     def end(self) -> tuple[Array, Array]:
         """Return coordinates and velocities at the end."""
@@ -250,17 +201,13 @@ class _Astray:
 
     It begins with that of the windows before and is driven by what the series of the accelerations
     lacks, measured at the ends and between the nodes: forces that jump show there too.
-
-    Attributes
-    ----------
-    x, v : ndarray, shape (n,)
-        At the beginning.
-    carried, local : ndarray, shape (s + 2, n)
-        Legendre terms of the accelerations that this brings, and those that the window adds.
     """
 
+    # x, v: (n,): at the beginning
     x: Array
     v: Array
+    # carried, local: (s + 2, n): Legendre terms of the accelerations that this brings, and
+    # those that the window adds
     carried: Array
     local: Array
 
@@ -339,18 +286,11 @@ def _solved(
 
     Within ``near`` of the solution the derivatives are kept.  The last correction goes with an
     evaluation between the nodes.
-
-    Raises
-    ------
-    NoConvergence
-        If the iteration does not converge.
-    _TooLong
-        If the series of the accelerations does not fall to the tolerance.
     """
     t, rtol = before.t + h * points.c, tolerance.rtol
     a, last = guess, np.inf
     slopes: Linearised | None = None
-    for _ in range(_ITERATIONS):
+    for _ in range(25):
         x = before.x + h * (points.c[:, None] * before.v + h * (points.twice @ a))
         v = before.v + h * (points.once @ a)
         fresh = slopes is None
@@ -371,7 +311,8 @@ def _solved(
             break
         part = min(10.0 * size if fresh else size / last, 1.0)
         tail, fall = _tail(points.series @ a, h, units)
-        if (part < 0.5 and size * part <= _LEFT * rtol) or (size <= 1e-9 and part >= 0.25):
+        # Before its last correction the iteration may leave this part of the tolerance.
+        if (part < 0.5 and size * part <= 0.1 * rtol) or (size <= 1e-9 and part >= 0.25):
             # The terms that are not there fall on as those before them.
             if tail * fall > rtol:
                 raise _TooLong(tail * fall / rtol, points.series @ a)
@@ -455,32 +396,12 @@ def collocation(
     The windows are as long as the end of the Legendre series of the accelerations allows.
 
     Beside the motion goes its error, linearised inside the windows and projected at their ends.
-
-    Parameters
-    ----------
-    equations : Equations
-        The system.
-    start : State
-        Meets the constraints.
-    end : float
-        Where to end [s].
-    tolerance : Tolerance
-        Of a window.
-
-    Yields
-    ------
-    Step
-        The windows.
-
-    Raises
-    ------
-    BadInput
-        If there would be too many windows.
-    StoppedEarly
-        If the window becomes too short, or there are too many.
     """
-    points = nodes(int(np.clip(_UNKNOWNS // max(equations.n, 1), _LEAST_NODES, _MOST_NODES)))
-    tolerance = replace(tolerance, rtol=min(tolerance.rtol, _LOOSEST))
+    # An evaluation costs nearly the same for few nodes and many, the solution of a window the third
+    # power of nodes times coordinates: fastest on the rod of 1 to 5 modes with 24 down to 20 nodes.
+    points = nodes(int(np.clip(160 // max(equations.n, 1), 8, 24)))
+    # A looser tolerance makes no window cheaper.
+    tolerance = replace(tolerance, rtol=min(tolerance.rtol, 1e-4))
     s, rtol = len(points.c), tolerance.rtol
     h = _first(equations, start, end, rtol, s)
     state, guess = start, None
@@ -494,12 +415,16 @@ def collocation(
             )
         try:
             first = np.tile(state.a, (s, 1)) if guess is None else guess
-            near = _NEAR * min(1.0, _FEW * h / (end - start.t))
+            # A Newton correction of this relative size leaves derivatives that need not be made
+            # anew; what they are off lets error estimates grow with the number of windows, so that
+            # it is less where there are more than the next number.
+            near = 1e-3 * min(1.0, 30.0 * h / (end - start.t))
             window = _solved(equations, state, h, points, first, tolerance, near)
             after = equations.state(t, *window.end())
             astray = _Astray.of(window, after, *(begin or (0.0 * state.x, 0.0 * state.x)))
             if astray.added(window) > rtol:
-                raise _TooLong(_JUMP**s, window.terms)
+                # How much shorter a window becomes in which a force jumps.
+                raise _TooLong(2.0**s, window.terms)
         except _TooLong as reason:
             part = max(_SHORTER, _CAUTION * reason.size ** (-1.0 / s))
             spread = np.polynomial.legendre.legvander(2.0 * part * points.c - 1.0, s - 1)
@@ -518,13 +443,7 @@ def collocation(
 
 
 def _first(equations: Equations, start: State, end: float, rtol: float, s: int) -> float:
-    """Return the length of the first window, from the fastest motion that the state allows.
-
-    Raises
-    ------
-    BadInput
-        If there would be too many windows of this length.
-    """
+    """Return the length of the first window, from the fastest motion that the state allows."""
     n, span = equations.n, end - start.t
     slopes = equations.linearised(np.array([start.t]), start.x[None], start.v[None])
     matrix = np.eye(2 * n, k=n)

@@ -15,11 +15,6 @@ from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
 from .equations import Array, Equations, NoConvergence, constraint_norms
 
-# Constraints count as met where their scaled defect is of this size.
-_MET = 1e-12
-# A row of the Jacobian vanishes where it is this much shorter than a little aside.
-_VANISHING, _ASIDE = 1e-9, 1e-3
-
 
 @dataclass(frozen=True, kw_only=True)
 class ConsistentState(Result):
@@ -121,11 +116,12 @@ def consistent_state(
     flat = [values.reshape(-1, system.size) for values in (place, speed, qdd)]
     norms = [norm.reshape(time.shape) for norm in constraint_norms(system, time.reshape(-1), *flat)]
     worst = max(float(np.max(norm, initial=0.0)) for norm in norms)
+    # Constraints count as met where their scaled defect is of this size.
     return ConsistentState(
         method="Newton's iteration, smallest change in the metric of the masses",
         error=worst,
         error_norm="largest scaled defect of a constraint, at position, velocity or acceleration",
-        checks={"constraints": Check(worst, _MET)},
+        checks={"constraints": Check(worst, 1e-12)},
         provenance=provenance(system.provenance),
         q=place,
         qd=speed,
@@ -195,13 +191,14 @@ def _check(system: Constrained, q: Array, t: Array) -> None:
     # A vanishing row is short against its size a little aside, by incommensurate parts, so that no
     # symmetry can hide it.
     place = np.max(np.abs(q / columns), axis=-1, keepdims=True)
-    parts = _ASIDE * np.cos(1.0 + np.sqrt(2.0) * np.arange(system.size))
+    # A row of the Jacobian vanishes where it is this much shorter than a little aside.
+    parts = 1e-3 * np.cos(1.0 + np.sqrt(2.0) * np.arange(system.size))
     aside = q + np.where(place > 0, place, 1.0) * columns * parts
     here, there = (
         np.linalg.norm(jacobian * columns[..., None, :], axis=-1)
         for jacobian in (at["jacobian"], system.violation(aside, t)["jacobian"])
     )
-    if np.any(here <= _VANISHING * there):
+    if np.any(here <= 1e-9 * there):
         raise RedundantConstraints(
             Problem(
                 "constraints",

@@ -14,18 +14,11 @@ from ..core.families.multipliers import kkt_matrix, scaling
 
 Array = NDArray[np.float64]
 
+EPS = float(np.finfo(float).eps)
 # Part of the largest scaled coordinate below which the tolerance of one is absolute.
 SMALL = 0.01
-# Newton corrections of positions, and halvings of one that would raise the defect.
-_CORRECTIONS, _HALVINGS = 60, 12
 # Newton squares the defect: a correction of this relative size leaves none ...
 _LAST = 1e-9
-# ... and one below this that no longer falls is round-off.
-_ROUND_OFF = 1e-12
-_EPS = float(np.finfo(float).eps)
-# Relative differences of the equations where their derivatives were not emitted: about the square
-# root of the rounding, where rounding and second derivatives do equal harm.
-_APART = 2.0**-20
 
 
 class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
@@ -34,17 +27,10 @@ class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
 
 @dataclass(frozen=True)
 class State:
-    """A state that meets the constraints at all three levels, scaled.
+    """A state that meets the constraints at all three levels, scaled."""
 
-    Attributes
-    ----------
-    t : float
-        Time [s].
-    x, v, a : ndarray, shape (n,)
-        Coordinates and their time derivatives.
-    """
-
-    t: float
+    t: float  # time [s]
+    # x, v, a: (n,): coordinates and their time derivatives
     x: Array
     v: Array
     a: Array
@@ -52,49 +38,27 @@ class State:
 
 @dataclass(frozen=True)
 class Step:
-    """One accepted step of a motion, scaled.
+    """One accepted step of a motion, scaled."""
 
-    Attributes
-    ----------
-    before, after : State
-        Its ends.
-    at : callable
-        Times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
-        constraints.
-    reach : ndarray, shape (n,)
-        Largest size of the coordinates inside.
-    inner : ndarray
-        Times inside at which to look for what stops a motion.
-    error : ndarray, shape (n,), or None
-        Largest error estimate of the coordinates inside; None where the method has none.
-    """
-
+    # before, after: its ends
     before: State
     after: State
+    # times inside, ``(nt,)``, to predicted coordinates and velocities ``(nt, n)``, not yet on the
+    # constraints
     at: Callable[[Array], tuple[Array, Array]]
-    reach: Array
-    inner: Array
-    error: Array | None = None
+    reach: Array  # (n,): largest size of the coordinates inside
+    inner: Array  # times inside at which to look for what stops a motion
+    error: Array  # (n,): largest error estimate of the coordinates inside
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How exact the steps are to be.
+    """How exact the steps are to be."""
 
-    Attributes
-    ----------
-    rtol : float
-        Relative tolerance of the error of one step.
-    place, speed : float
-        Sizes of scaled coordinates and velocities that are added to their own ones.
-    longest : float
-        Longest step of an explicit method [s].
-    """
-
-    rtol: float
+    rtol: float  # relative tolerance of the error of one step
+    # place, speed: sizes of scaled coordinates and velocities that are added to their own ones
     place: float
     speed: float
-    longest: float = np.inf
 
 
 class StoppedEarly(ArithmeticError):  # noqa: N818 - reads as what it is
@@ -107,24 +71,16 @@ class Linearised:
 
     The constraints hold at acceleration level for every neighbour, whether or not it meets them at
     the levels below.
-
-    Attributes
-    ----------
-    a : ndarray, shape (*batch, n)
-        Accelerations.
-    multipliers : ndarray, shape (*batch, k)
-        Multipliers.
-    by_x, by_v : ndarray, shape (*batch, n, n)
-        Derivatives of the accelerations by coordinates and velocities.
-    terms, variations : mapping
-        Arrays of the dynamics and of their variation, not scaled; the latter empty where the
-        system has none.
     """
 
-    a: Array
-    multipliers: Array
+    a: Array  # (*batch, n): accelerations
+    multipliers: Array  # (*batch, k): multipliers
+    # by_x, by_v: (*batch, n, n): derivatives of the accelerations by coordinates and
+    # velocities
     by_x: Array
     by_v: Array
+    # terms, variations: arrays of the dynamics and of their variation, not scaled; the latter empty
+    # where the system has none
     terms: Mapping[str, Array]
     variations: Mapping[str, Array]
 
@@ -167,13 +123,7 @@ class Equations:
         return self.system.dynamics(x * self.columns, v * self.columns, t)
 
     def accelerations(self, t: float | Array, x: Array, v: Array) -> tuple[Array, Array]:
-        """Return accelerations and multipliers.
-
-        Raises
-        ------
-        NoConvergence
-            If they do not exist.
-        """
+        """Return accelerations and multipliers."""
         return self._accelerations(self.terms(t, x, v))[1:]
 
     def _accelerations(self, at: Mapping[str, Array]) -> tuple[Array, Array, Array]:
@@ -191,11 +141,6 @@ class Equations:
             M dqdd + D dqd + K dq = J^T dlam,      J dqdd + 2 Jd dqd + Jdd dq = 0.
 
         Where the system has no variational equations, differences stand for them.
-
-        Raises
-        ------
-        NoConvergence
-            If the accelerations do not exist.
         """
         n, columns, rows = self.n, self.columns, self.rows
         at = self.terms(t, x, v)
@@ -229,7 +174,9 @@ class Equations:
         n = self.n
         wide = float(np.max(np.abs(x), initial=0.0)) or 1.0
         fast = float(np.max(np.abs(v), initial=0.0)) or wide
-        steps = _APART * np.exp2(np.round(np.log2([wide, fast])))
+        # Relative differences of the equations where their derivatives were not emitted: about the
+        # square root of the rounding, where rounding and second derivatives do equal harm.
+        steps = 2.0**-20 * np.exp2(np.round(np.log2([wide, fast])))
         lead = (2 * n, *(1,) * (x.ndim - 1), n)
         change = np.eye(2 * n)
         places = x + steps[0] * change[:, :n].reshape(lead)
@@ -249,13 +196,7 @@ class Equations:
         return defect
 
     def nearest(self, t: float | Array, x: Array, v: Array) -> tuple[Array, Array]:
-        """Return coordinates and velocities on the constraints, nearest by the masses.
-
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
-        """
+        """Return coordinates and velocities on the constraints, nearest by the masses."""
         if not self.k:
             return x, v
         x, _ = self.positions(t, x, self.terms(t, x, v)["mass"])
@@ -276,19 +217,16 @@ class Equations:
             Metric, not scaled.
         free : ndarray, shape (n,), optional
             1 for the coordinates that may move, 0 for those that are held.
-
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
         """
         at = self._violation(t, x)
         last = np.inf
-        for count in range(_CORRECTIONS):
+        # Newton corrections of positions, and halvings of one that would raise the defect.
+        for count in range(60):
             change = self._least_change(mass, at["jacobian"], -at["constraints"][..., 0], free)
             size = np.max(np.abs(change), axis=-1)
-            small = size / (np.max(np.abs(x + change), axis=-1) + _EPS)
-            if np.all((small <= _LAST) | ((small <= _ROUND_OFF) & (size >= 0.5 * last))):
+            small = size / (np.max(np.abs(x + change), axis=-1) + EPS)
+            # A correction below 1e-12 that no longer falls is round-off.
+            if np.all((small <= _LAST) | ((small <= 1e-12) & (size >= 0.5 * last))):
                 return x + change, count + 1
             x, at = self._damped(t, x, change, at)
             last = size
@@ -310,7 +248,7 @@ class Equations:
         """Return positions after a correction, halved where it would raise the defect."""
         before = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
         factor = np.ones(np.shape(before))
-        for _ in range(_HALVINGS):
+        for _ in range(12):
             trial = x + factor[..., None] * change
             at = self._violation(t, trial)
             after = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
@@ -335,13 +273,7 @@ class Equations:
         return solved(self._outer * matrix, right)[..., :n, 0]
 
     def state(self, t: float, x: Array, v: Array) -> State:
-        """Return the state on the constraints nearest to a predicted one.
-
-        Raises
-        ------
-        NoConvergence
-            If the constraints are out of reach.
-        """
+        """Return the state on the constraints nearest to a predicted one."""
         return self.at(t, *self.nearest(t, x, v))
 
     def at(self, t: float, x: Array, v: Array) -> State:
@@ -350,13 +282,7 @@ class Equations:
 
 
 def solved(matrix: Array, right: Array) -> Array:
-    """Return the solution of linear equations.
-
-    Raises
-    ------
-    NoConvergence
-        If they are singular or it is not finite.
-    """
+    """Return the solution of linear equations."""
     try:
         solution = np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError as singular:
@@ -367,13 +293,7 @@ def solved(matrix: Array, right: Array) -> Array:
 
 
 def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]]:
-    """Return the variational equations of a system.
-
-    Raises
-    ------
-    BadInput
-        If it has none.
-    """
+    """Return the variational equations of a system."""
     if system.variations is None:
         raise bad(
             "system",

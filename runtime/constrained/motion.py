@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from numbers import Real
 from typing import TYPE_CHECKING, ClassVar
@@ -19,6 +19,7 @@ from ..core.results import Check, Result, provenance
 from .collocation import collocation
 from .consistent import consistent_state
 from .equations import (
+    EPS,
     SMALL,
     Array,
     Equations,
@@ -29,31 +30,15 @@ from .equations import (
     Tolerance,
     constraint_norms,
 )
-from .projection import projection
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Watch = Callable[[Array, Array], ArrayLike]
 Energy = Callable[[Array, Array, Array], ArrayLike]
-Stepper = Callable[[Equations, State, float, Tolerance], Iterator[Step]]
 
-METHODS: Mapping[str, Stepper] = {"collocation": collocation, "projection": projection}
 LINEAR_RANGE = 0.05
-# The second run of a method without an error estimate is tighter by the first factor, looser where
-# it cannot be tighter, and its longest step shorter by the second.
-_SECOND, _SHORTER = 32.0, 1.5
-# Estimates are enlarged: those of collocation cover 99 of 100 random pendulums, rods and forces
-# that jump from 5 on, gaps to a second run from 3 on.
-_SAFETY, _SAFETY_OF_GAPS = 5.0, 3.0
-_TIGHT = 1e-12
 _MOST_SAMPLES = 2_000_000
-_HALVINGS = 60
-_EPS = float(np.finfo(float).eps)
-# Roundings of a long window, which may all lie on one side; those of short steps do not.
-_WINDOW = 20.0
-# Constraints count as kept where their scaled defect is below this.
-_KEPT = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +124,6 @@ def constrained_motion(
     qd: ArrayLike | None = None,
     span: float | tuple[float, float] | None = None,
     *,
-    method: str = "collocation",
     rtol: float = 1e-9,
     samples: int | ArrayLike = 200,
     guards: Sequence[Guard] | None = None,
@@ -149,6 +133,8 @@ def constrained_motion(
     progress: bool = False,
 ) -> ConstrainedMotion:
     """Integrate a constrained system from a state that meets its constraints.
+
+    By Gauss collocation over long windows, all points of a window evaluated at once.
 
     Parameters
     ----------
@@ -161,9 +147,6 @@ def constrained_motion(
     span : float or pair of float, optional
         Length of the motion from t = 0, or its first and last time [s]; by default a period of the
         system.
-    method : str
-        ``collocation`` (Gauss points of long windows, all evaluated at once; the fastest) or
-        ``projection`` (explicit, order 8, projected after each step).
     rtol : float
         Relative tolerance of one step.
     samples : int or array_like
@@ -185,10 +168,8 @@ def constrained_motion(
     Returns
     -------
     ConstrainedMotion
-        Its ``error`` is, with ``collocation``, the motion's linearised response to the terms that
-        the series of the accelerations lack; with ``projection`` the gap to a second run of a
-        tolerance smaller by 32, below 1e-12 larger.  Both are enlarged, by 5 and by 3, with an
-        allowance for round-off.
+        Its ``error`` is the motion's linearised response to the terms that the series of the
+        accelerations lack, enlarged by 5, with an allowance for round-off.
 
     Warns
     -----
@@ -205,13 +186,12 @@ def constrained_motion(
     """
     first, last = _span(system.period if span is None else span)
     times = _times(samples, first, last)
-    _check_numbers(method, rtol, bound)
+    _check_numbers(rtol, bound)
     start = _start(system, q, qd, first)
     kept = tuple(system.guards if guards is None else guards)
-    run = Run(system, *start, times, method, rtol, kept, bound)
+    run = Run(system, *start, times, rtol, kept, bound)
     path = march(run, progress)
-    error = path.error if path.error is not None else _by_second_run(run, path)
-    return _result(run, path, error, system.watch if watch is None else watch, energy)
+    return _result(run, path, system.watch if watch is None else watch, energy)
 
 
 @dataclass(frozen=True)
@@ -222,11 +202,9 @@ class Run:
     q: Array
     qd: Array
     times: Array
-    method: str
     rtol: float
     guards: tuple[Guard, ...]
     bound: float
-    longest: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -238,8 +216,7 @@ class Path:
     qd: Array
     qdd: Array
     multipliers: Array
-    error: Array | None
-    longest: float
+    error: Array
     steps: int
     evaluations: int
     status: int
@@ -261,20 +238,18 @@ def march(run: Run, progress: bool = False) -> Path:
     parts = [(times[:1], start.x[None], start.v[None])]
     count, steps, error = 1, 0, np.zeros(equations.n)
     status, message = 0, "the end was reached"
-    judged, longest, limit = True, 0.0, np.zeros(equations.n)
+    limit = np.zeros(equations.n)
     # Where a step goes too far numbers may overflow; the steps notice and become shorter.
     with bar(progress, len(times) - 1) as tick, np.errstate(all="ignore"):
         try:
-            for step in METHODS[run.method](equations, start, float(times[-1]), tolerance):
+            for step in collocation(equations, start, float(times[-1]), tolerance):
                 if not steps:  # from rest at the origin a motion has its size from here
                     least = max(tolerance.place, SMALL * float(np.max(step.reach)))
                     limit = run.bound * np.maximum(np.abs(start.x), least)
                 steps += 1
                 stopped = _stop(equations, step, run.guards, limit)
                 end, because = (step.after, "") if stopped is None else stopped
-                judged, longest = step.error is not None, max(longest, end.t - step.before.t)
-                if step.error is not None:
-                    error = np.maximum(error, step.error)
+                error = np.maximum(error, step.error)
                 stop = int(np.searchsorted(times, end.t, side="right"))
                 inside, count = times[count:stop], stop
                 if stopped is not None and (not len(inside) or inside[-1] < end.t):
@@ -292,17 +267,18 @@ def march(run: Run, progress: bool = False) -> Path:
         except (StoppedEarly, NoConvergence) as reason:
             status, message = 2, f"{reason}, after t = {parts[-1][0][-1]:.6g}"
         t, x, v, a, multipliers = _on_constraints(equations, parts)
-    estimate = None
-    if judged:
-        estimate = columns * (_SAFETY * error + _rounding(x, v, t, _WINDOW * steps))
+    # Rounding changes the speeds too, which acts over the rest of the motion.
+    way = np.max(np.abs(x), axis=0) + np.max(np.abs(v), axis=0) * (t[-1] - t[0])
+    # Roundings of a long window, which may all lie on one side.
+    rounding = EPS * (8.0 + 20.0 * steps) * way
+    # Estimates are enlarged: from 5 on they cover 99 of 100 pendulums, rods and forces that jump.
     return Path(
         time=t,
         q=x * columns,
         qd=v * columns,
         qdd=a * columns,
         multipliers=multipliers * equations.rows,
-        error=estimate,
-        longest=longest,
+        error=columns * (5.0 * error + rounding),
         steps=steps,
         evaluations=equations.evaluations,
         status=status,
@@ -330,30 +306,7 @@ def _tolerance(run: Run, start: State) -> Tolerance:
     # A motion that starts from rest gets speeds of the order sqrt(acceleration x length).
     push = float(np.sqrt(place) * np.sqrt(np.max(np.abs(start.a))))
     speed = max(float(np.max(np.abs(start.v))), push, 1e-300)
-    return Tolerance(run.rtol, SMALL * place, speed, run.longest)
-
-
-def _rounding(x: Array, v: Array, t: Array, steps: float) -> Array:
-    """Return an allowance for round-off in the coordinates."""
-    # The rounding of each step changes the speeds too, which acts over the rest of the motion.
-    way = np.max(np.abs(x), axis=0) + np.max(np.abs(v), axis=0) * (t[-1] - t[0])
-    return np.asarray(_EPS * (8.0 + steps) * way)
-
-
-def _by_second_run(run: Run, path: Path) -> Array:
-    """Return the gap to a run of another tolerance, with an allowance for round-off."""
-    tighter = run.rtol > _TIGHT
-    rtol = run.rtol / _SECOND if tighter else run.rtol * _SECOND
-    # Where the tolerance does not bind, other steps tell the two apart.
-    other = march(replace(run, rtol=rtol, guards=(), longest=path.longest / _SHORTER))
-    both = np.flatnonzero(np.isin(path.time, other.time, assume_unique=True))
-    there = np.searchsorted(other.time, path.time[both])
-    gap = np.max(np.abs(path.q[both] - other.q[there]), axis=0)
-    # A second run that stops before the first tells nothing of what comes after.
-    if other.status != 0 and other.time[-1] < path.time[-1]:
-        return np.full_like(gap, np.inf)
-    rounding = _rounding(path.q, path.qd, path.time, float(np.sqrt(path.steps)))
-    return np.asarray(_SAFETY_OF_GAPS * gap + rounding)
+    return Tolerance(run.rtol, SMALL * place, speed)
 
 
 def _margin(equations: Equations, guard: Guard, state: State) -> float:
@@ -390,7 +343,7 @@ def _stop(
 def _crossing(equations: Equations, step: Step, guard: Guard, before: State, after: State) -> State:
     """Return the state at which a guard is met between two states, by halving."""
     low = before.t
-    for _ in range(_HALVINGS):
+    for _ in range(60):
         middle = 0.5 * (low + after.t)
         if not low < middle < after.t:
             break
@@ -406,13 +359,12 @@ def _crossing(equations: Equations, step: Step, guard: Guard, before: State, aft
     return after
 
 
-def _result(
-    run: Run, path: Path, error: Array, watch: Watch | None, energy: Energy | None
-) -> ConstrainedMotion:
+def _result(run: Run, path: Path, watch: Watch | None, energy: Energy | None) -> ConstrainedMotion:
     norms = constraint_norms(run.system, path.time, path.q, path.qd, path.qdd)
     levels = ("position", "velocity", "acceleration")
+    # Constraints count as kept where their scaled defect is below this.
     checks = {
-        f"{level} constraints": Check(float(np.max(norm)), _KEPT)
+        f"{level} constraints": Check(float(np.max(norm)), 1e-12)
         for level, norm in zip(levels, norms, strict=True)
     }
     checks["end reached"] = Check(float(path.status), 0.0)
@@ -430,8 +382,8 @@ def _result(
                 stacklevel=3,
             )
     return ConstrainedMotion(
-        method=run.method,
-        error=error,
+        method="collocation",
+        error=path.error,
         error_norm="largest error of a coordinate over the given times, in its own unit",
         checks=checks,
         provenance=provenance(run.system.provenance),
@@ -508,9 +460,7 @@ def _times(samples: int | ArrayLike, first: float, last: float) -> Array:
     return np.unique(np.concatenate([[first], given, [last]]))
 
 
-def _check_numbers(method: str, rtol: float, bound: float) -> None:
-    if method not in METHODS:
-        raise bad("method", repr(method), f"one of {list(METHODS)}", "correct the name")
+def _check_numbers(rtol: float, bound: float) -> None:
     for name, value in (("rtol", rtol), ("bound", bound)):
         if not isinstance(value, Real):
             raise bad(name, repr(value), "a number", "correct it")

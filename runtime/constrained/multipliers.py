@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
-from .equations import Array
+from .equations import EPS, Array
 from .orbits import LEFT, OrbitSource, PeriodicOrbit, Shooting, Shot, Tangent
 
 if TYPE_CHECKING:
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 ComplexArray = NDArray[np.complex128]
 
-_EPS = float(np.finfo(float).eps)
-# Error from which a multiplier says nothing about stability.
-_TELLING = 0.1
 # In place of an error that is not finite.
 _HOPELESS = 1e6
 
@@ -94,7 +91,8 @@ class ConstrainedMultipliers(Result):
         Never True where that is not known: an error of 0.1 or more says nothing, the multiplier
         then has to be inside by its error.
         """
-        slack = np.where(self.error < _TELLING, self.error, -self.error)
+        # Error from which a multiplier says nothing about stability.
+        slack = np.where(self.error < 0.1, self.error, -self.error)
         return bool(np.all(np.abs(self.physical) <= 1.0 + slack))
 
     @property
@@ -156,7 +154,7 @@ def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
     reduced, rough = fine.reduced, along.T @ coarse.whole @ along
     norm = float(np.linalg.norm(reduced))
     # A rounded coefficient turns all phases of a period alike; a fine step covers some 2.5 rad.
-    rounding = _EPS * (16.0 + 2.0 * len(ring.x)) * max(norm, 1.0)
+    rounding = EPS * (16.0 + 2.0 * len(ring.x)) * max(norm, 1.0)
     shift = float(np.linalg.norm(reduced - rough)) * LEFT + rounding
     if not accuracy.passed:
         # About a motion that is off by so much, the coefficients are off by that part or so.
@@ -278,7 +276,7 @@ def _of_violations(turn: _Turn, period: float, rate: float) -> tuple[ComplexArra
     away = float(np.linalg.norm(carried - exact))
     values = np.linalg.eigvals(across.T @ turn.whole @ across).astype(complex)
     # z = value - 1 of a disturbed block: |z|^2 <= (period rate + |z|) |disturbance|.
-    disturbed = away + 16.0 * k * _EPS * size * float(np.linalg.cond(square))
+    disturbed = away + 16.0 * k * EPS * size * float(np.linalg.cond(square))
     reach = 2.0 * (np.sqrt(period * rate * disturbed) + disturbed)
     return values, away / size, float(reach)
 
@@ -308,7 +306,7 @@ def _conservative(
     relative = error / np.maximum(np.abs(physical), np.finfo(float).tiny)
     partner = np.argmin(gaps, axis=-1)
     value = gaps[np.arange(len(physical)), partner]
-    limit = 4 * (relative + relative[partner]) + 64 * _EPS
+    limit = 4 * (relative + relative[partner]) + 64 * EPS
     worst = int(np.argmax(value / limit))
     return {
         "symplectic": Check(defect, max(8 * len(along.T) * shift, 1e-12)),

@@ -16,6 +16,7 @@ from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
 from .collocation import Nodes, integrals, nodes, stage_matrix
 from .equations import (
+    EPS,
     Array,
     Equations,
     Linearised,
@@ -29,48 +30,30 @@ from .motion import Run, Watch, linear_range, march
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EPS = float(np.finfo(float).eps)
 STAGES = 12
 # Phase of the fastest motion that a first step covers [rad]; 12 stages err 1e-14 a step at 5.
 _PHASE = 5.0
 _FEWEST, _MOST_STEPS = 12, 8192
-# Numbers of a batch of stage matrices that stay in a cache while they are solved.
-_CACHE = 1 << 18
 # States at which the guess is looked at, and at which a reference motion is one.
 _WATCHED, _SAMPLES = 24, 64
-# A system that differs by more after a period has another period.
-_SAME = 1e-9
 _ITERATIONS, _LEAST_DAMPING = 40, 1.0 / 256
 # Newton has arrived where its step, relative to the orbit, is rounding, or where it stops shrinking
 # below the second; the defect that is left passes below the third.
-_ROUNDING, _SMALL, _ARRIVED = 64 * _EPS, 1e-8, 1e-9
+_ROUNDING, _SMALL, _ARRIVED = 64 * EPS, 1e-8, 1e-9
 # Of the difference between a grid and one twice as fine, in the finer one (order 24: 2^-24).
 LEFT = 1.0 / 64
-# Rounding of one step of the motion's size: random samples, enlarged for the largest of more.
-_NOISES, _ENLARGED = 4, 4.0
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A motion over one period as even collocation steps, each from a state of its own; scaled.
+    """A motion over one period as even collocation steps, each from a state of its own; scaled."""
 
-    Attributes
-    ----------
-    period : float
-        Period [s].
-    advance : ndarray, shape (n,)
-        What the coordinates gain over a period.
-    x, v : ndarray, shape (m, n)
-        States at the beginnings of the steps.
-    a : ndarray, shape (m, s, n)
-        Accelerations at the Gauss points of each step.
-    """
-
-    period: float
-    advance: Array
+    period: float  # period [s]
+    advance: Array  # (n,): what the coordinates gain over a period
+    # x, v: (m, n): states at the beginnings of the steps
     x: Array
     v: Array
-    a: Array
+    a: Array  # (m, s, n): accelerations at the Gauss points of each step
 
     @property
     def step(self) -> float:
@@ -135,27 +118,17 @@ class Sweep:
     """The steps of a ring linearised: what each passes on, and what is wrong with it.
 
     States are ``(x, v / rate)``.
-
-    Attributes
-    ----------
-    slopes : Linearised
-        At the Gauss points, shape ``(m, s)`` in front.
-    maps : ndarray, shape (m, 2n, 2n)
-        Derivative of the end of each step by its beginning.
-    gap : ndarray, shape (m, 2n)
-        End of each step, its stages corrected, less the beginning of the next.
-    change, response : ndarray, shape (m, s, n), (m, s, n, 2n)
-        Correction of the stage accelerations, and their derivative by the beginning.
-    defect : float
-        Largest defect of a stage or a junction.
     """
 
-    slopes: Linearised
-    maps: Array
+    slopes: Linearised  # at the Gauss points, shape ``(m, s)`` in front
+    maps: Array  # (m, 2n, 2n): derivative of the end of each step by its beginning
+    # (m, 2n): end of each step, its stages corrected, less the beginning of the next
     gap: Array
+    # change, response: (m, s, n), (m, s, n, 2n): correction of the stage accelerations, and
+    # their derivative by the beginning
     change: Array
     response: Array
-    defect: float
+    defect: float  # largest defect of a stage or a junction
 
 
 def sweep(equations: Equations, ring: Ring, rate: float) -> Sweep:
@@ -171,7 +144,8 @@ def sweep(equations: Equations, ring: Ring, rate: float) -> Sweep:
     late = (h * points.c)[:, None, None] * slopes.by_x + slopes.by_v
     right = np.concatenate([wrong[..., None], slopes.by_x, rate * late], axis=-1)
     stages = np.empty((m, s * n, 1 + 2 * n))
-    chunk = max(_CACHE // (s * n) ** 2, 1)
+    # Numbers of a batch of stage matrices that stay in a cache while they are solved.
+    chunk = max((1 << 18) // (s * n) ** 2, 1)
     for first in range(0, m, chunk):
         part = slice(first, first + chunk)
         matrix = stage_matrix(slopes.by_x[part], slopes.by_v[part], h, points)
@@ -189,21 +163,12 @@ def sweep(equations: Equations, ring: Ring, rate: float) -> Sweep:
 
 @dataclass(frozen=True)
 class Tangent:
-    """The manifold of the constraints, at states: what leaves it and what stays.
+    """The manifold of the constraints, at states: what leaves it and what stays."""
 
-    Attributes
-    ----------
-    normals : ndarray, shape (*batch, 2k, 2n)
-        Derivatives of ``Phi`` and of ``dPhi/dt / rate`` by the state.
-    along : ndarray, shape (*batch, 2n, 2n - 2k)
-        Orthonormal basis of the tangent space.
-    across : ndarray, shape (*batch, 2n, 2k)
-        Orthonormal basis of its complement.
-    """
-
+    # (*batch, 2k, 2n): derivatives of ``Phi`` and of ``dPhi/dt / rate`` by the state
     normals: Array
-    along: Array
-    across: Array
+    along: Array  # (*batch, 2n, 2n - 2k): orthonormal basis of the tangent space
+    across: Array  # (*batch, 2n, 2k): orthonormal basis of its complement
 
 
 def tangent(equations: Equations, slopes: Linearised, rate: float) -> Tangent:
@@ -220,27 +185,13 @@ def tangent(equations: Equations, slopes: Linearised, rate: float) -> Tangent:
 
 @dataclass(frozen=True)
 class Shot:
-    """Where the iteration came to.
+    """Where the iteration came to."""
 
-    Attributes
-    ----------
-    ring : Ring
-        The motion.
-    sweep : Sweep
-        Its linearisation.
-    residual : float
-        Largest defect of a stage or junction, relative to the motion's size.
-    iterations : int
-        Newton steps.
-    reason : str
-        Empty where the iteration converged, else why not.
-    """
-
-    ring: Ring
-    sweep: Sweep
-    residual: float = np.inf
-    iterations: int = 0
-    reason: str = ""
+    ring: Ring  # the motion
+    sweep: Sweep  # its linearisation
+    residual: float = np.inf  # largest defect of a stage or junction, relative to the motion's size
+    iterations: int = 0  # Newton steps
+    reason: str = ""  # empty where the iteration converged, else why not
 
 
 @dataclass(frozen=True)
@@ -249,17 +200,10 @@ class Shooting:
 
     The unknowns are the stage accelerations of all steps and the tangent coordinates of the
     states where steps meet; after each Newton step these states are moved onto the constraints.
-
-    Attributes
-    ----------
-    equations : Equations
-        The system.
-    rate : float
-        Of motions, which makes velocities comparable with coordinates [rad/s].
     """
 
-    equations: Equations
-    rate: float
+    equations: Equations  # the system
+    rate: float  # of motions, which makes velocities comparable with coordinates [rad/s]
 
     def state(self, x: Array, v: Array) -> Array:
         """Return whole states, shape ``(*batch, 2n)``."""
@@ -349,10 +293,12 @@ class Shooting:
         ring, size = shot.ring, self.size(shot.ring)
         along = self.junctions(ring).along
         back = np.swapaxes(ring.following(along), -1, -2)
-        shape = (*shot.sweep.gap.shape, _NOISES)
-        noise = np.random.default_rng(0).normal(size=shape) * size * _EPS
+        # Rounding of one step of the motion's size: random samples, enlarged for the largest of
+        # more.
+        shape = (*shot.sweep.gap.shape, 4)
+        noise = np.random.default_rng(0).normal(size=shape) * size * EPS
         moved = closed_chain(back @ shot.sweep.maps @ along, back @ noise)
-        return np.inf if moved is None else _ENLARGED * float(np.max(np.abs(moved))) / size
+        return np.inf if moved is None else 4.0 * float(np.max(np.abs(moved))) / size
 
     def error(self, coarse: Shot, fine: Shot) -> float:
         """Return the error of the finer motion: what refinement changed, and rounding."""
@@ -724,7 +670,8 @@ def _check_period(system: Constrained, guess: _Guess) -> None:
     for name, values in now.items():
         size = max(float(np.max(np.abs(values), initial=0.0)), beside.get(name, 0.0))
         gap = float(np.max(np.abs(later[name] - values), initial=0.0))
-        if not gap <= _SAME * size:
+        # A system that differs by more after a period has another period.
+        if not gap <= 1e-9 * size:
             raise bad(
                 "period",
                 f"{guess.period:.9g} s, after which {name} differs by {gap:.3g}",
@@ -739,11 +686,6 @@ def _first(system: Constrained, guess: _Guess) -> tuple[Shooting, Ring]:
     The rate that makes velocities comparable is the geometric mean of the frozen vibrations:
     between the slowest and the fastest mode no other unit of time leaves the eigenvectors of the
     flow better conditioned.
-
-    Raises
-    ------
-    BadInput
-        If the motion cannot be followed, or has vibrations that are too fast.
     """
     from scipy.interpolate import CubicHermiteSpline
 
@@ -778,7 +720,7 @@ def _followed(system: Constrained, guess: _Guess, samples: int) -> _Guess:
     columns = equations.columns
     x, v = equations.nearest(0.0, guess.q[0] / columns, guess.qd[0] / columns)
     times = np.linspace(0.0, guess.period, samples + 1)
-    path = march(Run(system, x * columns, v * columns, times, "collocation", 1e-8, (), 1e6))
+    path = march(Run(system, x * columns, v * columns, times, 1e-8, (), 1e6))
     if path.status:
         raise _no_guess(f"the motion from the guess ends: {path.message}")
     return replace(guess, q=path.q[:-1], qd=path.qd[:-1])

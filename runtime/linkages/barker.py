@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .linkage import Array
+from .linkage import EPS, Array
 
 Category = Literal["Grashof", "non-Grashof", "change point"]
 
@@ -32,31 +32,16 @@ _ROLES = ("frame", "input", "coupler", "output")
 
 @dataclass(frozen=True)
 class BarkerClass:
-    """One of the fourteen rows of Barker's table (Aannaque Table 3.1, corrected).
+    """One of the fourteen rows of Barker's table (Aannaque Table 3.1, corrected)."""
 
-    Attributes
-    ----------
-    number : int
-        The row, 1 to 14.
-    category : {"Grashof", "non-Grashof", "change point"}
-        s + l below, above or equal to p + q.
-    characteristic : str
-        The link that marks the class, or what does.
-    class_number : int
-        Barker's class within the category.
-    name, symbol : str
-        Barker's; input, coupler and output link in this order.
-    also : str
-        What else such a linkage is called.
-    """
-
-    number: int
-    category: Category
-    characteristic: str
-    class_number: int
+    number: int  # the row, 1 to 14
+    category: Category  # s + l below, above or equal to p + q
+    characteristic: str  # the link that marks the class, or what does
+    class_number: int  # Barker's class within the category
+    # name, symbol: Barker's; input, coupler and output link in this order
     name: str
     symbol: str
-    also: str
+    also: str  # what else such a linkage is called
 
 
 def _table() -> tuple[BarkerClass, ...]:
@@ -152,32 +137,32 @@ def exact_sums(lengths: Sequence[Fraction]) -> tuple[Fraction, Fraction, Fractio
 _ROWS = np.array(
     [number_of_signs(signs) for signs in itertools.product((-1, 0, 1), repeat=3)], dtype=np.int64
 )
-# Above this the sum of four doubles may overflow.
-_SAFE = 2.0**1020
+# More than the three roundings of a sum of four, over the sum of their magnitudes.
+_ROUNDED = 4.0 * EPS
 
 
 def class_numbers(lengths: Array) -> NDArray[np.int64]:
-    """Return the rows of Barker's table, 0 where the four cannot close: exactly, for any doubles.
+    """Return the rows of Barker's table of positive lengths (..., 4), 0 where they cannot close.
 
-    Parameters
-    ----------
-    lengths : ndarray, shape (..., 4)
-        Positive finite lengths of frame, crank, coupler, follower.
+    Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
     """
-    frame, crank, coupler, follower = np.moveaxis(lengths, -1, 0)
-    sums = (
-        _sign_of_sum(frame, crank, -coupler, -follower),
-        _sign_of_sum(frame, coupler, -crank, -follower),
-        _sign_of_sum(frame, follower, -crank, -coupler),
-    )
-    rows = _ROWS[9 * (sums[0] + 1) + 3 * (sums[1] + 1) + sums[2] + 1]
-    ordered = np.sort(lengths, axis=-1)
-    one, two, three, longest = np.moveaxis(ordered, -1, 0)
-    rows = np.where(_sign_of_sum(one, two, three, -longest) > 0, rows, 0)
-    huge = ordered[..., 3] > _SAFE
-    for place in np.argwhere(huge):
-        rows[tuple(place)] = _class_number([*map(Fraction, lengths[tuple(place)].tolist())])
-    return np.asarray(rows, dtype=np.int64)
+    flat = lengths.reshape(-1, 4)
+    frame, crank, coupler, follower = flat.T
+    with np.errstate(over="ignore", invalid="ignore"):
+        perimeter = np.sum(flat, axis=1)
+        sums = (
+            (frame - coupler) + (crank - follower),
+            (frame - crank) + (coupler - follower),
+            (frame - coupler) + (follower - crank),
+            perimeter - 2.0 * np.max(flat, axis=1),
+        )
+        # Where the perimeter overflows nothing is certain.
+        certain = np.min(np.abs(sums), axis=0) > _ROUNDED * perimeter
+        two, three, four, spare = np.where(certain, np.sign(sums), 0.0).astype(np.int64)
+    rows = np.where(spare > 0, _ROWS[9 * (two + 1) + 3 * (three + 1) + four + 1], 0)
+    for i in np.flatnonzero(~certain):
+        rows[i] = _class_number([*map(Fraction, flat[i].tolist())])
+    return np.asarray(rows.reshape(lengths.shape[:-1]), dtype=np.int64)
 
 
 def _class_number(lengths: Sequence[Fraction]) -> int:
@@ -185,30 +170,3 @@ def _class_number(lengths: Sequence[Fraction]) -> int:
     if 2 * max(lengths) >= sum(lengths):
         return 0
     return number_of_signs([(value > 0) - (value < 0) for value in exact_sums(lengths)])
-
-
-def _sign_of_sum(*values: Array) -> NDArray[np.int64]:
-    """Return the exact sign of a sum of doubles that does not overflow.
-
-    The terms are gathered in a nonoverlapping expansion, whose last component that is not zero
-    has the sign of the whole (J. R. Shewchuk, Discrete & Computational Geometry 18, 1997).
-    """
-    expansion = [values[0]]
-    with np.errstate(over="ignore", invalid="ignore"):
-        for value in values[1:]:
-            grown, total = [], value
-            for part in expansion:
-                total, lost = _two_sum(total, part)
-                grown.append(lost)
-            expansion = [*grown, total]
-    sign = np.zeros(np.shape(values[0]))
-    for part in expansion:
-        sign = np.where(part != 0.0, np.sign(part), sign)
-    return np.nan_to_num(sign).astype(np.int64)
-
-
-def _two_sum(a: Array, b: Array) -> tuple[Array, Array]:
-    """Return the rounded sum and what the rounding lost, exactly (Knuth)."""
-    total = a + b
-    of_b = total - a
-    return total, (a - (total - of_b)) + (b - of_b)

@@ -17,14 +17,13 @@ from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from . import joint_play
 from .four_bar import FourBar
 from .joint_play import Play, Route
-from .linkage import Array, finite_array
+from .linkage import EPS, Array, finite_array
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EPS = float(np.finfo(float).eps)
 _JOINTS = ("12", "23", "34", "41")
 _OUTPUTS: Mapping[type, tuple[str, ...]] = {
     FourBar: ("follower", "coupler"),
@@ -376,11 +375,11 @@ def _extremes(task: Task) -> tuple[WidthExtreme, WidthExtreme]:
     low, high = route.interval
     if isinstance(task.linkage, FourBar):
         # A diagonal of no length has no angle.
-        low = max(low, 64.0 * _EPS * high)
+        low = max(low, 64.0 * EPS * high)
     places = [low, high]
     for place in route.candidates(task.radius, task.guide):
         # The width jumps where a fold begins, so that both sides of the place count.
-        nudge = 16.0 * _EPS * max(abs(low), abs(high))
+        nudge = 16.0 * EPS * max(abs(low), abs(high))
         places += [place - nudge, place, place + nudge]
     inside = np.unique([place for place in places if low <= place <= high])
     play = route.measure(inside, task.radius, task.guide)
@@ -406,7 +405,7 @@ def _gap(task: Task, play: Play) -> float:
     """Return how far the loop with all clearance taken up stays open, over its round-off."""
     sizes = task.linkage.unit_lengths
     longest = max(abs(size) for size in sizes.values())
-    limit = 64.0 * _EPS * longest * np.maximum(np.abs(task.theta), 1.0)
+    limit = 64.0 * EPS * longest * np.maximum(np.abs(task.theta), 1.0)
     blur = limit + longest * (play.error + play.nominal_error)
     pin = sizes["crank"] * np.exp(1j * task.theta)
     worst = 0.0
@@ -461,7 +460,7 @@ def _first_order(task: Task) -> float:
     allowed = 8.0 * _SMALL_PLAY**2 * small.small + 4.0 * small.error
     if task.link == "slider":
         # Across the guide the first order vanishes where the coupler lies along it.
-        leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, _EPS))
+        leg = np.sqrt(task.linkage.unit_lengths["coupler"] * np.maximum(margin, EPS))
         allowed = allowed + 2.0 * (task.guide * part) ** 2 / leg
     clear = full.margin > 1e6 * full.blur
     return float(np.max(apart[clear] / allowed[clear], initial=0.0))

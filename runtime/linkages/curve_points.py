@@ -9,21 +9,16 @@ from math import pi
 import numpy as np
 
 from .circuits import Complex, Taylor
-from .linkage import Array
+from .linkage import EPS, TURN, Array
 
 # A path: parameters, shape (n,), and order, to the series of the place (x + i y) there.
 Path = Callable[[Array, int], Taylor]
 
-_EPS = float(np.finfo(float).eps)
-_TURN = 2.0 * pi
 _UNIFORM = 720
 # Samples draw near a sharp turn by this ratio, down to this distance.
 _GRADING, _NEAREST = 1.6, 1e-9
-# Loops up to this half-width in the parameter are solved for as series about their middle.
-_SMALL_LOOP = 0.02
 _SERIES = 16
 _ODD = range(1, _SERIES, 2)
-_STEPS, _LOOP_STEPS = 40, 12
 _MOST_SEEDS = 3000
 # A point whose speed falls below this part of its largest is said to stop: a cusp.
 _STILL = 1e-11
@@ -64,13 +59,13 @@ def slowest(path: Path, sharp: Array) -> Slow:
     fastest = float(np.max(np.abs(at.derivative(1))))
     following = np.roll(rate, -1)
     starts = np.flatnonzero((rate < 0) & (following >= 0))
-    low, high = s[starts], np.append(s, s[0] + _TURN)[starts + 1]
+    low, high = s[starts], np.append(s, s[0] + TURN)[starts + 1]
     for _ in range(60):
         middle = 0.5 * (low + high)
         rising = _squared_speed_rate(path(middle, 2)) >= 0
         low, high = np.where(rising, low, middle), np.where(rising, middle, high)
     found = _polished(path, 0.5 * (low + high), low, high)
-    return Slow(found % _TURN, np.abs(path(found, 1).derivative(1)), fastest)
+    return Slow(found % TURN, np.abs(path(found, 1).derivative(1)), fastest)
 
 
 def _polished(path: Path, s: Array, low: Array, high: Array) -> Array:
@@ -91,11 +86,11 @@ def _squared_speed_rate(at: Taylor) -> Array:
 
 def _graded(sharp: Array) -> Array:
     """Return uniform parameters, and closer ones about sharp turns; increasing, in one turn."""
-    uniform = (np.arange(_UNIFORM) + 0.5) * _TURN / _UNIFORM
-    levels = int(np.log(_TURN / _UNIFORM / _NEAREST) / np.log(_GRADING)) + 1
-    steps = _TURN / _UNIFORM * _GRADING ** -np.arange(levels)
+    uniform = (np.arange(_UNIFORM) + 0.5) * TURN / _UNIFORM
+    levels = int(np.log(TURN / _UNIFORM / _NEAREST) / np.log(_GRADING)) + 1
+    steps = TURN / _UNIFORM * _GRADING ** -np.arange(levels)
     near = np.concatenate([steps, [0.0], -steps])
-    places = np.concatenate([uniform, (sharp[:, None] + near).ravel()]) % _TURN
+    places = np.concatenate([uniform, (sharp[:, None] + near).ravel()]) % TURN
     return np.unique(places)
 
 
@@ -119,16 +114,16 @@ def double_points(path: Path, slow: Slow, sharp: Array, size: float) -> Doubles:
     """
     loops, reach = _small_loops(path, slow, size)
     first, second = _seeds(path, _graded(np.concatenate([sharp, slow.parameter])))
-    for _ in range(_STEPS if first.size else 0):
+    for _ in range(40 if first.size else 0):
         first, second = _newton(path, first, second)
-    apart = (second - first + pi) % _TURN - pi
+    apart = (second - first + pi) % TURN - pi
     middle, half = first + 0.5 * apart, np.abs(np.sin(0.5 * apart))
     about = np.abs(np.sin(0.5 * (middle[:, None] - slow.parameter)))
     small = np.any((about < reach) & (half[:, None] < 0.5 * reach), axis=1) | (half < 1e-6)
-    first, second = first[~small] % _TURN, second[~small] % _TURN
+    first, second = first[~small] % TURN, second[~small] % TURN
     one, two = path(first, 1), path(second, 1)
     gap = np.abs(one.c[0] - two.c[0])
-    good = (gap <= 64 * _EPS * size) & (_crossing_sine(one, two) > 64 * _EPS)
+    good = (gap <= 64 * EPS * size) & (_crossing_sine(one, two) > 64 * EPS)
     order = np.flatnonzero(good)
     order = order[np.argsort(gap[order], kind="stable")]
     pairs = np.column_stack([first, second])[order]
@@ -143,7 +138,7 @@ def _each_once(path: Path, pairs: Array) -> Doubles:
     kept: list[int] = []
     for i in range(len(first)):
         # Where the branches nearly touch, the crossing is loose along them.
-        slack = 1e-9 + 1e3 * _EPS / max(float(sine[i]), _EPS)
+        slack = 1e-9 + 1e3 * EPS / max(float(sine[i]), EPS)
         if all(_distance(first, second, i, j) > slack for j in kept):
             kept.append(i)
     kept.sort(key=lambda i: float(first[i]))
@@ -165,12 +160,13 @@ def _small_loops(path: Path, slow: Slow, size: float) -> tuple[Array, Array]:
     """
     c = path(slow.parameter, _SERIES).c
     last = np.maximum(np.abs(c[_SERIES - 1]), 1e-300)
-    reach = np.minimum(_SMALL_LOOP, (_EPS * size / last) ** (1.0 / (_SERIES - 2)))
+    # Loops up to this half-width in the parameter are solved for as series about their middle.
+    reach = np.minimum(0.02, (EPS * size / last) ** (1.0 / (_SERIES - 2)))
     widest = reach**2
     middle, across = slow.parameter, 1j * c[2]
     lift = (across.conj() * c[3]).real
     square = -(across.conj() * c[1]).real / np.where(lift != 0, lift, 1.0)
-    for _ in range(_LOOP_STEPS):
+    for _ in range(12):
         # Beyond the reach of the series there is no small loop.
         square = np.clip(square, -widest, widest)
         value, by_middle, by_square = _loop_series(path(middle, _SERIES).c, square)
@@ -185,11 +181,11 @@ def _small_loops(path: Path, slow: Slow, size: float) -> tuple[Array, Array]:
     value, _, _ = _loop_series(path(middle, _SERIES).c, square)
     near = np.abs(np.sin(0.5 * (middle - slow.parameter))) < reach
     stands = slow.speed <= _STILL * slow.fastest
-    good = (np.abs(value) <= 64 * _EPS * size) & (square > 0) & near & ~stands
+    good = (np.abs(value) <= 64 * EPS * size) & (square > 0) & near & ~stands
     # The outer half is left to the search among samples.
     good &= square < 0.25 * widest
     half = np.sqrt(square[good])
-    loops = np.column_stack([middle[good] - half, middle[good] + half]) % _TURN
+    loops = np.column_stack([middle[good] - half, middle[good] + half]) % TURN
     return loops.reshape(-1, 2), reach
 
 
@@ -205,7 +201,7 @@ def _distance(first: Array, second: Array, i: int, j: int) -> float:
     """Return how far two pairs of parameters are apart, either way round."""
 
     def turn(x: float) -> float:
-        return abs((x + pi) % _TURN - pi)
+        return abs((x + pi) % TURN - pi)
 
     straight = max(turn(first[i] - first[j]), turn(second[i] - second[j]))
     return min(straight, max(turn(first[i] - second[j]), turn(second[i] - first[j])))
@@ -234,7 +230,7 @@ def _seeds(path: Path, s: Array) -> tuple[Array, Array]:
     at = path(s, 2)
     z, bend = at.c[0], np.abs(at.derivative(2))
     ends = np.roll(z, -1)
-    width = np.diff(np.append(s, s[0] + _TURN))
+    width = np.diff(np.append(s, s[0] + TURN))
     # Twice the rise of an arc over its chord.
     rise = np.maximum(bend, np.roll(bend, -1)) * width**2 / 4
     low_x = np.minimum(z.real, ends.real) - rise

@@ -16,18 +16,12 @@ from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
 from .curve_points import Doubles, Slow, double_points, slowest
 from .four_bar import FourBar
-from .linkage import Array, Linkage, require_linkage
+from .linkage import EPS, Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EPS = float(np.finfo(float).eps)
-_MOST_POINTS = 10**6
-# Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are halved.
-_FEW, _MANY = 10, 16
 _PANELS, _HALVINGS = 24, 60
-# More panels than this at once: what is left is the round-off of the integrands.
-_MOST_PANELS = 2000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,7 +214,7 @@ def coupler_curve(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     place = _place(linkage, link, along, across)
-    require_whole("points", points, 16, _MOST_POINTS)
+    require_whole("points", points, 16, 10**6)
     motion.check()
     trace = _Trace(motion, link, place / motion.scale)
     trace.require_motion()
@@ -298,7 +292,7 @@ class _Trace:
     def require_motion(self) -> None:
         s = np.linspace(0.1, 6.2, 64)
         moved = np.max(np.abs(self.series(s, 1).derivative(1)))
-        if moved <= 8 * _EPS * self.size:
+        if moved <= 8 * EPS * self.size:
             raise bad(
                 "along, across", "the pivot of the link", "a point that moves", "choose another"
             )
@@ -316,7 +310,7 @@ class _Trace:
         if self.motion.kind != "quick_return":
             joint = at[self.link]
             ends.append(joint.origin.c[0] + self.motion.sizes["coupler"] * joint.direction.c[0])
-        return any(np.max(np.abs(z - end)) <= 64 * _EPS * self.size for end in ends)
+        return any(np.max(np.abs(z - end)) <= 64 * EPS * self.size for end in ends)
 
     def doubles(self, slow: Slow) -> Doubles:
         if self.runs_back:
@@ -349,8 +343,8 @@ class _Trace:
             pivot = self.motion.links(s, 0)[self.link].origin.c[0]
             turning = np.where((first * (z - pivot).conj()).imag >= 0, 1.0, -1.0)
             return turning / abs(self.place), planar(pivot)
-        stopped = speed <= 16 * _EPS * self.size
-        straight = np.abs(bend) <= 4 * _EPS * speed * np.abs(second)
+        stopped = speed <= 16 * EPS * self.size
+        straight = np.abs(bend) <= 4 * EPS * speed * np.abs(second)
         straight |= self.link == "slider"
         with np.errstate(divide="ignore", invalid="ignore"):
             curvature = np.where(straight, 0.0, bend / speed**3)
@@ -404,7 +398,7 @@ class _Trace:
         moved = np.abs(s) * np.abs(at.derivative(1))
         turned = abs(self.place) * self._blur(s)
         size = self.size
-        return np.asarray(1.5 * _EPS * (moved + turned + size) * self.motion.scale)
+        return np.asarray(1.5 * EPS * (moved + turned + size) * self.motion.scale)
 
     def _blur(self, s: Array) -> Array:
         """Return the error of the direction of the link in units of round-off."""
@@ -460,7 +454,7 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
     own = _own_motion(motion, s)
     if own is not None:
         point = own.point(trace.link, place.real, place.imag)
-        blur = 2 * (trace.figure(s) / scale + 4 * _EPS * trace.size * (1 + own.error / _EPS))
+        blur = 2 * (trace.figure(s) / scale + 4 * EPS * trace.size * (1 + own.error / EPS))
         for name, there, here in (
             ("places", point.position, at.c[0]),
             ("velocities", point.velocity, at.derivative(1)),
@@ -484,7 +478,7 @@ def _rule(nodes: int) -> tuple[Array, Array]:
 
 
 def _integrate_turn(
-    f: Callable[[Array], Array], breaks: Array, relative: float = 4.0 * _EPS
+    f: Callable[[Array], Array], breaks: Array, relative: float = 4.0 * EPS
 ) -> tuple[Array, Array]:
     """Integrate over 0 to 2 pi, halving the panels on which two Gauss rules differ.
 
@@ -506,14 +500,17 @@ def _integrate_turn(
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
     for level in range(_HALVINGS):
-        few, _ = _panels(f, low, high, _FEW)
-        many, size = _panels(f, low, high, _MANY)
+        # Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are
+        # halved.
+        few, _ = _panels(f, low, high, 10)
+        many, size = _panels(f, low, high, 16)
         difference = np.abs(many - few)
         if level == 0:
             scale = np.sum(size, axis=1)
             total, error, whole = (np.zeros(len(many)) for _ in range(3))
         good = np.all(difference <= relative * scale[:, None] / 8, axis=0)
-        if level == _HALVINGS - 1 or np.count_nonzero(~good) > _MOST_PANELS:
+        # More panels than this at once: what is left is the round-off of the integrands.
+        if level == _HALVINGS - 1 or np.count_nonzero(~good) > 2000:
             good[:] = True
         total = total + np.sum(many[:, good], axis=1)
         error = error + np.sum(difference[:, good], axis=1)
@@ -523,7 +520,7 @@ def _integrate_turn(
         low, high = low[~good], high[~good]
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    return total, error + 8.0 * _EPS * whole
+    return total, error + 8.0 * EPS * whole
 
 
 def _panels(

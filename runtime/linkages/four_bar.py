@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,15 +23,8 @@ from .linkage import (
     Terms,
     assembly_problems,
     length_problems,
-    plot_against_crank,
     turning,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-# Round-offs of the square of BD and of the area of the triangle BCD, thrice a unit each.
-_SQUARE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +67,12 @@ class FourBarMotion(Motion):
         "alpha4": "rad/s^2",
     }
     norm: ClassVar[str] = "worse of theta3 and theta4 [rad]"
+    drawn: ClassVar[Mapping[str, str]] = {
+        "theta4": r"\theta_4",
+        "omega4": r"\omega_4",
+        "alpha4": r"\alpha_4",
+        "omega3": r"\omega_3",
+    }
 
     @property
     def joints(self) -> Mapping[str, Array]:
@@ -84,18 +83,6 @@ class FourBarMotion(Motion):
             "C": self.point("follower", self.linkage.lengths["follower"]).position,
             "D": self.link("follower").origin,
         }
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw follower angle, speed and acceleration against the crank angle."""
-        over, square = (r"/\omega_2", r"/\omega_2^2") if self.relative else ("", "")
-        curves = (
-            ("theta4", r"$\theta_4$"),
-            ("omega4", rf"$\omega_4{over}$"),
-            ("alpha4", rf"$\alpha_4{square}$"),
-            ("omega3", rf"$\omega_3{over}$"),
-        )
-        drawn: Axes = plot_against_crank(self, curves, ax)
-        return drawn
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -135,8 +122,8 @@ class FourBar(Linkage):
     assembly: Assembly = "open"
 
     mechanism: ClassVar[str] = "four_bar"
-    kinematics: ClassVar[ModuleType] = four_bar_kinematics
     moves: ClassVar[type[Motion]] = FourBarMotion
+    kinematics: ClassVar[ModuleType] = four_bar_kinematics
     names: ClassVar[tuple[str, ...]] = ("frame", "crank", "coupler", "follower")
     links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "follower")
     bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -188,16 +175,14 @@ class FourBar(Linkage):
                 "the crank cannot turn fully; change a length",
             )
 
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad] in which the diagonal BD is within reach.
+    def motion(
+        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
+    ) -> FourBarMotion:
+        """Return the motion of coupler and follower; see :meth:`Linkage.motion`."""
+        return self._moved(FourBarMotion, theta, speed, acceleration)
 
-        Returns
-        -------
-        tuple of (float, float)
-            Without their ends, at which coupler and follower come into one line; each up to whole
-            turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
-            folds.
-        """
+    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
         inner, outer = (self._fold(*sides) for sides in self._fold_sides)
         if inner is None:
             high = np.pi if outer is None else outer
@@ -230,37 +215,6 @@ class FourBar(Linkage):
         sine2, cosine2 = above * (above + 2.0 * near), below * (2.0 * far - below)
         return float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
 
-    def motion(
-        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
-    ) -> FourBarMotion:
-        """Return the motion of coupler and follower (Smith 2.2, 2.7, 2.10).
-
-        At ``theta = 0`` theta3 and theta4 lie between -pi and pi; from there they are continuous
-        over any number of turns.
-
-        Parameters
-        ----------
-        theta : array_like
-            Crank angle [rad], any shape.
-        speed, acceleration : array_like
-            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
-
-        Returns
-        -------
-        FourBarMotion
-            Every array has the shape to which the three broadcast.  The check "folds within the
-            angles" fails where coupler and follower come into one line between the least and the
-            greatest angle: the motion is not continuous there, or it may leave by the other branch.
-
-        Raises
-        ------
-        BadInput
-            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
-            together, or the linkage cannot reach an angle or folds there.
-        """
-        moved: FourBarMotion = self._moved(theta, speed, acceleration)
-        return moved
-
     @property
     def _expected(self) -> str:
         shortest, longest = self.reach
@@ -287,7 +241,9 @@ class FourBar(Linkage):
         ):
             beside = m["theta" + other]
             moved = crank * np.abs(np.cos(theta2 - beside)) + frame * np.abs(np.cos(beside))
-            moved += length * aligned + opposite + _SQUARE * (leaning + opposite * lying)
+            # Round-offs of the square of BD and of the area of the triangle BCD, thrice a unit
+            # each.
+            moved += length * aligned + opposite + 2.0 * (leaning + opposite * lying)
             turned = np.abs(theta2 * m["omega" + link]) + np.abs(m["theta" + link])
             errors.append(turned + moved / (length * sine))
         return np.asarray(ROUND_OFFS * np.maximum(*errors))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..core.inputs import require_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import values_at
-from .linkage import Array
+from .linkage import EPS, TURN, Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,14 +22,8 @@ if TYPE_CHECKING:
 Function = Callable[[Array], ArrayLike]
 Source: TypeAlias = Function | tuple[Any, ...]
 
-_EPS = float(np.finfo(float).eps)
-_TURN = 2.0 * pi
-_FEWEST, _MOST = 64, 2**17
 _GOLDEN = 0.6180339887498949
 _PROBES = 257
-_HIGHEST = 4096
-# A gap over one turn up to this part of the function's size is noise, and enters the error.
-_SAME = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,16 +147,16 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     ends, the whole series is compared with the function at irregular angles.
     """
     name, f, known = _function(source)
-    require_whole("order", order, 1, _HIGHEST)
+    require_whole("order", order, 1, 4096)
     if not (isinstance(accuracy, (int, float)) and 0.0 < accuracy < 1.0):
         raise bad("accuracy", repr(accuracy), "a number between 0 and 1", "try 1e-12")
     periodic, secular, gap = _without_growth(f, name)
-    a, b, sums = _doubled(periodic, name, int(order), accuracy)
+    sums = _doubled(periodic, name, int(order), accuracy)
     scale = max(sums.largest, 5e-324)
     return Harmonics(
         name=name,
-        a=a,
-        b=b,
+        a=sums.series.a,
+        b=sums.series.b,
         secular=secular,
         largest=sums.largest,
         remainder=sums.remainder,
@@ -179,9 +172,10 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
 
 
 @dataclass(frozen=True)
-class _Found:
-    """What the doubling met: last change of a coefficient, figures, and what it cost."""
+class _Sums:
+    """What the doubling met: series, last change of a coefficient, errors, and what it cost."""
 
+    series: PeriodicFunction
     change: float
     error: float
     largest: float
@@ -189,12 +183,10 @@ class _Found:
     evaluations: int
 
 
-def _doubled(
-    f: Callable[[Array], Array], name: str, order: int, accuracy: float
-) -> tuple[Array, Array, _Found]:
+def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float) -> _Sums:
     """Double the angles until the coefficients stay."""
-    count = max(_FEWEST, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
-    probes = np.asarray(_TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
+    count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
+    probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
     at_probes = values_at(f, probes, name)
     largest, asked = float(np.max(np.abs(at_probes))), _PROBES
     before: np.ndarray[Any, Any] | None = None
@@ -208,33 +200,37 @@ def _doubled(
         ends = [int(np.argmin(values)), int(np.argmax(values))]
         probes = np.concatenate([probes, theta[ends]])
         at_probes = np.concatenate([at_probes, values[ends]])
-        constant = bool(np.ptp(at_probes) <= 4.0 * _EPS * largest)
+        constant = bool(np.ptp(at_probes) <= 4.0 * EPS * largest)
         low = full[: order + 1]
         if before is not None:
             changes.append(float(np.max(np.abs(low - before))))
         before = low
         goal = accuracy * largest
         if len(changes) > 1 and max(changes[-2:]) <= goal:
-            gap = float(np.max(np.abs(at_probes - _evaluate(full, probes))))
+            gap = float(np.max(np.abs(at_probes - _series(full)(probes))))
             # What the samples do not show may be folded into a coefficient whole.
             settled = gap <= max(1e3 * goal, 1e-11 * largest)
             # Nothing but a constant: a pulse may lie between the samples.
             if settled and not constant:
                 break
-        if 2 * count > _MOST:
+        if 2 * count > 2**17:
             break
         count *= 2
-    rest = float(np.max(np.abs(at_probes - _evaluate(low, probes))))
+    rest = float(np.max(np.abs(at_probes - _series(low)(probes))))
     dropped = float(np.sum(np.abs(full[order + 1 :])))
-    error = 2.0 * _last_change(changes, settled) + 2.0 * _EPS * largest
+    error = 2.0 * _last_change(changes, settled) + 2.0 * EPS * largest
     if constant:
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
-    a, b = low.real.copy(), -low.imag
-    b[0] = 0.0
     remainder = max(2.0 * rest, min(dropped, 4.0 * rest)) + error
-    found = _Found(max(changes[-2:]), error, largest, remainder, asked)
-    return a, b, found
+    return _Sums(_series(low), max(changes[-2:]), error, largest, remainder, asked)
+
+
+def _series(coefficients: np.ndarray[Any, Any]) -> PeriodicFunction:
+    """Return the function of coefficients ``a - i b``."""
+    b = -coefficients.imag
+    b[0] = 0.0
+    return PeriodicFunction(coefficients.real, b)
 
 
 def _last_change(changes: list[float], settled: bool) -> float:
@@ -259,21 +255,13 @@ def _coefficients(
 ) -> tuple[Array, Array, np.ndarray[Any, Any]]:
     """Return angles, from an irrational place on, samples, and the coefficients a - i b."""
     start = (_GOLDEN * np.log2(count)) % 1.0
-    theta = np.asarray(_TURN * (np.arange(count) + start) / count, dtype=np.float64)
+    theta = np.asarray(TURN * (np.arange(count) + start) / count, dtype=np.float64)
     values = values_at(f, theta, name)
     spectrum = np.fft.rfft(values) / count
-    spectrum *= np.exp(-1j * _TURN * start / count * np.arange(len(spectrum)))
+    spectrum *= np.exp(-1j * TURN * start / count * np.arange(len(spectrum)))
     spectrum[1:] *= 2.0
     # The highest one is known in part alone.
     return theta, values, spectrum[:-1]
-
-
-def _evaluate(coefficients: np.ndarray[Any, Any], theta: Array) -> Array:
-    total = np.zeros(theta.shape, dtype=complex)
-    z = np.exp(1j * theta)
-    for c in coefficients[:0:-1]:
-        total = (total + c) * z
-    return np.asarray((total + coefficients[0]).real)
 
 
 def _function(source: Source) -> tuple[str, Function, dict[str, str]]:
@@ -296,18 +284,13 @@ def _function(source: Source) -> tuple[str, Function, dict[str, str]]:
 
 
 def _without_growth(f: Function, name: str) -> tuple[Callable[[Array], Array], float, float]:
-    """Return the function less its whole turns in a turn, how many these are, and what is left.
-
-    Raises
-    ------
-    BadInput
-        If it neither comes back to itself nor differs by whole turns.
-    """
-    ends = values_at(f, np.array([0.5, 0.5 + _TURN]), name)
+    """Return the function less its whole turns in a turn, how many these are, and what is left."""
+    ends = values_at(f, np.array([0.5, 0.5 + TURN]), name)
     growth = float(ends[1] - ends[0])
-    turns = float(np.rint(growth / _TURN))
-    gap = abs(growth - turns * _TURN)
-    if gap > _SAME * max(float(np.max(np.abs(ends))), 5e-324):
+    turns = float(np.rint(growth / TURN))
+    gap = abs(growth - turns * TURN)
+    # A gap over one turn up to this part of the function's size is noise, and enters the error.
+    if gap > 1e-5 * max(float(np.max(np.abs(ends))), 5e-324):
         raise bad(
             f"function {name!r}",
             f"a change of {growth:.6g} over one turn",

@@ -14,50 +14,34 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .linkage import Array
+from .linkage import EPS, Array
 
 Flags = NDArray[np.bool_]
 Sizes = Mapping[str, float]
 
-_EPS = float(np.finfo(float).eps)
 _TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
 class Play:
-    """Nominal place of an output, and how far play lets it move to either side.
+    """Nominal place of an output, and how far play lets it move to either side."""
 
-    Attributes
-    ----------
-    nominal : ndarray
-        Without play [rad or length].
-    below, above : ndarray
-        Way from there to the least and to the greatest place.
-    small : ndarray
-        The whole way by the approximation of the first order; infinite at a fold.
-    folds, free : ndarray of bool
-        True where the play reaches the other assembly, and where it reaches it on both ways.
-    error, nominal_error : ndarray
-        Of ``below`` and ``above`` (the worse), and of ``nominal``.
-    margin : ndarray
-        Radius of the play at which the linkage first folds; negative where it cannot close.
-    blur : ndarray
-        Round-off of ``margin``.
-    place : ndarray
-        The variable that the play depends on: diagonal, gap or slide.
-    """
-
-    nominal: Array
+    nominal: Array  # without play [rad or length]
+    # below, above: way from there to the least and to the greatest place
     below: Array
     above: Array
-    small: Array
+    small: Array  # the whole way by the approximation of the first order; infinite at a fold
+    # folds, free: True where the play reaches the other assembly, and where it reaches it on both
+    # ways
     folds: Flags
     free: Flags
+    # error, nominal_error: of ``below`` and ``above`` (the worse), and of ``nominal``
     error: Array
     nominal_error: Array
+    # radius of the play at which the linkage first folds; negative where it cannot close
     margin: Array
-    blur: Array
-    place: Array
+    blur: Array  # round-off of ``margin``
+    place: Array  # the variable that the play depends on: diagonal, gap or slide
 
 
 Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
@@ -65,27 +49,14 @@ Kernel = Callable[[ArrayLike, ArrayLike, ArrayLike], Play]
 
 @dataclass(frozen=True)
 class Route:
-    """One output of one linkage.
+    """One output of one linkage."""
 
-    Attributes
-    ----------
-    at : callable
-        Play at crank angles: (theta, radius, guide).
-    measure : callable
-        Play at values of the one variable that it depends on, its direction left out.
-    interval : tuple of 2 floats
-        Ends of that variable.
-    candidates : callable
-        Values of the variable where the play may be extreme: (radius, guide).
-    crank : callable
-        Crank angle of a value of the variable.
-    """
-
-    at: Kernel
-    measure: Kernel
-    interval: tuple[float, float]
+    at: Kernel  # play at crank angles: (theta, radius, guide)
+    measure: Kernel  # play at values of the one variable that it depends on, its direction left out
+    interval: tuple[float, float]  # ends of that variable
+    # values of the variable where the play may be extreme: (radius, guide)
     candidates: Callable[[float, float], tuple[float, ...]]
-    crank: Callable[[float], float]
+    crank: Callable[[float], float]  # crank angle of a value of the variable
 
 
 @dataclass(frozen=True)
@@ -124,7 +95,7 @@ def _root_error(root: Array, blur: Array) -> Array:
     |sqrt(x + e) - sqrt(x)| is less than e/sqrt(x), and than sqrt(e).
     """
     steep = np.maximum(np.maximum(root, np.sqrt(blur)), _TINY)
-    return np.asarray(blur / steep + _EPS * root)
+    return np.asarray(blur / steep + EPS * root)
 
 
 def _over(part: Array, whole: Array, otherwise: float = 0.0) -> Array:
@@ -144,7 +115,7 @@ def _apart(low: _Half, high: _Half, rise: Array) -> tuple[Array, Array]:
     blur = high.sine * low.cosine_error + low.cosine * high.sine_error
     blur = blur + high.cosine * low.sine_error + low.sine * high.cosine_error
     relative = np.minimum(_over(blur, total, 1.0), 1.0)
-    return angle, np.asarray(angle * (relative + 6.0 * _EPS))
+    return angle, np.asarray(angle * (relative + 6.0 * EPS))
 
 
 def _turned(
@@ -161,12 +132,12 @@ def _turned(
     through = nominal.angle() + greatest.angle()
     around = nominal.rest() + least.rest()
     still = nominal.error()
-    fall_error = np.where(inner, still + greatest.error() + 3 * _EPS * through, fall_error)
-    rise_error = np.where(outer, still + least.error() + 3 * _EPS * around, rise_error)
+    fall_error = np.where(inner, still + greatest.error() + 3 * EPS * through, fall_error)
+    rise_error = np.where(outer, still + least.error() + 3 * EPS * around, rise_error)
     fall, rise = np.where(inner, through, fall), np.where(outer, around, rise)
     free = inner & outer
     fall, rise = (np.where(free, np.pi, part) for part in (fall, rise))
-    fall_error, rise_error = (np.where(free, _EPS * np.pi, e) for e in (fall_error, rise_error))
+    fall_error, rise_error = (np.where(free, EPS * np.pi, e) for e in (fall_error, rise_error))
     return (fall, fall_error), (rise, rise_error), inner | outer, free
 
 
@@ -196,7 +167,7 @@ def four_bar(sizes: Sizes, branch: float, link: str) -> Route:
         if link == "coupler":
             # Seen from B, and between -pi and pi at the crank angle 0.
             nominal = nominal - branch * np.pi
-        error = play.nominal_error + _EPS * (3.0 + np.abs(toward) + np.abs(nominal))
+        error = play.nominal_error + EPS * (3.0 + np.abs(toward) + np.abs(nominal))
         return _placed(play, nominal, error, turn, min(frame, crank) * (2.0 + np.abs(angle)))
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
@@ -235,7 +206,7 @@ def _triangle(
         rises,
         small=np.where(r == 0.0, 0.0, small),
         margin=np.minimum((other + own) - d, d - abs(other - own)),
-        blur=4.0 * _EPS * (d + other + own),
+        blur=4.0 * EPS * (d + other + own),
         place=d,
     )
 
@@ -253,7 +224,7 @@ def _of_angles(
         folds=folds,
         free=free,
         error=np.maximum(fall_error, rise_error),
-        nominal_error=nominal.error() + 2 * _EPS * nominal.angle(),
+        nominal_error=nominal.error() + 2 * EPS * nominal.angle(),
         **others,
     )
 
@@ -261,8 +232,8 @@ def _of_angles(
 def _opened(d: Array, own: float, other: float, change: Array, scale: Array) -> _Half:
     """Return the angle between sides d and ``own`` opposite to a side ``other + change``."""
     excess, around = (other - own) + change, (other + own) + change
-    near = _EPS * (2.5 * d + 1.5 * np.abs(excess))
-    far = _EPS * (2.5 * d + 1.5 * np.abs(around))
+    near = EPS * (2.5 * d + 1.5 * np.abs(excess))
+    far = EPS * (2.5 * d + 1.5 * np.abs(around))
     error = (
         (far * np.abs(d + excess) + near * np.abs(around - d)) / scale,
         (near * np.abs(around + d) + far * np.abs(d - excess)) / scale,
@@ -277,7 +248,7 @@ def _opened(d: Array, own: float, other: float, change: Array, scale: Array) -> 
 def slider_crank(sizes: Sizes, branch: float, link: str) -> Route:
     """Return the play of the slider along the guide, or of the coupler's angle."""
     crank, coupler, offset = sizes["crank"], sizes["coupler"], sizes["offset"]
-    gap_blur = _EPS * (abs(offset) + 2.0 * crank)
+    gap_blur = EPS * (abs(offset) + 2.0 * crank)
     measure = _across_slider if link == "slider" else _across_coupler
     across = partial(measure, coupler=coupler, gap_blur=gap_blur)
 
@@ -288,10 +259,10 @@ def slider_crank(sizes: Sizes, branch: float, link: str) -> Route:
         if link == "slider":
             start = crank * np.cos(angle)
             nominal = start + branch * play.nominal
-            error = play.nominal_error + 2 * _EPS * (np.abs(start) + np.abs(nominal))
+            error = play.nominal_error + 2 * EPS * (np.abs(start) + np.abs(nominal))
             return _placed(play, nominal, error, -branch, moved)
         nominal = np.pi / 2.0 - branch * play.nominal
-        return _placed(play, nominal, play.nominal_error + 4.0 * _EPS * np.pi, branch, moved)
+        return _placed(play, nominal, play.nominal_error + 4.0 * EPS * np.pi, branch, moved)
 
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         edge = coupler - radius - guide
@@ -316,7 +287,7 @@ def _across_slider(
     for length, side in ((coupler - r, far), (coupler + 0.0 * r, g), (coupler + r, near)):
         square = np.where(length > 0.0, (length - side) * (length + side), 0.0)
         root = np.sqrt(np.maximum(square, 0.0))
-        blur = (_EPS * (np.abs(length) + side) + 2.0 * gap_blur) * (np.abs(length) + side)
+        blur = (EPS * (np.abs(length) + side) + 2.0 * gap_blur) * (np.abs(length) + side)
         roots.append(root)
         blurs.append(_root_error(root, blur))
     least, nominal, greatest = roots
@@ -331,7 +302,7 @@ def _across_slider(
     swayed = 2.0 * w * gap_blur
     fall_error = fall_error + _over(swayed, least + nominal)
     rise_error = rise_error + _over(swayed, through)
-    fall_error = np.where(folds, blurs[1] + blurs[2] + 2 * _EPS * through, fall_error)
+    fall_error = np.where(folds, blurs[1] + blurs[2] + 2 * EPS * through, fall_error)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         small = 2.0 * (r * coupler + w * g) / nominal
     return Play(
@@ -344,7 +315,7 @@ def _across_slider(
         error=np.maximum(fall_error, rise_error),
         nominal_error=blurs[1],
         margin=coupler - g,
-        blur=_EPS * (coupler + g) + 2.0 * gap_blur,
+        blur=EPS * (coupler + g) + 2.0 * gap_blur,
         place=g,
     )
 
@@ -353,11 +324,11 @@ def _legs_apart(change: Array, total: Array, blur: Array) -> tuple[Array, Array]
     """Return the difference of two legs from that of their squares and their sum."""
     moved = _over(change, total)
     relative = np.minimum(_over(blur, total, 1.0), 1.0)
-    return moved, np.asarray(moved * (relative + 6.0 * _EPS))
+    return moved, np.asarray(moved * (relative + 6.0 * EPS))
 
 
 def _across_coupler(
-    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float, gap_blur: float
+    gap: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, coupler: float | Array, gap_blur: float
 ) -> Play:
     """Return the play of the angle between the normal of the guide and the coupler.
 
@@ -365,7 +336,7 @@ def _across_coupler(
     """
     g, r, w = _together(gap, radius, guide)
     play, scale = r + w, 2.0 * coupler
-    error = ((2.0 * _EPS * (coupler + np.abs(g) + play) + gap_blur) / scale,) * 2
+    error = ((2.0 * EPS * (coupler + np.abs(g) + play) + gap_blur) / scale,) * 2
     least, nominal, greatest = (
         _Half.of((coupler - g - change) / scale, (coupler + g + change) / scale, error)
         for change in (play, 0.0 * play, -play)
@@ -378,21 +349,13 @@ def _across_coupler(
         rises,
         small=np.where(play == 0.0, 0.0, small),
         margin=coupler - np.abs(g),
-        blur=_EPS * (coupler + np.abs(g)) + 2.0 * gap_blur,
+        blur=EPS * (coupler + np.abs(g)) + 2.0 * gap_blur,
         place=g,
     )
 
 
 def quick_return(sizes: Sizes, nominal: Callable[[ArrayLike], tuple[Array, Array]]) -> Route:
-    """Return the play of the rod's angle.
-
-    Parameters
-    ----------
-    sizes : mapping
-        Frame, crank and rod.
-    nominal : callable
-        Rod angle and its error at crank angles.
-    """
+    """Return the play of the rod's angle."""
     frame, crank, rod = sizes["frame"], sizes["crank"], sizes["rod"]
     short, long = abs(frame - crank), frame + crank
 
@@ -413,28 +376,18 @@ def quick_return(sizes: Sizes, nominal: Callable[[ArrayLike], tuple[Array, Array
 
 
 def _beside(slide: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
-    """Return the play of a line about D that passes B at most so far beside it."""
-    x, r, w = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (slide, radius, guide)))
-    play = r + w
-    free = play >= x
-    along = np.sqrt(np.maximum((x - play) * (x + play), 0.0))
-    angle = np.where(free, np.pi, np.arctan2(play, along))
-    # The sine play/x is uncertain by 5 round-offs of itself; near 1 its angle moves as the root.
-    root = np.maximum(along / np.maximum(x, _TINY), np.sqrt(5.0 * _EPS))
-    moved = 5.0 * _EPS * np.minimum(_over(play, x, 1.0), 1.0) / root
-    return Play(
-        nominal=np.zeros_like(x),
-        below=angle,
-        above=angle,
-        small=np.where(play == 0.0, 0.0, _over(2.0 * play, x, np.inf)),
-        folds=free,
-        free=free,
-        error=np.where(free, _EPS * np.pi, moved + _EPS * angle),
-        nominal_error=np.zeros_like(x),
-        margin=x,
-        blur=4.0 * _EPS * x,
-        place=x,
-    )
+    """Return the play of a line about D that passes B at most so far beside it.
+
+    As of a coupler as long as the slide, whose end is free as far across a guide through D.
+    """
+    x, r, w = _together(slide, radius, guide)
+    play = _across_coupler(np.zeros_like(x), r, w, coupler=np.maximum(x, _TINY), gap_blur=0.0)
+    # The slide is uncertain by 5 round-offs of itself; the sine of the angle is play over slide.
+    unsure = 5.0 * EPS
+    slope = np.minimum(np.tan(np.minimum(play.above, np.pi / 2.0)), unsure**-0.5)
+    error = np.where(play.free, EPS * np.pi, play.error + unsure * slope)
+    none = np.zeros_like(x)
+    return replace(play, nominal=none, nominal_error=none, error=error, blur=4.0 * EPS * x, place=x)
 
 
 def _placed(play: Play, nominal: Array, error: Array, turn: float, moved: Array) -> Play:
@@ -449,7 +402,7 @@ def _placed(play: Play, nominal: Array, error: Array, turn: float, moved: Array)
         below=below,
         above=above,
         nominal_error=np.asarray(error),
-        blur=play.blur + _EPS * moved,
+        blur=play.blur + EPS * moved,
     )
 
 

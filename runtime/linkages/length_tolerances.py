@@ -13,28 +13,27 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import is_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
-from .linkage import Array, Linkage, drive_of
+from .linkage import EPS, Array, Linkage, drive_of
 from .parametric import ANGLE, Parametric
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .tolerance_trial import Distribution, ToleranceTrial
 
 Masses = Literal["fixed", "bars"]
+Distribution = Literal["normal", "uniform"]
 Limits: TypeAlias = tuple[float, float]
 Box: TypeAlias = Mapping[str, Limits]
 
-_EPS = float(np.finfo(float).eps)
-# A common factor of all lengths may turn the links by so much of what each length alone does.
-_SCALED = 1e-9
-# What round-off does to a worst case, in units of the last place, away from the folds.
-_ROUNDING = 64.0
 _SCALE_FREE = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 _PREFERRED = ("theta4", "position", "theta3")
 _NAMES = {"theta2": "crank angle"}
 _SYMBOLS = {"theta3": r"$\theta_3$", "theta4": r"$\theta_4$"}
+
+# Standard deviations over the tolerance.
+_SPREADS = {"normal": 1.0 / 3.0, "uniform": 1.0 / math.sqrt(3.0)}
 
 
 class Varied(Protocol):
@@ -192,9 +191,7 @@ class Tolerances(Result):
         BadInput
             If a number is out of range or the distribution is unknown.
         """
-        from .tolerance_trial import trial
-
-        return trial(self, samples, seed, distribution)
+        return _trial(self, samples, seed, distribution)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain lists, numbers and strings, ready for JSON."""
@@ -345,13 +342,7 @@ def tolerances(
 
 
 def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
-    """Return the tolerances as floats.
-
-    Raises
-    ------
-    BadInput
-        If a name is unknown, or a number is not finite, negative, or as large as its length.
-    """
+    """Return the tolerances as floats."""
     if not isinstance(tolerance, Mapping):
         given = type(tolerance).__name__
         raise bad("tolerance", given, "a mapping from name to number", "write {'crank': 1e-4}")
@@ -423,7 +414,8 @@ def _remainder(model: Parametric, sizes: Mapping[str, float], slopes: dict[str, 
         changes = [np.sum(widths * np.abs(other[o] - here[o]), axis=0) for o in model.outputs]
         worst = np.maximum(worst, np.stack(changes))
     first = np.stack([np.sum(widths * np.abs(here[o]), axis=0) for o in model.outputs])
-    return np.asarray(worst + _ROUNDING * _EPS * first)
+    # What round-off does to a worst case, in units of the last place, away from the folds.
+    return np.asarray(worst + 64.0 * EPS * first)
 
 
 def _checks(model: Parametric, sensitivity: Array) -> dict[str, Check]:
@@ -436,7 +428,8 @@ def _checks(model: Parametric, sensitivity: Array) -> dict[str, Check]:
     most = np.max(np.abs(np.sum(terms, axis=1)), axis=rows, initial=0.0)
     size = np.max(np.sum(np.abs(terms), axis=1), axis=rows, initial=0.0)
     worst = float(np.max(most / np.maximum(size, np.finfo(float).tiny), initial=0.0))
-    return {"a common factor of all lengths leaves the angles": Check(worst, _SCALED)}
+    # A common factor of all lengths may turn the links by so much of what each length alone does.
+    return {"a common factor of all lengths leaves the angles": Check(worst, 1e-9)}
 
 
 def box_of(lengths: Mapping[str, float], tolerances: Mapping[str, float]) -> dict[str, Limits]:
@@ -458,12 +451,6 @@ def margin(box: Box, theta: Array, width: float = 0.0) -> Array:
         Crank angles [rad].
     width : float
         Tolerance of the crank angles [rad], less than a quarter turn.
-
-    Returns
-    -------
-    ndarray
-        Positive where every linkage of the box reaches the angle; exact, for the distances are
-        convex functions of the lengths, and extreme in the angle at dead centres alone.
     """
     if width > 0.0:
         start = np.pi / 2 if "offset" in box else 0.0
@@ -503,3 +490,155 @@ def _distances(first: Limits, second: Limits, angle: Array) -> tuple[Array, Arra
     near = [distance(np.clip(b * np.cos(angle), *first), b) for b in second]
     near += [distance(a, np.clip(a * np.cos(angle), *second)) for a in first]
     return np.min(near, axis=0), far
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToleranceTrial(Result):
+    """Mean and standard deviation of every output over random linkages.
+
+    ``error`` holds the statistical error of ``standard_deviation`` in 99 of 100 trials; its shape.
+
+    Attributes
+    ----------
+    outputs : tuple of str
+        Names of the outputs.
+    mean_shift : ndarray, shape (outputs, ...)
+        Mean of each output less its nominal value: second-order, and statistical error.
+    standard_deviation : ndarray, shape (outputs, ...)
+        Of each output.
+    expected : ndarray, shape (outputs, ...)
+        Standard deviation to first order.
+    least, greatest : ndarray, shape (outputs, ...)
+        Extremes of the deviations.
+    samples, lost : int
+        How many linkages were drawn, and how many could not reach an angle and were left out.
+    distribution : str
+        Of the parameters.
+    """
+
+    outputs: tuple[str, ...]
+    mean_shift: Array
+    standard_deviation: Array
+    expected: Array
+    least: Array
+    greatest: Array
+    samples: int
+    lost: int
+    distribution: str
+
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(
+        ("mean_shift", "standard_deviation", "expected", "least", "greatest", "error"),
+        ("output", "angle"),
+    )
+
+
+def _trial(
+    nominal: Tolerances, samples: int, seed: int, distribution: Distribution
+) -> ToleranceTrial:
+    """Return the outcome of a Monte Carlo trial; see :meth:`Tolerances.monte_carlo`."""
+    if distribution not in _SPREADS:
+        raise bad("distribution", repr(distribution), f"one of {sorted(_SPREADS)}", "choose one")
+    for name, number, fewest in (("samples", samples, 2), ("seed", seed, 0)):
+        if not is_whole(number, fewest):
+            raise bad(name, repr(number), f"an integer of at least {fewest}", "correct it")
+    random = np.random.default_rng(seed)
+    # Deviations over the worst case: their squares neither overflow nor vanish.
+    unit = np.where(nominal.worst_case > 0.0, nominal.worst_case, 1.0)
+    total = np.zeros_like(unit)
+    squares, kept, done = np.zeros_like(total), 0, 0
+    least, greatest = np.full_like(total, np.inf), np.full_like(total, -np.inf)
+    # Numbers in one array at a time.
+    chunk = max(1, 200_000 // max(1, nominal.theta2.size))
+    while done < samples:
+        count = min(chunk, samples - done)
+        deviation = _deviations(nominal, random, count, distribution) / unit
+        good = np.all(np.isfinite(deviation), axis=tuple(range(1, deviation.ndim)))
+        deviation = deviation[good]
+        total += np.sum(deviation, axis=0)
+        squares += np.sum(np.square(deviation), axis=0)
+        least = np.minimum(least, np.min(deviation, axis=0, initial=np.inf))
+        greatest = np.maximum(greatest, np.max(deviation, axis=0, initial=-np.inf))
+        kept, done = kept + int(np.count_nonzero(good)), done + count
+    if kept < 2:
+        found = f"{kept} linkages that reach every angle"
+        raise bad("tolerances", found, "at least 2", "narrow the tolerances")
+    mean = total / kept
+    spread = unit * np.sqrt(np.maximum(squares - kept * np.square(mean), 0.0) / (kept - 1))
+    shift = unit * mean
+    expected = nominal.root_sum_square * _SPREADS[distribution]
+    error = _quantile(kept - 1) * spread
+    return ToleranceTrial(
+        outputs=nominal.outputs,
+        mean_shift=shift,
+        standard_deviation=spread,
+        expected=expected,
+        least=unit * least,
+        greatest=unit * greatest,
+        samples=samples,
+        lost=samples - kept,
+        distribution=distribution,
+        method=f"Monte Carlo, seed {seed}",
+        error=error,
+        error_norm="standard deviation of each output, absolute, entrywise",
+        checks=_trial_checks(nominal, shift, spread, expected, kept),
+        provenance=nominal.provenance,
+    )
+
+
+def _quantile(freedom: int) -> float:
+    """Return what holds the error of 99 of 100 standard deviations, relative; chi-square law."""
+    from scipy.special import chdtri
+
+    low, high = (float(chdtri(freedom, share)) for share in (0.995, 0.005))
+    return max(math.sqrt(freedom / low) - 1.0, 1.0 - math.sqrt(freedom / high))
+
+
+def _deviations(
+    nominal: Tolerances, random: np.random.Generator, count: int, distribution: Distribution
+) -> Array:
+    """Return deviations of the outputs of random linkages, shape (count, outputs, ...)."""
+    model = nominal.model
+    shape = (count, len(nominal.parameters))
+    drawn = (
+        random.normal(0.0, _SPREADS["normal"], shape)
+        if distribution == "normal"
+        else random.uniform(-1.0, 1.0, shape)
+    )
+    numbers = {}
+    for place, name in enumerate(nominal.parameters):
+        column = model.values[name] + nominal.tolerance[place] * drawn[:, place]
+        numbers[name] = np.reshape(column, (count,) + (1,) * model.theta.ndim)
+    values = model.evaluate(numbers)
+    full = (count, *model.theta.shape)
+    deviation = np.stack([np.broadcast_to(values[name], full) for name in nominal.outputs], axis=1)
+    deviation = deviation - nominal.nominal
+    for row, name in enumerate(nominal.outputs):
+        if name in ("theta3", "theta4"):
+            # A linkage of the other type counts its turns from elsewhere.
+            deviation[:, row] = np.remainder(deviation[:, row] + np.pi, 2.0 * np.pi) - np.pi
+    return np.asarray(deviation)
+
+
+def _trial_checks(
+    nominal: Tolerances, shift: Array, spread: Array, expected: Array, kept: int
+) -> dict[str, Check]:
+    """Compare with the first order: within the statistical error and the error."""
+    # |Z| exceeds z with a chance below exp(-z^2/2); every output and angle is one comparison.
+    # Chance that one of all the comparisons fails where both sides are right.
+    quantile = math.sqrt(2.0 * math.log(max(spread.size, 1) / 1e-6))
+    axes = tuple(range(1, nominal.nominal.ndim))
+    size = np.max(np.abs(nominal.nominal), axis=axes, initial=0.0, keepdims=True)
+    allowed = np.asarray(nominal.error) + 64.0 * np.finfo(float).eps * size
+    allowed = np.maximum(allowed, np.finfo(float).tiny)
+    off_spread = np.abs(spread - expected) / (
+        quantile * np.maximum(spread, expected) / math.sqrt(2.0 * (kept - 1)) + allowed
+    )
+    off_mean = np.abs(shift) / (quantile * spread / math.sqrt(kept) + allowed)
+    return {
+        "spread within its statistical error and the bound": Check(
+            float(np.max(off_spread, initial=0.0)), 1.0
+        ),
+        "mean within its statistical error and the bound": Check(
+            float(np.max(off_mean, initial=0.0)), 1.0
+        ),
+    }

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from inspect import signature
 from numbers import Real
 from types import ModuleType
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,19 +17,19 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import Problem, bad
 from ..core.results import Check, DeferredChecks, Result, provenance
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 Array: TypeAlias = NDArray[np.float64]
 Assembly: TypeAlias = Literal["open", "crossed"]
 Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
+EPS = float(np.finfo(float).eps)
 # A round-off of each of the numbers that an expression comes from, three times.
-ROUND_OFFS = 1.5 * float(np.finfo(float).eps)
+ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
 UNDECIDED = 0.5
-# However large the angles, a loop that gapes wider than this is no motion.
-_WIDEST_GAP = 1e-8
-# Rates may leave their closure by so many times what the error of the angles would do.
-_RATES_LIMIT = 4.0
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,35 @@ class Motion(Result, ABC):
     places: ClassVar[Mapping[str, str]] = {}
     rates: ClassVar[Mapping[str, str]] = {}
     norm: ClassVar[str] = ""
+    # What is drawn against the crank angle, with its symbol.
+    drawn: ClassVar[Mapping[str, str]] = {}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the motion of the output against the crank angle.
+
+        With a crank speed, each curve is scaled by a power of ten, named in the legend, so that all
+        of them can be seen.
+        """
+        from ..core.plotting import axes_or_new
+
+        ax = axes_or_new(ax)
+        degrees = np.degrees(self.theta2)
+        units: dict[str, None] = {}
+        over = {"omega": r"/\omega_2", "alpha": r"/\omega_2^2"} if self.relative else {}
+        for name, words in self.drawn.items():
+            values, unit = getattr(self, name), self.unit(name)
+            words = f"${words}{over.get(name[:5], '')}$" if words[0] == "\\" else words
+            peak = float(np.max(np.abs(values), initial=0.0))
+            scaled = peak > 0.0 and not self.relative
+            power = int(np.floor(np.log10(peak))) if scaled else 0
+            size = f"$10^{{{power}}}$ " if power else ""
+            units[size + unit] = None
+            label = words if unit == "1" else f"{words} [{size}{unit}]"
+            ax.plot(degrees, values / 10.0**power, label=label)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel(", ".join(units))
+        ax.legend()
+        return ax
 
     def link(self, name: str) -> LinkMotion:
         """Return the motion of a moving link, its origin at the link's first joint.
@@ -233,6 +262,9 @@ class Motion(Result, ABC):
         return LinkMotion(pin.position, pin.velocity, pin.acceleration, angle, speed, change)
 
 
+M = TypeVar("M", bound=Motion)
+
+
 class Linkage(ABC):
     """A linkage of one loop, driven by its crank: frame, crank and two more links.
 
@@ -282,6 +314,9 @@ class Linkage(ABC):
     def crank_ranges(self) -> tuple[tuple[float, float], ...]:
         """Return the intervals of crank angle [rad] that one turn offers; their ends are folds.
 
+        There coupler and follower come into one line, the coupler stands across the guide, or the
+        block is at the rod's tip or, with eps = 1, on its pivot.
+
         Returns
         -------
         tuple of (float, float)
@@ -297,7 +332,64 @@ class Linkage(ABC):
     def motion(
         self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
     ) -> Motion:
-        """Return the motion of all links at given crank angles, speeds and accelerations."""
+        """Return the motion of all links, from the closure of the loop (Smith 2.2, 2.7, 2.10).
+
+        Angles are continuous over any number of turns.  At ``theta = 0`` theta3 and theta4 of a
+        four-bar lie between -pi and pi, and theta4 of a quick-return is 0.
+
+        Parameters
+        ----------
+        theta : array_like
+            Crank angle [rad], any shape.
+        speed, acceleration : array_like
+            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
+
+        Returns
+        -------
+        FourBarMotion, SliderCrankMotion or QuickReturnMotion
+            Every array has the shape to which the three broadcast.  The check "folds within the
+            angles" fails where the linkage folds between the least and the greatest angle (an end
+            of :meth:`crank_ranges`): the motion is not continuous there, or it may leave by the
+            other branch.
+
+        Raises
+        ------
+        BadInput
+            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
+            together, or the linkage cannot reach an angle or folds there.
+        """
+
+    def _moved(
+        self, kind: type[M], theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
+    ) -> M:
+        """Return the motion, with its error and checks."""
+        angles, drive = drive_of(theta, speed, acceleration)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            m = {
+                "theta2": angles,
+                **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
+            }
+        reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
+        self.require(reached, angles, self._expected)
+        self.require(self._decided(m), angles)
+        error = self._error(m)
+        shape = drive[0].shape
+        fields: dict[str, Any] = {}
+        for name, value in driven(m, *drive).items():
+            spread = value if value.shape == shape else np.array(np.broadcast_to(value, shape))
+            scaled = name != "theta2" and kind.unit_of(name).startswith("m")
+            fields[name] = np.ldexp(spread, -self.scale) if scaled else spread
+        return kind(
+            linkage=self,
+            omega2=drive[0],
+            alpha2=drive[1],
+            **fields,
+            method="closed form",
+            error=np.array(np.broadcast_to(error, shape)),
+            error_norm=f"{kind.norm}, absolute, entrywise",
+            checks=DeferredChecks(partial(_checks, self, m, error)),
+            provenance=provenance(self.provenance),
+        )
 
     def parametric(
         self, theta: Array, speed: Array, acceleration: Array, masses: str = "fixed"
@@ -353,43 +445,6 @@ class Linkage(ABC):
             first = float(np.ravel(theta)[np.argmin(np.ravel(reached))])
             fix = "this linkage cannot reach the angle, or folds there; keep theta inside its range"
             raise bad("theta", f"{first:.6g} rad", expected or self.reachable, fix)
-
-    def _moved(self, theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike) -> Any:
-        """Return the motion, with its error and checks.
-
-        Raises
-        ------
-        BadInput
-            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
-            together, or the linkage cannot reach an angle or folds there.
-        """
-        angles, drive = drive_of(theta, speed, acceleration)
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            m = {
-                "theta2": angles,
-                **emitted(self, self.kinematics, "motion", angles, self.unit_lengths),
-            }
-        reached = np.logical_and.reduce([np.isfinite(value) for value in m.values()])
-        self.require(reached, angles, self._expected)
-        self.require(self._decided(m), angles)
-        error = self._error(m)
-        shape = drive[0].shape
-        fields: dict[str, Any] = {}
-        for name, value in driven(m, *drive).items():
-            spread = value if value.shape == shape else np.array(np.broadcast_to(value, shape))
-            scaled = name != "theta2" and self.moves.unit_of(name).startswith("m")
-            fields[name] = np.ldexp(spread, -self.scale) if scaled else spread
-        return self.moves(
-            linkage=self,
-            omega2=drive[0],
-            alpha2=drive[1],
-            **fields,
-            method="closed form",
-            error=np.array(np.broadcast_to(error, shape)),
-            error_norm=f"{self.moves.norm}, absolute, entrywise",
-            checks=DeferredChecks(partial(_checks, self, m, error)),
-            provenance=provenance(self.provenance),
-        )
 
     @property
     def _expected(self) -> str:
@@ -465,14 +520,16 @@ def _checks(linkage: Linkage, m: Mapping[str, Array], error: Array) -> dict[str,
     longest = max(abs(value) for value in linkage.unit_lengths.values())
     closure = float(np.max(np.abs(sum(places)), initial=0.0) / longest)
     limit = 64 * np.finfo(float).eps * np.max(np.abs(m["theta2"]), initial=1.0)
+    # However large the angles, a loop that gapes wider than this is no motion.
     checks = {
-        "loop closure over longest link": Check(closure, min(float(limit), _WIDEST_GAP)),
+        "loop closure over longest link": Check(closure, min(float(limit), 1e-8)),
         "folds within the angles": Check(float(linkage._folds(m["theta2"])), 0.0),
     }
     for name, terms in zip(("speeds", "accelerations"), rates, strict=True):
         size = np.maximum(sum(np.abs(term) for term in terms), np.finfo(float).tiny)
         worst = float(np.max(np.abs(sum(terms)) / (size * error), initial=0.0))
-        checks[f"closure of {name} over the figure"] = Check(worst, _RATES_LIMIT)
+        # Rates may leave their closure by so many times what the error of the angles would do.
+        checks[f"closure of {name} over its error"] = Check(worst, 4.0)
     return checks
 
 
@@ -486,27 +543,26 @@ def require_linkage(linkage: object) -> None:
 def drive_of(
     theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
 ) -> tuple[Array, tuple[Array, Array]]:
-    """Return the angles, and speed and acceleration in the shape of all three.
+    """Return the angles, and speed and acceleration in the shape of all three."""
+    *given, shape = checked_drive(theta, speed, acceleration)
+    first, second = (np.array(np.broadcast_to(item, shape)) for item in given[1:])
+    return given[0], (first, second)
 
-    Raises
-    ------
-    BadInput
-        If one of them is no array of finite numbers, or their shapes do not fit together.
-    """
+
+def checked_drive(
+    theta: ArrayLike, speed: ArrayLike, acceleration: ArrayLike
+) -> tuple[Array, Array, Array, tuple[int, ...]]:
+    """Return finite angles, speeds and accelerations, and the shape to which they broadcast."""
     angles = finite_array("theta", theta, "angles [rad]")
-    given = (
-        finite_array("speed", speed, "crank speeds [rad/s]"),
-        finite_array("acceleration", acceleration, "crank accelerations [rad/s^2]"),
-    )
+    speeds = finite_array("speed", speed, "crank speeds [rad/s]")
+    changes = finite_array("acceleration", acceleration, "crank accelerations [rad/s^2]")
     try:
-        shape = np.broadcast_shapes(angles.shape, *(item.shape for item in given))
+        shape = np.broadcast_shapes(angles.shape, speeds.shape, changes.shape)
     except ValueError as refusal:
-        shapes = ", ".join(str(item.shape) for item in (angles, *given))
-        raise bad(
-            "theta, speed, acceleration", f"shapes {shapes}", "shapes that broadcast", "correct one"
-        ) from refusal
-    first, second = (np.array(np.broadcast_to(item, shape)) for item in given)
-    return angles, (first, second)
+        shapes = f"shapes {angles.shape}, {speeds.shape}, {changes.shape}"
+        fix = "give one speed, or one for each angle"
+        raise bad("theta, speed, acceleration", shapes, "shapes that broadcast", fix) from refusal
+    return angles, speeds, changes, shape
 
 
 def finite_array(name: str, value: ArrayLike, meaning: str) -> Array:
@@ -540,29 +596,3 @@ def turning(size: ArrayLike, angle: Array, speed: ArrayLike, change: ArrayLike) 
     """Return a vector ``size e^(i angle)`` and its first two derivatives, as complex numbers."""
     arm = size * np.exp(1j * angle)
     return [arm, 1j * np.asarray(speed) * arm, (1j * np.asarray(change) - np.square(speed)) * arm]
-
-
-def plot_against_crank(motion: Motion, curves: Sequence[tuple[str, str]], ax: Any) -> Any:
-    """Draw fields of a motion against the crank angle; return the axes.
-
-    With a crank speed, each curve is scaled by a power of ten, named in the legend, so that all of
-    them can be seen.
-    """
-    from ..core.plotting import axes_or_new
-
-    ax = axes_or_new(ax)
-    degrees = np.degrees(motion.theta2)
-    units: dict[str, None] = {}
-    for name, words in curves:
-        values, unit = getattr(motion, name), motion.unit(name)
-        peak = float(np.max(np.abs(values), initial=0.0))
-        scaled = peak > 0.0 and not motion.relative
-        power = int(np.floor(np.log10(peak))) if scaled else 0
-        size = f"$10^{{{power}}}$ " if power else ""
-        units[size + unit] = None
-        label = words if unit == "1" else f"{words} [{size}{unit}]"
-        ax.plot(degrees, values / 10.0**power, label=label)
-    ax.set_xlabel("crank angle [deg]")
-    ax.set_ylabel(", ".join(units))
-    ax.legend()
-    return ax

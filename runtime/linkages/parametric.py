@@ -17,7 +17,6 @@ import numpy as np
 from .linkage import Array, Linkage, Motion, driven, emitted
 
 ANGLE = "theta2"
-_STEP = 1e-40  # of the size of a number
 
 
 @dataclass(frozen=True)
@@ -25,16 +24,11 @@ class Parametric:
     """The motion of a linkage at given crank angles as a function of its lengths.
 
     The numbers may be arrays (of samples), or complex ones (of derivatives).
-
-    Attributes
-    ----------
-    linkage : Linkage
-        Lengths and assembly.
-    theta, speed, acceleration : ndarray, shape (...)
-        Crank angle [rad], speed [rad/s], acceleration [rad/s^2], of one shape.
     """
 
-    linkage: Linkage
+    linkage: Linkage  # lengths and assembly
+    # theta, speed, acceleration: (...): crank angle [rad], speed [rad/s], acceleration
+    # [rad/s^2], of one shape
     theta: Array
     speed: Array
     acceleration: Array
@@ -66,7 +60,8 @@ class Parametric:
         """Return values of shape (...) and derivatives by the named numbers, shape (n, ...)."""
         count, batch = len(names), self.theta.shape
         rows = (count, *(1,) * len(batch))
-        steps = np.array([_STEP * self._size(name) for name in names])
+        # Of the size of a number.
+        steps = np.array([1e-40 * self._size(name) for name in names])
         ahead = dict(numbers)
         for name, step in zip(names, 1j * np.diag(steps), strict=True):
             ahead[name] = numbers[name] + step.reshape(rows)

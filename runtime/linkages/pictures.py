@@ -31,10 +31,6 @@ _COLOURS = {
     "rod": "tab:blue",
 }
 _GREY = "0.45"
-_MOST_FRAMES, _FASTEST = 2000, 50
-_TRACE_POINTS = 721
-# Artists above this order may be covered by moving ones, or cover them: drawn in every frame.
-_MOVING = 2
 
 
 def draw_curve(ax: Axes, curve: CouplerCurve) -> None:
@@ -98,8 +94,8 @@ def animate(
     require_linkage(linkage)
     motion = Circuit(linkage, circuit)
     motion.check()
-    require_whole("frames", frames, 2, _MOST_FRAMES)
-    require_whole("fps", fps, 1, _FASTEST)
+    require_whole("frames", frames, 2, 2000)
+    require_whole("fps", fps, 1, 50)
     for curve in curves:
         if not hasattr(curve, "double_position"):
             raise bad("curves", type(curve).__name__, "coupler curves", "use coupler_curve")
@@ -124,47 +120,21 @@ def check_animation_path(path: str | Path) -> Path:
 
 def _gif(motion: Circuit, curves: Sequence[CouplerCurve], frames: int, fps: int) -> bytes:
     """Return the bytes of the moving picture: one palette, what stands still drawn once."""
-    film = _Film(motion, curves)
+    from PIL import Image
+
+    film, plain = _Film(motion, curves), Image.Dither.NONE
     # Slanting bars, whose edges have mixed colours.
-    palette = _Palette(np.stack([film.picture(0.3 + k * 2.0 * pi / 5.0) for k in range(5)]))
+    slanting = np.concatenate([film.picture(0.3 + k * 2.0 * pi / 5.0) for k in range(5)])
+    covering = Image.Quantize.MAXCOVERAGE
+    palette = Image.fromarray(slanting).quantize(256, method=covering, dither=plain)
     turn = np.arange(frames) * 2.0 * pi / frames
-    first, *rest = (palette.image(film.picture(float(s))) for s in turn)
+    first, *rest = (
+        Image.fromarray(film.picture(float(s))).quantize(palette=palette, dither=plain)
+        for s in turn
+    )
     buffer = io.BytesIO()
     first.save(buffer, "GIF", save_all=True, append_images=rest, duration=1000 // fps, loop=0)
     return buffer.getvalue()
-
-
-class _Palette:
-    """The 256 commonest colours of some pictures; any other colour becomes the nearest of them."""
-
-    def __init__(self, pictures: Any) -> None:
-        colours, counts = np.unique(_packed(pictures), return_counts=True)
-        packed = colours[np.argsort(-counts, kind="stable")[:256]]
-        self._colours = np.stack([packed >> 16, packed >> 8 & 255, packed & 255], axis=-1)
-        self._place = np.full(1 << 24, -1, dtype=np.int16)
-        self._place[packed] = np.arange(len(packed))
-
-    def image(self, picture: Any) -> Any:
-        """Return a picture, bytes of shape (height, width, 3), as a Pillow image of the palette."""
-        from PIL import Image
-
-        packed = _packed(picture)
-        new = np.unique(packed[self._place[packed] < 0])
-        apart = np.stack([new >> 16, new >> 8 & 255, new & 255], axis=-1)[:, np.newaxis]
-        distances = np.sum((apart - self._colours) ** 2, axis=-1)
-        self._place[new] = np.argmin(distances, axis=-1)
-        image = Image.fromarray(self._place[packed].astype(np.uint8), "P")
-        image.putpalette(self._colours.astype(np.uint8).tobytes())
-        return image
-
-
-def _packed(pictures: Any) -> Any:
-    """Return red, green and blue of the last axis, rounded to multiples of 5, as one number.
-
-    White and black stay; the edges of a bar have 50 mixed colours then, and a palette holds them.
-    """
-    wide = 5 * ((pictures.astype(np.int64) + 2) // 5)
-    return wide[..., 0] << 16 | wide[..., 1] << 8 | wide[..., 2]
 
 
 class _Film:
@@ -190,7 +160,9 @@ class _Film:
             bar = _point_bar(motion, 0.0, curve.link, place)
             self._arms += ax.plot(bar.real, bar.imag, color=_COLOURS[curve.link], lw=1.0, zorder=2)
             self._dots += ax.plot(bar[1:2].real, bar[1:2].imag, "o", color="k", ms=4, zorder=6)
-        above = [line for line in ax.lines if line.get_zorder() >= _MOVING]
+        # Artists above this order may be covered by moving ones, or cover them: drawn in every
+        # frame.
+        above = [line for line in ax.lines if line.get_zorder() >= 2]
         self._moving = sorted(above, key=lambda line: line.get_zorder())
         for line in self._moving:
             line.set_animated(True)
@@ -215,7 +187,7 @@ class _Film:
 
 def _trace(motion: Circuit, curve: CouplerCurve) -> Complex:
     """Return the path of a curve's point."""
-    s = np.linspace(0.0, 2.0 * pi, max(_TRACE_POINTS, len(curve.parameter) + 1))
+    s = np.linspace(0.0, 2.0 * pi, max(721, len(curve.parameter) + 1))
     place = complex(curve.along, curve.across) / motion.scale
     return np.asarray(motion.scale * motion.path(s, curve.link, place, 0).c[0])
 

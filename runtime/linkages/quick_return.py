@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import quick_return_kinematics
 from ..core.errors import BadInput, Problem, bad
 from .linkage import (
+    EPS,
     ROUND_OFFS,
     UNDECIDED,
     Array,
@@ -22,14 +23,10 @@ from .linkage import (
     Motion,
     Terms,
     length_problems,
-    plot_against_crank,
     turning,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_ROUND = 4.0 * float(np.finfo(float).eps)
+_ROUND = 4.0 * EPS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +66,11 @@ class QuickReturnMotion(Motion):
         "slide_acceleration": "m/s^2",
     }
     norm: ClassVar[str] = "worse of theta4 [rad] and slide over its greatest value"
+    drawn: ClassVar[Mapping[str, str]] = {
+        "theta4": r"\theta_4",
+        "omega4": r"\omega_4",
+        "alpha4": r"\alpha_4",
+    }
 
     @property
     def joints(self) -> Mapping[str, Array]:
@@ -79,16 +81,6 @@ class QuickReturnMotion(Motion):
             "C": self.point("rod", self.linkage.lengths["rod"]).position,
             "D": self.link("rod").origin,
         }
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw angle, speed and acceleration of the rod against the crank angle."""
-        curves = (
-            ("theta4", r"$\theta_4$"),
-            ("omega4", r"$\omega_4$"),
-            ("alpha4", r"$\alpha_4$"),
-        )
-        drawn: Axes = plot_against_crank(self, curves, ax)
-        return drawn
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "block":
@@ -122,8 +114,8 @@ class QuickReturn(Linkage):
     rod: float
 
     mechanism: ClassVar[str] = "quick_return"
-    kinematics: ClassVar[ModuleType] = quick_return_kinematics
     moves: ClassVar[type[Motion]] = QuickReturnMotion
+    kinematics: ClassVar[ModuleType] = quick_return_kinematics
     names: ClassVar[tuple[str, ...]] = ("frame", "crank", "rod")
     links: ClassVar[tuple[str, str, str]] = ("crank", "block", "rod")
     bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -195,16 +187,14 @@ class QuickReturn(Linkage):
                 "the block leaves the rod; lengthen it",
             )
 
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad] in which the block is on the rod.
+    def motion(
+        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
+    ) -> QuickReturnMotion:
+        """Return the motion of rod and block; see :meth:`Linkage.motion`."""
+        return self._moved(QuickReturnMotion, theta, speed, acceleration)
 
-        Returns
-        -------
-        tuple of (float, float)
-            At their ends the block is at the tip, or with eps = 1 on the rod's pivot; each up to
-            whole turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
-            ends.
-        """
+    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
         frame, crank, rod = self.unit_lengths.values()
         if self._long_enough:
             return ((-np.pi, np.pi),)
@@ -215,36 +205,6 @@ class QuickReturn(Linkage):
         if frame == crank:
             return ((least, np.pi), (np.pi, 2.0 * np.pi - least))
         return ((least, 2.0 * np.pi - least),)
-
-    def motion(
-        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
-    ) -> QuickReturnMotion:
-        """Return the motion of rod and block, from the closure of the loop.
-
-        At ``theta = 0`` theta4 is 0; from there it is continuous over any number of turns.
-
-        Parameters
-        ----------
-        theta : array_like
-            Crank angle [rad], any shape.
-        speed, acceleration : array_like
-            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
-
-        Returns
-        -------
-        QuickReturnMotion
-            Every array has the shape to which the three broadcast.  The check "folds within the
-            angles" fails where the block leaves the rod, or with eps = 1 passes its pivot, between
-            the least and the greatest angle.
-
-        Raises
-        ------
-        BadInput
-            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
-            together, the block is beyond the tip of the rod or, with eps = 1, on its pivot.
-        """
-        moved: QuickReturnMotion = self._moved(theta, speed, acceleration)
-        return moved
 
     def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
         rod = self.unit_lengths["rod"]

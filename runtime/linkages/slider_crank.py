@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
 from types import ModuleType
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,12 +26,8 @@ from .linkage import (
     assembly_problems,
     length_problems,
     pair,
-    plot_against_crank,
     turning,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,22 +76,17 @@ class SliderCrankMotion(Motion):
         "slider_acceleration": "m/s^2",
     }
     norm: ClassVar[str] = "worse of theta3 [rad] and position over the longest length"
+    drawn: ClassVar[Mapping[str, str]] = {
+        "position": "position",
+        "slider_velocity": "velocity",
+        "slider_acceleration": "acceleration",
+    }
 
     @property
     def joints(self) -> Mapping[str, Array]:
         """Places of the joints A, B, C, each of shape (..., 2)."""
         firsts = {"A": "crank", "B": "coupler", "C": "slider"}
         return {joint: self.link(link).origin for joint, link in firsts.items()}
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the slider's place, velocity and acceleration against the crank angle."""
-        curves = (
-            ("position", "position"),
-            ("slider_velocity", "velocity"),
-            ("slider_acceleration", "acceleration"),
-        )
-        drawn: Axes = plot_against_crank(self, curves, ax)
-        return drawn
 
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
@@ -139,8 +130,8 @@ class SliderCrank(Linkage):
     assembly: Assembly = "open"
 
     mechanism: ClassVar[str] = "slider_crank"
-    kinematics: ClassVar[ModuleType] = slider_crank_kinematics
     moves: ClassVar[type[Motion]] = SliderCrankMotion
+    kinematics: ClassVar[ModuleType] = slider_crank_kinematics
     names: ClassVar[tuple[str, ...]] = ("crank", "coupler", "offset")
     links: ClassVar[tuple[str, str, str]] = ("crank", "coupler", "slider")
     bars: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -193,16 +184,14 @@ class SliderCrank(Linkage):
                 "the crank cannot turn fully; change a length",
             )
 
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad] in which the coupler reaches the guide.
+    def motion(
+        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
+    ) -> SliderCrankMotion:
+        """Return the motion of coupler and slider; see :meth:`Linkage.motion`."""
+        return self._moved(SliderCrankMotion, theta, speed, acceleration)
 
-        Returns
-        -------
-        tuple of (float, float)
-            Without their ends, at which the coupler stands across the guide; each up to whole
-            turns.  ``((-pi, pi),)`` for a crank that turns fully, for which -pi and pi are no
-            folds.
-        """
+    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
+        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
         offset = self.unit_lengths["offset"]
         upper, lower = self._beyond(offset), self._beyond(-offset)
         quarter = np.pi / 2.0
@@ -227,35 +216,6 @@ class SliderCrank(Linkage):
         if least < 0.0 or most < 0.0:
             return None
         return float(2.0 * np.arctan2(np.sqrt(least), np.sqrt(most)))
-
-    def motion(
-        self, theta: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
-    ) -> SliderCrankMotion:
-        """Return the motion of coupler and slider, from the closure of the loop.
-
-        Parameters
-        ----------
-        theta : array_like
-            Crank angle [rad], any shape.
-        speed, acceleration : array_like
-            Crank speed [rad/s] and acceleration [rad/s^2]; they broadcast with ``theta``.
-
-        Returns
-        -------
-        SliderCrankMotion
-            Every array has the shape to which the three broadcast.  The check "folds within the
-            angles" fails where the coupler comes to stand across the guide between the least and
-            the greatest angle: the motion is not continuous there, or it may leave by the other
-            branch.
-
-        Raises
-        ------
-        BadInput
-            If an angle, a speed or an acceleration is not a finite number, their shapes do not fit
-            together, or the linkage cannot reach an angle or folds there.
-        """
-        moved: SliderCrankMotion = self._moved(theta, speed, acceleration)
-        return moved
 
     def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
         return np.asarray(self._blur(m) < UNDECIDED)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import fsum, pi, tau
 from typing import TYPE_CHECKING, Any
 
@@ -18,18 +18,17 @@ from numpy.typing import ArrayLike
 from ..core.errors import bad
 from ..core.results import Check, Result, provenance
 from .four_bar import FourBar
-from .linkage import Array, require_linkage
+from .linkage import EPS, Array, require_linkage
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EPS = float(np.finfo(float).eps)
 _RECOMMENDED = (math.radians(40.0), math.radians(140.0))
 # The half-angle formulas: every sum is rounded once, and so are two roots, their products, a
 # quotient and the arctangent, to 3.5 eps in all; the rest is for the library's arctangent.
-_ROUND_OFF = 5.0 * _EPS
+_ROUND_OFF = 5.0 * EPS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,71 +220,55 @@ def transmission_angle(
     BadInput
         If the band is not two rising angles between 0 and pi, or this is no linkage.
     """
-    low, high = _checked_band(band)
+    band = _checked_band(band)
     require_linkage(linkage)
     if isinstance(linkage, SliderCrank):
-        special = _slider_crank(linkage)
-    elif isinstance(linkage, QuickReturn):
-        special = _quick_return(linkage)
-    else:
-        special = _four_bar(linkage)
-    least, greatest = special.least, special.greatest
-    ends = ((special.at_least, least), (special.at_greatest, greatest))
+        return _slider_crank(linkage, band)
+    return (
+        _quick_return(linkage, band)
+        if isinstance(linkage, QuickReturn)
+        else _four_bar(linkage, band)
+    )
+
+
+def _result(
+    linkage: FourBar | SliderCrank | QuickReturn,
+    band: tuple[float, float],
+    least: float,
+    greatest: float,
+    at_least: tuple[float, ...],
+    at_greatest: tuple[float, ...],
+    round_off: float = 0.0,
+    **positions: Any,
+) -> TransmissionAngle:
+    """Return the result; ``round_off`` is that of a cosine by the plain law of cosines."""
+    ends = ((at_least, least), (at_greatest, greatest))
     gaps = [abs(_cosine(linkage, angle) - math.cos(x)) for angles, x in ends for angle in angles]
+    worst = Check(float(max(gaps, default=0.0)), round_off)
     lengths = {name: float(size) for name, size in linkage.lengths.items()}
     return TransmissionAngle(
         mechanism=linkage.mechanism.replace("_", "-"),
         least=least,
         greatest=greatest,
-        at_least=np.array(special.at_least),
-        at_greatest=np.array(special.at_greatest),
-        band=(low, high),
-        within_band=low <= least and greatest <= high,
+        at_least=np.array(at_least),
+        at_greatest=np.array(at_greatest),
+        band=band,
+        within_band=band[0] <= least and greatest <= band[1],
         crank_ranges=np.array(linkage.crank_ranges()),
-        dead_centres=special.dead_centres,
-        output_at_dead_centres=special.outputs,
         toggles={
-            "folded": np.array(special.at_least if least == 0.0 else ()),
-            "extended": np.array(special.at_greatest if greatest == pi else ()),
+            "folded": np.array(at_least if least == 0.0 else ()),
+            "extended": np.array(at_greatest if greatest == pi else ()),
         },
-        output_range=special.output_range,
-        swing=special.swing,
-        time_ratio=special.time_ratio,
+        **positions,
         lengths=lengths,
         linkage=linkage,
         method="half-angle formulas of correctly rounded sums",
         error=_ROUND_OFF * greatest,
         error_norm="least and greatest transmission angle [rad], absolute, worst",
         error_kind="bound",
-        checks={
-            "cosines of the extremes by the law of cosines": Check(
-                float(max(gaps, default=0.0)), special.round_off
-            )
-        },
+        checks={"cosines of the extremes by the law of cosines": worst},
         provenance=provenance({f"links.{name}": repr(size) for name, size in lengths.items()}),
     )
-
-
-@dataclass(frozen=True)
-class _Special:
-    """Special positions; the words of :class:`TransmissionAngle` apply.
-
-    Attributes
-    ----------
-    round_off : float
-        Of a cosine by the plain law of cosines.
-    """
-
-    least: float
-    greatest: float
-    at_least: tuple[float, ...]
-    at_greatest: tuple[float, ...]
-    dead_centres: Mapping[str, float]
-    outputs: Mapping[str, float]
-    output_range: tuple[float, float] | None
-    swing: float | None
-    time_ratio: float | None
-    round_off: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -319,7 +302,7 @@ class _Sums:
         )
 
 
-def _four_bar(linkage: FourBar) -> _Special:
+def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a four-bar linkage (Aannaque 3.9, 3.10, and the triangles ACD)."""
     frame, crank, coupler, follower = linkage.unit_lengths.values()
     s = _Sums.of(frame, crank, coupler, follower)
@@ -329,17 +312,19 @@ def _four_bar(linkage: FourBar) -> _Special:
     fold_pi = _angle((s.less_frame, s.less_crank), (s.two, s.total)) if outer else pi
     centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
     output_range = _follower_range(s, linkage.branch)
-    return _Special(
+    return _result(
+        linkage,
+        band,
         least=0.0 if inner else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
         greatest=pi if outer else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
         at_least=_mirrored(fold_0),
         at_greatest=_mirrored(fold_pi),
         dead_centres=centres,
-        outputs=outputs,
+        output_at_dead_centres=outputs,
         output_range=output_range,
         swing=None if output_range is None else output_range[1] - output_range[0],
         time_ratio=None if inner or outer else _time_ratio(centres),
-        round_off=8.0 * _EPS * s.total**2 / (coupler * follower),
+        round_off=8.0 * EPS * s.total**2 / (coupler * follower),
     )
 
 
@@ -374,7 +359,7 @@ def _follower_range(s: _Sums, branch: float) -> tuple[float, float] | None:
     return None if inner is None else (-inner, inner)
 
 
-def _slider_crank(linkage: SliderCrank) -> _Special:
+def _slider_crank(linkage: SliderCrank, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a slider-crank linkage.
 
     The cosine of the transmission angle is (offset - crank sin(theta2))/coupler.
@@ -386,7 +371,7 @@ def _slider_crank(linkage: SliderCrank) -> _Special:
     high = _arcsine(offset + coupler, over, reach[1]) if upper else pi / 2
     low = _arcsine(offset - coupler, under, reach[0]) if lower else -pi / 2
     far = math.sqrt(reach[0]) * math.sqrt(reach[1])
-    branch, round_off = linkage.branch, 8.0 * _EPS * reach[1 if offset >= 0 else 0] / coupler
+    branch, round_off = linkage.branch, 8.0 * EPS * reach[1 if offset >= 0 else 0] / coupler
     centres, outputs = {"extended": math.atan2(offset, branch * far)}, {"extended": branch * far}
     if over * under >= 0 and crank != coupler:
         folded = _root(over, under)
@@ -395,29 +380,30 @@ def _slider_crank(linkage: SliderCrank) -> _Special:
         outputs["folded"] = branch * ahead * folded
     # The circuit ends at the folded position, or goes on to the other side of the crank pivot.
     near = _root(over, under) if over * under > 0 else -far
-    special = _Special(
+    turns = over > 0 and under > 0
+    # Far less near, without cancellation where the crank turns.
+    stroke = 4.0 * crank * coupler / (far + near) if turns else far - near
+
+    def lengthened(value: float) -> float:
+        return math.ldexp(value, -linkage.scale)
+
+    return _result(
+        linkage,
+        band,
         least=0.0 if lower else _angle((under,), (reach[1],)),
         greatest=pi if upper else _angle((reach[0],), (over,)),
         at_least=(low, _turned(pi - low)) if lower else (low,),
         at_greatest=(high, _turned(pi - high)) if upper else (high,),
         dead_centres=centres,
-        outputs=outputs,
-        output_range=(near, far) if branch > 0 else (-far, -near),
-        swing=_stroke(crank, coupler, over, under, far, near),
+        output_at_dead_centres={name: lengthened(value) for name, value in outputs.items()},
+        output_range=tuple(map(lengthened, (near, far) if branch > 0 else (-far, -near))),
+        swing=lengthened(stroke),
         time_ratio=None if upper or lower else _time_ratio(centres),
         round_off=round_off,
     )
-    return _lengthened(special, -linkage.scale)
 
 
-def _stroke(
-    crank: float, coupler: float, over: float, under: float, far: float, near: float
-) -> float:
-    """Return far less near; without cancellation where the crank turns."""
-    return 4.0 * crank * coupler / (far + near) if over > 0 and under > 0 else far - near
-
-
-def _quick_return(linkage: QuickReturn) -> _Special:
+def _quick_return(linkage: QuickReturn, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a quick-return linkage: the block presses at right angles."""
     frame, crank, _ = linkage.unit_lengths.values()
     shorter, longer = min(frame, crank), max(frame, crank)
@@ -425,13 +411,15 @@ def _quick_return(linkage: QuickReturn) -> _Special:
     lean = math.atan2(shorter, root)
     swings = crank < frame
     at = pi / 2 + lean
-    return _Special(
+    return _result(
+        linkage,
+        band,
         least=pi / 2,
         greatest=pi / 2,
         at_least=(),
         at_greatest=(),
         dead_centres={"upper": at, "lower": -at} if swings else {},
-        outputs={"upper": lean, "lower": -lean} if swings else {},
+        output_at_dead_centres={"upper": lean, "lower": -lean} if swings else {},
         output_range=(-lean, lean) if swings else None,
         swing=2.0 * lean if swings else None,
         time_ratio=at / math.atan2(root, shorter) if root else None,
@@ -495,14 +483,14 @@ def _speed_ratio(linkage: FourBar | SliderCrank | QuickReturn, motion: Any) -> t
         sine = np.abs(np.sin(motion.transmission_angle))
         aligned = np.abs(np.cos(motion.theta4 - motion.theta3))
         passed_on = linkage.crank / linkage.follower + np.abs(ratio) * aligned
-        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * _EPS * np.abs(ratio)
+        return ratio, 2.0 * motion.error * passed_on / sine + 4.0 * EPS * np.abs(ratio)
     if isinstance(linkage, SliderCrank):
         ratio = motion.slider_velocity
         cosine = np.abs(np.cos(motion.theta3))
-        turned = 2.0 * _EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
-        return ratio, linkage.crank * turned + 4.0 * _EPS * np.abs(ratio)
+        turned = 2.0 * EPS * (np.abs(motion.theta2) + 8.0 / cosine) / cosine**2
+        return ratio, linkage.crank * turned + 4.0 * EPS * np.abs(ratio)
     ratio = motion.omega4
-    turned = _EPS * (np.abs(motion.theta2) + 4.0)
+    turned = EPS * (np.abs(motion.theta2) + 4.0)
     lever = (linkage.frame + linkage.crank) / motion.slide
     return ratio, turned * lever**2 * (1.0 + np.abs(ratio))
 
@@ -516,14 +504,3 @@ def _checked_band(band: tuple[float, float]) -> tuple[float, float]:
     if not 0 <= low < high <= math.pi:
         raise bad("band", repr(band)[:60], "0 <= low < high <= pi", "give radians, rising")
     return low, high
-
-
-def _lengthened(special: _Special, exponent: int) -> _Special:
-    """Return the positions of a slider in the unit of the lengths."""
-    low, high = special.output_range or (0.0, 0.0)
-    return replace(
-        special,
-        outputs={name: math.ldexp(value, exponent) for name, value in special.outputs.items()},
-        output_range=(math.ldexp(low, exponent), math.ldexp(high, exponent)),
-        swing=math.ldexp(special.swing or 0.0, exponent),
-    )

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 # The force in the crank pin, the driving torque and the moment on the frame, equally weighted.
 DEFAULT_WEIGHTS: Mapping[str, float] = {"f23": 1.0, "torque": 1.0, "shaking_moment": 1.0}
 
-# A force below this, over the largest of its kind, is no force to compare with.
-_NO_FORCE = 1e-12
 _ROUND_OFF = 2e-14
 _OPTIMAL = 1e-5
 # At the ends of a trade-off one peak is the least possible; so much more is allowed, in units of
@@ -315,7 +313,8 @@ def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
     forces = max(peaks[term] for term in TERMS if term not in moments)
     most = dict.fromkeys(TERMS, forces)
     most |= dict.fromkeys(moments, max(peaks[term] for term in moments))
-    return {term for term in TERMS if not peaks[term] > _NO_FORCE * most[term]}
+    # A force below this, over the largest of its kind, is no force to compare with.
+    return {term for term in TERMS if not peaks[term] > 1e-12 * most[term]}
 
 
 def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:

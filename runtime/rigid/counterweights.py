@@ -132,13 +132,7 @@ class Bounds:
             raise BadInput(*problems)
 
     def completed(self, machine: Machine, link: str) -> tuple[float, float]:
-        """Return greatest mass [kg] and offset [m], with the machine's defaults.
-
-        Raises
-        ------
-        BadInput
-            If a default is not known, or below the least offset.
-        """
+        """Return greatest mass [kg] and offset [m], with the machine's defaults."""
         lengths = machine.linkage.lengths
         mass = self.mass or sum(machine.mass(name).mass for name in machine.linkage.links)
         offset = self.offset or lengths.get(link)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from itertools import product
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -35,8 +34,6 @@ _NAMES = {
 # What springs and dampers bring to the frame, its pins bring back: they change none of these.
 _FRAME_NAMES = (*FRAME_FORCE, "shaking_moment")
 _MOMENTS = ("torque", "shaking_moment", "couple34", "couple41")
-# Lengths from 2^-60 to 2^60 keep their powers within what a float holds; others are scaled.
-_SAFE_EXPONENT = 60
 
 
 @cache
@@ -65,18 +62,13 @@ class Evaluation:
         self.machine, self.batch, self.theta = machine, batch, theta
         longest = max(abs(size) for size in machine.linkage.lengths.values())
         exponent = int(np.frexp(longest)[1])
-        self.exponent = exponent if abs(exponent) > _SAFE_EXPONENT else 0
+        # Lengths from 2^-60 to 2^60 keep their powers within what a float holds; others are scaled.
+        self.exponent = exponent if abs(exponent) > 60 else 0
         self.kernels = force_kernels(machine.linkage.mechanism)
         self.numbers = self._numbers(speed, acceleration)
 
     def values(self, wanted: tuple[Output, ...]) -> dict[str, Array]:
-        """Return the wanted forces by name.
-
-        Raises
-        ------
-        BadInput
-            If one is not finite.
-        """
+        """Return the wanted forces by name."""
         # Two functions of a part repeat what they share: the one of everything costs less.
         function = _KERNELS[wanted[0]] if len(wanted) == 1 else "forces"
         kept = {name for output in wanted for name in _NAMES.get(output, ())}
@@ -157,45 +149,29 @@ def _evaluate(
     rows: Sequence[tuple[int, int]],
     *,
     add: bool,
-    block: int = BLOCK,
 ) -> float:
     """Evaluate a function that broadcasts, in blocks that stay in the processor's cache.
 
     An argument that does not vary along an axis is not spread along it: what depends on the crank
-    angle alone is evaluated once for all the speeds of a block.
-
-    Parameters
-    ----------
-    function : callable
-        Returns an array, or a tuple of arrays, that broadcast to the batch.
-    given : sequence of float or ndarray
-        They broadcast to the batch.
-    out : ndarray, shape (k, *batch)
-        Filled.
-    rows : sequence of (int, int)
-        Row of ``out``, and the place of what belongs there among the returned arrays.
-    add : bool
-        Add to what is there, instead of replacing it.
-
-    Returns
-    -------
-    float
-        The sum of some of the returned arrays: no finite number where an entry is none.
+    angle alone is evaluated once for all the speeds of a block.  ``rows`` are pairs: row of
+    ``out``, shape (k, *batch), and place among the returned arrays.  Returns a sum that is no
+    finite number where an entry is none.
     """
     total = 0.0
     if out.size == 0 or not rows:
         return total
     watched = {rows[0][1], rows[min(1, len(rows) - 1)][1], rows[-1][1]}
-    for where in _blocks(out.shape[1:], block):
-        returned = function(*(_part(item, where) for item in given))
-        arrays = returned if isinstance(returned, tuple) else (returned,)
-        into: Any = (slice(None), *where)
-        target = out[into]
+    batch = out.shape[1:]
+    axis = max(range(len(batch)), key=batch.__getitem__, default=0)
+    longest = batch[axis] if batch else 1
+    step = max(1, BLOCK * longest * len(out) // out.size)
+    for start in range(0, longest, step):
+        part = slice(start, start + step)
+        arrays = function(*(_part(item, part, axis - len(batch) or -1) for item in given))
+        arrays = arrays if isinstance(arrays, tuple) else (arrays,)
+        target = out[(slice(None),) * (axis + 1) + (part,)] if batch else out
         for row, place in rows:
-            if add:
-                target[row] += arrays[place]
-            else:
-                target[row] = arrays[place]
+            target[row] = target[row] + arrays[place] if add else arrays[place]
         # An angle out of reach spoils every row; what overflows shows in the first ones or the
         # last, to which the others add up.  All of them would take a twentieth of the time.
         for place in watched:
@@ -203,21 +179,8 @@ def _evaluate(
     return total
 
 
-def _part(item: Any, where: tuple[slice, ...]) -> Any:
-    """Return the part of an argument that broadcasts to a block."""
-    if not (isinstance(item, np.ndarray) and item.ndim):
+def _part(item: Any, part: slice, axis: int) -> Any:
+    """Return a part of an argument along an axis counted from the last, where it varies there."""
+    if np.ndim(item) < -axis or item.shape[axis] == 1:
         return item
-    ends = where[len(where) - item.ndim :]
-    return item[tuple(s if n > 1 else slice(None) for s, n in zip(ends, item.shape, strict=True))]
-
-
-def _blocks(batch: tuple[int, ...], block: int) -> Iterator[tuple[slice, ...]]:
-    """Yield the index of each block: long in the last axes, of at most ``block`` entries."""
-    lengths: list[int] = []
-    left = block
-    for size in reversed(batch):
-        lengths.insert(0, max(1, min(size, left)))
-        left = max(1, left // lengths[0])
-    ranges = [range(0, size, step) for size, step in zip(batch, lengths, strict=True)]
-    for starts in product(*ranges):
-        yield tuple(slice(a, a + step) for a, step in zip(starts, lengths, strict=True))
+    return item[(..., part) + (slice(None),) * (-axis - 1)]

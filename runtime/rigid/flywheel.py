@@ -11,7 +11,8 @@ import numpy as np
 
 from ..core.errors import bad
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ..linkages.linkage import Array
+from ..core.trigonometric import interpolated
+from ..linkages.linkage import EPS, TURN, Array
 from .forces import driving_torque
 from .inputs import not_finite
 from .machine import Machine, require_machine
@@ -20,24 +21,13 @@ from .one_freedom import OneFreedom
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_TURN = 2.0 * np.pi
-_EPS = float(np.finfo(float).eps)
 _FEWEST, _MOST = 1024, 2**15
-# The tail of the torque's harmonics is taken as round-off below this share of the largest one.
-_TAIL = 1e-12
-# Forward dynamics confirm the coefficient of fluctuation to this share of it.
-_CONFIRMED = 1e-5
 _ITERATIONS = 60
-_MOST_TOPS = 16
-_TO_POWERS = np.linalg.inv(np.vander(np.arange(-3.0, 4.0), increasing=True))
-_WILD = 10.0
 # The speeds have settled where they move by no more, relative; the check allows for jitter.
-_SETTLED, _UNSETTLED = 16.0 * _EPS, 1e-12
-# Flywheels tried from the lightest up, so that the least of all that will do is found.
-_TRIED, _LIGHTEST = 33, 1e-4
+_SETTLED, _UNSETTLED = 16.0 * EPS, 1e-12
 # Turns between which a torque must repeat, and angles that no regular pattern meets twice.
 _TURNS = np.array([0.0, 1.0, 2.0, 3.0, 7.0])
-_SCATTERED = _TURN * np.mod(np.sqrt(2.0) * np.arange(1.0, 32.0), 1.0)
+_SCATTERED = TURN * np.mod(np.sqrt(2.0) * np.arange(1.0, 32.0), 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +70,7 @@ class TorqueFluctuation(Result):
         from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
-        degrees = np.degrees(np.append(self.theta, self.theta[0] + _TURN))
+        degrees = np.degrees(np.append(self.theta, self.theta[0] + TURN))
         ax.plot(degrees, np.append(self.torque, self.torque[0]))
         ax.axhline(self.mean_torque, color="0.5", linestyle="--", label="mean")
         ax.set_xlabel("crank angle [deg]")
@@ -131,7 +121,7 @@ def torque_fluctuation(machine: Machine, speed: float) -> TorqueFluctuation:
         slowest=fastest,
         fastest=slowest,
         method=f"{theta.size} samples, integrated by harmonics",
-        error=tail + 32.0 * _EPS * size + _polish_error(energy),
+        error=tail + 32.0 * EPS * size,
         error_norm="energy fluctuation [J]",
         checks=DeferredChecks(partial(_mean_check, machine, speed, mean, size)),
         provenance=provenance(machine.provenance),
@@ -229,9 +219,9 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
     balance = _Balance(machine, steady)
     inertia = balance.inertia_for(fluctuation, first_order)
     reached, speeds, motor, moved = balance.motion(inertia)
-    slope = (steady.error + 64.0 * _EPS * balance.size) / (fluctuation * speed**2)
+    slope = (steady.error + 64.0 * EPS * balance.size) / (fluctuation * speed**2)
     # The coefficient is known to some last digits and to what the speeds still move.
-    error = slope + (16.0 * _EPS + 8.0 * moved) / fluctuation * inertia
+    error = slope + (16.0 * EPS + 8.0 * moved) / fluctuation * inertia
     # The fluctuation goes with the inverse of the whole inertia; it is off by its error's share.
     share = error / (inertia + float(np.mean(balance.reduced)))
     return Flywheel(
@@ -277,7 +267,7 @@ class _Balance:
             motor = float(np.mean(load))
             changed = self._speeds(inertia, -_integral(load))
             if changed is None:
-                return _WILD, self.sign * speeds, motor, 0.0
+                return 10.0, self.sign * speeds, motor, 0.0
             moved = float(np.max(np.abs(changed - speeds))) / self.speed
             speeds = changed
             if self.still is not None:
@@ -298,7 +288,7 @@ class _Balance:
                 return None
             speeds = np.sqrt(square)
             off = self.speed - (_extreme(speeds)[0] - _extreme(-speeds)[0]) / 2.0
-            if abs(off) <= 4.0 * _EPS * self.speed:
+            if abs(off) <= 4.0 * EPS * self.speed:
                 break
             # d(speed)/d(middle) = 1/(inertia speed), here at the mean of the two extremes.
             places = [int(np.argmax(speeds)), int(np.argmin(speeds))]
@@ -322,22 +312,25 @@ class _Balance:
         while excess(most) > 0:
             most *= 2.0
         light = 0.0
-        for heavy in (*np.geomspace(_LIGHTEST * most, most, _TRIED)[:-1], most):
+        # Flywheels tried from the lightest up, so that the least of all that will do is found.
+        for heavy in (*np.geomspace(1e-4 * most, most, 33)[:-1], most):
             if excess(heavy) <= 0:
                 break
             light = float(heavy)
-        return float(brentq(excess, light, heavy, xtol=1e-15 * most, rtol=4.0 * _EPS))
+        return float(brentq(excess, light, heavy, xtol=1e-15 * most, rtol=4.0 * EPS))
 
 
 def _sampled(machine: Machine, speed: float) -> tuple[Array, Array, float]:
     """Return angles, torques, and what the harmonics beyond the samples do to the energy [J]."""
     count = _FEWEST
     while True:
-        theta = _TURN * np.arange(count) / count
+        theta = TURN * np.arange(count) / count
         torque = driving_torque(machine, theta, speed).torque
         size = np.abs(np.fft.rfft(torque)) * (2.0 / count)
         top = size[-max(1, size.size // 8) :]
-        if float(np.sum(top)) <= _TAIL * float(np.max(np.abs(torque))):
+        # The tail of the torque's harmonics is taken as round-off below this share of the largest
+        # one.
+        if float(np.sum(top)) <= 1e-12 * float(np.max(np.abs(torque))):
             return theta, torque, 0.0
         if count >= _MOST:
             # Folded down, each is added to a lower harmonic k, and divided by k: a sum of 1/k.
@@ -360,46 +353,30 @@ def _integral(values: Array) -> Array:
 def _extreme(values: Array) -> tuple[float, float]:
     """Return the greatest value of a periodic function between its samples, and its angle.
 
-    Every local maximum that may be the greatest is polished: a sample is lower than the summit
-    beside it by an eighth of the second differences.
+    By Newton's method on the trigonometric interpolant, from every local maximum that may be the
+    greatest: a sample is lower than the summit beside it by an eighth of the second differences.
     """
     before, after = np.roll(values, 1), np.roll(values, -1)
     lower = float(np.max(values) - np.max(np.abs(before - 2.0 * values + after)))
     tops = np.flatnonzero((values >= before) & (values >= after) & (values >= lower))
     # Of a function that all but stays the same, the highest samples are enough.
-    highest = tops[np.argsort(-values[tops], kind="stable")[:_MOST_TOPS]]
-    return max((_summit(values, int(top)) for top in highest), key=lambda each: each[0])
-
-
-def _summit(values: Array, top: int) -> tuple[float, float]:
-    """Return value and angle of the summit beside a sample."""
-    n = values.size
-    # Seven samples about the top; the polynomial through them is off by the eighth power.
-    y = values[(top + np.arange(-3, 4)) % n] - values[top]
-    polynomial = np.polynomial.Polynomial(_TO_POWERS @ y)
-    slope = polynomial.deriv()
-    curve = slope.deriv()
-    at = 0.0
-    for _ in range(8):
-        bend = curve(at)
-        if bend == 0.0:
-            break
-        at = float(np.clip(at - slope(at) / bend, -1.0, 1.0))
-    value = float(values[top] + max(float(polynomial(at)), 0.0))
-    return value, float((top + at) * _TURN / n % _TURN)
-
-
-def _polish_error(energy: Array) -> float:
-    """Return how far half the samples would put the extremes, over what halving gains."""
-    half = energy[::2]
-    gap = _extreme(energy)[0] - _extreme(half)[0]
-    other = _extreme(-energy)[0] - _extreme(-half)[0]
-    return (abs(gap) + abs(other)) / 16.0
+    tops = tops[np.argsort(-values[tops], kind="stable")[:16]]
+    series = interpolated(values, TURN).coefficients
+    waves, step = 1j * np.arange(series.size), TURN / values.size
+    at = start = tops * step
+    for _ in range(6):
+        terms = np.exp(np.multiply.outer(at, waves)) * series
+        slope, bend = (terms @ waves).real, (terms @ waves**2).real
+        moved = at - slope / np.where(bend < 0.0, bend, -np.inf)
+        at = np.clip(moved, start - step, start + step)
+    summits = np.maximum((np.exp(np.multiply.outer(at, waves)) @ series).real, values[tops])
+    best = int(np.argmax(summits))
+    return float(summits[best]), float(at[best] % TURN)
 
 
 def _mean_check(machine: Machine, speed: float, mean: float, size: float) -> dict[str, Check]:
     """Take the mean again from the work of loads and dampers over the revolution."""
-    theta = _TURN * np.arange(_MOST // 8) / (_MOST // 8)
+    theta = TURN * np.arange(_MOST // 8) / (_MOST // 8)
     work = -float(np.mean(machine.power(theta, np.full(theta.shape, speed)))) / speed
     gap = abs(mean - work) / (size or 1.0)
     return {"mean torque against the loads' work, relative": Check(gap, 1e-3)}
@@ -429,8 +406,9 @@ def _confirmed(
     speeds = np.abs(run.speed)
     middle = (np.max(speeds) + np.min(speeds)) / 2.0
     gap = abs((np.max(speeds) - np.min(speeds)) / middle - reached) / max(reached, 1e-12)
+    # Forward dynamics confirm the coefficient of fluctuation to this share of it.
     return {
-        "fluctuation by forward dynamics, relative": Check(float(gap), _CONFIRMED + share),
+        "fluctuation by forward dynamics, relative": Check(float(gap), 1e-5 + share),
         "speeds not settled, relative": Check(moved, _UNSETTLED),
     }
 
@@ -441,7 +419,7 @@ def _require(machine: Machine, speed: float) -> None:
     if not_finite("speed", {"speed": speed}) or speed == 0:
         given = repr(speed)[:60]
         raise bad("speed", given, "a finite crank speed, not zero", "give one in rad/s")
-    turns = _SCATTERED + _TURN * _TURNS[:, np.newaxis]
+    turns = _SCATTERED + TURN * _TURNS[:, np.newaxis]
     torque = driving_torque(machine, turns, speed).torque
     size = float(np.max(np.abs(torque)))
     if not np.allclose(torque, torque[:1], rtol=1e-6, atol=1e-6 * size):

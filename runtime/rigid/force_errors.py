@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.results import Check
-from ..linkages.linkage import Array
+from ..linkages.linkage import EPS, Array, Linkage, Motion
 from ..linkages.parametric import ANGLE
 from .evaluation import BLOCK
-from .loads import Load, Spring, TorsionSpring, Wrench, at_first_joint, frozen
-from .machine import Machine, wrenches
-from .masses import MassDistribution
+from .loads import Load, Spring, Wrench, at_first_joint, frozen
+from .machine import Machine, power_of, wrenches
 from .parametric import ParametricMachine
 
 NORM = (
@@ -23,16 +22,9 @@ NORM = (
     " entrywise"
 )
 
-_UNIT = float(np.finfo(float).eps) / 2.0
-# The emitted functions are off by a few round-offs of everything they are given.  Of 5700
-# random machines near folds, near change points and with short links the worst needed 18.4 against
-# 60 digits, all others less than 9 (tests/error_estimates has a part of them).
-_FACTOR = 24.0
 # Where the error is as large as this share of what is added up, the linkage folds, and first
 # order tells nothing: the forces may be as large as one likes.
 _MEANINGFUL = 0.5
-# Places at which the checks are made, beside those where a force is largest.
-_PLACES = 24
 
 
 def error(machine: Machine, theta: Array, speed: Array, acceleration: Array) -> Array:
@@ -57,12 +49,11 @@ def error_and_size(
     given = [np.ravel(np.broadcast_to(item, batch)) for item in (theta, speed, acceleration)]
     errors, size = np.empty(given[0].size), np.empty(given[0].size)
     loads = _frozen_loads(machine, *given)
-    scaled = _Scaled(machine)
     # Some twenty derivatives of each number.
     step = BLOCK // 8
     for where in (slice(start, start + step) for start in range(0, errors.size, step)):
-        part = [_FrozenLoad(one.load, one.force[where], one.couple[where]) for one in loads]
-        errors[where], size[where] = scaled.error(part, *(item[where] for item in given))
+        part = tuple(_FrozenLoad(one.load, one.force[where], one.couple[where]) for one in loads)
+        errors[where], size[where] = _of_block(machine, part, *(item[where] for item in given))
     return errors.reshape(batch), size.reshape(batch)
 
 
@@ -97,152 +88,75 @@ def _frozen_loads(
     return loads
 
 
-@dataclass(frozen=True)
-class _Acting:
-    """A machine as its derivatives take it: masses, gravity, frozen loads, springs."""
+def _of_block(
+    machine: Machine, loads: tuple[_FrozenLoad, ...], theta: Array, speed: Array, change: Array
+) -> tuple[Array, Array]:
+    """Return the error and what is added up [N] at angles of one axis."""
+    linkage = machine.linkage
+    model = ParametricMachine(linkage, theta, speed, change, machine=machine, loads=loads)
+    numbers = model.values
+    longest = max(abs(size) for size in linkage.lengths.values())
+    fixed = [n for n in linkage.names if numbers[n] or n == "offset"]
+    moments = [n for n, value in numbers.items() if value and "." in n]
+    with np.errstate(all="ignore"):
+        values, slopes = model.derivatives(numbers, (ANGLE, *fixed, *moments))
+        steps = [np.abs(theta), *(_step(linkage, n, numbers[n]) for n in (*fixed, *moments))]
+        drives = _drives(model)
+        moved, size = np.zeros(theta.shape), np.zeros(theta.shape)
+        split = 1 + len(fixed)
+        for name in model.forces:
+            arm = longest if model.unit(name) == "N m" else 1.0
+            terms = [step * np.abs(slope) for step, slope in zip(steps, slopes[name], strict=True)]
+            parts = np.abs(values[name]) + sum(terms[split:])
+            parts = parts + sum(np.abs(part[name]) for part in drives)
+            moved = np.fmax(moved, (sum(terms[:split]) + parts) / arm)
+            size = np.fmax(size, parts / arm)
+        pulls = _pulls(machine, loads, longest, linkage.motion(theta, speed, change))
+        # The emitted functions are off by a few round-offs of everything they are given.  Of 5700
+        # random machines near folds, near change points and with short links the worst needed 18.4
+        # against 60 digits, all others less than 9 (tests/error_estimates has a part of them).
+        errors, size = 24.0 * EPS / 2.0 * (moved + pulls), size + pulls
+        known = np.isfinite(errors) & (_share_of(errors, size) <= _MEANINGFUL)
+    return np.where(known, errors, np.inf), size
 
-    masses: Mapping[str, MassDistribution]
-    gravity: tuple[float, float]
-    loads: tuple[Any, ...]
-    springs: tuple[Any, ...]
-    loaded: bool
 
-    def mass(self, link: str) -> MassDistribution:
-        return self.masses.get(link, MassDistribution())
+def _step(linkage: Linkage, name: str, value: float) -> float:
+    """Return what a number counts as in round-offs."""
+    if name != "offset":
+        return abs(value)
+    # The height of the coupler's end over the guide is a difference of parts of crank and
+    # coupler, which are larger than what is left near small crank angles.
+    return abs(value) + (linkage.lengths["crank"] + linkage.lengths["coupler"]) / 4.0
 
 
-class _Scaled:
-    """A machine in a unit of length in which the longest link is between a half and 1."""
+def _drives(model: ParametricMachine) -> list[Mapping[str, Array]]:
+    """Return the forces at no speed and at no acceleration, which may cancel each other."""
+    if not np.any(model.acceleration):
+        return []
+    parts = ({"speed": np.zeros_like(model.speed)}, {"acceleration": np.zeros(1)})
+    return [replace(model, **part).evaluate(model.values) for part in parts]
 
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
-        sizes = machine.linkage.lengths
-        self.exponent = int(np.frexp(max(abs(size) for size in sizes.values()))[1])
-        shorter = {name: self._length(size) for name, size in sizes.items()}
-        changes: Any = shorter
-        self.linkage = replace(machine.linkage, **changes)  # type: ignore[type-var]
-        self.longest = max(abs(size) for size in shorter.values())
-        self.masses = {
-            link: MassDistribution(
-                self._rate(mass.mass), mass.along, mass.across, self._length(mass.inertia)
-            )
-            for link, mass in machine.masses.items()
-        }
-        gx, gy = machine.gravity
-        self.gravity = self._length(gx), self._length(gy)
-        self.springs = tuple(self._spring(spring) for spring in machine.springs)
 
-    def _length(self, value: Any) -> Any:
-        return np.ldexp(value, -self.exponent)
-
-    def _rate(self, value: float) -> float:
-        return float(np.ldexp(value, self.exponent))
-
-    def _spring(self, spring: Spring | TorsionSpring) -> Spring | TorsionSpring:
-        if isinstance(spring, TorsionSpring):
-            names = ("stiffness", "damping", "preload")
-            changes: Any = {name: float(self._length(getattr(spring, name))) for name in names}
-            return replace(spring, **changes)
-        ends: Any = {
-            name: (end[0], float(self._length(end[1])), float(self._length(end[2])))
-            for name, end in (("first", spring.first), ("second", spring.second))
-        }
-        return replace(
-            spring,
-            **ends,
-            stiffness=self._rate(spring.stiffness),
-            damping=self._rate(spring.damping),
-            free_length=float(self._length(spring.free_length)),
-        )
-
-    def error(
-        self, loads: list[_FrozenLoad], theta: Array, speed: Array, change: Array
-    ) -> tuple[Array, Array]:
-        """Return the error and what is added up [N] at angles of one axis."""
-        acting: Any = _Acting(
-            self.masses,
-            self.gravity,
-            tuple(self._load(load) for load in loads),
-            self.springs,
-            self.machine.loaded,
-        )
-        model = ParametricMachine(self.linkage, theta, speed, change, machine=acting)
-        numbers = model.values
-        fixed = [n for n in self.linkage.names if numbers[n] or n == "offset"]
-        moments = [n for n, value in numbers.items() if value and "." in n]
-        names = (ANGLE, *fixed, *moments)
-        with np.errstate(all="ignore"):
-            values, slopes = model.derivatives(numbers, names)
-            steps = [np.abs(theta), *(self._step(n, numbers[n]) for n in names[1:])]
-            drives = self._drives(model)
-            moved, size = np.zeros(theta.shape), np.zeros(theta.shape)
-            for name in model.forces:
-                arm = self.longest if model.unit(name) == "N m" else 1.0
-                terms = [
-                    step * np.abs(slope) for step, slope in zip(steps, slopes[name], strict=True)
-                ]
-                split = 1 + len(fixed)
-                parts = np.abs(values[name]) + sum(terms[split:])
-                parts = parts + sum(np.abs(part[name]) for part in drives)
-                moved = np.fmax(moved, (sum(terms[:split]) + parts) / arm)
-                size = np.fmax(size, parts / arm)
-            pulls = self._pulls(loads, theta, speed, change)
-            errors, size = _FACTOR * _UNIT * (moved + pulls), size + pulls
-            known = np.isfinite(errors) & (_share_of(errors, size) <= _MEANINGFUL)
-        return np.where(known, errors, np.inf), size
-
-    def _step(self, name: str, value: float) -> float:
-        """Return what a number counts as in round-offs."""
-        if name != "offset":
-            return abs(value)
-        # The height of the coupler's end over the guide is a difference of parts of crank and
-        # coupler, which are larger than what is left near small crank angles.
-        lengths = self.linkage.lengths
-        return abs(value) + (lengths["crank"] + lengths["coupler"]) / 4.0
-
-    def _load(self, one: _FrozenLoad) -> _FrozenLoad:
-        places = {n: float(self._length(getattr(one.load, n))) for n in ("along", "across")}
-        scaled: Any = replace(one.load, **places)  # type: ignore[arg-type]
-        return _FrozenLoad(scaled, one.force, self._length(one.couple))
-
-    @staticmethod
-    def _drives(model: ParametricMachine) -> list[Mapping[str, Array]]:
-        """Return the forces at no speed and at no acceleration, which may cancel each other."""
-        if not np.any(model.acceleration):
-            return []
-        parts = ({"speed": np.zeros_like(model.speed)}, {"acceleration": np.zeros(1)})
-        return [replace(model, **part).evaluate(model.values) for part in parts]
-
-    def _pulls(self, loads: list[_FrozenLoad], theta: Array, speed: Array, change: Array) -> Array:
-        """Return how large the parts of the wrenches are, seen in the joints [N]."""
-        total: Array = np.zeros(theta.shape)
-        if not (loads or self.springs):
-            return total
-        motion = self.linkage.motion(theta, speed, change)
-        for one in loads:
-            reach = self._length(abs(one.load.along) + abs(one.load.across)) + self.longest
-            force = np.hypot(one.force[:, 0], one.force[:, 1])
-            total = total + force * reach + np.abs(self._length(one.couple))
-        total = total + self._tensions(motion) * self.longest
-        return np.asarray(total / _shortest_arm(self.linkage.lengths, motion))
-
-    def _tensions(self, motion: Any) -> Array:
-        """Return how large the parts are of which the springs' tensions are differences [N]."""
-        total: Array = np.zeros(np.shape(motion.theta2))
-        for spring in self.springs:
-            if isinstance(spring, Spring):
-                reach = self.longest + spring.free_length + np.hypot(*spring.first[1:])
-                reach += np.hypot(*spring.second[1:])
-                total = total + spring.stiffness * reach + abs(spring.preload)
-                continue
-            turned = sum(
-                np.abs(motion.link(link).angle)
-                for link in spring.links
-                if link in self.linkage.links
-            )
-            couple = spring.stiffness * (turned + abs(spring.free_angle)) + abs(spring.preload)
-            total = total + couple / self.longest
+def _pulls(
+    machine: Machine, loads: tuple[_FrozenLoad, ...], longest: float, motion: Motion
+) -> Array:
+    """Return how large the parts of loads and springs are, seen in the joints [N]."""
+    total: Array = np.zeros(motion.theta2.shape)
+    if not (loads or machine.springs):
         return total
+    for one in loads:
+        reach = abs(one.load.along) + abs(one.load.across) + longest
+        total = total + np.hypot(*one.force.T) * reach + np.abs(one.couple)
+    for spring in machine.springs:
+        if isinstance(spring, Spring):
+            reach = longest + spring.free_length + np.hypot(*spring.first[1:])
+            reach += np.hypot(*spring.second[1:])
+            total = total + (spring.stiffness * reach + abs(spring.preload)) * longest
+            continue
+        moving = (link for link in spring.links if link in machine.linkage.links)
+        turned = sum(np.abs(motion.link(link).angle) for link in moving)
+        total = total + spring.stiffness * (turned + abs(spring.free_angle)) + abs(spring.preload)
+    return np.asarray(total / _shortest_arm(machine.linkage.lengths, motion))
 
 
 def _shortest_arm(lengths: Mapping[str, float], motion: Any) -> Array:
@@ -289,7 +203,7 @@ def checks(
             "values that are not finite": Check(float(broken), 0.0),
             "error over what is added up": Check(share, _MEANINGFUL),
         } | {
-            f"{name} over the figure": Check(float(np.max(np.abs(gap) / allowed)), 1.0)
+            f"{name} over its error": Check(float(np.max(np.abs(gap) / allowed)), 1.0)
             for name, gap in gaps.items()
         }
 
@@ -297,7 +211,8 @@ def checks(
 def _places(values: Mapping[str, Array]) -> NDArray[np.intp]:
     """Return places all over, and those at which each of the values is largest."""
     size = next(iter(values.values())).size
-    spread = np.linspace(0, size - 1, _PLACES).astype(int)
+    # Places at which the checks are made, beside those where a force is largest.
+    spread = np.linspace(0, size - 1, 24).astype(int)
     peaks = [int(np.argmax(np.abs(value))) for value in values.values()]
     return np.unique(np.concatenate([spread, np.array(peaks, dtype=int)]))
 
@@ -318,7 +233,7 @@ class _Balance:
         """Return by how much each balance that can be made fails [N]."""
         gaps = {}
         if "torque" in forces:
-            power = self._power(self.acting) - self._power(self.inertia)
+            power = power_of(self.acting, self.unit) - power_of(self.inertia, self.unit)
             gaps["power balance"] = (forces["torque"] + power) / self.longest
         if "shaking_x" in forces:
             fx, fy, _ = self._frame()
@@ -343,15 +258,6 @@ class _Balance:
             mass.mass * ay + alpha * x - square * y,
             mass.inertia * alpha + x * ay - y * ax,
         )
-
-    def _power(self, by_link: Mapping[str, Wrench]) -> Array:
-        """Return the power at a crank speed of 1 rad/s."""
-        total: Array = np.zeros(np.shape(self.motion.theta2))
-        for link, (fx, fy, couple) in by_link.items():
-            moving = self.unit.link(link)
-            vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
-            total = total + fx * vx + fy * vy + couple * moving.speed
-        return total
 
     def _frame(self) -> Wrench:
         """Return what the momenta and the outside leave for the frame, moment about A."""

@@ -14,7 +14,7 @@ from ..core.deferred import Deferred, DeferredField
 from ..core.errors import bad
 from ..core.plotting import axes_or_new
 from ..core.results import BROADCAST, DeferredChecks, Result, provenance
-from ..linkages.linkage import Array
+from ..linkages.linkage import TURN, Array, checked_drive
 from .evaluation import FRAME_FORCE, Evaluation, Output
 from .machine import Machine, require_machine
 
@@ -35,9 +35,6 @@ _CURVES = {
     "moment": ("shaking_moment", "shaking moment about A [N m]"),
 }
 _DEFAULTS = ("frame", "34", "torque", "moment")
-# Labels keep this share of the picture away from each other.
-_APART = 0.06
-_MARKS = np.radians(np.arange(0.0, 360.0, 30.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +160,23 @@ class RigidForces(Result):
         BadInput
             If the joint is unknown or its force was not requested.
         """
-        return _draw(self, ax, joint)
+        known = {**_POLAR, **_CURVES}
+        if joint is None:
+            joint = next(name for name in _DEFAULTS if known[name][0] in self.values)
+        if joint not in known:
+            raise bad("joint", repr(joint), f"one of {sorted(known)}", "correct the name")
+        *names, label = known[joint]
+        columns = [self[name] for name in names]
+        if columns[0].ndim == 0:
+            raise bad("plot", "one crank angle", "an array of them", "ask for more angles")
+        ax = axes_or_new(ax)
+        if joint in _CURVES:
+            return _over_the_turn(ax, self.theta2, columns[0], label)
+        for still, other, axis in ((0, 1, "Y"), (1, 0, "X")):
+            # A force that keeps its line, such as that of a guide, has no polar diagram.
+            if not np.any(columns[still]):
+                return _over_the_turn(ax, self.theta2, columns[other], f"{label}, {axis} [N]")
+        return _hodograph(ax, self.theta2, columns[0], columns[1], label)
 
 
 def rigid_forces(
@@ -211,11 +224,7 @@ def rigid_forces(
     """
     wanted = _wanted(outputs)
     require_machine(machine)
-    angles, speeds, accelerations = (
-        _numbers(name, value)
-        for name, value in (("theta", theta), ("speed", speed), ("acceleration", acceleration))
-    )
-    batch = _common_shape(angles, speeds, accelerations)
+    angles, speeds, accelerations, batch = checked_drive(theta, speed, acceleration)
     values = Evaluation(machine, angles, speeds, accelerations, batch).values(wanted)
     from . import force_errors
 
@@ -269,47 +278,6 @@ def _wanted(outputs: Sequence[Output]) -> tuple[Output, ...]:
     return tuple(output for output in OUTPUTS if output in given)
 
 
-def _numbers(name: str, value: ArrayLike) -> Array:
-    try:
-        return np.array(value, dtype=float)
-    except (TypeError, ValueError) as refusal:
-        raise bad(name, repr(value)[:60], "numbers", "correct it") from refusal
-
-
-def _common_shape(theta: Array, speed: Array, acceleration: Array) -> tuple[int, ...]:
-    for name, array in (("speed", speed), ("acceleration", acceleration)):
-        if not np.all(np.isfinite(array)):
-            raise bad(name, "a value that is not finite", "finite numbers", "remove it")
-    try:
-        return np.broadcast_shapes(theta.shape, speed.shape, acceleration.shape)
-    except ValueError as refusal:
-        found = f"shapes {theta.shape}, {speed.shape}, {acceleration.shape}"
-        fix = "give one speed, or one for each angle"
-        raise bad("theta, speed, acceleration", found, "shapes that broadcast", fix) from refusal
-
-
-def _draw(forces: RigidForces, ax: Axes | None, joint: str | None) -> Axes:
-    """Draw one of the forces; see :meth:`RigidForces.plot`."""
-    known = {**_POLAR, **_CURVES}
-    if joint is None:
-        there = [name for name in _DEFAULTS if known[name][0] in forces.values]
-        joint = there[0]
-    if joint not in known:
-        raise bad("joint", repr(joint), f"one of {sorted(known)}", "correct the name")
-    columns = [forces[name] for name in known[joint][:-1]]
-    label = known[joint][-1]
-    if columns[0].ndim == 0:
-        raise bad("plot", "one crank angle", "an array of them", "ask for more angles")
-    ax = axes_or_new(ax)
-    if joint in _CURVES:
-        return _over_the_turn(ax, forces.theta2, columns[0], label)
-    for still, other, axis in ((0, 1, "Y"), (1, 0, "X")):
-        # A force that keeps its line, such as that of a guide, has no polar diagram.
-        if not np.any(columns[still]):
-            return _over_the_turn(ax, forces.theta2, columns[other], f"{label}, {axis} [N]")
-    return _hodograph(ax, forces.theta2, columns[0], columns[1], label)
-
-
 def _over_the_turn(ax: Axes, theta: Array, values: Array, label: str) -> Axes:
     degrees = np.degrees(np.broadcast_to(theta, values.shape))
     for row, value in _curves(degrees, values):
@@ -334,15 +302,18 @@ def _hodograph(ax: Axes, theta: Array, x: Array, y: Array, label: str) -> Axes:
 
 
 def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
-    """Mark every 30 degrees of crank angle; no text where the marks crowd."""
+    """Mark every 30 degrees of a rising crank angle; no text where the marks crowd."""
+    if theta.size < 2 or not np.all(np.diff(theta) > 0):
+        return
     written: list[tuple[float, float]] = []
-    apart = _APART * float(max(np.ptp(x), np.ptp(y)))
-    for angle in _MARKS:
-        place = _passing(theta, float(angle))
-        if place is None:
+    # Labels keep this share of the picture away from each other.
+    apart = 0.06 * float(max(np.ptp(x), np.ptp(y)))
+    for degrees in range(0, 360, 30):
+        angle = np.radians(degrees)
+        angle += TURN * np.ceil((theta[0] - angle) / TURN - 1e-12)
+        if angle > theta[-1]:
             continue
-        left, share = place
-        px, py = (float(c[left] + share * (c[left + 1] - c[left])) for c in (x, y))
+        px, py = (float(np.interp(angle, theta, values)) for values in (x, y))
         ax.plot(px, py, "o", color="k", markersize=3)
         if any(np.hypot(px - qx, py - qy) < apart for qx, qy in written):
             continue
@@ -350,7 +321,7 @@ def _mark(ax: Axes, theta: Array, x: Array, y: Array) -> None:
         # Away from the origin, where the curve seldom goes.
         size = float(np.hypot(px, py)) or 1.0
         ax.annotate(
-            f"{np.degrees(angle):.0f}°",
+            f"{degrees}°",
             (px, py),
             xytext=(14.0 * px / size, 10.0 * py / size),
             textcoords="offset points",
@@ -364,15 +335,3 @@ def _curves(*arrays: Array) -> list[tuple[Array, ...]]:
     """Return the curves along the first axis of angles; those of several speeds one by one."""
     flat = [np.atleast_1d(item).reshape(-1, item.shape[-1]) for item in arrays]
     return list(zip(*flat, strict=True))
-
-
-def _passing(theta: Array, angle: float) -> tuple[int, float] | None:
-    """Return where a rising row of angles passes one, up to whole turns: interval and share."""
-    if theta.size < 2 or not np.all(np.diff(theta) > 0):
-        return None
-    turn = 2.0 * np.pi
-    first = angle + turn * np.ceil((theta[0] - angle) / turn - 1e-12)
-    if first > theta[-1]:
-        return None
-    left = min(max(int(np.searchsorted(theta, first, side="right")) - 1, 0), theta.size - 2)
-    return left, float((first - theta[left]) / (theta[left + 1] - theta[left]))

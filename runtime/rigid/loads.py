@@ -125,24 +125,13 @@ class Load:
             Of the linkage, at the crank speed.
         crank_speed : ndarray
             Crank speed [rad/s].
-
-        Raises
-        ------
-        BadInput
-            If a callable returns something else than finite numbers of the right shape.
         """
         force, couple = frozen(self, motion, crank_speed)
         return {self.link: at_first_joint(self, motion, force, couple)}
 
 
 def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
-    """Return force components (..., 2) along the load's own axes [N], and couple [N m].
-
-    Raises
-    ------
-    BadInput
-        As :meth:`Load.wrenches`.
-    """
+    """Return force components (..., 2) along the load's own axes [N], and couple [N m]."""
     given: Any = motion.theta2
     if load.given == "motion" and (callable(load.force) or callable(load.couple)):
         given = _state(motion, load.link, load.along, load.across, crank_speed)
@@ -221,13 +210,7 @@ class Spring:
         return replace(self, stiffness=0.0, preload=0.0) if self.damping else None
 
     def wrenches(self, motion: Any, crank_speed: Array) -> dict[str, Wrench]:
-        """Return the wrench on each of the links; parameters as :meth:`Load.wrenches`.
-
-        Raises
-        ------
-        BadInput
-            If the two points meet while the tension there is not zero.
-        """
+        """Return the wrench on each of the links; parameters as :meth:`Load.wrenches`."""
         a, b, span, length = self._span(motion)
         constant = self.preload - self.stiffness * self.free_length
         if constant == 0.0 and self.damping == 0.0:
@@ -375,11 +358,6 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     """Return a constant, or what a callable returns, as an array of shape ``(..., size)``.
 
     ``size`` 0 stands for numbers.
-
-    Raises
-    ------
-    BadInput
-        If the callable returns something else than finite numbers of that shape.
     """
     expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
     found = _called(law, given, where, expected) if callable(law) else law
@@ -404,13 +382,7 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
 
 
 def _called(law: Callable[[Any], Any], given: Any, where: str, expected: str) -> Any:
-    """Return what a callable returns; name the load where it mistakes shapes or types.
-
-    Raises
-    ------
-    BadInput
-        From a TypeError, ValueError or IndexError of the callable; other exceptions pass.
-    """
+    """Return what a callable returns; name the load where it mistakes shapes or types."""
     try:
         return law(given)
     except BadInput:

@@ -211,12 +211,7 @@ class Machine:
             If the linkage cannot reach an angle, or a load's callable is wrong.
         """
         motion = self.linkage.motion(theta, speed)
-        parts = []
-        for link, (fx, fy, couple) in wrenches(self, motion, speed, part).items():
-            moving = motion.link(link)
-            vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
-            parts.append(fx * vx + fy * vy + couple * moving.speed)
-        return _sum(parts, motion)
+        return power_of(wrenches(self, motion, speed, part), motion)
 
 
 def wrenches(
@@ -235,16 +230,6 @@ def wrenches(
     part : {"all", "outside", "springs", "nonconservative"}
         Everything; loads and weights; springs and dampers; or what no potential energy accounts
         for: loads and dampers.
-
-    Returns
-    -------
-    dict of str to (ndarray, ndarray, ndarray)
-        Force components [N] in the fixed frame and couple [N m].
-
-    Raises
-    ------
-    BadInput
-        As :meth:`Load.wrenches` and :meth:`Spring.wrenches`.
     """
     crank_speed = np.asarray(speed, dtype=float)
     sources: list[dict[str, Wrench]] = []
@@ -274,6 +259,16 @@ def _weights(machine: Machine, motion: Any) -> dict[str, Wrench]:
         none = np.zeros(np.shape(angle))
         weights[link] = (none + mass.mass * gx, none + mass.mass * gy, x * gy - y * gx)
     return weights
+
+
+def power_of(by_link: Mapping[str, Wrench], motion: Any) -> Array:
+    """Return the power [W] of wrenches at the links' first joints."""
+    parts = []
+    for link, (fx, fy, couple) in by_link.items():
+        moving = motion.link(link)
+        vx, vy = np.moveaxis(np.asarray(moving.velocity), -1, 0)
+        parts.append(fx * vx + fy * vy + couple * moving.speed)
+    return _sum(parts, motion)
 
 
 def require_machine(machine: object) -> None:

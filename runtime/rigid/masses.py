@@ -9,9 +9,6 @@ from dataclasses import dataclass
 from ..core.errors import BadInput, Problem, bad
 from .inputs import not_finite
 
-# Data with ten digits may lie this far beyond what a rigid body can have.
-_ROUNDING = 1e-9
-
 
 @dataclass(frozen=True)
 class MassDistribution:
@@ -65,7 +62,8 @@ class MassDistribution:
         if not problems:
             moment = math.hypot(self.along, self.across)
             most = math.sqrt(self.mass) * math.sqrt(self.inertia)
-            if moment > most * (1.0 + _ROUNDING) and not self._underflows(moment):
+            # Data with ten digits may lie this far beyond what a rigid body can have.
+            if moment > most * (1.0 + 1e-9) and not self._underflows(moment):
                 problems = [
                     Problem(
                         "MassDistribution",

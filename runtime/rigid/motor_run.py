@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_whole
+from ..core.inputs import is_finite, is_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ..linkages.linkage import Array
+from ..linkages.linkage import TURN, Array
 from .forces import RigidForces, rigid_forces
-from .inputs import not_finite
-from .machine import Machine
+from .machine import Machine, require_machine
 from .motors import TorqueLaw, TorqueLine, torque_law
 from .one_freedom import OneFreedom
 from .stepping import Goals, Run, Status, integrate
@@ -23,17 +22,7 @@ from .stepping import Goals, Run, Status, integrate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_TURN = 2.0 * np.pi
-# The run that tells the error has so much more tolerance, and steps twice as long.  Over 200 random
-# slider-cranks at tolerances of 1e-11 to 1e-4 the estimate was 1.2 times the error or more, 168
-# times in the median; with 10 it fell below the error in three of them.  Steps of a twelfth of a
-# revolution fool DOP853's own estimate now and then, and a torque may act over a few degrees only.
-_LOOSER = 100.0
-_LONGEST = _TURN / 24.0
-# Share of the largest energy that may be lost, whatever the tolerance.
-_ENERGY_LIMIT = 1e-6
-# Times at which the speeds of the last revolution are taken.
-_LAST = 2001
+_LONGEST = TURN / 24.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,13 +85,14 @@ class RunUp(Result):
         """
         last = float(self.angle[-1])
         nodes = self.run.at(self.run.times)[0]
-        before = np.nonzero(np.abs(nodes - last) >= _TURN * (1.0 - 1e-12))[0]
+        before = np.nonzero(np.abs(nodes - last) >= TURN * (1.0 - 1e-12))[0]
         if before.size == 0:
             return None
         begin = int(before[-1])
-        time = np.linspace(self.run.times[begin], self.run.end, _LAST)
+        # Times at which the speeds of the last revolution are taken.
+        time = np.linspace(self.run.times[begin], self.run.end, 2001)
         angle, speed, _ = self.run.at(time)
-        speeds = np.abs(speed[np.abs(angle - last) <= _TURN * (1.0 + 1e-12)])
+        speeds = np.abs(speed[np.abs(angle - last) <= TURN * (1.0 + 1e-12)])
         high, low = float(np.max(speeds)), float(np.min(speeds))
         return 2.0 * (high - low) / (high + low)
 
@@ -209,8 +199,8 @@ def run_up(
     ('finished', 2.0)
     """
     ends = {"revolutions": revolutions, "duration": duration}
-    _require(machine, ends, {"speed0": speed0, "theta0": theta0}, tolerance)
-    _require_whole(samples, max_steps)
+    numbers = {"speed0": speed0, "theta0": theta0, "tolerance": tolerance}
+    _require(machine, ends, {**numbers, "samples": samples, "max_steps": max_steps})
     law, system = torque_law(torque), OneFreedom(machine, flywheel)
     system.require_inertia(float(theta0))
     start = (float(theta0), float(speed0))
@@ -258,14 +248,20 @@ def _compared(
         return fine
     if fine.status == "step limit":  # no further than the other one came
         goals = Goals(goals.revolutions, fine.end, goals.reversals, goals.max_steps)
-    looser = min(_LOOSER * tolerance, 1e-2)
+    # The run that tells the error has so much more tolerance, and steps twice as long.  Over 200
+    # random slider-cranks at tolerances of 1e-11 to 1e-4 the estimate was 1.2 times the error or
+    # more, 168 times in the median; with 10 it fell below the error in three of them.  Steps of a
+    # twelfth of a revolution fool DOP853's own estimate now and then, and a torque may act over a
+    # few degrees only.
+    looser = min(100.0 * tolerance, 1e-2)
     return integrate(fine.system, law, start, looser, 2.0 * _LONGEST, goals)
 
 
 def _checks(defect: float, status: Status, other: Status) -> dict[str, Check]:
     cut = status == "step limit"
+    # Share of the largest energy that may be lost, whatever the tolerance.
     return {
-        "energy less work, relative": Check(defect, _ENERGY_LIMIT),
+        "energy less work, relative": Check(defect, 1e-6),
         "run cut short": Check(float(cut), 0.0),
         "longer steps end otherwise": Check(float(not cut and status != other), 0.0),
     }
@@ -276,37 +272,24 @@ def _name(torque: object) -> str:
     return repr(torque) if plain else str(getattr(torque, "__name__", type(torque).__name__))
 
 
-def _require(
-    machine: object,
-    ends: Mapping[str, object],
-    state: Mapping[str, object],
-    tolerance: object,
-) -> None:
-    if not isinstance(machine, Machine):
-        raise bad("machine", type(machine).__name__, "a Machine", "build one")
+def _require(machine: object, ends: Mapping[str, object], numbers: Mapping[str, object]) -> None:
+    """Raise BadInput with everything that makes a run impossible."""
+    require_machine(machine)
     if all(value is None for value in ends.values()):
         raise bad("run_up", "no end", "revolutions or duration", "give revolutions=10, for example")
+    given = {name: value for name, value in ends.items() if value is not None}
+    limits = {name: (5e-324, np.inf, "a finite number above 0") for name in given}
+    limits |= dict.fromkeys(("speed0", "theta0"), (-np.inf, np.inf, "a finite number"))
+    limits["tolerance"] = 1e-12, 1e-3, "a number from 1e-12 to 1e-3"
     problems = []
-    for name, value in ends.items():
-        if value is not None and (not_finite("run_up", {name: value}) or not _positive(value)):
-            found = repr(value)[:60]
-            problems.append(Problem(name, found, "a finite number above 0", "correct it"))
-    for name, value in state.items():
-        if not_finite("run_up", {name: value}):
-            problems.append(Problem(name, repr(value)[:60], "a finite number", "correct it"))
-    if not_finite("run_up", {"tolerance": tolerance}, 1e-12) or not _positive(tolerance, 1e-3):
-        found = repr(tolerance)[:60]
-        problems.append(Problem("tolerance", found, "a number from 1e-12 to 1e-3", "correct it"))
+    for name, value in (given | dict(numbers)).items():
+        if name in limits:
+            least, most, expected = limits[name]
+            fits = is_finite(value) and least <= value <= most  # type: ignore[operator]
+        else:
+            least = 2 if name == "samples" else 1
+            fits, expected = is_whole(value, least), f"a whole number, {least} or more"
+        if not fits:
+            problems.append(Problem(name, repr(value)[:60], expected, "correct it"))
     if problems:
         raise BadInput(*problems)
-
-
-def _positive(value: Any, most: float = np.inf) -> bool:
-    return bool(0 < value <= most)
-
-
-def _require_whole(samples: object, max_steps: object) -> None:
-    for name, value, least in (("samples", samples, 2), ("max_steps", max_steps, 1)):
-        if not is_whole(value, least):
-            found = repr(value)[:60]
-            raise bad(name, found, f"a whole number, {least} or more", "correct it")

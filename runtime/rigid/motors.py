@@ -58,23 +58,7 @@ class TorqueLine:
 
 
 def torque_law(torque: object) -> TorqueLaw:
-    """Return a motor torque as a function of speed, angle and time.
-
-    Parameters
-    ----------
-    torque : TorqueLine, float or callable
-        A callable takes the speed, the speed and the angle, or speed, angle and time.
-
-    Returns
-    -------
-    callable
-        Raises BadInput where the torque at a state is no finite number.
-
-    Raises
-    ------
-    BadInput
-        If it is none of these.
-    """
+    """Return a motor torque as a function of speed, angle and time."""
     if isinstance(torque, Real) and not isinstance(torque, bool):
         value = float(torque)
         if not np.isfinite(value):

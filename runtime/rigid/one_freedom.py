@@ -11,21 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..linkages.linkage import Array
+from ..core.trigonometric import even_angles, interpolated, tail
+from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
-from .machine import Machine, Part, wrenches
+from .machine import Machine, Part, power_of, wrenches
 
 _FIRST = np.array([0.0, 1.0])
 _SECOND = np.array([1.0, 0.0])
-# A reduced inertia below this share of its median gives no usable acceleration.
-_LEAST_SHARE = 1e-12
-# A series is good to 1e-12 of the largest inertia: below this share it is not used.
-_TABLE_SHARE = 1e-5
-_TURN = 2.0 * np.pi
 _SCANNED, _ZOOM, _DIP_SHARE = 720, 14, 0.05
-_FEWEST, _MOST = 64, 1024
-# A series ends in round-off, and meets its function off the samples, or is not used.
-_TAIL, _OFF = 1e-14, 1e-12
 _PROBES = (0.37, 1.91, 4.05, 5.83, 7.77)
 
 
@@ -60,13 +53,7 @@ class OneFreedom:
         self._bare = Machine(machine.linkage, machine.masses)
 
     def coefficients(self, theta: Any) -> tuple[Array, Array]:
-        """Return J and J'/2 [kg m^2] at crank angles [rad].
-
-        Raises
-        ------
-        BadInput
-            If the linkage cannot reach an angle.
-        """
+        """Return J and J'/2 [kg m^2] at crank angles [rad]."""
         angles = np.asarray(theta, dtype=float)[..., np.newaxis]
         batch = (*angles.shape[:-1], 2)
         torque = Evaluation(self._bare, angles, _FIRST, _SECOND, batch).values(("torque",))[
@@ -75,13 +62,7 @@ class OneFreedom:
         return torque[..., 0], torque[..., 1]
 
     def load(self, theta: Any, speed: Any) -> Array:
-        """Return the torque [N m] that weights, loads, springs and dampers require.
-
-        Raises
-        ------
-        BadInput
-            As :meth:`Machine.wrenches`.
-        """
+        """Return the torque [N m] that weights, loads, springs and dampers require."""
         return self._required(theta, speed, "all")[0]
 
     def _required(self, theta: Any, speed: Any, *parts: Part) -> list[Array]:
@@ -92,15 +73,9 @@ class OneFreedom:
             return [none] * len(parts)
         unit = self.machine.linkage.motion(angles)
         motion = self.machine.linkage.motion(angles, speeds) if self.hasty else unit
-        required = []
-        for part in parts:
-            total: Array = none
-            for link, (fx, fy, couple) in wrenches(self.machine, motion, speeds, part).items():
-                moving = unit.link(link)
-                vx, vy = moving.velocity[..., 0], moving.velocity[..., 1]
-                total = total - (fx * vx + fy * vy + couple * moving.speed)
-            required.append(total)
-        return required
+        return [
+            none - power_of(wrenches(self.machine, motion, speeds, part), unit) for part in parts
+        ]
 
     def tables(
         self,
@@ -115,7 +90,8 @@ class OneFreedom:
         inertia: Callable[[float], float] | None = None
         if self.machine.linkage.crank_turns:
             scanned = self.coefficients(self._scan())[0]
-            if np.min(scanned) + self.flywheel >= _TABLE_SHARE * np.max(scanned):
+            # A series is good to 1e-12 of the largest inertia: below this share it is not used.
+            if np.min(scanned) + self.flywheel >= 1e-5 * np.max(scanned):
                 inertia = _series(lambda theta: self.coefficients(theta)[0])
         exact = inertia or (lambda theta: float(self.coefficients(theta)[0]))
         return (lambda theta: exact(theta) + self.flywheel), self._torques(inertia is not None)
@@ -157,9 +133,9 @@ class OneFreedom:
         if linkage.crank_turns:
             return -np.inf, np.inf
         for low, high in linkage.crank_ranges():
-            turns = _TURN * np.floor((theta - low) / _TURN)
+            turns = TURN * np.floor((theta - low) / TURN)
             if low + turns <= theta <= high + turns:
-                if high - low >= _TURN:  # a fold at whole turns is none for the interval
+                if high - low >= TURN:  # a fold at whole turns is none for the interval
                     continue
                 return float(low + turns), float(high + turns)
         return -np.inf, np.inf
@@ -181,7 +157,8 @@ class OneFreedom:
         for dip in angles[dips]:
             ends = max(dip - spacing, low), min(dip + spacing, high)
             least, at = self._least_inertia(*ends)
-            if not least > _LEAST_SHARE * middle:
+            # A reduced inertia below this share of its median gives no usable acceleration.
+            if not least > 1e-12 * middle:
                 none = f"none at {at:.6g} rad, where the links that have mass stand still"
                 fix = "give the crank an inertia, or add a flywheel"
                 raise bad("Machine.masses", none, "inertia at every crank angle", fix)
@@ -189,7 +166,7 @@ class OneFreedom:
     def _scan(self, low: float = -np.inf, high: float = np.inf) -> Array:
         """Return angles over a turn or a range; they miss its ends, and special positions."""
         if not np.isfinite(high - low):
-            low, high = 0.0, _TURN
+            low, high = 0.0, TURN
         return low + (high - low) * (np.arange(_SCANNED) + 0.5) / _SCANNED
 
     def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
@@ -205,15 +182,10 @@ class OneFreedom:
 
 @dataclass(frozen=True)
 class _Series:
-    """A function of the crank angle as a Fourier series: what an integrator evaluates often.
+    """A function of the crank angle as a Fourier series: what an integrator evaluates often."""
 
-    Attributes
-    ----------
-    orders, terms : ndarray, shape (k,)
-        ``i`` times the harmonics, and complex coefficients; the function is the real part of their
-        sum with the waves.
-    """
-
+    # orders, terms: (k,): ``i`` times the harmonics, and complex coefficients; the function
+    # is the real part of their sum with the waves
     orders: NDArray[np.complexfloating]
     terms: NDArray[np.complexfloating]
 
@@ -223,17 +195,14 @@ class _Series:
 
 def _series(function: Callable[[Array], Array]) -> _Series | None:
     """Return a function as harmonics down to round-off; None where there are too many."""
-    count = _FEWEST
-    while count <= _MOST:
-        values = np.asarray(function(_TURN * np.arange(count) / count))
-        harmonics = np.fft.rfft(values) * (2.0 / count)
-        harmonics[0] /= 2.0
-        sizes, largest = np.abs(harmonics), float(np.max(np.abs(values)))
-        if float(np.max(sizes[-max(1, sizes.size // 4) :])) <= _TAIL * largest:
-            kept = int(np.max(np.nonzero(sizes > 1e-17 * largest)[0], initial=0)) + 1
-            kept = min(kept, 3 * sizes.size // 4)
-            series = _Series(1j * np.arange(kept), harmonics[:kept])
+    count = 64
+    while count <= 1024:
+        values = np.asarray(function(even_angles(TURN, count)))
+        # A series ends in round-off, and meets its function off the samples, or is not used.
+        if tail(values) <= 1e-14:
+            terms = interpolated(values, TURN).coefficients
+            series = _Series(1j * np.arange(len(terms)), terms)
             gap = max(abs(series(at) - float(function(np.array(at)))) for at in _PROBES)
-            return series if gap <= _OFF * largest else None
+            return series if gap <= 1e-12 * float(np.max(np.abs(values))) else None
         count *= 2
     return None

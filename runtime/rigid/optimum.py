@@ -32,39 +32,22 @@ Measure: TypeAlias = Literal["peak", "rms"]
 Peaks: TypeAlias = Mapping[str, tuple[Array, Array]]  # angles (k,) and sizes (k,) of each force
 
 PER_LINK = 4  # mass, two first moments, inertia; of a design: mass, place, inertia over mass
-_FIRST_GRID, _LAST_GRID = 256, 8192
-# The tail of the forces' spectrum at which the peaks between samples are safe.
-_TAIL = 1e-10
-_COARSE = 8  # samples between the angles that a search starts with
 _ROUNDS = 12
-# Clarabel's tolerances: beyond 1e-10 round-off leads it astray, and the gap no longer shrinks.
-_CONIC = 1e-10
 # What a peak may be above its bound: of the hull as Clarabel solves, of the descent near round-off.
 _HULL_EXCESS, _EXCESS = 1e-9, 1e-11
 _GAP = 1e-7  # other starts are tried where more than this is unproved, over the unit
-_ACTIVE = 1e-7
 # Newton steps on the KKT conditions; step of the differences, and what leaves the active set.
 _POLISHING, _STEP, _LONGEST_STEP = 4, 1e-5, 1e-3
-_BROKEN = 1e-8  # a limit passed by less, relative, is met
-_UNFELT = 1e-9
 
 
 @dataclass(frozen=True)
 class Room:
-    """Where a link's counterweight may be, in scaled lengths: greatest mass and offset are 1.
+    """Where a link's counterweight may be, in scaled lengths: greatest mass and offset are 1."""
 
-    Attributes
-    ----------
-    nearest : float
-        Least offset, from 0 to 1.
-    stiffness : float
-        Inertia about the centre over mass squared: ``1/(2 pi h rho)`` of a cylinder; 0 for a point.
-    free : float
-        Greatest inertia about the centre over mass of a disc with free radius: half its square.
-    """
-
-    nearest: float = 0.0
+    nearest: float = 0.0  # least offset, from 0 to 1
+    # inertia about the centre over mass squared: ``1/(2 pi h rho)`` of a cylinder; 0 for a point
     stiffness: float = 0.0
+    # greatest inertia about the centre over mass of a disc with free radius: half its square
     free: float = 0.0
 
     @property
@@ -90,17 +73,11 @@ class Room:
 
 @dataclass(frozen=True)
 class Cones:
-    """``|fixed + basis p| <= t[bound]`` at n angles, the force having d components.
+    """``|fixed + basis p| <= t[bound]`` at n angles, the force having d components."""
 
-    Attributes
-    ----------
-    bound : int
-        Which of the bounds t.
-    fixed, basis : ndarray (n, d), ndarray (n, d, 4 links)
-        Force without counterweights, and of each unit parameter.
-    """
-
-    bound: int
+    bound: int  # which of the bounds t
+    # fixed, basis: (n, d), ndarray (n, d, 4 links): force without counterweights, and of each
+    # unit parameter
     fixed: Array
     basis: Array
 
@@ -116,20 +93,11 @@ class Cones:
 
 @dataclass(frozen=True)
 class PeakProblem:
-    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks.
+    """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks."""
 
-    Attributes
-    ----------
-    rooms : sequence of Room
-        One per link.
-    cones : sequence of Cones
-        The forces.
-    cost, ceilings : ndarray
-        Weight of each bound t, and its greatest value, ``inf`` where free.
-    """
-
-    rooms: Sequence[Room]
-    cones: Sequence[Cones]
+    rooms: Sequence[Room]  # one per link
+    cones: Sequence[Cones]  # the forces
+    # cost, ceilings: weight of each bound t, and its greatest value, ``inf`` where free
     cost: Array
     ceilings: Array
 
@@ -226,7 +194,8 @@ def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
             add(clarabel.SecondOrderConeT(3), np.array([square, square, 2 * m]), one)
     settings = clarabel.DefaultSettings()
     settings.verbose = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = _CONIC
+    # Clarabel's tolerances: beyond 1e-10 round-off leads it astray, and the gap no longer shrinks.
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
     cost = np.concatenate([np.zeros(count), problem.cost, np.zeros(len(stiff))])
     matrix = sparse.csc_matrix(np.concatenate(rows))
     empty = sparse.csc_matrix((size, size))
@@ -414,7 +383,7 @@ class _Epigraph:
     def _multipliers(self, z: Array) -> tuple[Array, float]:
         """Return the multipliers of all constraints, and the residual of the KKT conditions."""
         values, slopes = self._constraints(z)
-        active = np.flatnonzero(np.abs(values) <= _ACTIVE)
+        active = np.flatnonzero(np.abs(values) <= 1e-7)
         prices = np.zeros(len(values))
         if len(active):
             prices[active] = optimize.nnls(slopes[active].T, self.cost)[0]
@@ -466,27 +435,15 @@ class _Epigraph:
 
 @dataclass(frozen=True)
 class ForceBasis:
-    """A machine at one speed: the forces at any angle, and what each unit of mass adds.
+    """A machine at one speed: the forces at any angle, and what each unit of mass adds."""
 
-    Attributes
-    ----------
-    machine : Machine
-        Without the counterweights.
-    links : sequence of str
-        Links that carry counterweights.
-    speed, acceleration : float
-        Of the crank [rad/s, rad/s^2].
-    terms : sequence of str
-        Which forces.
-    masses, lengths : ndarray
-        Units of mass [kg] and length [m] of each link's parameters.
-    """
-
-    machine: Machine
-    links: Sequence[str]
+    machine: Machine  # without the counterweights
+    links: Sequence[str]  # links that carry counterweights
+    # speed, acceleration: of the crank [rad/s, rad/s^2]
     speed: float
     acceleration: float
-    terms: Sequence[str]
+    terms: Sequence[str]  # which forces
+    # masses, lengths: units of mass [kg] and length [m] of each link's parameters
     masses: Array
     lengths: Array
 
@@ -534,45 +491,30 @@ class ForceBasis:
 
     def grid(self) -> Array:
         """Return equally spaced angles of a turn, dense enough for the peaks between them."""
-        n = _FIRST_GRID
+        n = 256
         while True:
             theta = 2.0 * np.pi * np.arange(n) / n
             spectra = [np.abs(np.fft.rfft(force, axis=0)) for force in self.forces(theta).values()]
             tails = [float(s[len(s) * 3 // 4 :].max() / (s.max() or 1.0)) for s in spectra]
-            if n >= _LAST_GRID or max(tails) < _TAIL:
+            # The tail of the forces' spectrum at which the peaks between samples are safe.
+            if n >= 8192 or max(tails) < 1e-10:
                 return theta
             n *= 2
 
 
 @dataclass(frozen=True)
 class Search:
-    """Everything about one search that stays as it is.
+    """Everything about one search that stays as it is."""
 
-    Attributes
-    ----------
-    basis : ForceBasis
-        The forces that count.
-    theta : ndarray
-        Sampled angles.
-    between : bool
-        True where peaks between the samples count.
-    unbalanced : mapping of str to float
-        Peaks of every force without counterweights [N; N m].
-    rooms : sequence of Room
-        One for each link of the basis.
-    weights, limits : mapping of str to float
-        Of the relative peaks.
-    measure : {"peak", "rms"}
-        What counts of each force: its peak, or its root mean square over the sampled angles.
-    """
-
-    basis: ForceBasis
-    theta: Array
-    between: bool
-    unbalanced: Mapping[str, float]
-    rooms: Sequence[Room]
+    basis: ForceBasis  # the forces that count
+    theta: Array  # sampled angles
+    between: bool  # True where peaks between the samples count
+    unbalanced: Mapping[str, float]  # peaks of every force without counterweights [N; N m]
+    rooms: Sequence[Room]  # one for each link of the basis
+    # weights, limits: of the relative peaks
     weights: Mapping[str, float]
     limits: Mapping[str, float]
+    # what counts of each force: its peak, or its root mean square over the sampled angles
     measure: Measure = "peak"
 
     @property
@@ -609,7 +551,8 @@ class Search:
 
     def start(self) -> PeakProblem:
         """Return the problem with some of the samples, or all that count."""
-        theta = self.theta[::_COARSE] if self.between else self.theta
+        # A search starts with every eighth sample.
+        theta = self.theta[::8] if self.between else self.theta
         return self.problem(dict.fromkeys(self.terms, theta))
 
     def peaks(self, p: Array) -> dict[str, tuple[Array, Array]]:
@@ -629,7 +572,8 @@ class Search:
     def penalised(self, p: Array) -> float:
         """Return the value; infinite where a limit is passed by more than round-off."""
         peaks = self.peaks(p)
-        return self.value(peaks) if self.broken(peaks) < _BROKEN else math.inf
+        # A limit passed by less, relative, is met.
+        return self.value(peaks) if self.broken(peaks) < 1e-8 else math.inf
 
     def exchanged(self, problem: PeakProblem, p: Array) -> tuple[PeakProblem, float]:
         """Return the problem with the high peaks among its angles, and how far they are above it.
@@ -677,13 +621,7 @@ def _mean_square(cone: Cones) -> Cones:
 
 
 def best_counterweights(search: Search) -> Candidate:
-    """Return the best counterweights that are known, and the proof of how good they are.
-
-    Raises
-    ------
-    BadInput
-        If no counterweights meet the limits.
-    """
+    """Return the best counterweights that are known, and the proof of how good they are."""
     problem, p, bound = _hull(search)
     design = Design(search.rooms)
     unfelt = _unfelt(problem)
@@ -774,7 +712,7 @@ def _descended(search: Search, problem: PeakProblem, bound: float, start: Array)
 def _unfelt(problem: PeakProblem) -> list[bool]:
     """Return for each link whether nothing but the first moments of its counterweight matters."""
     felt = np.max([np.max(np.abs(cone.basis), axis=(0, 1)) for cone in problem.cones], axis=0)
-    return [bool(max(link[0], link[3]) < _UNFELT) for link in felt.reshape(-1, PER_LINK)]
+    return [bool(max(link[0], link[3]) < 1e-9) for link in felt.reshape(-1, PER_LINK)]
 
 
 def _lightened(

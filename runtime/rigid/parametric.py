@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import bad
-from ..linkages.linkage import emitted
+from ..linkages.linkage import Motion, emitted
 from ..linkages.parametric import Parametric
 from .evaluation import force_kernels
 from .machine import Machine, Part, wrenches
@@ -22,18 +22,11 @@ _GROWTH = {"mass": 1, "along": 2, "across": 1, "inertia": 3}
 
 @dataclass(frozen=True)
 class ParametricMachine(Parametric):
-    """Motion and forces of a machine at given crank angles as functions of its numbers.
-
-    Attributes
-    ----------
-    machine : Machine
-        Its loads must be constant.
-    bars : bool
-        Whether the masses grow with the links' lengths as those of bars.
-    """
+    """Motion and forces of a machine at given crank angles as functions of its numbers."""
 
     machine: Machine
-    bars: bool = False
+    bars: bool = False  # whether the masses grow with the links' lengths as those of bars
+    loads: tuple[Any, ...] = ()  # constant ones, in place of the machine's
 
     @property
     def values(self) -> dict[str, float]:
@@ -78,21 +71,36 @@ class ParametricMachine(Parametric):
         self, theta: Any, numbers: Mapping[str, Any], moved: Mapping[str, Any]
     ) -> dict[str, Any]:
         kernels, links = force_kernels(self.linkage.mechanism), self.linkage.links
-        lengths = {name: numbers[name] for name in self.linkage.names}
+        # In a unit of length in which the longest link is near 1, their powers are safe.
+        size = 2.0**self.linkage.scale
+        units = {"mass": 1.0 / size, "inertia": size}
+        lengths = {name: numbers[name] * size for name in self.linkage.names}
         given = {"speed": self.speed, "acceleration": self.acceleration, **lengths}
         masses = {}
         for place, link in enumerate(links, start=2):
             mass = self._mass(link, numbers)
             masses[link] = SimpleNamespace(**mass)
-            given |= {f"{name}{place}": value for name, value in mass.items()}
+            given |= {f"{k}{place}": value * units.get(k, 1.0) for k, value in mass.items()}
         forces = emitted(self.linkage, kernels, "forces", theta, given)
-        if not self.machine.loaded:
-            return forces
-        motion = self._motion(theta, numbers, moved)
+        if self.machine.loaded:
+            self._add_loads(forces, theta, lengths, masses, self._motion(theta, numbers, moved))
+        return {k: value / size if self.unit(k) == "N m" else value for k, value in forces.items()}
+
+    def _add_loads(
+        self,
+        forces: dict[str, Any],
+        theta: Any,
+        lengths: Mapping[str, Any],
+        masses: Mapping[str, Any],
+        motion: Motion,
+    ) -> None:
+        """Add what weights, loads and springs do; lengths in the unit of the emitted functions."""
+        kernels, links = force_kernels(self.linkage.mechanism), self.linkage.links
+        size = 2.0**self.linkage.scale
         acting: Any = SimpleNamespace(
             masses=masses,
             gravity=self.machine.gravity,
-            loads=self.machine.loads,
+            loads=self.loads or self.machine.loads,
             springs=self.machine.springs,
         )
         # What springs bring to the frame, its pins bring back.
@@ -102,11 +110,10 @@ class ParametricMachine(Parametric):
             pushed: dict[str, Any] = dict(lengths)
             by_link = wrenches(acting, motion, self.speed, part)
             for place, link in enumerate(links, start=2):
-                keys = (f"fx{place}", f"fy{place}", f"couple{place}")
-                pushed |= dict(zip(keys, by_link.get(link, (0.0, 0.0, 0.0)), strict=True))
+                fx, fy, couple = by_link.get(link, (0.0, 0.0, 0.0))
+                pushed |= {f"fx{place}": fx, f"fy{place}": fy, f"couple{place}": couple * size}
             more = emitted(self.linkage, kernels, "load_forces", theta, pushed)
             forces |= {name: forces[name] + more[name] for name in names}
-        return forces
 
     def _mass(self, link: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
         mass = {name: numbers[f"{link}.{name}"] for name in MOMENTS}
@@ -118,13 +125,7 @@ class ParametricMachine(Parametric):
 
 
 def require_constant_loads(machine: Machine) -> None:
-    """Refuse what has no known derivative: loads that are functions.
-
-    Raises
-    ------
-    BadInput
-        If the machine has one.
-    """
+    """Refuse what has no known derivative: loads that are functions."""
     if any(callable(item.force) or callable(item.couple) for item in machine.loads):
         raise bad(
             "tolerances",

@@ -7,21 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..linkages.linkage import Array
+from ..linkages.linkage import TURN, Array
 from .forces import OUTPUTS, rigid_forces
 from .machine import Machine
 
 TERMS = ("shaking_force", "shaking_moment", "torque", "f12", "f23", "f34", "f41")
 COUPLES = ("couple34", "couple41")
 
-_TURN = 2.0 * np.pi
-_FEWEST, _MOST = 721, 23041
-# Sampled peaks lower than this, over the highest, cannot be the highest one.
-_CANDIDATE = 0.75
-_MOST_CANDIDATES = 32
-# A change on doubling the samples that ends the search.
-_SAME = 1e-11
-_EQUAL = 1e-13
 _DEGREE = 12
 _NODES = np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
 _ORDERS = np.arange(_DEGREE + 1.0)[:, np.newaxis]
@@ -54,7 +46,7 @@ def force_peaks(
     speed: float,
     acceleration: float = 0.0,
     *,
-    span: tuple[float, float] = (0.0, _TURN),
+    span: tuple[float, float] = (0.0, TURN),
 ) -> dict[str, ForcePeak]:
     """Return the peak of every pin force, of torque, shaking force, moment and couple.
 
@@ -85,14 +77,15 @@ def force_peaks(
     def forces(theta: Array) -> dict[str, Array]:
         return forces_of(machine, theta, speed, acceleration, (*TERMS, *COUPLES))
 
-    count = _FEWEST
+    count = 721
     before = _tops(forces, span, count)
     while True:
         count = 2 * count - 1
         after = _tops(forces, span, count)
         change = {name: abs(abs(after[name][0]) - abs(before[name][0])) for name in after}
-        settled = all(change[name] <= _SAME * abs(after[name][0]) for name in after)
-        if settled or count >= _MOST:
+        # A change on doubling the samples that ends the search.
+        settled = all(change[name] <= 1e-11 * abs(after[name][0]) for name in after)
+        if settled or count >= 23041:
             return {name: ForcePeak(*top, change[name]) for name, top in after.items()}
         before = after
 
@@ -103,7 +96,7 @@ def _tops(forces: Forces, span: tuple[float, float], count: int) -> dict[str, tu
     for name, (at, values) in highest(forces, np.linspace(*span, count), around=False).items():
         sizes = _sizes(values)
         # Of mirrored peaks always the same one.
-        first = int(np.argmax(sizes >= (1.0 - _EQUAL) * sizes.max()))
+        first = int(np.argmax(sizes >= (1.0 - 1e-13) * sizes.max()))
         one = values[first]
         tops[name] = (float(one[0] if one.size == 1 else sizes[first]), float(at[first]))
     return tops
@@ -175,10 +168,11 @@ def _local(size: Array, around: bool) -> Array:
     """Return the places of the local maxima that may be the highest, in rising order."""
     edges = (size[-1:], size[:1]) if around else ([-np.inf], [-np.inf])
     padded = np.concatenate([edges[0], size, edges[1]])
-    chosen = (size >= padded[:-2]) & (size >= padded[2:]) & (size >= _CANDIDATE * size.max())
+    # Sampled peaks lower than this, over the highest, cannot be the highest one.
+    chosen = (size >= padded[:-2]) & (size >= padded[2:]) & (size >= 0.75 * size.max())
     places = np.flatnonzero(chosen)
     # Of a force that all but stays the same, the highest samples are enough.
-    return np.sort(places[np.argsort(-size[places], kind="stable")[:_MOST_CANDIDATES]])
+    return np.sort(places[np.argsort(-size[places], kind="stable")[:32]])
 
 
 def _summits(squares: Array) -> Array:

@@ -15,39 +15,25 @@ from typing import Any, Literal
 import numpy as np
 
 from ..core.errors import BadInput, bad
-from ..linkages.linkage import Array
+from ..linkages.linkage import EPS, TURN, Array
 from .motors import TorqueLaw
 from .one_freedom import OneFreedom
 
 Status = Literal["finished", "stalled", "fold", "step limit"]
 
-_TURN = 2.0 * np.pi
-_EPS = float(np.finfo(float).eps)
-# So near to an end of the crank's range the reduced inertia grows beyond all bounds.
-_FOLD = 1e-6
-# Steps that fail this near to an end of the range failed because of it.
-_NEAR_FOLD = 1e-3
 # No crank turns as fast: a centimetre of it would outrun half the light.
 _FASTEST = 1e9
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run as its integrator leaves it.
+    """A run as its integrator leaves it."""
 
-    Attributes
-    ----------
-    system : OneFreedom
-        The machine.
-    solution : callable
-        Times, shape (n,), to angle, ``sqrt(J + flywheel) omega`` and work, shape (3, n); ``ts``
-        are the ends of its steps.
-    status, message : str
-        How it ended.
-    """
-
-    system: OneFreedom
+    system: OneFreedom  # the machine
+    # times, (n,), to angle, ``sqrt(J + flywheel) omega`` and work, (3, n); ``ts`` are
+    # the ends of its steps
     solution: Any
+    # status, message: how it ended
     status: Status
     message: str
 
@@ -96,22 +82,13 @@ class Run:
 
 @dataclass(frozen=True)
 class Goals:
-    """Where a run ends, and what it may do.
+    """Where a run ends, and what it may do."""
 
-    Attributes
-    ----------
-    revolutions, duration : float or None
-        Ends.
-    reversals : bool
-        Whether the run goes on where the crank turns back.
-    max_steps : int
-        Most steps.
-    """
-
+    # revolutions, duration: ends
     revolutions: float | None
     duration: float | None
-    reversals: bool
-    max_steps: int
+    reversals: bool  # whether the run goes on where the crank turns back
+    max_steps: int  # most steps
 
 
 def integrate(
@@ -122,29 +99,7 @@ def integrate(
     longest: float,
     goals: Goals,
 ) -> Run:
-    """Integrate until a goal is reached, the crank stalls or folds, or the steps are used up.
-
-    Parameters
-    ----------
-    system : OneFreedom
-        The machine.
-    law : callable
-        Motor torque of speed, angle, time.
-    start : tuple of float
-        Crank angle and speed.
-    tolerance : float
-        Of a step: in the angle [rad], and relative to the largest energy so far.
-    longest : float
-        The angle [rad] that no step exceeds, so that none passes over what a revolution brings.
-    goals : Goals
-        Ends of the run.
-
-    Raises
-    ------
-    BadInput
-        If the linkage cannot reach the first angle, the torque law fails, or the run leaves the
-        range of numbers.
-    """
+    """Integrate until a goal is reached, the crank stalls or folds, or the steps are used up."""
     theta0, speed0 = start
     if not abs(speed0) < _FASTEST:
         raise _too_fast(speed0, 0.0)
@@ -165,7 +120,7 @@ def _stepped(motion: _Motion, state: Array, tolerance: float, longest: float, go
     first = motion.longest_step(state, motion(0.0, state), longest)
     small: Any = tolerance * scale
     # The relative tolerance is left to the sizes: an angle of many turns is not allowed more.
-    solver: Any = DOP853(motion, 0.0, state, bound, max_step=first, rtol=128.0 * _EPS, atol=small)
+    solver: Any = DOP853(motion, 0.0, state, bound, max_step=first, rtol=128.0 * EPS, atol=small)
     events = _Events(motion.system, state, goals)
     times: list[float] = [0.0]
     pieces: list[Any] = []
@@ -272,14 +227,15 @@ class _Events:
 
     def __init__(self, system: OneFreedom, state: Array, goals: Goals) -> None:
         self.theta, self.reversals = float(state[0]), goals.reversals
-        self.goal = np.inf if goals.revolutions is None else _TURN * goals.revolutions
+        self.goal = np.inf if goals.revolutions is None else TURN * goals.revolutions
         self.direction = float(np.sign(state[1]))
         self.range = system.range_about(self.theta)
 
     def failed(self, state: Array) -> tuple[Status, str]:
         """Return status and message where the integrator cannot go on."""
         low, high = self.range
-        if min(float(state[0]) - low, high - float(state[0])) < _NEAR_FOLD:
+        # Steps that fail this near to an end of the range failed because of it.
+        if min(float(state[0]) - low, high - float(state[0])) < 1e-3:
             return "fold", "the crank came to an end of its range"
         return "step limit", "the steps became too short to go on: the torques are too uneven"
 
@@ -291,7 +247,8 @@ class _Events:
             self.direction = float(np.sign(state[1]))
         events: list[tuple[float, Status, str]] = []
         low, high = self.range
-        margin = _FOLD
+        # So near to an end of the crank's range the reduced inertia grows beyond all bounds.
+        margin = 1e-6
         watched: list[tuple[Callable[[Array], float], Status, str]] = [
             (
                 lambda y: abs(float(y[0]) - self.theta) - self.goal,

@@ -50,32 +50,6 @@ def test_the_expanded_system_is_the_system_to_its_order(rod, order):
         assert order + 0.8 < slope < order + 1.6, name
 
 
-def test_a_coefficient_has_as_many_harmonics_as_its_order(series):
-    """Power k of the ratio comes with harmonics k, k - 2, ... alone: no round-off is left."""
-    theta = 2 * np.pi * np.arange(64) / 64
-    seen = 0
-    for term in series.terms:
-        power = int(term.scale.split("**")[1]) if term.scale and "**" in term.scale else 0
-        if term.array not in "MABK":
-            continue
-        values = term(theta)
-        waves = np.abs(np.fft.rfft(values, axis=0)).reshape(33, -1).max(axis=1)
-        kept = set(np.flatnonzero(waves > 1e-6 * waves.max()).tolist())
-        assert kept <= set(range(power, -1, -2)), term.scale
-        seen += power > 0
-    assert seen > 10
-
-
-def test_nothing_is_periodic_at_zero(series):
-    assert all(
-        term.constant
-        for term in series.terms
-        if "**" not in (term.scale or "") and term.array in "MABK"
-    )
-    assert series.rebuild is None
-    assert "crank_ratio" in series.parameters
-
-
 # ---------------------------------------------------------------- feet and ends
 
 

@@ -39,6 +39,7 @@ def _error(basis, name, tension, revolutions=2):
     return float(gap / np.max(np.abs(exact))), known / np.max(np.abs(exact))
 
 
+@pytest.mark.slow
 def test_the_reference_holds_the_block_and_repeats_its_table():
     name = "flexible, ratio 0.2, 300 rad/s"
     rod = CASES[name]

@@ -1,4 +1,4 @@
-"""Error figure of the optimiser: a proved bound, and no idle one."""
+"""Error estimate of the optimiser: a proved bound, and no idle one."""
 
 import numpy as np
 import pytest
@@ -20,15 +20,15 @@ def exact(machine):
     return float(np.sqrt(np.sum(left**2) / np.sum(force**2)))
 
 
-@pytest.mark.slow
-def test_figure_bounds_the_distance_from_the_optimum_and_is_not_idle():
+@pytest.mark.parametrize("scenes", [4, pytest.param(200, marks=pytest.mark.slow)])
+def test_error_bounds_the_distance_from_the_optimum_and_is_not_idle(scenes):
     ratios, kept = [], 0
-    for seed in range(200):
+    for seed in range(scenes):
         machine = random_machine(np.random.default_rng(seed))
         found = with_crank_counterweight(machine, SPEED)
         actual = abs(found.value - exact(machine))
         kept += actual <= found.error
         # Both are of the order of 1: no difference below its round-off means anything.
         ratios.append(found.error / max(actual, np.finfo(float).eps / 2.0))
-    assert kept >= 198
+    assert kept >= 0.99 * scenes
     assert np.median(ratios) <= 1e3

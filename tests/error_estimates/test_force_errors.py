@@ -9,7 +9,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.rigid import Load, Machine, MassDistribution, rigid_forces
 
-MACHINES, ANGLES = 80, 2
+ANGLES = 2
 
 
 def random_linkage(kind, random):
@@ -61,11 +61,12 @@ def random_angles(linkage, random):
     return low + share * (high - low)
 
 
+@pytest.mark.parametrize("machines", [20, pytest.param(80, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "quick-return"])
-def test_the_figure_covers_the_error_and_is_not_idle(kind) -> None:
+def test_the_estimate_covers_the_error_and_is_not_idle(kind, machines) -> None:
     random = np.random.default_rng(20260)
     covered, ratios = [], []
-    for _ in range(MACHINES):
+    for _ in range(machines):
         machine, wrenches = random_machine(kind, random)
         theta = random_angles(machine.linkage, random)
         speed = 10.0 ** random.uniform(-1, 3)
@@ -77,17 +78,6 @@ def test_the_figure_covers_the_error_and_is_not_idle(kind) -> None:
         assert found.passed == bool(np.all(np.isfinite(figure)))
     assert np.mean(covered) >= 0.99
     assert np.median(ratios) <= 1e3
-
-
-def test_the_parts_have_the_same_figure() -> None:
-    random = np.random.default_rng(7)
-    machine, _ = random_machine("four-bar", random)
-    theta = random_angles(machine.linkage, random)
-    whole = rigid_forces(machine, theta, 3.0)
-    part = rigid_forces(machine, theta, 3.0, outputs=("torque",))
-    np.testing.assert_array_equal(whole.error, part.error)
-    assert whole.error.shape == theta.shape
-    assert np.all(whole.error > 0)
 
 
 def near_change(kind, random):
@@ -125,11 +115,12 @@ def lumps(linkage):
     }
 
 
+@pytest.mark.parametrize("scenes", [30, pytest.param(120, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank"])
-def test_the_figure_covers_the_error_near_change_points_and_folds(kind) -> None:
+def test_the_estimate_covers_the_error_near_change_points_and_folds(kind, scenes) -> None:
     random = np.random.default_rng(90)
     shares, known = [], 0
-    for _ in range(120):
+    for _ in range(scenes):
         linkage, theta = near_change(kind, random)
         machine = Machine(linkage, lumps(linkage))
         try:
@@ -141,7 +132,7 @@ def test_the_figure_covers_the_error_near_change_points_and_folds(kind) -> None:
         known += bool(np.isfinite(figure[0]))
         shares.append(float(actual[0] / figure[0]))
     assert known > 0.8 * len(shares)
-    assert len(shares) > 100
+    assert len(shares) > 0.8 * scenes
     assert max(shares) <= 1.0
     assert np.median(shares) >= 1e-3
 

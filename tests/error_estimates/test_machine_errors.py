@@ -79,7 +79,7 @@ def test_energy_fluctuations(scenes):
     verdict(ratios, scenes)
 
 
-@SCENES
+@pytest.mark.parametrize("scenes", [6, pytest.param(40, marks=pytest.mark.slow)])
 def test_flywheels(scenes):
     """Without motor and load the energy stays: the inertias' ratio is that of squared speeds."""
     rng = np.random.default_rng(52)

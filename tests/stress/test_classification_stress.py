@@ -7,7 +7,6 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages.barker import LINKS
 from elastolink.runtime.linkages.classification import SYMBOLS, classify
@@ -90,11 +89,4 @@ QUIET = {
 @settings(max_examples=300, **QUIET)
 @given(four_lengths())
 def test_classified_or_refused(lengths):
-    judge(lengths)
-
-
-@pytest.mark.slow
-@settings(max_examples=2000, **QUIET)
-@given(four_lengths())
-def test_two_thousand_classified_or_refused(lengths):
     judge(lengths)

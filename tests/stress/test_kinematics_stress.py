@@ -60,18 +60,13 @@ def judged(count, seed):
             yield from judge(function, four_bar_coupler_complete.RETURNS[name], exact)
 
 
-def test_measure_at_adversarial_linkages():
-    beyond = {k: (j.measure, j.point) for k, j in worst(judged(250, 41)).items() if not j.passed}
+@pytest.mark.parametrize("count", [60, pytest.param(2500, marks=pytest.mark.slow)])
+def test_measure_at_adversarial_linkages(count):
+    beyond = {k: (j.measure, j.point) for k, j in worst(judged(count, 41)).items() if not j.passed}
     assert not beyond
 
 
-@pytest.mark.slow
-def test_measure_at_many_adversarial_linkages():
-    beyond = {k: (j.measure, j.point) for k, j in worst(judged(5000, 42)).items() if not j.passed}
-    assert not beyond
-
-
-@pytest.mark.parametrize("exponent", range(3, 16))
+@pytest.mark.parametrize("exponent", (3, 9, 15))
 @pytest.mark.parametrize("assembly", ["open", "crossed"])
 def test_speed_at_the_dead_centre_of_a_linkage_a_hair_from_its_change_point(exponent, assembly):
     """Frame + crank = coupler + follower less h: where the links line up, hand geometry.
@@ -92,22 +87,6 @@ def test_speed_at_the_dead_centre_of_a_linkage_a_hair_from_its_change_point(expo
     assert moved.passed
 
 
-@pytest.mark.parametrize("shape", [(1.0, 1.0, 1.0), (5.0, 5.0, 2.0)])
-@pytest.mark.parametrize("ratio", 10.0 ** -np.arange(2, 15, 3.0))
-def test_short_crank_swings_the_follower_in_proportion(ratio, shape):
-    """To first order in the crank: d theta4 = crank cos(theta2 - theta3) / (l4 sin) of the rest."""
-    frame, coupler, follower = shape
-    bar = FourBar(frame, ratio * frame, coupler, follower)
-    theta = np.linspace(0.0, TURN, 17)
-    moved = bar.motion(theta)
-    rest = FourBar(frame, 1e-15 * frame, coupler, follower).motion(0.0)
-    sine = follower * np.sin(rest.theta4 - rest.theta3)
-    speed = bar.crank * np.sin(theta - rest.theta3) / sine
-    np.testing.assert_allclose(moved.omega4, speed, atol=10 * ratio * np.abs(speed).max())
-    slope = bar.crank * np.cos(theta - rest.theta3) / sine
-    np.testing.assert_allclose(moved.alpha4, slope, atol=20 * ratio * np.abs(slope).max())
-
-
 @pytest.mark.parametrize("ratio", 10.0 ** -np.arange(2, 15, 3.0))
 def test_short_frame_makes_the_links_turn_with_the_crank(ratio):
     """Seen from the crank the frame is a short crank: accelerations keep their digits."""
@@ -118,23 +97,6 @@ def test_short_frame_makes_the_links_turn_with_the_crank(ratio):
     np.testing.assert_allclose(drag.omega3, 1.0 - turned.omega3, rtol=1e-12)
     for one, other in ((drag.alpha3, turned.alpha3), (drag.alpha4, turned.alpha4)):
         np.testing.assert_allclose(one, other, atol=1e-11 * np.abs(other).max())
-
-
-def test_inversion_on_the_crank_swaps_frame_and_crank():
-    """A drag link is a crank rocker seen from its crank, digit for digit up to round-off."""
-    random = np.random.default_rng(7)
-    theta = np.linspace(-TURN, TURN, 41)
-    for _ in range(20):
-        linkage = adversarial_linkage(random)
-        assembly = "open" if linkage.assembly > 0 else "crossed"
-        f, c, a, b = linkage.lengths.values()
-        one, other = FourBar(f, c, a, b, assembly), FourBar(c, f, a, b, assembly)
-        here, there = one.motion(theta), other.motion(-theta)
-        np.testing.assert_allclose(
-            here.transmission_angle, there.transmission_angle, rtol=1e-10, atol=1e-12
-        )
-        size = 1.0 + np.abs(here.omega4).max()
-        assert np.all(np.abs(here.omega4 - (1.0 - there.omega4)) < 1e-6 * size)
 
 
 @pytest.mark.parametrize("turns", [1, 1e3, 1e6, 1e9])

@@ -48,14 +48,9 @@ def judged(count, seed):
             yield from judge(quick_return_kinematics.motion, ROD, exact)
 
 
-def test_measure_at_adversarial_linkages():
-    beyond = {k: (j.measure, j.point) for k, j in worst(judged(300, 43)).items() if not j.passed}
-    assert not beyond
-
-
-@pytest.mark.slow
-def test_measure_at_many_adversarial_linkages():
-    beyond = {k: (j.measure, j.point) for k, j in worst(judged(10000, 44)).items() if not j.passed}
+@pytest.mark.parametrize("count", [100, pytest.param(5000, marks=pytest.mark.slow)])
+def test_measure_at_adversarial_linkages(count):
+    beyond = {k: (j.measure, j.point) for k, j in worst(judged(count, 43)).items() if not j.passed}
     assert not beyond
 
 
@@ -73,22 +68,7 @@ def test_angles_far_out_lose_no_more_than_their_own_digits(turns):
         assert rod.passed and slider.passed
 
 
-def test_a_thousand_turns_repeat_one():
-    theta = np.linspace(0.0, TURN, 37)
-    for linkage, gain in (
-        (SliderCrank(1.0, 3.0, 0.4), 0.0),
-        (QuickReturn(2.0, 1.0, 3.0), 0.0),
-        (QuickReturn(1.0, 2.0, 3.0), 1.0),
-    ):
-        one, late = (linkage.motion(theta + turns * TURN) for turns in (0, 1000))
-        for name in (*one.places, *one.rates):
-            shift = gain * 1000 * TURN if name == "theta4" else 0.0
-            difference = getattr(late, name) - getattr(one, name) - shift
-            # The angle itself has lost its last digits by then.
-            assert np.abs(difference).max() < 4e-12 * np.abs(getattr(one, name)).max() + 4e-12
-
-
-@pytest.mark.parametrize("exponent", range(2, 16))
+@pytest.mark.parametrize("exponent", (2, 8, 15))
 @pytest.mark.parametrize("assembly", ["open", "crossed"])
 def test_slider_crank_a_hair_from_its_change_point(exponent, assembly):
     """Coupler = crank + offset + h, the crank straight down: the coupler stands across the guide.
@@ -111,7 +91,7 @@ def test_slider_crank_a_hair_from_its_change_point(exponent, assembly):
     assert walk.passed
 
 
-@pytest.mark.parametrize("exponent", range(2, 16))
+@pytest.mark.parametrize("exponent", (2, 8, 15))
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_quick_return_a_hair_from_its_change_point(exponent, sign):
     """Crank = frame (1 -+ h): at theta2 = pi the rod turns by -crank / (frame - crank)."""

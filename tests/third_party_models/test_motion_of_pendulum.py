@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.derive.spec import ModelSpec
-from elastolink.runtime.constrained import METHODS, constrained_motion
+from elastolink.runtime.constrained import constrained_motion
 from elastolink.runtime.core.families import Constrained
 from pendulum_truth import NUMBERS, STROKE, cartesian, drives
 
@@ -24,11 +24,10 @@ def system(emit):
     return made
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_multipliers_and_motion_are_those_of_the_minimal_form(system, method):
+def test_multipliers_and_motion_are_those_of_the_minimal_form(system):
     start = (0.05, 1.1, 0.0, 0.4)
     found = constrained_motion(
-        system("multiplier"), *cartesian(*start), 2.0, method=method, samples=20, rtol=1e-10
+        system("multiplier"), *cartesian(*start), 2.0, samples=20, rtol=1e-10
     )
     minimal = constrained_motion(
         system("minimal"), start[:2], start[2:], 2.0, samples=20, rtol=1e-12
@@ -48,10 +47,9 @@ def test_multipliers_and_motion_are_those_of_the_minimal_form(system, method):
     )
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_the_drive_is_followed(system, method):
+def test_the_drive_is_followed(system):
     q, qd = cartesian(0.0, 0.7, STROKE * DRIVE, 0.2)
-    found = constrained_motion(system("driven"), q, qd, 3.0, method=method, samples=30)
+    found = constrained_motion(system("driven"), q, qd, 3.0, samples=30)
     found.require()
     exact = STROKE * np.sin(DRIVE * found.time)
     np.testing.assert_allclose(found.q[:, 0], exact, atol=1e-15)

@@ -122,44 +122,6 @@ def test_redundant_and_contradictory_constraints_are_refused(offset):
         twice().accelerations(np.array([0.6, -0.8]), np.zeros(2))
 
 
-def test_more_constraints_than_coordinates_are_refused():
-    system = twice()
-    many = Constrained(
-        2,
-        3,
-        lambda q, qd, t: {
-            name: np.concatenate([value, value[..., :1, :]], axis=-2)
-            if name in ("jacobian", "velocity_rhs", "gamma")
-            else value
-            for name, value in system.dynamics(q, qd, t).items()
-        },
-        lambda q, t: {
-            name: np.concatenate([value, value[..., :1, :]], axis=-2)
-            for name, value in system.violation(q, t).items()
-        },
-    )
-    with pytest.raises(RedundantConstraints, match="3 constraints on 2"):
-        consistent_state(many, [0.6, -0.8], [0.0, 0.0])
-
-
-def test_a_motion_without_inertia_is_refused():
-    system = Constrained(
-        2,
-        0,
-        lambda q, qd, t: {
-            "mass": np.diag([1.0, 0.0]),
-            "rest": np.zeros((2, 1)),
-            "forces": np.ones((2, 1)),
-            "jacobian": np.zeros((0, 2)),
-            "velocity_rhs": np.zeros((0, 1)),
-            "gamma": np.zeros((0, 1)),
-        },
-        lambda q, t: {"constraints": np.zeros((0, 1)), "jacobian": np.zeros((0, 2))},
-    )
-    with pytest.raises(RedundantConstraints, match="without inertia"):
-        system.accelerations(np.zeros(2), np.zeros(2))
-
-
 @pytest.mark.parametrize(
     ("arguments", "named", "message"),
     [
@@ -185,25 +147,3 @@ def test_bad_input_is_refused_in_one_line(arguments, named, message):
 def test_the_centre_of_the_circle_has_no_direction():
     with pytest.raises(RedundantConstraints):
         consistent_state(Circle().system, [0.0, 0.0], [0.0, 0.0])
-
-
-def test_unconstrained_systems_pass_through():
-    system = Constrained(
-        1,
-        0,
-        lambda q, qd, t: {
-            "mass": np.ones((*q.shape, 1)),
-            "rest": np.zeros((*q.shape, 1)),
-            "forces": -4.0 * q[..., None],
-            "jacobian": np.zeros((*q.shape[:-1], 0, 1)),
-            "velocity_rhs": np.zeros((*q.shape[:-1], 0, 1)),
-            "gamma": np.zeros((*q.shape[:-1], 0, 1)),
-        },
-        lambda q, t: {
-            "constraints": np.zeros((*q.shape[:-1], 0, 1)),
-            "jacobian": np.zeros((*q.shape[:-1], 0, 1)),
-        },
-    )
-    found = consistent_state(system, [0.5], [0.1])
-    np.testing.assert_allclose(found.qdd, [-2.0])
-    assert found.multipliers.shape == (0,)

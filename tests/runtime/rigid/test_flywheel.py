@@ -15,9 +15,7 @@ from elastolink.runtime.rigid import (
     Spring,
     TorsionSpring,
     driving_torque,
-    flywheel,
     flywheel_inertia,
-    run_up,
     torque_fluctuation,
 )
 from scipy.integrate import quad
@@ -99,25 +97,6 @@ def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
     assert limit == pytest.approx(1e-5 + found.error / (found.inertia + 0.001), rel=1e-9)
 
 
-@pytest.mark.slow
-def test_speeds_that_have_not_settled_fail_the_check(monkeypatch) -> None:
-    drag = Load("follower", couple=lambda at: -2.0 * at.speed, given="motion")
-    machine = bars(ROCKER, loads=(drag,))
-    name = "speeds not settled, relative"
-    assert flywheel_inertia(machine, 8.0, 0.03).checks[name].passed
-    monkeypatch.setattr(flywheel, "_ITERATIONS", 2)
-    assert not flywheel_inertia(machine, 8.0, 0.03).checks[name].passed
-
-
-def test_the_least_flywheel_of_several(monkeypatch) -> None:
-    """Where the coefficient does not fall steadily, the first root is taken."""
-    machine = bars(ROCKER)
-    balance = flywheel._Balance(machine, torque_fluctuation(machine, 8.0))
-    roots = np.array([0.1, 0.4, 0.7])
-    monkeypatch.setattr(balance, "motion", lambda wheel: (0.02 - np.prod(wheel - roots), 0, 0, 0))
-    assert balance.inertia_for(0.02, 1.0) == pytest.approx(0.1, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     "law",
     [
@@ -142,12 +121,8 @@ DAMPED = {"springs": (Spring(("frame", 0.1, 0.5), ("follower", 0.1, 0.0), 90.0, 
     ("more", "speed"),
     [
         ({}, 8.0),
-        ({}, -8.0),
-        ({"gravity": (0.0, -9.81)}, 8.0),
         ({"gravity": (0.0, -9.81)}, -8.0),
-        (DAMPED, -8.0),
         pytest.param(DAMPED, 8.0, marks=pytest.mark.slow),
-        pytest.param(DRAG, 8.0, marks=pytest.mark.slow),
         pytest.param(DRAG, -8.0, marks=pytest.mark.slow),
     ],
 )
@@ -160,23 +135,6 @@ def test_forward_dynamics_confirm_the_flywheel(speed, more) -> None:
     # The textbook's flywheel leaves out the links' own inertia, and is too heavy by about that.
     assert found.first_order == pytest.approx(found.inertia, rel=0.2)
     assert np.sign(found.speeds[0]) == np.sign(speed)
-
-
-def test_the_speed_comes_back_after_a_turn() -> None:
-    machine = bars(ROCKER, gravity=(0.0, -9.81))
-    found = flywheel_inertia(machine, 8.0, 0.05)
-    run = run_up(
-        machine,
-        found.motor_torque,
-        revolutions=1,
-        speed0=float(found.speeds[0]),
-        flywheel=found.inertia,
-        tolerance=1e-11,
-    )
-    assert run.speed[-1] == pytest.approx(run.speed[0], rel=1e-9)
-    steady = np.interp(run.angle[:-1], found.theta, found.speeds)
-    # Linear interpolation between 1024 angles.
-    np.testing.assert_allclose(run.speed[:-8], steady[:-7], rtol=1e-5)
 
 
 def test_an_even_machine_needs_none() -> None:
@@ -205,14 +163,9 @@ def test_pictures() -> None:
     ("given", "named"),
     [
         ({"fluctuation": 0.0}, "fluctuation"),
-        ({"fluctuation": 1.5}, "fluctuation"),
         ({"speed": 0.0}, "speed"),
         ({"speed": math.nan}, "speed"),
-        ({"speed": "a"}, "speed"),
-        ({"speed": None}, "speed"),
         ({"fluctuation": "x"}, "fluctuation"),
-        ({"fluctuation": None}, "fluctuation"),
-        ({"machine": None}, "machine"),
         ({"machine": bars(FourBar(0.3, 0.25, 0.1, 0.3))}, "turn fully"),
         ({"machine": ROCKER}, "machine"),
         (

@@ -4,23 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.rigid import MassDistribution
-
-
-def test_uniform_bar_is_a_row_of_points() -> None:
-    count, mass, length = 4000, 0.7, 0.3
-    places = (np.arange(count) + 0.5) * length / count
-    pieces = MassDistribution()
-    for place in places:
-        pieces = pieces + MassDistribution.point(mass / count, float(place))
-    bar = MassDistribution.uniform_bar(mass, length)
-    assert pieces.mass == pytest.approx(bar.mass, rel=1e-12)
-    assert pieces.along == pytest.approx(bar.along, rel=1e-12)
-    # The midpoint rule is off by exactly 1/(4 n^2) of the integral of x^2.
-    assert pieces.inertia == pytest.approx(bar.inertia * (1 - 0.25 / count**2), rel=1e-12)
 
 
 def test_disc_about_its_centre_and_about_the_joint() -> None:

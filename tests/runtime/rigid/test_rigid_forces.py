@@ -8,6 +8,7 @@ import pickle
 import numpy as np
 import pytest
 import rigid_truth
+from balancing_machines import nine_equations, smith
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import FourBar, QuickReturn, SliderCrank
 from elastolink.runtime.rigid import (
@@ -22,9 +23,10 @@ from elastolink.runtime.rigid import (
     shaking_force,
     shaking_moment,
 )
+from elastolink.runtime.rigid.force_errors import checks
 
 TURN = 2.0 * np.pi
-THETA = np.linspace(0.0, TURN, 512, endpoint=False)
+THETA = np.linspace(0.0, TURN, 256, endpoint=False)
 LINKAGES = {
     "crank rocker": FourBar(0.3, 0.1, 0.28, 0.25),
     "crossed": FourBar(0.3, 0.1, 0.28, 0.25, "crossed"),
@@ -35,10 +37,6 @@ LINKAGES = {
     "quick-return, turning rod": QuickReturn(0.1, 0.3, 0.6),
 }
 EVERY = pytest.mark.parametrize("linkage", LINKAGES.values(), ids=LINKAGES)
-INCH, POUND = 0.0254, 4.4482216152605
-# Smith, beside Figs. 12-16: weights 0.5, 1, 1 lbf (standard gravity); I3B = I4D = 0.125 lbf in s^2.
-SMITH_MASSES = tuple(weight * POUND / 9.80665 for weight in (0.5, 1.0, 1.0))
-SMITH_INERTIA = 0.125 * POUND * INCH
 
 
 def masses_of(linkage, straight=False):
@@ -75,67 +73,14 @@ def derivative(values):
     return np.fft.irfft(1j * order * harmonics, n=len(values), axis=0)
 
 
-def smith() -> Machine:
-    linkage = FourBar(12 * INCH, 6 * INCH, 12 * INCH, 12 * INCH)
-    crank, coupler, follower = SMITH_MASSES
-    return Machine(
-        linkage,
-        {
-            "crank": MassDistribution.uniform_bar(crank, 6 * INCH),
-            "coupler": MassDistribution(coupler, coupler * 6 * INCH, 0.0, SMITH_INERTIA),
-            "follower": MassDistribution(follower, follower * 6 * INCH, 0.0, SMITH_INERTIA),
-        },
-    )
-
-
-def nine_equations(machine, theta, speed, acceleration):
-    """Solve Aannaque's (3.12): moments about each centre of mass, halfway along uniform links."""
-    motion = machine.linkage.motion(theta, speed, acceleration)
-    names = ["x12", "y12", "x23", "y23", "x34", "y34", "x41", "y41", "torque"]
-    matrix, right = np.zeros((len(theta), 9, 9)), np.zeros((len(theta), 9))
-    angles = (motion.theta2, motion.theta3, motion.theta4)
-    for n, (link, angle) in enumerate(zip(machine.linkage.links, angles, strict=True)):
-        own = machine.mass(link)
-        half = machine.linkage.lengths[link] / 2
-        centre = motion.point(link, half)
-        matrix[:, 3 * n, 2 * n] = matrix[:, 3 * n + 1, 2 * n + 1] = 1
-        matrix[:, 3 * n, 2 * n + 2] = matrix[:, 3 * n + 1, 2 * n + 3] = -1
-        # The joint ahead is at the near end of crank and coupler, at the far end of the follower.
-        side = half if link == "follower" else -half
-        cos, sin = np.cos(angle), np.sin(angle)
-        for column, sign in ((2 * n, 1), (2 * n + 2, -1)):
-            matrix[:, 3 * n + 2, column] = -sign * sign * side * sin
-            matrix[:, 3 * n + 2, column + 1] = sign * sign * side * cos
-        right[:, 3 * n : 3 * n + 2] = own.mass * centre.acceleration
-        right[:, 3 * n + 2] = own.inertia_about_centre * motion.link(link).angular_acceleration
-    matrix[:, 2, 8] = 1
-    solved = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-    return dict(zip(names, solved.T, strict=True))
-
-
 @pytest.mark.parametrize("acceleration", [0.0, 40.0])
 def test_the_machine_of_figs_12_to_16_against_nine_equations(acceleration) -> None:
     machine = smith()
     found = rigid_forces(machine, THETA, 10.0, acceleration)
     for name, expected in nine_equations(machine, THETA, 10.0, acceleration).items():
-        scale = np.max(np.abs(expected))
-        np.testing.assert_allclose(found[name], expected, atol=1e-12 * scale, err_msg=name)
+        allowed = 1e-12 * np.max(np.abs(expected))
+        np.testing.assert_allclose(getattr(found, name), expected, atol=allowed, err_msg=name)
     assert found.passed
-
-
-def test_smith_4_7_as_printed() -> None:
-    machine, w = smith(), 10.0
-    motion = machine.linkage.motion(THETA, w)
-    t3, t4, a3, a4 = motion.theta3, motion.theta4, motion.alpha3, motion.alpha4
-    l2, l3, l4 = 6 * INCH, 12 * INCH, 12 * INCH
-    coupled = SMITH_MASSES[1] * 6 * INCH * l2 * l4 * w**2 * np.sin(THETA - t3)
-    below = l3 * l4 * np.sin(t3 - t4)
-    inertia = SMITH_INERTIA
-    x34 = inertia * a3 * l4 * np.cos(t4) + inertia * a4 * l3 * np.cos(t3) - coupled * np.cos(t4)
-    y34 = inertia * a3 * l4 * np.sin(t4) + inertia * a4 * l3 * np.sin(t3) - coupled * np.sin(t4)
-    found = pin_forces(machine, THETA, w)
-    np.testing.assert_allclose(found["x34"], x34 / below, atol=1e-12 * np.max(np.abs(x34 / below)))
-    np.testing.assert_allclose(found["y34"], y34 / below, atol=1e-12 * np.max(np.abs(y34 / below)))
 
 
 @EVERY
@@ -151,17 +96,6 @@ def test_against_many_digits(linkage, steady) -> None:
 
 
 @EVERY
-def test_loads_against_many_digits(linkage) -> None:
-    _, second, third = linkage.links
-    wrenches = {second: (3.0, -4.0, 0.2), third: (-2.0, 1.0, 0.5)}
-    loads = tuple(Load(link, force[:2], force[2]) for link, force in wrenches.items())
-    machine = Machine(linkage, masses_of(linkage), loads=loads)
-    found = rigid_forces(machine, np.array([-4.0, 0.3, 2.2]), 7.0, 3.0)
-    actual, figure = rigid_truth.errors(machine, found, outside=wrenches)
-    assert np.all(actual <= figure)
-
-
-@EVERY
 def test_power_balance_with_everything(linkage) -> None:
     machine = loaded(linkage)
     speed, acceleration = 9.0, 25.0
@@ -171,16 +105,6 @@ def test_power_balance_with_everything(linkage) -> None:
     gained = derivative(kinetic) * speed**3 + 2.0 * kinetic * speed * acceleration
     balance = found.torque * speed + machine.power(THETA, speed, "all") - gained
     assert np.max(np.abs(balance)) < 1e-10 * np.max(np.abs(found.torque * speed))
-
-
-@EVERY
-def test_over_a_turn_the_drive_pays_for_loads_and_dampers(linkage) -> None:
-    machine = loaded(linkage)
-    # Without the springs that wind up: everything repeats, potential energies pay nothing.
-    machine = Machine(linkage, machine.masses, machine.gravity, machine.loads, machine.springs[:2])
-    found = driving_torque(machine, THETA, 9.0)
-    paid = np.mean(found.torque) * 9.0 + np.mean(machine.power(THETA, 9.0))
-    assert abs(paid) < 1e-11 * np.max(np.abs(found.torque)) * 9.0
 
 
 @EVERY
@@ -260,25 +184,8 @@ def test_statics_by_virtual_work(linkage) -> None:
     np.testing.assert_allclose(found.torque, slope, atol=1e-11 * np.max(np.abs(slope)))
 
 
-@pytest.mark.parametrize("name", ["crank rocker", "drag link"])
-def test_mirror(name) -> None:
-    linkage = LINKAGES[name]
-    mirrored = FourBar(*linkage.lengths.values(), "crossed")
-    masses = masses_of(linkage)
-    flipped = {
-        link: MassDistribution(own.mass, own.along, -own.across, own.inertia)
-        for link, own in masses.items()
-    }
-    one = rigid_forces(Machine(linkage, masses, (0.3, -9.81)), THETA, 4.0, 3.0)
-    other = rigid_forces(Machine(mirrored, flipped, (0.3, 9.81)), -THETA, -4.0, -3.0)
-    for field, values in one.values.items():
-        sign = 1.0 if field.startswith("x") or field == "shaking_x" else -1.0
-        size = np.max(np.abs(values))
-        np.testing.assert_allclose(other[field], sign * values, atol=1e-13 * size, err_msg=field)
-
-
 @EVERY
-@pytest.mark.parametrize(("length", "mass"), [(1000.0, 1000.0), (2.0**-90, 8.0), (1e30, 1e-5)])
+@pytest.mark.parametrize(("length", "mass"), [(2.0**-90, 8.0), (1e30, 1e-5)])
 def test_unit_systems(linkage, length, mass) -> None:
     """Forces scale as mass times length, moments as mass times length squared."""
     sizes = {name: value * length for name, value in linkage.lengths.items()}
@@ -301,54 +208,6 @@ def test_unit_systems(linkage, length, mass) -> None:
         size = max(np.max(np.abs(values)), 1e-3)
         np.testing.assert_allclose(two[name] / unit, values, atol=1e-12 * size, err_msg=name)
     assert two.passed
-
-
-def test_relabelling_crank_and_follower() -> None:
-    """Seen from the other side, driven by what was the follower: the same forces, mirrored."""
-    linkage = LINKAGES["crank rocker"]
-    masses = masses_of(linkage)
-    theta = np.linspace(0.0, TURN, 25)
-    # Where crank and coupler come into line, the follower cannot drive.
-    theta = theta[np.abs(np.sin(theta - linkage.motion(theta).theta3)) > 0.3]
-    motion = linkage.motion(theta, 5.0, 8.0)
-    one = rigid_forces(Machine(linkage, masses), theta, 5.0, 8.0)
-    coupler, length = masses["coupler"], linkage.coupler
-    # The mirror turns over each link; the coupler begins at C, and its axis points to B.
-    turned = {
-        "crank": MassDistribution(
-            *(getattr(masses["follower"], name) for name in ("mass", "along")),
-            -masses["follower"].across,
-            masses["follower"].inertia,
-        ),
-        "coupler": MassDistribution(
-            coupler.mass,
-            coupler.mass * length - coupler.along,
-            coupler.across,
-            coupler.inertia - 2.0 * length * coupler.along + coupler.mass * length**2,
-        ),
-        "follower": MassDistribution(
-            masses["crank"].mass,
-            masses["crank"].along,
-            -masses["crank"].across,
-            masses["crank"].inertia,
-        ),
-    }
-    for i in range(theta.size):
-        # Which assembly it is from the other side depends on how crank and coupler stand.
-        seen = "open" if np.sin(theta[i] - motion.theta3[i]) > 0 else "crossed"
-        mirrored = FourBar(linkage.frame, linkage.follower, linkage.coupler, linkage.crank, seen)
-        # What drove the crank is a load now, and the new drive has nothing to do.
-        load = Load("follower", couple=-float(one.torque[i]))
-        machine = Machine(mirrored, turned, loads=(load,))
-        given = (np.pi - motion.theta4[i], -motion.omega4[i], -motion.alpha4[i])
-        two = rigid_forces(machine, *given)
-        size = float(np.max(np.abs(one.torque)))
-        assert abs(two.torque) < 1e-12 * size
-        pairs = (("12", "41"), ("23", "34"), ("34", "23"), ("41", "12"))
-        for new, old in pairs:
-            # Mirrored in x; force of i upon j becomes that of j upon i.
-            np.testing.assert_allclose(two["x" + new], one["x" + old][i], atol=1e-11)
-            np.testing.assert_allclose(two["y" + new], -one["y" + old][i], atol=1e-11)
 
 
 def test_broadcasting_of_speeds_and_accelerations() -> None:
@@ -377,26 +236,6 @@ def test_long_arrays_are_those_of_their_parts() -> None:
         np.testing.assert_allclose(values[8000:], part[name], rtol=1e-13, atol=1e-13)
     tall = rigid_forces(machine, theta[:, np.newaxis], np.array([3.0, 4.0]))
     np.testing.assert_allclose(tall.torque[:, 0], whole.torque, rtol=1e-13, atol=1e-13)
-
-
-@EVERY
-def test_the_smaller_modules_agree_with_the_whole_one(linkage) -> None:
-    straight = Machine(linkage, masses_of(linkage, straight=True))
-    bent = {link: own + MassDistribution(across=0.0) for link, own in straight.masses.items()}
-    bent["crank"] = bent["crank"] + MassDistribution(mass=1e-300, across=1e-300, inertia=1e-300)
-    constant = rigid_forces(straight, THETA, 5.0)
-    whole = rigid_forces(Machine(linkage, bent), THETA, 5.0)
-    varied = rigid_forces(straight, THETA, 5.0, np.full(THETA.shape, 1e-300))
-    for name, values in constant.values.items():
-        size = np.max(np.abs(values)) or 1.0
-        np.testing.assert_allclose(whole[name], values, atol=1e-12 * size, err_msg=name)
-        np.testing.assert_allclose(varied[name], values, atol=1e-12 * size, err_msg=name)
-
-
-def test_no_angles_no_forces() -> None:
-    found = rigid_forces(smith(), np.zeros(0), 1.0)
-    assert found.f12.shape == (0, 2)
-    assert found.passed
 
 
 @pytest.mark.parametrize(
@@ -456,3 +295,41 @@ def test_pictures() -> None:
     torque = found.plot(joint="torque")
     np.testing.assert_array_equal(torque.lines[0].get_ydata(), found.torque)
     assert found.plot().get_title() == "force on the frame"
+
+
+@EVERY
+def test_a_single_angle_has_checks_and_a_file(linkage, tmp_path) -> None:
+    found = rigid_forces(loaded(linkage), 1.0, 5.0, 2.0)
+    assert found.passed
+    saved = json.loads(found.save(tmp_path / "f.json").read_text())
+    assert saved["torque"] == float(found.torque)
+    assert saved["passed"] and "values" not in saved
+
+
+@EVERY
+@pytest.mark.parametrize("name", ["x12", "y41", "torque"])
+def test_a_wrong_force_is_out_of_balance(linkage, name) -> None:
+    machine, theta = loaded(linkage), np.linspace(0.1, 6.0, 9)
+    given = (machine, theta, np.full(9, 5.0), np.zeros(9))
+    values = dict(rigid_forces(machine, theta, 5.0).values)
+    assert all(check.passed for check in checks(*given, values).values())
+    values[name] = values[name] + 1e-9
+    assert not checks(*given, values)["equilibrium of the links over its error"].passed
+
+
+def test_a_peak_between_the_places_is_looked_at() -> None:
+    """One angle among a thousand beside a fold."""
+    linkage = FourBar(0.3, 0.25, 0.1, 0.1)
+    low, high = linkage.crank_ranges()[0]
+    theta = np.full(1000, 0.5 * (low + high))
+    theta[517] = high
+    coupler = MassDistribution.uniform_bar(1.0, 0.1)
+    assert not driving_torque(Machine(linkage, {"coupler": coupler}), theta, 1.0).passed
+
+
+def test_a_force_along_one_axis_is_drawn_over_the_turn() -> None:
+    linkage = LINKAGES["slider-crank"]
+    found = rigid_forces(Machine(linkage, masses_of(linkage)), np.linspace(0.0, 6.0, 61), 5.0)
+    axes = found.plot(joint="41")
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), found["y41"])
+    assert axes.get_ylabel() == "pin force 41, Y [N]"

@@ -15,6 +15,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Result, provenance
 from ..periodic.peaks import peak_error, quiet_state, require_shapes
+from .critical import label_speeds
 from .held import frozen_frequencies
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ def resonance_curve(
         high = inside[rows, np.minimum(best + 1, _WITHIN - 1)]
     maxima = 0.5 * (low + high)
     heights = quiet_state(system, maxima, rtol, parameters).peak(x) if len(maxima) else maxima
-    order, mode = _labels(mean, maxima)
+    mode, order = label_speeds(mean[:_LABELLED], maxima)
     return ResonanceCurve(
         method=state.method,
         error=peak_error(state, np.full(len(speeds), float(x))),
@@ -206,26 +207,3 @@ def _tops(peak: Array) -> NDArray[np.intp]:
     top = (middle > values[:-2]) & (middle >= values[2:]) & np.isfinite(middle)
     places: NDArray[np.intp] = np.flatnonzero(top) + 1
     return places
-
-
-def _labels(mean: Array, maxima: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return order and mode of each maximum from the mean frequencies over its speed.
-
-    The pairs that fit best choose first, and no label is given twice where another is left.
-    """
-    ratio = mean[:_LABELLED] / maxima[:, None]
-    orders = np.maximum(1, np.round(ratio)).astype(np.int64)
-    misfit = np.abs(ratio - orders)
-    order, mode = np.zeros((2, len(maxima)), dtype=np.int64)
-    taken: set[tuple[int, int]] = set()
-    for place, column in zip(
-        *np.unravel_index(np.argsort(misfit, axis=None), misfit.shape), strict=True
-    ):
-        label = int(orders[place, column]), int(column) + 1
-        if not mode[place] and label not in taken:
-            taken.add(label)
-            order[place], mode[place] = label
-    rest = mode == 0
-    nearest = np.argmin(misfit, axis=1)
-    order[rest], mode[rest] = orders[rest, nearest[rest]], nearest[rest] + 1
-    return order, mode

@@ -44,8 +44,7 @@ class Meissner:
 
     ``discriminant`` and ``characteristic_exponents`` take any number of levels, and
     ``hill_boundaries`` two (Aannaque (7.9)-(7.11), after Meissner).  A smooth f in N steps, the
-    method of Pipes and of Hsu (Aannaque 7.2.2), is
-    ``Meissner(f(2 pi (arange(N) + 0.5) / N), full(N, 2 pi / N))``.
+    method of Pipes and of Hsu (Aannaque 7.2.2), is ``Meissner.of(f(2 pi (arange(N) + 0.5) / N))``.
 
     Attributes
     ----------
@@ -74,6 +73,12 @@ class Meissner:
             raise bad("levels", lengths.size, f"at most {_MOST_INTERVALS}", "take fewer")
         object.__setattr__(self, "levels", tuple(levels.tolist()))
         object.__setattr__(self, "lengths", tuple(lengths.tolist()))
+
+    @classmethod
+    def of(cls, levels: ArrayLike) -> Meissner:
+        """Return f with these levels on intervals of equal length."""
+        values = tuple(finite("levels", levels).tolist())
+        return cls(values, (2.0 * pi / max(len(values), 1),) * len(values))
 
     @property
     def mean(self) -> float:

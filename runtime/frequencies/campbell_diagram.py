@@ -67,17 +67,8 @@ class Running:
 def running_frequencies(system: LinearPeriodic, speeds: Array, held: Array, rest: Array) -> Running:
     """Return the frequencies of the running mechanism, named by the shapes of its motions.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    speeds : ndarray
-        Crank speeds [rad/s], ``(ns,)``.
-    held : ndarray
-        Frequencies [rad/s] that the multiples of the speed are chosen by, ``(ns, modes)``; where
-        they are NaN those of the speed before count.
-    rest : ndarray
-        Those before the first speed, ``(modes,)``.
+    The multiples of the speed are chosen by the ``held`` frequencies [rad/s], ``(ns, modes)``;
+    where they are NaN by those of the speed before, before the first by ``rest``.
     """
     slow, turn = SlowModes(system, {}), 2.0 * np.pi / system.period
     frequency, growth, share = np.empty((3, *held.shape))

@@ -42,23 +42,8 @@ def quadratic_forms(
 ) -> tuple[Array, Array, Array]:
     """Return ``X^T D X``, ``X^T M X`` and the sizes of the terms of the first one's diagonal.
 
-    Parameters
-    ----------
-    assembly : Assembly
-        The members.
-    omega : float
-        Frequency [rad/s].
-    vectors : ndarray, shape (size, k)
-        Columns.
-    mass : ndarray, optional
-        Local mass matrices where they are known.
-
-    Returns
-    -------
-    stiffness, mass : ndarray, shape (k, k)
-    sizes : ndarray, shape (k,)
-        Sum of the sizes of everything that is added, mass included: u times it is what rounding
-        does.
+    X has the columns ``vectors``, ``(size, k)``.  The sizes, ``(k,)``, sum all that is added, mass
+    included: u times them is what rounding does.
     """
     if mass is None:
         _, mass = assembly.local_matrices(omega)
@@ -360,20 +345,7 @@ class MemberShape:
 def member_shape(
     assembly: Assembly, omega: float, vector: Array, beam: str, eta: ArrayLike
 ) -> MemberShape:
-    """Return the shape of a beam in a harmonic motion.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The members.
-    omega : float
-        Frequency [rad/s].
-    vector : ndarray, shape (size,)
-        Coordinates.
-    beam : str
-        Name of the beam.
-    eta : array_like, shape (m,)
-        Places along the beam, in lengths, 0 to 1.
+    """Return the shape of a beam in a harmonic motion, at places ``(m,)`` in lengths.
 
     Raises
     ------
@@ -540,20 +512,7 @@ _MOST_BRACKETS = 400
 def bisected(
     problem: Transcendental, upto: float | None, count: int | None, rtol: float
 ) -> FrameFrequencies:
-    """Return the frequencies of a problem by bisection on their number.
-
-    Parameters
-    ----------
-    problem : Transcendental
-        What counts.
-    upto, count, rtol
-        As :func:`wittrick_williams` takes them.
-
-    Raises
-    ------
-    BadInput
-        If there are not as many frequencies as asked for.
-    """
+    """Return the frequencies of a problem by bisection on their number."""
     high = upto if upto is not None else _bracketed(problem, count or 1)
     total = int(problem.count(high))
     pending = [(0.0, high, 0, total)]

@@ -184,13 +184,6 @@ def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
     """Return mode (from 1) and order of each speed: whose mean frequency over n is nearest.
 
     The pairs that fit best choose first, and no label is given twice where another is left.
-
-    Parameters
-    ----------
-    mean : ndarray
-        Mean frequencies [rad/s], ``(modes,)``.
-    speed : ndarray
-        Speeds [rad/s], ``(ns,)``.
     """
     ratio = mean / speed[:, None]
     orders = np.maximum(1, np.round(ratio)).astype(np.int64)

@@ -204,13 +204,7 @@ def dynamic_stiffness(
 def rigid_beams(
     what: str, structure: Structure, theta: float, inextensible: bool | tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the names of the beams that cannot stretch, all arguments checked.
-
-    Raises
-    ------
-    BadInput
-        If one is unusable, or the structure has a sliding pin.
-    """
+    """Return the names of the beams that cannot stretch, all arguments checked."""
     require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
     if not is_finite(theta):
         raise bad("theta", repr(theta), "one number", "hold the linkage at one angle")
@@ -276,13 +270,7 @@ def turning_matrix(angle: float) -> Array:
 
 
 def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
-    """Return a basis of the displacements that stretch no inextensible piece, ``(free, size)``.
-
-    Raises
-    ------
-    BadInput
-        If there are none.
-    """
+    """Return a basis of the displacements that stretch no inextensible piece, ``(free, size)``."""
     count = local.shape[-1]
     if not rigid.any():
         return np.eye(count)

@@ -63,13 +63,7 @@ def held_arrays(
 def held_frequencies(
     system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
 ) -> tuple[Array, Array]:
-    """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each.
-
-    Raises
-    ------
-    BadInput
-        As :func:`held_modes`.
-    """
+    """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each."""
     held = held_modes(system, theta, parameters, speed)
     return held.frequency, held.error
 
@@ -135,26 +129,14 @@ def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
 
 
 def require_system(system: object) -> None:
-    """Refuse what is no linear periodic system.
-
-    Raises
-    ------
-    BadInput
-        If it is none.
-    """
+    """Refuse what is no linear periodic system."""
     if not isinstance(system, LinearPeriodic):
         found, fix = type(system).__name__, "take one from linkage_system or a scene"
         raise bad("system", found, "a LinearPeriodic", fix)
 
 
 def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
-    """Return checked crank angles; 361 over a period by default.
-
-    Raises
-    ------
-    BadInput
-        If they are no row of finite numbers.
-    """
+    """Return checked crank angles; 361 over a period by default."""
     if theta is None:
         return np.linspace(0.0, system.period, 361)
     angles = np.atleast_1d(numbers("theta", theta))
@@ -196,25 +178,12 @@ def cycle_mean(
     most: int = _MOST,
     enough: float = _ENOUGH,
 ) -> tuple[Array, Array]:
-    """Return means over the period and their errors, ``(k,)`` each.
+    """Return means over the period and their errors, ``(k,)`` each, to a relative ``enough``.
 
     By the trapezoidal rule, which converges geometrically where the values are analytic.  Where
-    that is slow, by Gauss-Legendre panels that end at the given angles and are halved where their
-    error is: near a veering the values are analytic in a narrow strip, at a crossing their order
-    changes.
-
-    Parameters
-    ----------
-    values : callable
-        Crank angles to values and their round-off.
-    period : float
-        Period [rad].
-    breaks : sequence of float
-        Angles at which the values are not smooth, or nearly not.
-    most : int
-        Most angles of the trapezoidal rule.
-    enough : float
-        Relative error that is small enough.
+    that is slow, by Gauss-Legendre panels that end at the given ``breaks`` and are halved where
+    their error is: near a veering the values are analytic in a narrow strip, at a crossing their
+    order changes.
     """
     count = _FEWEST
     found, rounding = _even(values, period, count)

@@ -31,17 +31,7 @@ _POSITIONS = 10
 def deflected_links(
     structure: Structure, theta: float, shape: Array
 ) -> dict[str, tuple[Array, Array]]:
-    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m].
-
-    Parameters
-    ----------
-    structure : Structure
-        Beams and nodes.
-    theta : float
-        Crank angle [rad].
-    shape : ndarray
-        Free coordinates, ``(n,)``.
-    """
+    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m]."""
     full = np.zeros(len(structure.freedoms.all))
     full[structure.freedoms.free] = shape
     motion = structure.configuration(np.array([theta]))

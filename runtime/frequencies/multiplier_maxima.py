@@ -55,33 +55,19 @@ class Maxima(NamedTuple):
 def multiplier_maxima(
     system: LinearPeriodic, speed_range: tuple[float, float], count: int | None = None
 ) -> Maxima:
-    """Return the local maxima over the speed of the real parts of the multipliers.
+    """Return the local maxima over the speed [rad/s] of the real parts of the multipliers.
 
     Each mode's multiplier of the larger real part is followed over the speed; where its real part
     has a local maximum the mechanism answers most to its periodic forcing (Aannaque 7.2.3).  In an
-    unstable band with real multipliers beyond +1 it is the speed of greatest growth.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of any size, stiff or not; with damping the maxima below the level of others count too.
-        Where a few modes stand apart from the rest the speeds are swept on those alone; what that
-        costs at the highest speed is in the error.
-    speed_range : pair of float
-        Lowest and highest speed [rad/s], the lowest positive.
-    count : int, optional
-        Number of modes, the lowest, see :func:`characteristic_exponents`.
-
-    Returns
-    -------
-    Maxima
-        Its checks: those of the multipliers on the grid.  A maximum between two samples, of which
-        the highest mode turns by 0.35 rad at most, may be missed.
+    unstable band with real multipliers beyond +1 it is the speed of greatest growth.  Where a few
+    modes stand apart from the rest the speeds are swept on those alone; what that costs at the
+    highest speed is in the error.  A maximum between two samples, of which the highest mode turns
+    by 0.35 rad at most, may be missed.
 
     Raises
     ------
     BadInput
-        If an argument is unusable or the range needs more than 4000 samples.
+        If the range needs more than 4000 samples.
     """
     low, high = speed_range
     slow = SlowModes(system, {})
@@ -198,22 +184,10 @@ def _refined(
 def meissner_maxima(frequencies: Array, period: float, speed_range: tuple[float, float]) -> Maxima:
     """Return the local maxima over the speed of Meissner's J_N, each mode by itself.
 
-    Its frequency is constant in each of N equal intervals: ``y'' + (v_i/w)^2 y = 0``, as in
-    Aannaque's Fig. 7.3.  What modes exchange, and the change of their shapes, is not in it.
-
-    Parameters
-    ----------
-    frequencies : ndarray
-        Natural frequencies at even angles, crank held [rad/s], shape ``(N, m)``, N even.
-    period : float
-        Period [rad].
-    speed_range : pair of float
-        Lowest and highest speed [rad/s].
-
-    Returns
-    -------
-    Maxima
-        ``error`` is how far a maximum lies from that of half the intervals.
+    Its frequency, in a column of ``(N, m)`` at even angles with N even, is constant in each of N
+    intervals: ``y'' + (v_i/w)^2 y = 0``, as in Aannaque's Fig. 7.3.  What modes exchange, and the
+    change of their shapes, is not in it.  The error is the distance to the maximum of half the
+    intervals.
     """
     count = len(frequencies)
     halved = frequencies.reshape(count // 2, 2, -1).mean(axis=1)

@@ -186,19 +186,7 @@ class Walk:
 
 
 def walk(modes: Modes, arrays: Arrays, period: float, count: int) -> Walk:
-    """Return a turn of the crank with the encounters of the lowest ``count`` modes.
-
-    Parameters
-    ----------
-    modes : callable
-        Crank angles ``(nt,)`` to frequencies and shapes.
-    arrays : callable
-        Crank angles to M and K.
-    period : float
-        Period [rad].
-    count : int
-        Number of modes.
-    """
+    """Return a turn of the crank with the encounters of the lowest ``count`` modes."""
     step = period / _INTERVALS
     theta = np.asarray(step * (np.arange(_INTERVALS + 1) + _OFFSET), dtype=np.float64)
     held = modes(theta)

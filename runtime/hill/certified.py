@@ -282,12 +282,6 @@ def spectrum(
 
     ``highest`` is even for the whole problem and odd for the half-whole one; ``shift`` asks for
     harmonics enough for eigenvalues that damping moves up by so much.
-
-    Raises
-    ------
-    BadInput
-        If more than 2048 harmonics would be needed, or the matrix is so large that rounding
-        leaves nothing proved.
     """
     cut = _cut(f, mu, highest, shift)
     harmonic = cut.harmonic + odd

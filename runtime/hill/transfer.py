@@ -142,14 +142,8 @@ class Transfer:
     ) -> tuple[Array, Array, Exponents, Array]:
         """Return half trace and error at points ``(n,)``, scaled against overflow.
 
-        Returns
-        -------
-        value, error : ndarray, shape (n,)
-            To be multiplied by ``2**exponent``.
-        exponent : ndarray of int, shape (n,)
-            Zeros unless the solutions grow beyond 1e100.
-        defect : ndarray, shape (n,)
-            Deviation of the product of the segments' determinants from 1 (Liouville).
+        Value and error are to be multiplied by ``2**exponent``, 1 unless solutions grow beyond
+        1e100.  Last, how far the product of the segments' determinants is from 1 (Liouville).
         """
         n = lam2.size
         value, error, defect = np.empty(n), np.empty(n), np.empty(n)
@@ -238,14 +232,7 @@ def normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
 
 
 def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
-    """Expand the transfer matrices over a box of parameters.
-
-    Parameters
-    ----------
-    f : PeriodicFunction
-        The coefficient function.
-    lam2, mu : (low, high)
-        The box.
+    """Expand the transfer matrices over a box ``(low, high)`` of each parameter.
 
     Raises
     ------

@@ -97,18 +97,9 @@ class Recovery:
     def values(
         self, name: str, speed: float, q: Array, dq: Array, ddq: Array | None = None
     ) -> Array:
-        """Return one quantity ``(nt, stations)`` in a motion.
+        """Return one of ``forms`` ``(nt, stations)`` in a motion: q and its slope by the angle.
 
-        Parameters
-        ----------
-        name : str
-            One of ``forms``.
-        speed : float
-            Crank speed [rad/s].
-        q, dq : ndarray, shape (nt, n)
-            Coordinates and their derivatives by the crank angle.
-        ddq : ndarray, shape (nt, n), optional
-            Second derivatives by the crank angle; by default from the equation of motion.
+        The second derivatives ``ddq`` come from the equation of motion where they are not given.
         """
         form = self.forms[name]
         if ddq is None:
@@ -122,20 +113,10 @@ class Recovery:
 def stations_of(
     structure: Structure, stations: int | Mapping[str, ArrayLike] | None = None
 ) -> tuple[Station, ...]:
-    """Return places on the beams of a structure.
+    """Return places on the beams of a structure, beam by beam.
 
-    Parameters
-    ----------
-    structure : Structure
-        The beams.
-    stations : int or mapping of str to array_like, optional
-        Number of places on each beam, its ends included; or by beam the places x/length.  By
-        default 25 on each.
-
-    Returns
-    -------
-    tuple of Station
-        Beam by beam.
+    ``stations`` is the number on each beam, its ends included (by default 25), or by beam the
+    places x/length.
 
     Raises
     ------
@@ -177,13 +158,7 @@ def _station(structure: Structure, beam: Beam, place: float) -> Station:
 
 
 def require_method(method: str) -> None:
-    """Refuse a way to recover forces that is not known.
-
-    Raises
-    ------
-    BadInput
-        If it is none of ``METHODS``.
-    """
+    """Refuse a way to recover forces that is not known."""
     if method not in METHODS:
         raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
 
@@ -195,21 +170,6 @@ def recovery(
     method: str = "equilibrium",
 ) -> Recovery:
     """Return forces and displacements along the beams of a system as linear forms.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    theta : array_like, shape (nt,)
-        Crank angles [rad].
-    stations : int, mapping or tuple of Station, optional
-        As :func:`stations_of` takes them.
-    method : str
-        ``"equilibrium"`` or ``"shape"``.
-
-    Returns
-    -------
-    Recovery
 
     Raises
     ------
@@ -478,19 +438,7 @@ def evaluated(
     *,
     frozen: bool = False,
 ) -> dict[str, Array]:
-    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates.
-
-    Parameters
-    ----------
-    system, stations, method
-        As :func:`recover` takes them.
-    motion : BeamMotion
-        The motion; a frozen one is taken for displacements without rates or accelerations.
-    names : tuple of str
-        Which quantities.
-    frozen : bool
-        Whether rates and accelerations of the coordinates are left out.
-    """
+    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates."""
     parts: dict[str, list[Array]] = {name: [] for name in names}
     for chunk in chunks(motion):
         made = recovery(system, motion.theta[chunk], stations, method)

@@ -151,15 +151,7 @@ def chunks(motion: BeamMotion) -> list[slice]:
 
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
-    """Return the steady state; the caller looks at the linear range.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    speed : float
-        Crank speed [rad/s].
-    """
+    """Return the steady state at a speed [rad/s]; the caller looks at the linear range."""
     from ..periodic import steady_state
 
     with warnings.catch_warnings():
@@ -192,13 +184,6 @@ def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
 
 def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
     """Return the equilibrium of a structure that stands still under constant loads.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : object
-        None: a structure that stands still has no other.
 
     Raises
     ------

@@ -84,17 +84,7 @@ def _none(elements: int) -> Callable[[Array], Array]:
 
 
 class Energies:
-    """Energies and powers of a motion at some of its angles.
-
-    Parameters
-    ----------
-    forms : ElementForms
-        At these angles.
-    values : MotionValues
-        The motion there.
-    slopes : mapping
-        As :func:`force_slopes` returns them.
-    """
+    """Energies and powers of a motion at some of its angles."""
 
     def __init__(self, forms: ElementForms, values: MotionValues, slopes: Slopes) -> None:
         self.forms, self.values = forms, values

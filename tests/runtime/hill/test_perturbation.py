@@ -17,7 +17,7 @@ from elastolink.runtime.hill import (
     perturbation_boundaries,
 )
 from elastolink.runtime.hill.bloch import effective_operator, wave_columns
-from hill_functions import functions
+from hill_functions import functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from smith_chapter_8.exact import exact_operator
@@ -326,14 +326,6 @@ def test_a_shift_of_the_angle_turns_b_and_leaves_a(n):
 FORMS = ("uniform", "series")
 
 EPS = float(np.finfo(float).eps)
-
-
-def general(harmonics, fall=0.7, seed=0):
-    rng = np.random.default_rng(seed)
-    size = fall ** np.arange(harmonics + 1)
-    a, b = rng.uniform(-1, 1, (2, harmonics + 1)) * size
-    b[0] = 0.0
-    return PeriodicFunction(a, b)
 
 
 MIXED = general(6)

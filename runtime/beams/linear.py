@@ -183,10 +183,6 @@ def _node_forces(arrays: AngleArrays) -> Array:
     return found
 
 
-# A mode softer than this, over the stiffest, is taken for one that nothing resists.
-_SOFTEST = 1e-14
-# Deformation of the elements, over the largest there can be, below which a motion has none.
-_RIGID = 1e-9
 # Share of a motion from which a coordinate is named.
 _NAMED = 0.1
 
@@ -210,7 +206,8 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
         loose: Iterable[int] = np.flatnonzero(sizes == 0.0)
         if not np.any(sizes == 0.0):
             values = np.linalg.eigvalsh(stiffness / np.outer(sizes, sizes))
-            if values[0] > _SOFTEST * len(values) * values[-1]:
+            # A mode softer than this, over the stiffest, is taken for one that nothing resists.
+            if values[0] > 1e-14 * len(values) * values[-1]:
                 continue
             motion = _rigid_motion(strain)
             if motion is None:
@@ -261,7 +258,8 @@ def _rigid_motion(strain: Array) -> Array | None:
     felt = np.flatnonzero(np.any(strain != 0.0, axis=0))
     sizes = np.linalg.norm(strain[:, felt], axis=0)
     _, values, across = np.linalg.svd(strain[:, felt] / sizes)
-    if len(values) == len(felt) and values[-1] > _RIGID * values[0]:
+    # Deformation of the elements, over the largest there can be, below which a motion has none.
+    if len(values) == len(felt) and values[-1] > 1e-9 * values[0]:
         return None
     motion = np.zeros(strain.shape[1])
     motion[felt] = np.abs(across[-1] / sizes)

@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# Modes that label the speeds, and speeds of a first scan, unless the caller says otherwise.
-_MODES, _SPEEDS = 4, 240
-
 
 @dataclass(frozen=True, kw_only=True)
 class CriticalSpeeds(Result):
@@ -257,10 +254,6 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
     return _listed(request, still.mean, rows, "mean natural frequencies at the speed over n")
 
 
-# Intervals of Meissner's functions.
-_INTERVALS = 64
-
-
 def by_multipliers(request: Request) -> CriticalSpeeds:
     """Return the local maxima of the real part of each mode's multiplier (Aannaque 7.2.3)."""
     maxima = multiplier_maxima(request.system, (request.low, request.high), request.count)
@@ -270,7 +263,8 @@ def by_multipliers(request: Request) -> CriticalSpeeds:
 def by_meissner(request: Request) -> CriticalSpeeds:
     """Return the local maxima of J_N of each mode by itself, N = 64 (Aannaque 7.11)."""
     period = request.system.period
-    frequency = held_frequencies(request.system, even_angles(period, _INTERVALS), {})[0]
+    # Intervals of Meissner's functions.
+    frequency = held_frequencies(request.system, even_angles(period, 64), {})[0]
     maxima = meissner_maxima(frequency[:, : request.count], period, (request.low, request.high))
     return _marked(request, maxima, "J_N")
 
@@ -467,7 +461,7 @@ def critical_speeds(
     *,
     method: str = "mean_frequency",
     modes: int | None = None,
-    speeds: int = _SPEEDS,
+    speeds: int = 240,
     progress: bool = False,
 ) -> CriticalSpeeds:
     """Return the speeds within a range at which a mechanism is most responsive.
@@ -510,7 +504,7 @@ def critical_speeds(
     low, high = _range(speed_range)
     if not isinstance(method, str) or method not in METHODS:
         raise bad("method", repr(method), f"one of {tuple(METHODS)}", "choose one")
-    wanted = min(_MODES, system.size) if modes is None else modes
+    wanted = min(4, system.size) if modes is None else modes
     count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")

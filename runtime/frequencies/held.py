@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
-# Round-offs of a sum's terms that its error is told as.
-_ROUNDED = 2.0
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,8 @@ def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Arra
     square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
     summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
     summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
-    return square, _ROUNDED * _EPS * summed / kinetic
+    # Round-offs of a sum's terms that its error is told as.
+    return square, 2.0 * _EPS * summed / kinetic
 
 
 def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
@@ -166,8 +165,6 @@ _FEWEST, _MOST = 64, 1024
 _NODES = (10, 16)
 _PANELS = 12
 _HALVINGS = 24
-# Panels open at once, beyond which their error is told instead.
-_MOST_PANELS = 48
 
 
 def cycle_mean(
@@ -222,7 +219,8 @@ def _by_panels(
         gap = np.abs(fine - coarse)
         share = (panels[:, 1] - panels[:, 0])[:, None] / period
         allowed = enough * np.abs(fine) + rounding + 0.1 * enough * share * np.max(np.abs(fine))
-        last = step == _HALVINGS or len(panels) > _MOST_PANELS
+        # Panels open at once, beyond which their error is told instead.
+        last = step == _HALVINGS or len(panels) > 48
         good = np.all(gap <= allowed, axis=1) | last
         total = total + np.sum(fine[good], axis=0)
         error = error + np.sum(gap[good] + rounding[good], axis=0)
@@ -249,8 +247,8 @@ def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, 
     return found, rounding + 4 * _EPS * np.abs(found)
 
 
-_ANGLES = 256
-_WITHIN, _PASSES = 9, 16
+# Places within a bracket per pass: each pass keeps a quarter of it.
+_WITHIN = 9
 
 
 @dataclass(frozen=True)
@@ -295,8 +293,8 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
     require_system(system)
     if not system.has("Kg"):
         return Buckling(np.inf, 0.0)
-    theta = even_angles(system.period, _ANGLES)
-    for _ in range(_PASSES):
+    theta = even_angles(system.period, 256)
+    for _ in range(16):
         softening = _softening(system, theta, parameters)
         best = int(np.argmax(softening))
         step = float(theta[1] - theta[0])

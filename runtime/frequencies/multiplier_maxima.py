@@ -29,9 +29,6 @@ Whole = NDArray[np.int64]
 # Turn of the highest mode between two samples [rad].
 _TURN = 0.35
 _MOST_SAMPLES = 4000
-_ROUNDS = 12
-# Relative step at which a maximum is found: beyond, the values say no more.
-_CLOSE = 1e-7
 # Lowest frequency left out, over the highest wanted and over the highest kept.
 _BEYOND, _GAP = 4.0, 1.3
 # Error of the transition matrices: the place of a maximum is open by the root of it.
@@ -154,8 +151,9 @@ def _refined(
     """
     x, f = np.stack(brackets), np.stack(values)
     moved = np.max(np.abs(x - x[1]), axis=0)
-    for _ in range(_ROUNDS):
-        wide = moved > _CLOSE * x[1]
+    for _ in range(12):
+        # Relative step at which a maximum is found: beyond, the values say no more.
+        wide = moved > 1e-7 * x[1]
         if not np.any(wide):
             break
         with np.errstate(divide="ignore", invalid="ignore"):

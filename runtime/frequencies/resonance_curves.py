@@ -26,8 +26,6 @@ Array = NDArray[np.float64]
 # Each pass puts so many speeds into the gap about a maximum, and keeps a quarter of it.
 _PASSES = 4
 _WITHIN = 9
-# Modes that a maximum may be labelled by: of a high one any speed is near some fraction.
-_LABELLED = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,7 +177,8 @@ def resonance_curve(
         high = inside[rows, np.minimum(best + 1, _WITHIN - 1)]
     maxima = 0.5 * (low + high)
     heights = quiet_state(system, maxima, rtol, parameters).peak(x) if len(maxima) else maxima
-    mode, order = label_speeds(mean[:_LABELLED], maxima)
+    # Modes that a maximum may be labelled by: of a high one any speed is near some fraction.
+    mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(
         method=state.method,
         error=peak_error(state, np.full(len(speeds), float(x))),

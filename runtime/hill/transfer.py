@@ -28,7 +28,6 @@ Range = tuple[float, float]
 
 EPS = float(np.finfo(float).eps)
 _MOST_SEGMENTS = 2**16
-_MOST_LEVELS = 40
 _NODE_COUNTS = np.arange(8, 25)
 # Neglected part of the interpolant; the end values see about its square (superconvergence).
 _NODE_TAIL = 1e-9
@@ -326,7 +325,7 @@ def _expand(
     u = free + _applied(source, onward)
     weighted = mu[1] * values
     weight = g * (lam2[1] + float(np.abs(weighted).max()))
-    for k in range(1, _MOST_LEVELS + 1):
+    for k in range(1, 41):
         source = np.empty((2 * (k + 1), segments, q))
         np.multiply(u, lam2[1], out=source[: 2 * k])
         source[2 * k :] = 0.0

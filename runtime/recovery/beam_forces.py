@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 METHODS = ("equilibrium", "shape")
 FORCES = ("axial", "shear", "moment")
-# Places per beam where none are asked for.
-_PLACES = 25
 # Exact for the shape functions (to degree 5) times the axial force (to degree 2) times x.
 _GAUSS_PLACES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
@@ -124,7 +122,7 @@ def stations_of(
         If a beam is unknown or a place lies off it.
     """
     if stations is None or isinstance(stations, int):
-        count = _PLACES if stations is None else stations
+        count = 25 if stations is None else stations
         if isinstance(stations, bool) or count < 2:
             raise bad("stations", repr(stations), "2 places or more on each beam", "choose 25")
         wanted: Mapping[str, ArrayLike] = {
@@ -378,7 +376,7 @@ def recover(
         ``"equilibrium"``: end forces of the elements, and between nodes what balances inertia,
         weight and axial force.  ``"shape"``: E I v'' of the shape functions, Aannaque's way.
     finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
+        Whether the error of the mesh is estimated by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -411,7 +409,7 @@ def _doubt(
     own: Mapping[str, Array],
     finer_mesh: bool,
 ) -> dict[str, Any]:
-    """Return the error figure and its norm."""
+    """Return the error estimate and its norm."""
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
     finer = on_finer_mesh(system, moving) if finer_mesh else None
     if finer is None:

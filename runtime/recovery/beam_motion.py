@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
 
-# Mesh and equations err far more than this.
-_RTOL = 1e-7
 # Angles of one piece.
 _CHUNK = 256
 
@@ -156,7 +154,8 @@ def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, rtol=_RTOL)
+        # Mesh and equations err far more than this.
+        return steady_state(system, speed, rtol=1e-7)
 
 
 def _steady(motion: SteadyState) -> BeamMotion:

@@ -19,7 +19,7 @@ from ..core.families import LinearPeriodic
 from ..core.results import Check, Result, provenance
 from .beam_motion import BeamMotion, chunks
 
-# Fields that are worked out when they are first looked at.
+# Fields that are computed when they are first looked at.
 _LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
@@ -36,7 +36,7 @@ class BeamResult(Result):
 
     Notes
     -----
-    The error figure is worked out when it is first looked at.
+    The error estimate is computed when it is first looked at.
     """
 
     speed: float

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from .beam_motion import Motion
 
-# Fields that are worked out when they are first looked at; of its own and not of BeamResult, as in
+# Fields that are computed when they are first looked at; of its own and not of BeamResult, as in
 # its files the place comes before the speed.
 _LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
@@ -119,7 +119,7 @@ def elastic_coupler_curve(
     link : str
         Which link.
     finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
+        Whether the error of the mesh is estimated by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -162,7 +162,7 @@ def _doubt(
     own: tuple[Array, float],
     finer_mesh: bool,
 ) -> dict[str, float | str]:
-    """Return the error figure and its norm."""
+    """Return the error estimate and its norm."""
     shift, doubt = own
     error, norm = float(np.sqrt(2.0)) * doubt, "largest error of a place [m]"
     finer = on_finer_mesh(system, moving) if finer_mesh else None

@@ -233,10 +233,6 @@ def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Arra
     return plain + 2.0 * _dot(direct, spun @ across.T)
 
 
-# Round-off of energies that are sums of large parts, over the largest power.
-_ROUNDING = 1e-9
-
-
 @dataclass(frozen=True, kw_only=True)
 class BeamEnergies(BeamResult):
     """Energies of a structure of beams in a motion.
@@ -330,7 +326,7 @@ def beam_energies(
     motion : SteadyState, Trajectory, BeamMotion, float or None
         A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
     finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
+        Whether the error of the mesh is estimated by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -370,8 +366,9 @@ def beam_energies(
 def _doubt(
     system: LinearPeriodic, moving: BeamMotion, strain: Array, finer_mesh: bool
 ) -> dict[str, float | str]:
-    """Return the error figure and its norm."""
-    error, norm = _figure(system, moving), "largest error of the strain energy of all beams [J]"
+    """Return the error estimate and its norm."""
+    error = _motion_error(system, moving)
+    norm = "largest error of the strain energy of all beams [J]"
     finer = on_finer_mesh(system, moving) if finer_mesh else None
     if finer is None:
         norm = f"{norm}, by that of the motion; the mesh apart"
@@ -404,11 +401,12 @@ def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
     # The rate of the highest harmonic enlarges an error of the motion; squares of a motion have
     # twice its harmonics, and those beyond the samples fall upon the upper ones.
     beyond = 4.0 * float(np.sum(np.abs(spectrum[count // 3 :]))) / count
-    limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + _ROUNDING
+    # Round-off of energies that are sums of large parts, over the largest power.
+    limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + 1e-9
     return Check(float(np.max(np.abs(rate - power))) / largest if largest else 0.0, limit)
 
 
-def _figure(system: LinearPeriodic, motion: BeamMotion) -> float:
+def _motion_error(system: LinearPeriodic, motion: BeamMotion) -> float:
     """Return what the error of the motion can do to the strain energy [J]."""
     if not np.any(motion.doubt):
         return 0.0

@@ -16,7 +16,7 @@ from ..core.inputs import numbers
 from ..core.results import Result, provenance
 from ..periodic.peaks import peak_error, quiet_state, require_shapes
 from .critical import label_speeds
-from .held import frozen_frequencies
+from .natural import natural_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +57,7 @@ class ResonanceCurve(Result):
     ratio : ndarray
         That mean frequency over n times the speed, shape ``(nm,)``; 1 where the mean says it all.
     mean_frequency : ndarray
-        Mean natural frequencies over the cycle, crank held [rad/s], shape ``(n,)``.
+        Mean natural frequencies over the cycle, crank held [rad/s], six or all of fewer.
     x : float
         Place x/length.
     """
@@ -163,7 +163,7 @@ def resonance_curve(
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
     require_shapes("resonance_curve", system)
-    mean = frozen_frequencies(system, 0.0, **parameters).mean
+    mean = natural_frequencies(system, 0.0, **parameters).mean
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
     tops = _tops(peak)

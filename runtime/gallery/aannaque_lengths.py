@@ -176,9 +176,9 @@ def _weak_rows(curves: Sequence[Array]) -> list[Quoted]:
 
 
 def _mean_frequencies(frame: float) -> Array:
-    from ..frequencies import frozen_frequencies
+    from ..frequencies import natural_frequencies
 
-    return np.asarray(frozen_frequencies(beams(1, FULL, frame=frame)).mean[:4])
+    return np.asarray(natural_frequencies(beams(1, FULL, frame=frame), 0.0, 4).mean)
 
 
 # ---------------------------------------------------------------- Fig. 7.13

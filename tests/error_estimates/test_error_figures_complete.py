@@ -31,7 +31,6 @@ COVERED = {
     "fatigue": "test_design_errors.py",
     "floquet_multipliers": "test_periodic_errors.py",
     "flywheel_inertia": "test_machine_errors.py",
-    "frozen_frequencies": "test_speed_errors.py",
     "harmonics": "test_curve_errors.py",
     "hill_boundaries": "test_hill_errors.py",
     "krein_signatures": "test_band_errors.py",

@@ -13,7 +13,6 @@ from elastolink.runtime.frequencies import (
     draw_mode,
     draw_modes,
     frequency_exponents,
-    frozen_frequencies,
     link_frequencies,
     natural_frequencies,
     pinned_frequency,
@@ -43,14 +42,6 @@ def test_frequencies_of_the_linkage_to_their_error(linkage):
             exact = np.array([float(mpmath.sqrt(square)) for square in squares])
             assert np.all(np.abs(found.frequency[row] - exact) <= found.error[row])
     assert np.max(found.error / found.frequency) < 1e-9
-
-
-def test_frequencies_agree_with_the_frozen_ones(linkage):
-    theta = np.linspace(0.0, 2 * np.pi, 13)
-    found, plain = natural_frequencies(linkage, theta, 9), frozen_frequencies(linkage, theta)
-    np.testing.assert_array_equal(found.frequency, plain.frequency)
-    np.testing.assert_allclose(found.mean, plain.mean, rtol=1e-11)
-    assert found.passed and plain.passed
 
 
 def test_shapes_are_modes_of_unit_mass(linkage):

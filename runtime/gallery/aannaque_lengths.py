@@ -196,9 +196,7 @@ def bending_at_midpoint(
     motion = periodic(system if moving is None else moving, _SPEED)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        forces = recover(
-            system, motion, stations={"follower": [0.5]}, method="shape", finer_mesh=False
-        )
+        forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
     structure = system.structure
     assert structure is not None
     (section,) = (beam.section for beam in structure.beams if beam.name == "follower")

@@ -360,7 +360,6 @@ def recover(
     *,
     stations: int | Mapping[str, ArrayLike] | None = None,
     method: str = "equilibrium",
-    finer_mesh: bool = True,
 ) -> BeamForces:
     """Return displacements and forces along the beams of a system in a motion.
 
@@ -375,8 +374,6 @@ def recover(
     method : str
         ``"equilibrium"``: end forces of the elements, and between nodes what balances inertia,
         weight and axial force.  ``"shape"``: E I v'' of the shape functions, Aannaque's way.
-    finer_mesh : bool
-        Whether the error of the mesh is estimated by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -391,7 +388,7 @@ def recover(
     chosen = stations_of(required_structure(system), stations)
     moving = beam_motion(system, motion)
     own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
-    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own, finer_mesh))
+    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own))
     return BeamForces(
         method=method,
         links=tuple(station.beam for station in chosen),
@@ -407,11 +404,10 @@ def _doubt(
     stations: int | Mapping[str, ArrayLike] | None,
     method: str,
     own: Mapping[str, Array],
-    finer_mesh: bool,
 ) -> dict[str, Any]:
     """Return the error estimate and its norm."""
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         other = next(name for name in METHODS if name != method)
         better = evaluated(system, moving, stations, other, FORCES)

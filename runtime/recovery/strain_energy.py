@@ -314,9 +314,7 @@ class BeamEnergies(BeamResult):
         return ax
 
 
-def beam_energies(
-    system: LinearPeriodic, motion: Motion | float | None = None, *, finer_mesh: bool = True
-) -> BeamEnergies:
+def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) -> BeamEnergies:
     """Return the energies of a structure of beams over the cycle.
 
     Parameters
@@ -325,8 +323,6 @@ def beam_energies(
         Of a structure of beams.
     motion : SteadyState, Trajectory, BeamMotion, float or None
         A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
-    finer_mesh : bool
-        Whether the error of the mesh is estimated by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -350,7 +346,7 @@ def beam_energies(
     moving = beam_motion(system, motion)
     structure = required_structure(system)
     joined = _energies(system, moving)
-    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"], finer_mesh))
+    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"]))
     shared = in_motion(system, moving, doubt)
     made = BeamEnergies(
         method="element matrices",
@@ -363,13 +359,11 @@ def beam_energies(
     return made
 
 
-def _doubt(
-    system: LinearPeriodic, moving: BeamMotion, strain: Array, finer_mesh: bool
-) -> dict[str, float | str]:
+def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[str, float | str]:
     """Return the error estimate and its norm."""
     error = _motion_error(system, moving)
     norm = "largest error of the strain energy of all beams [J]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         norm = f"{norm}, by that of the motion; the mesh apart"
     else:

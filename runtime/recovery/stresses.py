@@ -381,7 +381,6 @@ def stress(
     *,
     stations: int | Mapping[str, ArrayLike] | None = None,
     method: str = "equilibrium",
-    finer_mesh: bool = True,
 ) -> StressResult:
     """Return the stresses along the beams of a linkage over the cycle, or of a frame.
 
@@ -395,10 +394,6 @@ def stress(
         Places on each beam: how many, or by beam the places x/length; by default 25.
     method : str
         How forces are recovered: ``"equilibrium"`` or ``"shape"``, see :func:`recover`.
-    finer_mesh : bool
-        Whether the motion is computed once more on a finer mesh, for the error estimate; it takes
-        a few times as long as the motion itself.  The next call for the same system, speed and
-        angles has it at hand.
 
     Returns
     -------
@@ -411,7 +406,7 @@ def stress(
 
         Of a motion that is given, or marched, the mesh's part is the difference of the two
         recoveries, for ``equilibrium`` times the square root of the mesh's relative error, and
-        says nothing about the frequencies of the mesh; likewise without ``finer_mesh``.
+        says nothing about the frequencies of the mesh.
 
     Warns
     -----
@@ -436,9 +431,7 @@ def stress(
     moving = beam_motion(system, motion)
     own = stresses(system, moving, stations, method, levers)
     still = DeferredGroup(partial(_still, system, moving, stations, method, levers))
-    doubt = DeferredGroup(
-        partial(_doubt, system, moving, stations, method, levers, own, finer_mesh)
-    )
+    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, levers, own))
     return StressResult(
         method=method,
         links=tuple(station.beam for station in chosen),
@@ -474,12 +467,11 @@ def _doubt(
     method: str,
     levers: tuple[Array, Array],
     own: tuple[Array, Array],
-    finer_mesh: bool,
 ) -> dict[str, float | str]:
     """Return the error estimate with its parts and its norm."""
     by_motion = motion_error(system, moving, stations, levers)
     norm = "largest error of a stress over angles and stations [Pa]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         other = next(name for name in METHODS if name != method)
         by_mesh = largest_difference(own, stresses(system, moving, stations, other, levers))

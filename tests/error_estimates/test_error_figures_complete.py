@@ -43,7 +43,7 @@ COVERED = {
     "pin_reactions": "test_beam_stress_errors.py",
     "prepare": "test_periodic_errors.py",
     "quiet_speeds": "test_design_errors.py",
-    "recover": "test_beam_recovery_errors.py",
+    "recover": "test_beam_stress_errors.py",
     "reduced_system": "test_reduction_errors.py",
     "resonance_curve": "test_speed_errors.py",
     "rigid_forces": "test_force_errors.py",

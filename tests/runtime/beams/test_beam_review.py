@@ -144,9 +144,3 @@ def test_stress_of_a_frame_needs_no_speed(capsys):
 def test_a_frame_has_no_crank(capsys, arguments):
     status, _, err = told(capsys, arguments[0], PORTAL, *arguments[1:])
     assert status == 2 and "no crank" in err and len(err.splitlines()) == 1
-
-
-def test_a_range_of_speeds_is_named_as_typed(capsys):
-    scene = "aannaque_1996_table_4_1"
-    status, _, err = told(capsys, "critical-speeds", scene, "--range", "5:70:9")
-    assert status == 2 and "'5:70:9'" in err and "LOW:HIGH" in err

@@ -13,7 +13,6 @@ from .elements import (
     NODAL_VALUES,
     ElementArrays,
     element_arrays,
-    rigid_field,
     section_rotation,
     shape_functions,
 )
@@ -52,7 +51,6 @@ __all__ = [
     "frame",
     "linear_system",
     "linkage_system",
-    "rigid_field",
     "sandwich_section",
     "section_rotation",
     "shape_functions",

@@ -58,15 +58,7 @@ def rotation_slope(size: int) -> dict[str, Array]:
 
 
 def in_own_axes(values: Array, c: Array, s: Array) -> Array:
-    """Return coordinates of an element ``(nt, n)`` in its own axes.
-
-    Parameters
-    ----------
-    values : ndarray, shape (nt, n)
-        In the fixed axes.
-    c, s : ndarray, shape (nt,)
-        Cosine and sine of the beam's angle.
-    """
+    """Return coordinates of an element ``(nt, n)`` in its own axes, by cosine and sine."""
     found = values.copy()
     for x, y in ((0, 1), (3, 4)):
         found[:, x] = c * values[:, x] + s * values[:, y]
@@ -75,15 +67,7 @@ def in_own_axes(values: Array, c: Array, s: Array) -> Array:
 
 
 def turned(left: Mapping[str, Array], matrix: Array, right: Mapping[str, Array]) -> Array:
-    """Return ``left^T matrix right`` as factors of the six products, shape ``(6, n, n)``.
-
-    Parameters
-    ----------
-    left, right : mapping of str to ndarray
-        As :func:`rotation` and :func:`rotation_slope` return them.
-    matrix : ndarray, shape (n, n)
-        In the element's own axes.
-    """
+    """Return ``left^T matrix right`` as factors of the six products, shape ``(6, n, n)``."""
     size = matrix.shape[0]
     total = np.zeros((len(PRODUCTS), size, size))
     for a, first in left.items():

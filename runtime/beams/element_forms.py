@@ -43,8 +43,6 @@ _OUTSIDE = {
     "p": ("1", 0, -1.0),
     "g": ("1", 0, 0.0),
 }
-# Difference of two ways to the same matrix, over its largest entry.
-_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -375,7 +373,8 @@ class ElementForms:
         for key, value in expected.items():
             found = still[key][:, free]
             size = max(float(np.max(np.abs(value))), np.finfo(float).tiny)
-            if not np.max(np.abs(found - value)) <= _SAME * size:
+            # Difference of two ways to the same matrix, over its largest entry.
+            if not np.max(np.abs(found - value)) <= 1e-9 * size:
                 raise bad(
                     "system",
                     f"a {'stiffness' if key[0] == 'q' else 'force'} that is not its structure's",

@@ -225,45 +225,6 @@ def section_rotation(
     return rows[names[derivative]]
 
 
-def rigid_field(kind: str, start: ArrayLike, end: ArrayLike, turning: ArrayLike) -> Array:
-    """Return the nodal values of a vector field that is linear along the element.
-
-    The rigid velocity or acceleration of a link is one; so are its displacements in a small rigid
-    motion.
-
-    Parameters
-    ----------
-    kind : str
-        Of the element.
-    start, end : array_like, shape (..., 2)
-        Components of the field along and across the element at its two ends.
-    turning : array_like, shape (...)
-        The matching turning: angular velocity, angular acceleration, or angle.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-        Local nodal values; curvatures are 0.
-
-    Raises
-    ------
-    BadInput
-        If the kind is unknown, a component is missing, or a number is not finite.
-    """
-    _check_kind(kind)
-    given = {"start": start, "end": end, "turning": turning}
-    first, last, angle = (_finite(name, value) for name, value in given.items())
-    for name, value in (("start", first), ("end", last)):
-        if value.shape[-1:] != (2,):
-            raise bad(name, f"shape {value.shape}", "shape (..., 2)", "give both components")
-    values = [first[..., 0], first[..., 1], angle, last[..., 0], last[..., 1], angle]
-    if kind == "internal_node":
-        values += [(first[..., 1] + last[..., 1]) / 2.0, angle]
-    elif kind == "curvature":
-        values += [np.zeros_like(angle)] * 2
-    return np.stack(np.broadcast_arrays(*values), axis=-1)
-
-
 def _emitted(what: str, kind: str) -> ModuleType:
     """Return the emitted module of a kind; those of the other kinds are not loaded."""
     return import_module(f"...generated.beam_{what}_{kind}", __package__)
@@ -325,79 +286,24 @@ def _not_negative(name: str, value: float) -> float:
     return float(value)
 
 
-def _finite(name: str, value: ArrayLike) -> Array:
-    from ..core.inputs import numbers
-
-    array = numbers(name, value)
-    if not array.size or not np.all(np.isfinite(array)):
-        raise bad(name, repr(value), "finite numbers", "correct them")
-    return array
-
-
 def _fixed(array: Array) -> Array:
     array.flags.writeable = False
     return array
 
 
 def placed_shapes(placed: PlacedElement, xi: ArrayLike, derivative: int = 0) -> tuple[Array, Array]:
-    """Return the shape functions along and across an element of a beam.
-
-    Parameters
-    ----------
-    placed : PlacedElement
-        The element.
-    xi : array_like, shape (nx,)
-        Places over the element's length, 0 to 1.
-    derivative : int
-        0 to 3 derivatives by x.
-
-    Returns
-    -------
-    u_shapes, v_shapes : ndarray, shape (nx, n)
-        As :func:`~elastolink.runtime.beams.elements.shape_functions` returns them.
-
-    Raises
-    ------
-    BadInput
-        As that function.
-    """
-    section = placed.beam.section
-    return shape_functions(
-        placed.beam.kind,
-        xi,
-        placed.length,
-        derivative,
-        bending_stiffness=section.bending_stiffness,
-        shear_stiffness=section.shear_stiffness,
-    )
+    """Return :func:`shape_functions` of an element of a beam."""
+    return shape_functions(placed.beam.kind, xi, placed.length, derivative, **_stiffness(placed))
 
 
 def placed_rotation(placed: PlacedElement, xi: ArrayLike, derivative: int = 0) -> Array:
-    """Return the shape functions of the rotation of the cross-section of an element of a beam.
+    """Return :func:`section_rotation` of an element of a beam."""
+    return section_rotation(placed.beam.kind, xi, placed.length, derivative, **_stiffness(placed))
 
-    Parameters
-    ----------
-    placed, xi
-        As :func:`placed_shapes`.
-    derivative : int
-        0 to 2 derivatives by x.
 
-    Returns
-    -------
-    ndarray, shape (nx, n)
-        As :func:`~elastolink.runtime.beams.elements.section_rotation` returns it.
-
-    Raises
-    ------
-    BadInput
-        As that function.
-    """
+def _stiffness(placed: PlacedElement) -> dict[str, float | None]:
     section = placed.beam.section
-    return section_rotation(
-        placed.beam.kind,
-        xi,
-        placed.length,
-        derivative,
-        bending_stiffness=section.bending_stiffness,
-        shear_stiffness=section.shear_stiffness,
-    )
+    return {
+        "bending_stiffness": section.bending_stiffness,
+        "shear_stiffness": section.shear_stiffness,
+    }

@@ -179,10 +179,6 @@ def _check(
         raise BadInput(*problems)
 
 
-# An entry of the elimination so small, its rows being of unit size, is round-off.
-_NOTHING = 1e-12
-
-
 def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
     """Return the vibration of a frame whose members keep their lengths.
 
@@ -211,7 +207,7 @@ def without_stretching(system: LinearPeriodic) -> LinearPeriodic:
             "one from linear_system(frame(...))",
             "a moving linkage keeps its axial motion: it is stiff, but cheap to keep",
         )
-    kept, spread = _kept(_axial_rows(structure))
+    kept, spread = eliminated(_axial_rows(structure))
     if not kept.size:
         raise bad("frame", "no motion without stretching", "members that bend", "add elements")
     # What watches the deflections is given in all coordinates.
@@ -242,8 +238,11 @@ def _axial_rows(structure: Structure) -> Array:
     return rows[:, freedoms.free]
 
 
-def _kept(rows: Array) -> tuple[NDArray[np.int64], Array]:
-    """Eliminate one coordinate per independent row; return those kept, and all from them."""
+def eliminated(rows: Array) -> tuple[NDArray[np.int64], Array]:
+    """Eliminate one coordinate for each independent row that is to vanish.
+
+    Return the places of those kept, and what makes all coordinates of them, ``(n, kept)``.
+    """
     rows = rows.copy()
     count = rows.shape[1]
     gone: list[int] = []
@@ -252,7 +251,8 @@ def _kept(rows: Array) -> tuple[NDArray[np.int64], Array]:
         open_rows = [i for i in range(len(rows)) if i not in used]
         sizes = np.abs(rows[open_rows])
         i, j = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
-        if sizes[i, j] < _NOTHING:
+        # An entry of the elimination so small, its rows being of unit size, is round-off.
+        if sizes[i, j] < 1e-12:
             break
         pivot = open_rows[int(i)]
         rows[pivot] /= rows[pivot, j]

@@ -6,12 +6,11 @@ Stiffness and loss depend on the wave length of the deflection.  Aannaque 9.2 pr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ...generated import beam_section_sandwich
 from ..core.errors import BadInput, Problem, bad
@@ -235,10 +234,11 @@ def _require_layers(base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticL
     require_kind("core", core, ViscoelasticLayer, "make one with ViscoelasticLayer")
 
 
-def _arguments(
+def _stiffness(
     base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer, width: float
-) -> dict[str, Any]:
-    return {
+) -> Callable[[float], tuple[Array, ...]]:
+    """Return the emitted function of the wave number alone, for sizes within doubles."""
+    arguments = {
         "width": float(width),
         "base_modulus": float(base.modulus),
         "base_thickness": float(base.thickness),
@@ -249,36 +249,17 @@ def _arguments(
         "cover_thickness": float(cover.thickness),
     }
 
-
-def _stiffness(
-    base: ElasticLayer, core: ViscoelasticLayer, cover: ElasticLayer, width: float
-) -> Callable[[float], tuple[Array, ...]]:
-    """Return the emitted function of the wave number alone."""
-    arguments = _arguments(base, core, cover, width)
-
     def at(wave_number: float) -> tuple[Array, ...]:
-        return _evaluated(np.asarray(wave_number, dtype=float), arguments)
+        for name, size in {**arguments, "wave_number": wave_number}.items():
+            lowest = 0.0 if name == "core_loss" else 1.0 / _LARGEST
+            if not lowest <= size <= _LARGEST:
+                raise _beyond(f"{name} of {size}")
+        found: tuple[Array, ...] = beam_section_sandwich.sandwich(  # type: ignore[no-untyped-call]
+            np.asarray(wave_number, dtype=float), **arguments
+        )
+        return found
 
     return at
-
-
-def _evaluated(wave_number: Array, arguments: Mapping[str, ArrayLike]) -> tuple[Array, ...]:
-    """Return what the emitted function gives, for sizes whose products are within doubles.
-
-    Raises
-    ------
-    BadInput
-        If a number other than the loss factor is outside it.
-    """
-    sizes = {**arguments, "wave_number": wave_number}
-    for name, size in sizes.items():
-        lowest = 0.0 if name == "core_loss" else 1.0 / _LARGEST
-        if not np.all((np.asarray(size) >= lowest) & (np.asarray(size) <= _LARGEST)):
-            raise _beyond(f"{name} of {size}")
-    found: tuple[Array, ...] = beam_section_sandwich.sandwich(  # type: ignore[no-untyped-call]
-        wave_number, **arguments
-    )
-    return found
 
 
 def _beyond(found: str) -> BadInput:

@@ -21,18 +21,8 @@ from .structure import Freedoms, Structure
 def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
     """Return what turns coordinates into deflections across the beams over their lengths.
 
-    Parameters
-    ----------
-    arrays : AngleArrays
-        Of the structure.
-    theta : ndarray
-        Crank angles ``(nt,)`` [rad].
-
-    Returns
-    -------
-    ndarray
-        Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
-        its middle and its end, over the beam's length.
+    Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
+    its middle and its end.
     """
     motion = arrays.motion(theta)
     found = []
@@ -111,20 +101,10 @@ class AxialForces:
         return found
 
     def along(self, source: str, theta: Array) -> Array:
-        """Return the axial forces of one source, tension positive.
+        """Return the axial forces of one source, tension positive: factors of 1, xi and xi^2.
 
-        Parameters
-        ----------
-        source : str
-            ``distributed`` or ``lumped``: at unit crank speed [N s^2]; ``static``: of weight and
-            constant loads [N].
-        theta : ndarray
-            Crank angles ``(nt,)`` [rad].
-
-        Returns
-        -------
-        ndarray
-            Shape ``(nt, elements, 3)``: factors of 1, xi and xi^2 along each element.
+        Shape ``(nt, elements, 3)``; ``distributed`` and ``lumped`` at unit crank speed [N s^2],
+        ``static`` of weight and constant loads [N].
         """
         arrays = self.arrays
         q = np.zeros((len(theta), arrays.count))
@@ -203,10 +183,6 @@ def _node_forces(arrays: AngleArrays) -> Array:
     return found
 
 
-# A mode softer than this, over the stiffest, is taken for one that nothing resists.
-_SOFTEST = 1e-14
-# Deformation of the elements, over the largest there can be, below which a motion has none.
-_RIGID = 1e-9
 # Share of a motion from which a coordinate is named.
 _NAMED = 0.1
 
@@ -214,20 +190,8 @@ _NAMED = 0.1
 def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> None:
     """Refuse a structure that can move without resistance, at a few angles of the crank.
 
-    Parameters
-    ----------
-    arrays : AngleArrays
-        Of the structure.
-    springs : ndarray, shape (n,)
-        Stiffness of the springs on the free coordinates.
-    slide : Slide or None
-        What a sliding pin lets move.
-
-    Raises
-    ------
-    BadInput
-        If a motion meets no stiffness, or one so much smaller than another's that their sum in
-        doubles has no digit of it.
+    A motion that meets no stiffness, or one so much smaller than another's that their sum in
+    doubles has no digit of it.
     """
     structure = arrays.structure
     theta = structure.period * np.array([0.0, 0.37, 0.61]) if structure.moving else np.zeros(1)
@@ -242,7 +206,8 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
         loose: Iterable[int] = np.flatnonzero(sizes == 0.0)
         if not np.any(sizes == 0.0):
             values = np.linalg.eigvalsh(stiffness / np.outer(sizes, sizes))
-            if values[0] > _SOFTEST * len(values) * values[-1]:
+            # A mode softer than this, over the stiffest, is taken for one that nothing resists.
+            if values[0] > 1e-14 * len(values) * values[-1]:
                 continue
             motion = _rigid_motion(strain)
             if motion is None:
@@ -293,7 +258,8 @@ def _rigid_motion(strain: Array) -> Array | None:
     felt = np.flatnonzero(np.any(strain != 0.0, axis=0))
     sizes = np.linalg.norm(strain[:, felt], axis=0)
     _, values, across = np.linalg.svd(strain[:, felt] / sizes)
-    if len(values) == len(felt) and values[-1] > _RIGID * values[0]:
+    # Deformation of the elements, over the largest there can be, below which a motion has none.
+    if len(values) == len(felt) and values[-1] > 1e-9 * values[0]:
         return None
     motion = np.zeros(strain.shape[1])
     motion[felt] = np.abs(across[-1] / sizes)

@@ -74,19 +74,9 @@ class Slide:
         return place, np.sum((pin.velocity - link.velocity) * axis, axis=-1)
 
     def rows(self, theta: Array, derivative: int) -> tuple[Array, Array]:
-        """Return displacements along and across the beam at the pin, by the beam's own axes.
+        """Return displacements along and across the beam at the pin, or derivatives by the place.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Crank angles ``(nt,)`` [rad].
-        derivative : int
-            By the place on the beam.
-
-        Returns
-        -------
-        ndarray, ndarray
-            Rows ``(nt, n)`` for the coordinates at the ends of the elements in the beam's axes.
+        Rows ``(nt, n)`` for the coordinates at the ends of the elements in the beam's axes.
         """
         place, _ = self.place(theta)
         ends = np.array([placed.start for placed, _ in self.elements])
@@ -146,12 +136,7 @@ class Slide:
     def contact(self, rest: Array, theta: Array) -> Array:
         """Return the stiffness of the contact force, by the coordinates before Z: ``(nt, n, n)``.
 
-        Parameters
-        ----------
-        rest : ndarray
-            Elastic forces less loads, ``(nt, n)``: what the contact does to each coordinate.
-        theta : ndarray
-            Crank angles ``(nt,)`` [rad].
+        ``rest``, ``(nt, n)``, are elastic forces less loads: what the contact does.
         """
         c, s = self._axis(theta)
         force = s * rest[:, self.x] - c * rest[:, self.y]
@@ -179,15 +164,8 @@ class Slide:
 def slid_terms(terms: Iterable[Term], slide: Slide, *, form: str) -> list[Term]:
     """Return terms by the coordinates before Z as terms by those after it.
 
-    Parameters
-    ----------
-    terms : iterable of Term
-        Before the pin was put on the beam.
-    slide : Slide
-        The coordinates.
-    form : str
-        ``"full"`` or ``"instantaneous"``: of the second neither A, B nor D come of Z', and the
-        damping takes out all of the mass matrix's derivative.
+    Of the instantaneous form neither A, B nor D come of Z', and the damping takes out all of the
+    mass matrix's derivative.
     """
     found = []
     for term in terms:

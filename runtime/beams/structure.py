@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..core.errors import BadInput, Problem, bad
 from ..core.inputs import are_finite, is_finite, names_problems
 from ..linkages.linkage import LinkMotion
+from .elements import KINDS
 from .section import Section
 
 Indices = NDArray[np.int64]
@@ -203,7 +204,6 @@ Array = NDArray[np.float64]
 Configuration = Callable[[Array], Mapping[str, LinkMotion]]
 _Item = TypeVar("_Item", "Beam", "Node")
 
-KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 DIRECTIONS = ("x", "y", "rotation")
 # Ends of beams that meet at a node may be so far apart, over the longest beam.
 _CLOSURE = 1e-9

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .counting import FrameFrequencies, MemberShape, Mode, wittrick_williams
     from .critical import CriticalSpeeds, critical_speeds
     from .frames import DynamicStiffness, dynamic_stiffness, element_matrices, log_determinant
-    from .held import Buckling, FrozenFrequencies, buckling_speed, frozen_frequencies
+    from .held import Buckling, buckling_speed
     from .link_study import (
         FrequencyExponents,
         LinkFrequencies,
@@ -36,7 +36,6 @@ _PUBLIC = {
     "Encounter": "tracking",
     "FrameFrequencies": "counting",
     "FrequencyExponents": "link_study",
-    "FrozenFrequencies": "held",
     "LinkFrequencies": "link_study",
     "MemberShape": "counting",
     "Mode": "counting",
@@ -50,7 +49,6 @@ _PUBLIC = {
     "dynamic_stiffness": "frames",
     "element_matrices": "frames",
     "frequency_exponents": "link_study",
-    "frozen_frequencies": "held",
     "link_frequencies": "link_study",
     "log_determinant": "frames",
     "member_matrices": "members",
@@ -68,7 +66,6 @@ __all__ = [
     "Encounter",
     "FrameFrequencies",
     "FrequencyExponents",
-    "FrozenFrequencies",
     "LinkFrequencies",
     "MemberShape",
     "Mode",
@@ -82,7 +79,6 @@ __all__ = [
     "dynamic_stiffness",
     "element_matrices",
     "frequency_exponents",
-    "frozen_frequencies",
     "link_frequencies",
     "log_determinant",
     "member_matrices",

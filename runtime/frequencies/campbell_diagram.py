@@ -37,10 +37,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_RTOL = 1e-8
-# Motions whose phases are this close turn alike: pairs of which one grows and one decays.
-_ALIKE = 1e-6
-
 
 @dataclass(frozen=True)
 class Running:
@@ -67,24 +63,15 @@ class Running:
 def running_frequencies(system: LinearPeriodic, speeds: Array, held: Array, rest: Array) -> Running:
     """Return the frequencies of the running mechanism, named by the shapes of its motions.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    speeds : ndarray
-        Crank speeds [rad/s], ``(ns,)``.
-    held : ndarray
-        Frequencies [rad/s] that the multiples of the speed are chosen by, ``(ns, modes)``; where
-        they are NaN those of the speed before count.
-    rest : ndarray
-        Those before the first speed, ``(modes,)``.
+    The multiples of the speed are chosen by the ``held`` frequencies [rad/s], ``(ns, modes)``;
+    where they are NaN by those of the speed before, before the first by ``rest``.
     """
     slow, turn = SlowModes(system, {}), 2.0 * np.pi / system.period
     frequency, growth, share = np.empty((3, *held.shape))
     count, before, farthest = held.shape[1], rest, 0.0
     modes: HeldModes | None = None
     for row, speed in enumerate(speeds):
-        found = slow.motions(float(speed), count, rtol=_RTOL)
+        found = slow.motions(float(speed), count, rtol=1e-8)
         if modes is None:
             modes = held_modes(system, even_angles(system.period, len(found.stations)), {})
         phase, rate, share[row] = _named(found, modes, float(speed), count)
@@ -114,7 +101,8 @@ def _named(
     # Where a motion locks to the speed it grows in one form and decays in another: both are told
     # as the one that grows.
     turned = np.abs(np.exp(1j * phase[:, None]) - np.exp(1j * phase[chosen]))
-    alike = (turned <= _ALIKE) & (shares >= 0.5 * own)
+    # Motions whose phases are this close turn alike: pairs of which one grows and one decays.
+    alike = (turned <= 1e-6) & (shares >= 0.5 * own)
     return phase[chosen], np.max(np.where(alike, rate[:, None], -np.inf), axis=0), own
 
 
@@ -141,16 +129,11 @@ def _shares(found: SlowMonodromy, vectors: Array, held: HeldModes, speed: float)
 
 Indices = NDArray[np.int64]
 
-_MODES = 4
 # Means end this far before the held mechanism buckles.
 _SHORT = 0.999
 _ENOUGH = 1e-9
-# A frequency this close to a multiple of the speed, over the speed, is locked to it.
-_LOCKED = 1e-7
 # Rows to either side of a crossing that tell how uneven its curve is.
 _BESIDE = 2
-# Distance between the names of orders in a picture, over its width.
-_ROOM = 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -218,7 +201,7 @@ class Campbell(Result):
         shown = np.where(np.isfinite(self.running), self.running, self.held)
         top = 1.1 * float(np.nanmax(shown))
         last = int(self.crossing_order.max(initial=1))
-        named, room = np.inf, _ROOM * float(self.speed[-1] - self.speed[0])
+        named, room = np.inf, 0.03 * float(self.speed[-1] - self.speed[0])
         for n in range(1, last + 1):
             ax.plot(self.speed, n * self.speed, color="0.8", lw=0.6, zorder=0)
             x = min(float(self.speed[-1]), top / n)
@@ -286,7 +269,7 @@ def campbell(
     speeds = numbers("speed", speed)
     if speeds.ndim != 1 or len(speeds) < 4 or not np.all(np.diff(speeds) > 0) or speeds[0] <= 0:
         raise bad("speed", speed, "at least four rising speeds [rad/s]", "use numpy.linspace")
-    wanted = min(_MODES, system.size) if modes is None else modes
+    wanted = min(4, system.size) if modes is None else modes
     count = require_whole("modes", wanted, 1, system.size)
     limit = buckling_speed(system).speed
     held, error = _held(system, speeds, count, limit, progress)
@@ -351,7 +334,8 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
     curves = [PchipInterpolator(w[rows], f[rows]) for rows in (slice(None), _every_other(len(w)))]
     out = []
     for n in range(max(1, int(np.ceil(ratio.min()))), int(np.floor(ratio.max())) + 1):
-        side = np.where(np.abs(ratio - n) <= _LOCKED, 0.0, np.sign(ratio - n))
+        # A frequency this close to a multiple of the speed, over the speed, is locked to it.
+        side = np.where(np.abs(ratio - n) <= 1e-7, 0.0, np.sign(ratio - n))
         known = np.flatnonzero(side)
         for i, j in pairwise(known):
             if side[i] == side[j]:

@@ -29,12 +29,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 UNIT = 2.0**-53
-# Scaled eigenvalues below this, over the largest, may have the wrong sign.
-_DOUBTFUL = 1e-11
-# Modes whose eigenvalue is within this, over omega^2, are brought in order by quadratic forms.
-_NEAR = 30.0
-# Rounding of an entry of a local matrix, over u times its allowed size: functions, products, turn.
-_ENTRY = 32.0
 
 
 def quadratic_forms(
@@ -42,23 +36,8 @@ def quadratic_forms(
 ) -> tuple[Array, Array, Array]:
     """Return ``X^T D X``, ``X^T M X`` and the sizes of the terms of the first one's diagonal.
 
-    Parameters
-    ----------
-    assembly : Assembly
-        The members.
-    omega : float
-        Frequency [rad/s].
-    vectors : ndarray, shape (size, k)
-        Columns.
-    mass : ndarray, optional
-        Local mass matrices where they are known.
-
-    Returns
-    -------
-    stiffness, mass : ndarray, shape (k, k)
-    sizes : ndarray, shape (k,)
-        Sum of the sizes of everything that is added, mass included: u times it is what rounding
-        does.
+    X has the columns ``vectors``, ``(size, k)``.  The sizes, ``(k,)``, sum all that is added, mass
+    included: u times them is what rounding does.
     """
     if mass is None:
         _, mass = assembly.local_matrices(omega)
@@ -107,7 +86,8 @@ def _symmetric(matrix: Array) -> Array:
 
 def rounding(sizes: Array) -> Array:
     """Return a bound, to first order, of what rounding does to quadratic forms of those sizes."""
-    return np.asarray(_ENTRY * UNIT * sizes)
+    # Rounding of an entry of a local matrix, over u times its size: functions, products, turn.
+    return np.asarray(32.0 * UNIT * sizes)
 
 
 def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
@@ -123,7 +103,8 @@ def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
     sizes = sizes + (np.abs(lumps)[:, None] * assembly.reduction**2).sum(axis=0)
     scale = 1.0 / np.sqrt(sizes)
     values = np.linalg.eigvalsh(matrix * np.outer(scale, scale))
-    certain = bool(np.min(np.abs(values)) > _DOUBTFUL * np.max(np.abs(values)))
+    # Scaled eigenvalues below this, over the largest, may have the wrong sign.
+    certain = bool(np.min(np.abs(values)) > 1e-11 * np.max(np.abs(values)))
     return int(np.sum(values < 0.0)), certain
 
 
@@ -160,7 +141,8 @@ def modal(assembly: Assembly, omega: float) -> Modal:
     both = np.outer(scale, scale)
     values, turned = eigh(stiffness * both, mass * both)
     vectors = scale[:, None] * turned
-    near = np.abs(values) <= _NEAR * omega**2
+    # Modes whose eigenvalue is within this, over omega^2, are brought in order by quadratic forms.
+    near = np.abs(values) <= 30.0 * omega**2
     if near.any():
         values[near], vectors[:, near] = projected(assembly, omega, vectors[:, near], local_mass)
     return Modal(values, vectors)
@@ -181,9 +163,6 @@ Count = Callable[[float], int]
 
 # Frequencies nearer than this, relatively, are found together, in the span of their vectors.
 _TOGETHER = 1e-7
-_STEPS = 100
-_CLOSE = 1e-8
-_NUDGE = 1.0 + 1e-7
 
 
 @dataclass(frozen=True)
@@ -227,7 +206,7 @@ def certain_count(problem: DynamicStiffness, omega: float) -> tuple[float, int]:
         negative, certain = signs(problem.assembly, omega)
         if certain:
             return omega, round(float(problem.poles(omega))) + negative
-        omega *= _NUDGE
+        omega *= 1.0 + 1e-7
     finer = divided_for(problem, omega)
     return omega, round(float(finer.poles(omega))) + modal(finer.assembly, omega).negative
 
@@ -276,13 +255,13 @@ def _newton(finer: DynamicStiffness, item: Interval, number: int) -> float:
     """
     low, high = item.low, item.high
     omega = (low + high) / 2.0
-    for _ in range(_STEPS):
+    for _ in range(100):
         found = modal(finer.assembly, omega)
         index = number - round(float(finer.poles(omega))) - 1
         step = float(found.values[min(max(index, 0), finer.size - 1)])
         low, high = (omega, high) if step > 0.0 else (low, omega)
         square = omega**2 + step
-        if abs(step) <= _CLOSE * omega**2:  # Newton's error is the square of this
+        if abs(step) <= 1e-8 * omega**2:  # Newton's error is the square of this
             return float(np.sqrt(square))
         new = float(np.sqrt(square)) if square > 0.0 else low
         omega = new if low < new < high else (low + high) / 2.0
@@ -360,20 +339,7 @@ class MemberShape:
 def member_shape(
     assembly: Assembly, omega: float, vector: Array, beam: str, eta: ArrayLike
 ) -> MemberShape:
-    """Return the shape of a beam in a harmonic motion.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The members.
-    omega : float
-        Frequency [rad/s].
-    vector : ndarray, shape (size,)
-        Coordinates.
-    beam : str
-        Name of the beam.
-    eta : array_like, shape (m,)
-        Places along the beam, in lengths, 0 to 1.
+    """Return the shape of a beam in a harmonic motion, at places ``(m,)`` in lengths.
 
     Raises
     ------
@@ -533,27 +499,10 @@ class FrameFrequencies(Result):
         return axes
 
 
-_START = 1e-3
-_MOST_BRACKETS = 400
-
-
 def bisected(
     problem: Transcendental, upto: float | None, count: int | None, rtol: float
 ) -> FrameFrequencies:
-    """Return the frequencies of a problem by bisection on their number.
-
-    Parameters
-    ----------
-    problem : Transcendental
-        What counts.
-    upto, count, rtol
-        As :func:`wittrick_williams` takes them.
-
-    Raises
-    ------
-    BadInput
-        If there are not as many frequencies as asked for.
-    """
+    """Return the frequencies of a problem by bisection on their number."""
     high = upto if upto is not None else _bracketed(problem, count or 1)
     total = int(problem.count(high))
     pending = [(0.0, high, 0, total)]
@@ -588,17 +537,12 @@ def bisected(
 
 
 def _bracketed(problem: Transcendental, count: int) -> float:
-    high = _START
-    for _ in range(_MOST_BRACKETS):
+    high = 1e-3
+    for _ in range(400):
         if int(problem.count(high)) >= count:
             return high
         high *= 2.0
     raise bad("count", str(count), "fewer frequencies", "ask for fewer")
-
-
-_MOST_DOUBLINGS = 200
-# Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
-_RIGID = 1e-11
 
 
 def wittrick_williams(
@@ -670,7 +614,8 @@ def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
     _, turned = eigh(stiffness * both, mass * both)
     vectors = scale[:, None] * turned
     forms, _, sizes = quadratic_forms(problem.assembly, still, vectors)
-    soft = np.abs(np.diagonal(forms)) <= _RIGID * sizes
+    # Motions whose strain energy is below this, over the sizes of its terms, meet no stiffness.
+    soft = np.abs(np.diagonal(forms)) <= 1e-11 * sizes
     return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
 
 
@@ -683,7 +628,7 @@ def _scale(problem: DynamicStiffness) -> float:
 def _below_all(problem: DynamicStiffness, rigid: int) -> float:
     """Return a frequency below all that are not 0."""
     low = _scale(problem)
-    for _ in range(_MOST_DOUBLINGS):
+    for _ in range(200):
         low, found = certain_count(problem, low)
         if found <= rigid:
             return low
@@ -699,7 +644,7 @@ def _below_all(problem: DynamicStiffness, rigid: int) -> float:
 def _above(problem: DynamicStiffness, low: float, count: int) -> float:
     """Return a frequency with at least so many below."""
     high = low
-    for _ in range(_MOST_DOUBLINGS):
+    for _ in range(200):
         high, found = certain_count(problem, 1.7 * high)
         if found >= count:
             return high

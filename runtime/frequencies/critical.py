@@ -11,24 +11,21 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning, bad
+from ..core.errors import BadInput, LinearRangeWarning, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
-from .critical_scan import scanned_deflections
 from .held import buckling_speed, held_frequencies, require_system
-from .marked_speeds import MarkedSpeeds, meissner_speeds, multiplier_maxima
+from .multiplier_maxima import Maxima, meissner_maxima, multiplier_maxima
 from .natural import natural_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..periodic import SteadyState
-
 Array = NDArray[np.float64]
-Measure = Callable[["SteadyState"], Array]
+Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,8 +57,8 @@ class CriticalSpeeds(Result):
     """
 
     speed: Array
-    mode: NDArray[np.int64]
-    order: NDArray[np.int64]
+    mode: Indices
+    order: Indices
     ratio: Array
     height: Array
     mean_frequency: Array
@@ -128,55 +125,62 @@ class CriticalSpeeds(Result):
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked for: range, number of modes and speeds, measure."""
+    """Range [rad/s], number of modes, number of speeds scanned."""
 
     system: LinearPeriodic
     low: float
     high: float
     count: int
     speeds: int
-    measure: Measure | None
     progress: bool
 
 
-def listed(
-    request: Request, mean: Array, rows: Sequence[tuple[float, int, int, float]], method: str
+def _result(
+    request: Request,
+    mean: Array,
+    columns: tuple[Array, Indices, Indices, Array],
+    method: str,
+    height: Array | None = None,
+    scan: tuple[Array, Array] | None = None,
+    quantity: str = "none",
+    checks: Mapping[str, Check] | None = None,
 ) -> CriticalSpeeds:
-    """Return the result of a method that names mode and order itself."""
-    kept = sorted(row for row in rows if request.low <= row[0] <= request.high)
-    speed, error = (np.array([row[k] for row in kept], dtype=float) for k in (0, 3))
-    mode, order = (np.array([row[k] for row in kept], dtype=np.int64) for k in (1, 2))
+    """Return the result from columns of speed, mode, order and error."""
+    by_speed = np.argsort(columns[0], kind="stable")
+    speed, error = columns[0][by_speed], columns[3][by_speed]
+    mode, order = columns[1][by_speed], columns[2][by_speed]
     return CriticalSpeeds(
         method=method,
         error=error,
         error_norm="absolute, of each speed [rad/s], as this method defines it",
+        checks=checks or {},
         provenance=provenance(request.system.provenance),
         speed=speed,
         mode=mode,
         order=order,
         ratio=mean[mode - 1] / (order * speed),
-        height=np.ones(len(speed)),
+        height=np.ones(len(speed)) if height is None else height[by_speed],
         mean_frequency=mean,
-        scan_speed=np.zeros(0),
-        scan=np.zeros(0),
-        quantity="none",
+        scan_speed=np.zeros(0) if scan is None else scan[0],
+        scan=np.zeros(0) if scan is None else scan[1],
+        quantity=quantity,
     )
 
 
-Indices = NDArray[np.int64]
+def _listed(
+    request: Request, mean: Array, rows: Sequence[tuple[float, int, int, float]], method: str
+) -> CriticalSpeeds:
+    """Return the result of a method that names mode and order itself."""
+    kept = [row for row in sorted(rows) if request.low <= row[0] <= request.high]
+    speed, error = (np.array([row[k] for row in kept], dtype=float) for k in (0, 3))
+    mode, order = (np.array([row[k] for row in kept], dtype=np.int64) for k in (1, 2))
+    return _result(request, mean, (speed, mode, order, error), method)
 
 
 def label_speeds(mean: Array, speed: Array) -> tuple[Indices, Indices]:
     """Return mode (from 1) and order of each speed: whose mean frequency over n is nearest.
 
     The pairs that fit best choose first, and no label is given twice where another is left.
-
-    Parameters
-    ----------
-    mean : ndarray
-        Mean frequencies [rad/s], ``(modes,)``.
-    speed : ndarray
-        Speeds [rad/s], ``(ns,)``.
     """
     ratio = mean / speed[:, None]
     orders = np.maximum(1, np.round(ratio)).astype(np.int64)
@@ -205,13 +209,13 @@ _SHORT = 0.98
 
 def by_mean_frequency(request: Request) -> CriticalSpeeds:
     """Return the means of the natural frequencies over n = 1, 2, ..., crank held."""
-    found = natural_frequencies(request.system, 0.0, request.count)
+    still = natural_frequencies(request.system, 0.0, request.count)
     rows = [
         (float(mean / n), mode, n, float(error / n))
-        for mode, (mean, error) in enumerate(zip(found.mean, found.mean_error, strict=True), 1)
+        for mode, (mean, error) in enumerate(zip(still.mean, still.mean_error, strict=True), 1)
         for n in range(1, int(np.floor(mean / request.low)) + 1)
     ]
-    return listed(request, found.mean, rows, "mean natural frequencies over n")
+    return _listed(request, still.mean, rows, "mean natural frequencies over n")
 
 
 def by_running_mean(request: Request) -> CriticalSpeeds:
@@ -219,7 +223,7 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
 
     They end where those forces buckle the held mechanism at some angle.
     """
-    found = natural_frequencies(request.system, 0.0, request.count)
+    still = natural_frequencies(request.system, 0.0, request.count)
     limit = _SHORT * buckling_speed(request.system).speed
     if limit <= request.low:
         raise bad(
@@ -247,54 +251,43 @@ def by_running_mean(request: Request) -> CriticalSpeeds:
             roots = (curve - line).roots()
             real = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1.0)].real
             rows += [(float(middle + half * x), mode, n, doubt / n) for x in real]
-    return listed(request, found.mean, rows, "mean natural frequencies at the speed over n")
-
-
-# Intervals of Meissner's functions.
-_INTERVALS = 64
+    return _listed(request, still.mean, rows, "mean natural frequencies at the speed over n")
 
 
 def by_multipliers(request: Request) -> CriticalSpeeds:
     """Return the local maxima of the real part of each mode's multiplier (Aannaque 7.2.3)."""
-    found = multiplier_maxima(request.system, (request.low, request.high), request.count)
-    mean = natural_frequencies(request.system, 0.0, request.count).mean
-    return _marked(request, found, mean, "real part of the multiplier")
+    maxima = multiplier_maxima(request.system, (request.low, request.high), request.count)
+    return _marked(request, maxima, "real part of the multiplier")
 
 
 def by_meissner(request: Request) -> CriticalSpeeds:
     """Return the local maxima of J_N of each mode by itself, N = 64 (Aannaque 7.11)."""
-    theta = even_angles(request.system.period, _INTERVALS)
-    frequency = held_frequencies(request.system, theta, {})[0][:, : request.count]
-    found = meissner_speeds(frequency, (request.low, request.high))
+    period = request.system.period
+    # Intervals of Meissner's functions.
+    frequency = held_frequencies(request.system, even_angles(period, 64), {})[0]
+    maxima = meissner_maxima(frequency[:, : request.count], period, (request.low, request.high))
+    return _marked(request, maxima, "J_N")
+
+
+def _marked(request: Request, maxima: Maxima, quantity: str) -> CriticalSpeeds:
+    """Return maxima that know their mode; its mean frequency gives the order."""
     mean = natural_frequencies(request.system, 0.0, request.count).mean
-    return _marked(request, found, mean, "J_N")
-
-
-def _marked(request: Request, found: MarkedSpeeds, mean: Array, quantity: str) -> CriticalSpeeds:
-    """Return marked speeds as critical ones."""
-    order = np.argsort(found.speed, kind="stable")
-    speed, mode = found.speed[order], found.mode[order]
-    # A multiplier tells the frequency of its mode but for multiples of the speed.
-    n = np.maximum(1, np.round(mean[mode - 1] / speed)).astype(np.int64)
-    return CriticalSpeeds(
-        method=found.method,
-        error=np.asarray(found.error)[order],
-        error_norm="absolute, of each speed [rad/s], as this method defines it",
-        checks=found.checks,
-        provenance=provenance(request.system.provenance),
-        speed=speed,
-        mode=mode,
-        order=n,
-        ratio=mean[mode - 1] / (n * speed),
-        height=found.value[order],
-        mean_frequency=mean,
-        scan_speed=np.zeros(0),
-        scan=np.zeros(0),
+    order = np.maximum(1, np.round(mean[maxima.mode - 1] / maxima.speed)).astype(np.int64)
+    return _result(
+        request,
+        mean,
+        (maxima.speed, maxima.mode, order, maxima.error),
+        maxima.method,
+        height=maxima.value,
         quantity=quantity,
+        checks=maxima.checks,
     )
 
 
+# Errors of the motions: maxima of a structure on its lowest modes are looked for, not reported.
 _RTOL, _FINE = 1e-6, 1e-9
+# Angles of a revolution at which it is truncated to those modes.
+_ANGLES = 64
 # Speeds solved together, and speeds within the bracket of a maximum.
 _TOGETHER = 16
 _WITHIN = 7
@@ -317,67 +310,67 @@ def by_response(request: Request) -> CriticalSpeeds:
             "a damped system: without damping the maxima are infinite",
             "add some with with_modal_damping",
         )
-    measure = request.measure or _deflection_measure(system)
     speeds = np.linspace(request.low, request.high, request.speeds)
     mean = natural_frequencies(system, 0.0, request.count).mean
-    values = scanned_deflections(system, speeds) if request.measure is None else None
+    values = _scanned(system, speeds)
     if values is None:
-        values, _ = _measured(system, speeds, measure, request.progress)
+        values, _ = _deflections(system, speeds, request.progress)
     top = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
-    if not len(top):
-        found = height = error = np.zeros(0)
-    else:
-        found, height, error = _maxima(system, measure, speeds[top - 1], speeds[top + 1])
-    mode, order = label_speeds(mean, found)
-    return CriticalSpeeds(
-        method=f"local maxima of the steady state, {len(speeds)} speeds scanned",
-        error=error,
-        error_norm="absolute, of the place of each maximum [rad/s]",
-        checks={"placed": Check(float(np.max(error / found, initial=0.0)), 1e-3)},
-        provenance=provenance(system.provenance),
-        speed=found,
-        mode=mode,
-        order=order,
-        ratio=mean[mode - 1] / (order * found),
+    speed = height = error = np.zeros(0)
+    if len(top):
+        speed, height, error = _maxima(system, speeds[top - 1], speeds[top + 1])
+    return _result(
+        request,
+        mean,
+        (speed, *label_speeds(mean, speed), error),
+        f"local maxima of the steady state, {len(speeds)} speeds scanned",
         height=height,
-        mean_frequency=mean,
-        scan_speed=speeds,
-        scan=values,
-        quantity="response" if request.measure else "r.m.s. deflection over length",
+        scan=(speeds, values),
+        quantity="r.m.s. deflection over length",
+        checks={"placed": Check(float(np.max(error / speed, initial=0.0)), 1e-3)},
     )
 
 
-def _deflection_measure(system: LinearPeriodic) -> Measure:
-    """Return the largest root of the mean square of the deflections over the length."""
+def _scanned(system: LinearPeriodic, speeds: Array) -> Array | None:
+    """Return how far a structure of beams bends over rising speeds, on its lowest modes.
+
+    None where the system has no slow modes apart from fast ones.
+    """
+    from ..periodic.swept_motions import Truncations, speed_ranges
+
+    if system.structure is None or system.relative_deflection is None:
+        return None
+    try:
+        truncations = Truncations(system)
+        modes = truncations.usable(0, _ANGLES)[-1]
+    except (BadInput, IndexError):
+        # No subspace is smooth: the steady states themselves are computed.
+        return None
+    out = np.empty(len(speeds))
+    for piece in speed_ranges(speeds):
+        span = float(speeds[piece][0]), float(speeds[piece][-1])
+        moving = truncations.motions(modes, _ANGLES, span, _RTOL)
+        rows = system.relative_deflection(moving.truncated.theta)
+        for part, q, _ in moving.blocks(speeds[piece]):
+            bent = rows @ np.moveaxis(q, 0, -1)
+            out[piece][part] = np.sqrt(np.max(np.mean(bent**2, axis=0), axis=0))
+    return out
+
+
+def _deflections(
+    system: LinearPeriodic, speeds: Array, progress: bool = False
+) -> tuple[Array, Array]:
+    """Return the largest r.m.s. deflection over the length, and the motions' relative error."""
+    from ..periodic import steady_state
+
     relative = system.relative_deflection
     if relative is None and system.shape is None and system.moving_shape is None:
         raise bad(
-            "measure",
-            "a system whose deflections are not known",
+            "system",
+            "deflections that are not known",
             "mode shapes or relative_deflection",
-            "give a measure",
+            "choose another method",
         )
-
-    def measure(state: object) -> Array:
-        theta, q = state.theta, state.q  # type: ignore[attr-defined]
-        if relative is not None:
-            rows = relative(theta)
-        else:
-            found = system.shapes(np.linspace(0.0, 1.0, 21), theta)
-            rows = np.zeros((len(theta), 1, system.size)) if found is None else found
-        # One speed at a time: deflections of all would fill the memory.
-        squares = [np.mean(np.einsum("tkn,tn->tk", rows, one) ** 2, axis=0) for one in q]
-        return np.asarray(np.sqrt(np.max(squares, axis=1)))
-
-    return measure
-
-
-def _measured(
-    system: LinearPeriodic, speeds: Array, measure: Measure, progress: bool = False
-) -> tuple[Array, Array]:
-    """Return the measure at speeds and the relative error of the motions, part by part."""
-    from ..periodic import steady_state
-
     rtol = _FINE if system.structure is None else _RTOL
     out, error = np.empty((2, len(speeds)))
     with warnings.catch_warnings(), bar(progress, len(speeds)) as tick:
@@ -386,7 +379,14 @@ def _measured(
         for begin in range(0, len(speeds), _TOGETHER):
             part = slice(begin, min(begin + _TOGETHER, len(speeds)))
             state = steady_state(system, speeds[part], rtol=rtol)
-            out[part] = measure(state)
+            if relative is not None:
+                rows = relative(state.theta)
+            else:
+                shapes = system.shapes(np.linspace(0.0, 1.0, 21), state.theta)
+                rows = np.zeros((len(state.theta), 1, system.size)) if shapes is None else shapes
+            # One speed at a time: deflections of all would fill the memory.
+            squares = [np.mean(np.einsum("tkn,tn->tk", rows, q) ** 2, axis=0) for q in state.q]
+            out[part] = np.sqrt(np.max(squares, axis=1))
             error[part] = np.max(np.reshape(state.error, (len(state.q), -1)), axis=1)
             if tick is not None:
                 tick(part.stop)
@@ -401,31 +401,26 @@ def _measured(
     return out, error
 
 
-def _maxima(
-    system: LinearPeriodic, measure: Measure, low: Array, high: Array
-) -> tuple[Array, Array, Array]:
+def _maxima(system: LinearPeriodic, low: Array, high: Array) -> tuple[Array, Array, Array]:
     """Return place, height and error of the place of the maxima within brackets."""
     node = np.cos(np.pi * (np.arange(_WITHIN) + 0.5) / _WITHIN)
-    found = []
-    for _ in range(2):
+    first = np.zeros(len(low))
+    for closer in (False, True):
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         inside = middle[:, None] + half[:, None] * node
         values, error = (
-            part.reshape(inside.shape) for part in _measured(system, inside.ravel(), measure)
+            part.reshape(inside.shape) for part in _deflections(system, inside.ravel())
         )
-        fitted = [_least(node, 1.0 / row**2, own) for row, own in zip(values, error, strict=True)]
-        found.append(
-            (
-                middle + half * np.array([place for place, _, _ in fitted]),
-                np.array([_height(value) for _, value, _ in fitted]),
-                half * np.array([doubt for _, _, doubt in fitted]),
-            )
-        )
-        place = found[-1][0]
-        low, high = place - _CLOSER * half, place + _CLOSER * half
-    (first, _, _), (place, height, doubt) = found
+        fitted = [_least(node, 1.0 / row**2, off) for row, off in zip(values, error, strict=True)]
+        shift, square, doubt = (np.array(column) for column in zip(*fitted, strict=True))
+        place = middle + half * shift
+        if not closer:
+            first = place
+            low, high = place - _CLOSER * half, place + _CLOSER * half
+    # None has a bound where one over its square is 0 or below.
+    height = np.where(square > 0.0, np.maximum(square, 5e-324) ** -0.5, np.inf)
     # The first place is off by the fifth power of its bracket and more.
-    return place, height, np.abs(place - first) * _CLOSER**3 + doubt
+    return place, height, np.abs(place - first) * _CLOSER**3 + half * doubt
 
 
 def _least(node: Array, values: Array, error: Array) -> tuple[float, float, float]:
@@ -449,15 +444,6 @@ def _least(node: Array, values: Array, error: Array) -> tuple[float, float, floa
     return best, float(curve(best)), doubt
 
 
-def _height(square: float) -> float:
-    """Return the height of a maximum from one over its square; none has a bound at 0 and below."""
-    return square**-0.5 if square > 0.0 else np.inf
-
-
-_MODES = 4
-_SPEEDS = 240
-
-
 METHODS: Mapping[str, Callable[[Request], CriticalSpeeds]] = MappingProxyType(
     {
         "mean_frequency": by_mean_frequency,
@@ -475,8 +461,7 @@ def critical_speeds(
     *,
     method: str = "mean_frequency",
     modes: int | None = None,
-    speeds: int = _SPEEDS,
-    measure: Measure | None = None,
+    speeds: int = 240,
     progress: bool = False,
 ) -> CriticalSpeeds:
     """Return the speeds within a range at which a mechanism is most responsive.
@@ -490,7 +475,8 @@ def critical_speeds(
     method : str
         ``"mean_frequency"``: means of the natural frequencies over n = 1, 2, ..., crank held.
         ``"running_mean"``: the same with the axial forces of the speed itself, ``w = mean_m(w)/n``.
-        ``"response"``: local maxima of the steady state over the speed.
+        ``"response"``: local maxima over the speed of the steady state's deflection: the largest,
+        over the watched places, root of its mean square over a period, over the link's length.
         ``"multipliers"``: local maxima of the real part of a multiplier (Aannaque 7.2.3).
         ``"meissner"``: of J_N, each mode by itself with its frequency constant in each of N
         intervals (Aannaque 7.11).
@@ -499,10 +485,6 @@ def critical_speeds(
     speeds : int
         Number of speeds of the first scan, of ``response``; a maximum between two of them that
         shows at neither is missed.
-    measure : callable, optional
-        What ``response`` looks at: from a steady state at several speeds to one number each.  By
-        default the largest, over the watched places, root of the mean square over a period of the
-        deflection over the link's length.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
 
@@ -522,11 +504,11 @@ def critical_speeds(
     low, high = _range(speed_range)
     if not isinstance(method, str) or method not in METHODS:
         raise bad("method", repr(method), f"one of {tuple(METHODS)}", "choose one")
-    wanted = min(_MODES, system.size) if modes is None else modes
+    wanted = min(4, system.size) if modes is None else modes
     count = require_whole("modes", wanted, 1, system.size)
     if not (isinstance(speeds, int) and speeds >= 3):
         raise bad("speeds", repr(speeds), "a whole number, 3 or more", "choose 240")
-    request = Request(system, low, high, count, speeds, measure, progress)
+    request = Request(system, low, high, count, speeds, progress)
     return METHODS[method](request)
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..beams.assembly import AngleArrays
+from ..beams.frames import eliminated
 from ..beams.linear import lumped_values
 from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedoms
 from ..core.errors import bad
@@ -17,10 +18,8 @@ from ..core.inputs import is_finite, names_problems, numbers, require_kind, requ
 from .members import member_inertias, member_matrices, phases, poles_below
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 Pieces = Mapping[str, tuple[float, ...]]
-
-# A constraint whose size is below this, over the largest, repeats the others.
-_REPEATED = 1e-9
 
 
 @dataclass(frozen=True)
@@ -204,13 +203,7 @@ def dynamic_stiffness(
 def rigid_beams(
     what: str, structure: Structure, theta: float, inextensible: bool | tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the names of the beams that cannot stretch, all arguments checked.
-
-    Raises
-    ------
-    BadInput
-        If one is unusable, or the structure has a sliding pin.
-    """
+    """Return the names of the beams that cannot stretch, all arguments checked."""
     require_kind("structure", structure, Structure, "make one with beam_linkage or frame")
     if not is_finite(theta):
         raise bad("theta", repr(theta), "one number", "hold the linkage at one angle")
@@ -242,15 +235,8 @@ def _assembly(
 ) -> Assembly:
     motion = structure.configuration(np.array([theta]))
     elements, free = freedoms.elements, freedoms.free
-    place = np.full(len(freedoms.all), -1)
-    place[free] = np.arange(len(free))
-    local = np.zeros((len(elements), 6, len(free)))
     angles = np.array([float(motion[e.beam.name].angle[0]) for e in elements])
-    for k, element in enumerate(elements):
-        turn = turning_matrix(angles[k])
-        for column, index in enumerate(element.indices):
-            if place[index] >= 0:
-                local[k, :, place[index]] += turn[:, column]
+    local = _ends(elements, angles, free, len(freedoms.all))
     stiff = np.array(
         [np.inf if e.beam.name in rigid else e.beam.section.axial_stiffness for e in elements]
     )
@@ -268,41 +254,27 @@ def _assembly(
     )
 
 
-def turning_matrix(angle: float) -> Array:
-    """Return the matrix from ground to local axes of both ends."""
-    c, s = np.cos(angle), np.sin(angle)
-    one = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return np.kron(np.eye(2), one)
+def _ends(elements: Sequence[PlacedElement], angles: Array, free: Index, count: int) -> Array:
+    """Return what turns free coordinates into displacements of the ends, ``(n, 6, free)``."""
+    every = np.zeros((len(elements), 6, count))
+    for k, element in enumerate(elements):
+        c, s = np.cos(angles[k]), np.sin(angles[k])
+        turn = np.kron(np.eye(2), [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        every[k][:, element.indices[:6]] += turn
+    return every[:, :, free]
 
 
 def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
-    """Return a basis of the displacements that stretch no inextensible piece, ``(free, size)``.
-
-    Raises
-    ------
-    BadInput
-        If there are none.
-    """
-    count = local.shape[-1]
-    if not rigid.any():
-        return np.eye(count)
-    constraints = local[rigid, 3] - local[rigid, 0]
-    # Rotations stretch nothing: they stay as they are, unmixed.
-    bound = np.any(constraints != 0.0, axis=0)
-    _, sizes, turned = np.linalg.svd(constraints[:, bound])
-    rank = int(np.sum(sizes > _REPEATED * sizes.max(initial=0.0)))
-    if rank == count:
+    """Return what makes the free coordinates of those that stretch no inextensible piece."""
+    kept, spread = eliminated(local[rigid, 3] - local[rigid, 0])
+    if not kept.size:
         raise bad(
             "inextensible",
             "beams that leave no node free to move",
             "at least one coordinate",
             "let a beam stretch, or divide one into pieces",
         )
-    basis = np.zeros((count, count - rank))
-    moving = int(np.sum(bound)) - rank
-    basis[bound, :moving] = turned[rank:].T
-    basis[~bound, moving:] = np.eye(count - rank - moving)
-    return basis
+    return spread
 
 
 def element_matrices(
@@ -340,15 +312,9 @@ def element_matrices(
     free = structure.freedoms.free
     mass = arrays.mass(angle)[0] + np.diag(lumped[free])
     stiffness = arrays.stiffness(angle)[0] + np.diag(springs[free])
-    place = np.full(len(structure.freedoms.all), -1)
-    place[free] = np.arange(len(free))
-    motion = structure.configuration(angle)
-    local = np.zeros((len(structure.elements), 6, len(free)))
-    for k, element in enumerate(structure.elements):
-        turn = turning_matrix(float(motion[element.beam.name].angle[0]))
-        for column, index in enumerate(element.indices[:6]):
-            if place[index] >= 0:
-                local[k, :, place[index]] += turn[:, column]
+    motion, elements = structure.configuration(angle), structure.elements
+    angles = np.array([float(motion[element.beam.name].angle[0]) for element in elements])
+    local = _ends(elements, angles, free, len(structure.freedoms.all))
     stiff = np.array([element.beam.name in rigid for element in structure.elements])
     reduction = without_stretch(local, stiff)
     return reduction.T @ mass @ reduction, reduction.T @ stiffness @ reduction, reduction
@@ -397,7 +363,6 @@ _SHARES: tuple[tuple[float, ...], ...] = (
     (0.345, 0.345, 0.31),
     (0.283, 0.262, 0.239, 0.216),
 )
-_FAR_ENOUGH = 0.6
 _WIDEST, _CHANGE = 0.02, 0.3
 
 
@@ -421,7 +386,7 @@ def divided_for(
         offered = [shares for shares in _SHARES if len(shares) >= len(own)]
         for shares in offered:
             scores.append(_distance(np.outer(whole_z, shares), np.outer(whole_b, shares)))
-            if scores[-1] > _FAR_ENOUGH:
+            if scores[-1] > 0.6:
                 break
         best = offered[int(np.argmax(scores))]
         if len(best) > 1:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,17 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
-from ..core.results import Check, Result, provenance
 from ..core.trigonometric import even_angles
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    pass
 
 Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
-# Round-offs of a sum's terms that its error is told as.
-_ROUNDED = 2.0
 
 
 @dataclass(frozen=True)
@@ -63,13 +59,7 @@ def held_arrays(
 def held_frequencies(
     system: LinearPeriodic, theta: Array, parameters: Mapping[str, float], speed: float = 0.0
 ) -> tuple[Array, Array]:
-    """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each.
-
-    Raises
-    ------
-    BadInput
-        As :func:`held_modes`.
-    """
+    """Return natural frequencies [rad/s] at crank angles and their round-off, ``(nt, n)`` each."""
     held = held_modes(system, theta, parameters, speed)
     return held.frequency, held.error
 
@@ -112,7 +102,8 @@ def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Arra
     square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
     summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
     summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
-    return square, _ROUNDED * _EPS * summed / kinetic
+    # Round-offs of a sum's terms that its error is told as.
+    return square, 2.0 * _EPS * summed / kinetic
 
 
 def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
@@ -135,26 +126,14 @@ def _inverse_factor(mass: Array, stiffness: Array, theta: Array) -> Array:
 
 
 def require_system(system: object) -> None:
-    """Refuse what is no linear periodic system.
-
-    Raises
-    ------
-    BadInput
-        If it is none.
-    """
+    """Refuse what is no linear periodic system."""
     if not isinstance(system, LinearPeriodic):
         found, fix = type(system).__name__, "take one from linkage_system or a scene"
         raise bad("system", found, "a LinearPeriodic", fix)
 
 
 def crank_angles(system: LinearPeriodic, theta: ArrayLike | None) -> Array:
-    """Return checked crank angles; 361 over a period by default.
-
-    Raises
-    ------
-    BadInput
-        If they are no row of finite numbers.
-    """
+    """Return checked crank angles; 361 over a period by default."""
     if theta is None:
         return np.linspace(0.0, system.period, 361)
     angles = np.atleast_1d(numbers("theta", theta))
@@ -184,8 +163,6 @@ _FEWEST, _MOST = 64, 1024
 _NODES = (10, 16)
 _PANELS = 12
 _HALVINGS = 24
-# Panels open at once, beyond which their error is told instead.
-_MOST_PANELS = 48
 
 
 def cycle_mean(
@@ -196,25 +173,12 @@ def cycle_mean(
     most: int = _MOST,
     enough: float = _ENOUGH,
 ) -> tuple[Array, Array]:
-    """Return means over the period and their errors, ``(k,)`` each.
+    """Return means over the period and their errors, ``(k,)`` each, to a relative ``enough``.
 
     By the trapezoidal rule, which converges geometrically where the values are analytic.  Where
-    that is slow, by Gauss-Legendre panels that end at the given angles and are halved where their
-    error is: near a veering the values are analytic in a narrow strip, at a crossing their order
-    changes.
-
-    Parameters
-    ----------
-    values : callable
-        Crank angles to values and their round-off.
-    period : float
-        Period [rad].
-    breaks : sequence of float
-        Angles at which the values are not smooth, or nearly not.
-    most : int
-        Most angles of the trapezoidal rule.
-    enough : float
-        Relative error that is small enough.
+    that is slow, by Gauss-Legendre panels that end at the given ``breaks`` and are halved where
+    their error is: near a veering the values are analytic in a narrow strip, at a crossing their
+    order changes.
     """
     count = _FEWEST
     found, rounding = _even(values, period, count)
@@ -253,7 +217,8 @@ def _by_panels(
         gap = np.abs(fine - coarse)
         share = (panels[:, 1] - panels[:, 0])[:, None] / period
         allowed = enough * np.abs(fine) + rounding + 0.1 * enough * share * np.max(np.abs(fine))
-        last = step == _HALVINGS or len(panels) > _MOST_PANELS
+        # Panels open at once, beyond which their error is told instead.
+        last = step == _HALVINGS or len(panels) > 48
         good = np.all(gap <= allowed, axis=1) | last
         total = total + np.sum(fine[good], axis=0)
         error = error + np.sum(gap[good] + rounding[good], axis=0)
@@ -280,8 +245,8 @@ def _panel_integrals(values: Values, panels: Array, nodes: int) -> tuple[Array, 
     return found, rounding + 4 * _EPS * np.abs(found)
 
 
-_ANGLES = 256
-_WITHIN, _PASSES = 9, 16
+# Places within a bracket per pass: each pass keeps a quarter of it.
+_WITHIN = 9
 
 
 @dataclass(frozen=True)
@@ -326,8 +291,8 @@ def buckling_speed(system: LinearPeriodic, **parameters: float) -> Buckling:
     require_system(system)
     if not system.has("Kg"):
         return Buckling(np.inf, 0.0)
-    theta = even_angles(system.period, _ANGLES)
-    for _ in range(_PASSES):
+    theta = even_angles(system.period, 256)
+    for _ in range(16):
         softening = _softening(system, theta, parameters)
         best = int(np.argmax(softening))
         step = float(theta[1] - theta[0])
@@ -344,88 +309,3 @@ def _softening(system: LinearPeriodic, theta: Array, parameters: dict[str, float
     half = np.linalg.inv(np.linalg.cholesky(resting))
     reduced = -half @ added @ np.swapaxes(half, -1, -2)
     return np.asarray(np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, -1])
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrozenFrequencies(Result):
-    """Natural frequencies of a linear periodic system with its crank held.
-
-    Attributes
-    ----------
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-    frequency : ndarray
-        Natural frequencies [rad/s] of M and K + Kg there, rising, shape ``(nt, n)``.
-    mean : ndarray
-        Their means over the period, each rank by itself, shape ``(n,)`` [rad/s].
-    error : ndarray
-        Absolute error of ``frequency`` [rad/s], shape ``(nt, n)``: round-off of the eigenvalue
-        problem; that of the basis is not in it.
-    """
-
-    theta: Array
-    frequency: Array
-    mean: Array
-
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("angle",),
-        "frequency": ("angle", "mode"),
-        "error": ("angle", "mode"),
-        "mean": ("mode",),
-    }
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the first natural frequency over the crank angle and return the axes."""
-        from ..core.plotting import axes_or_new
-
-        ax = axes_or_new(ax)
-        ax.plot(np.degrees(self.theta), self.frequency[:, 0])
-        ax.axhline(self.mean[0], color="0.6", linewidth=0.8)
-        ax.set_xlabel("crank angle [deg]")
-        ax.set_ylabel("first natural frequency [rad/s]")
-        return ax
-
-
-def frozen_frequencies(
-    system: LinearPeriodic, theta: ArrayLike | None = None, **parameters: float
-) -> FrozenFrequencies:
-    """Return the natural frequencies of a system with its crank held at angles.
-
-    Neither the crank's speed nor damping plays a part: ``(K + Kg) q = omega^2 M q`` at each angle
-    (Beale & Scott's Fig. 11).  :func:`~.natural.natural_frequencies` gives shapes too, and
-    follows them.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    theta : array_like, optional
-        Crank angles [rad], shape ``(nt,)``; 361 over a period by default.
-    **parameters : float
-        Parameter values that replace the system's.
-
-    Returns
-    -------
-    FrozenFrequencies
-        Its check: ``mean``, the largest error of a mean over itself.
-
-    Raises
-    ------
-    BadInput
-        If an angle is not finite, a parameter is unknown, or a stiffness is not positive definite
-        or a mass is not at some angle.
-    """
-    angles = crank_angles(system, theta)
-    frequency, error = held_frequencies(system, angles, parameters)
-    values = partial(held_frequencies, system, parameters=parameters)
-    mean, mean_error = cycle_mean(values, system.period)
-    return FrozenFrequencies(
-        method="generalised eigenvalue problem of K + Kg and M",
-        error=error,
-        error_norm="absolute, of each frequency [rad/s], round-off alone",
-        checks={"mean": Check(float(np.max(mean_error / mean)), 1e-9)},
-        provenance=provenance(system.changed_provenance(**parameters)),
-        theta=angles,
-        frequency=frequency,
-        mean=mean,
-    )

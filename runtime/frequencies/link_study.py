@@ -29,8 +29,6 @@ _POWERS: Mapping[str, tuple[int, int]] = {"thickness": (1, 3), "width": (1, 1)}
 QUANTITIES = ("length", *_POWERS)
 # Relative steps of the differences.
 _STEPS = (0.02, 0.01)
-# Relative error of a mean.
-_ENOUGH = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -303,7 +301,8 @@ def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Arr
         frequency, error = held_frequencies(system, theta, {})
         return frequency[:, :count], error[:, :count]
 
-    mean, error = cycle_mean(values, system.period, enough=_ENOUGH)
+    # Relative error of a mean.
+    mean, error = cycle_mean(values, system.period, enough=1e-8)
     seen = values(system.period * np.arange(64) / 64)[0]
     return mean, error, seen.min(axis=0), seen.max(axis=0)
 

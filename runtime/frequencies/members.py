@@ -41,20 +41,7 @@ def phases(
     axial_stiffness: ArrayLike,
     mass_per_length: ArrayLike,
 ) -> tuple[Array, Array]:
-    """Return ``z = lambda L`` (Aannaque (5.4)) and ``b = beta L`` (5.9) of beams.
-
-    Parameters
-    ----------
-    omega : array_like, shape (...)
-        Frequency [rad/s].
-    length, bending_stiffness, axial_stiffness, mass_per_length : array_like, shape (n,)
-        L [m], EI [N m^2], EA [N] (infinite: inextensible), rho A [kg/m].
-
-    Returns
-    -------
-    z, b : ndarray, shape (..., n)
-        Complex where a stiffness is.
-    """
+    """Return ``z = lambda L`` (Aannaque (5.4)) and ``b = beta L`` (5.9) of beams, ``(..., n)``."""
     rate = np.asarray(omega)[..., None]
     mass, span = np.asarray(mass_per_length), np.asarray(length)
     z = np.sqrt(rate) * (span * np.sqrt(np.sqrt(mass / np.asarray(bending_stiffness))))
@@ -132,17 +119,7 @@ def member_inertias(
     axial_stiffness: Array,
     mass_per_length: Array,
 ) -> Array:
-    """Return ``H = (D(0) - D(omega)) / omega^2`` of beams, no difference of large numbers.
-
-    Parameters
-    ----------
-    omega, length, bending_stiffness, axial_stiffness, mass_per_length
-        As :func:`member_matrices` takes them, the frequency a single one.
-
-    Returns
-    -------
-    ndarray, shape (n, 6, 6)
-    """
+    """Return ``H = (D(0) - D(omega)) / omega^2`` of beams, no difference of large numbers."""
     given = (length, bending_stiffness, axial_stiffness, mass_per_length)
     z, b = phases(omega, *given)
     weight = mass_per_length * length

@@ -22,31 +22,16 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_POINTS = 17
-# Largest deflection drawn, over the longest link.
-_DRAWN = 0.12
-_POSITIONS = 10
-
 
 def deflected_links(
     structure: Structure, theta: float, shape: Array
 ) -> dict[str, tuple[Array, Array]]:
-    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m].
-
-    Parameters
-    ----------
-    structure : Structure
-        Beams and nodes.
-    theta : float
-        Crank angle [rad].
-    shape : ndarray
-        Free coordinates, ``(n,)``.
-    """
+    """Return places on each rigid link and their displacements in a shape, ``(np, 2)`` each [m]."""
     full = np.zeros(len(structure.freedoms.all))
     full[structure.freedoms.free] = shape
     motion = structure.configuration(np.array([theta]))
     found: dict[str, tuple[list[Array], list[Array]]] = {}
-    places = np.linspace(0.0, 1.0, _POINTS)
+    places = np.linspace(0.0, 1.0, 17)
     for element in structure.elements:
         beam = element.beam
         along, across = placed_shapes(element, places)
@@ -110,7 +95,8 @@ def draw_mode(
     links = deflected_links(structure, float(theta), held.shape[at, :, mode - 1])
     longest = max(beam.length for beam in structure.beams)
     largest = max(float(np.max(np.linalg.norm(bent, axis=1))) for _, bent in links.values())
-    factor = _DRAWN * longest / largest
+    # The largest deflection is drawn as an eighth of the longest link.
+    factor = 0.12 * longest / largest
     ax = axes_or_new(ax)
     for rigid, bent in links.values():
         ax.plot(*rigid.T, "--", color="0.6", lw=0.8)
@@ -153,7 +139,7 @@ def draw_modes(
 
     _structure(system)
     if theta is None:
-        angles = np.linspace(0.0, system.period, _POSITIONS, endpoint=False)
+        angles = np.linspace(0.0, system.period, 10, endpoint=False)
     else:
         angles = crank_angles(system, theta)
     found = natural_frequencies(system, angles, require_whole("modes", modes, 1, system.size))

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_FEW = 6
-
 
 @dataclass(frozen=True, kw_only=True)
 class NaturalFrequencies(Result):
@@ -214,7 +212,7 @@ def natural_frequencies(
     require_system(system)
     angles = crank_angles(system, theta)
     if count is None:
-        count = min(system.size, _FEW)
+        count = min(system.size, 6)
     count = require_whole("count", count, 1, system.size)
     if not (isinstance(speed, (int, float)) and np.isfinite(speed) and speed >= 0.0):
         raise bad("speed", repr(speed), "a crank speed [rad/s], 0 or more", "correct it")

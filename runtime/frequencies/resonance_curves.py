@@ -15,7 +15,8 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Result, provenance
 from ..periodic.peaks import peak_error, quiet_state, require_shapes
-from .held import frozen_frequencies
+from .critical import label_speeds
+from .natural import natural_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,8 +26,6 @@ Array = NDArray[np.float64]
 # Each pass puts so many speeds into the gap about a maximum, and keeps a quarter of it.
 _PASSES = 4
 _WITHIN = 9
-# Modes that a maximum may be labelled by: of a high one any speed is near some fraction.
-_LABELLED = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +57,7 @@ class ResonanceCurve(Result):
     ratio : ndarray
         That mean frequency over n times the speed, shape ``(nm,)``; 1 where the mean says it all.
     mean_frequency : ndarray
-        Mean natural frequencies over the cycle, crank held [rad/s], shape ``(n,)``.
+        Mean natural frequencies over the cycle, crank held [rad/s], six or all of fewer.
     x : float
         Place x/length.
     """
@@ -164,7 +163,7 @@ def resonance_curve(
     if speeds.ndim != 1 or len(speeds) < 3 or not np.all(np.diff(speeds) > 0):
         raise bad("speed", speed, "at least three rising speeds [rad/s]", "use numpy.linspace")
     require_shapes("resonance_curve", system)
-    mean = frozen_frequencies(system, 0.0, **parameters).mean
+    mean = natural_frequencies(system, 0.0, **parameters).mean
     state = quiet_state(system, speeds, rtol, parameters)
     peak = state.peak(x)
     tops = _tops(peak)
@@ -178,7 +177,8 @@ def resonance_curve(
         high = inside[rows, np.minimum(best + 1, _WITHIN - 1)]
     maxima = 0.5 * (low + high)
     heights = quiet_state(system, maxima, rtol, parameters).peak(x) if len(maxima) else maxima
-    order, mode = _labels(mean, maxima)
+    # Modes that a maximum may be labelled by: of a high one any speed is near some fraction.
+    mode, order = label_speeds(mean[:3], maxima)
     return ResonanceCurve(
         method=state.method,
         error=peak_error(state, np.full(len(speeds), float(x))),
@@ -206,26 +206,3 @@ def _tops(peak: Array) -> NDArray[np.intp]:
     top = (middle > values[:-2]) & (middle >= values[2:]) & np.isfinite(middle)
     places: NDArray[np.intp] = np.flatnonzero(top) + 1
     return places
-
-
-def _labels(mean: Array, maxima: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return order and mode of each maximum from the mean frequencies over its speed.
-
-    The pairs that fit best choose first, and no label is given twice where another is left.
-    """
-    ratio = mean[:_LABELLED] / maxima[:, None]
-    orders = np.maximum(1, np.round(ratio)).astype(np.int64)
-    misfit = np.abs(ratio - orders)
-    order, mode = np.zeros((2, len(maxima)), dtype=np.int64)
-    taken: set[tuple[int, int]] = set()
-    for place, column in zip(
-        *np.unravel_index(np.argsort(misfit, axis=None), misfit.shape), strict=True
-    ):
-        label = int(orders[place, column]), int(column) + 1
-        if not mode[place] and label not in taken:
-            taken.add(label)
-            order[place], mode[place] = label
-    rest = mode == 0
-    nearest = np.argmin(misfit, axis=1)
-    order[rest], mode[rest] = orders[rest, nearest[rest]], nearest[rest] + 1
-    return order, mode

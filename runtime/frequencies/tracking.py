@@ -24,10 +24,6 @@ Arrays = Callable[[Array], tuple[Array, Array]]
 
 # Places within a bracket per pass: each pass keeps a quarter of it.
 _WITHIN = 9
-_PASSES = 26
-_FLAT = 1e-9
-# Gaps smaller than so many round-offs are none.
-_ROUNDED = 16.0
 
 
 @dataclass(frozen=True)
@@ -80,14 +76,14 @@ class Encounter:
 
 def least_gap(modes: Modes, low: float, high: float, rank: int) -> tuple[float, float]:
     """Return the angle of the least gap above a rank (from 0) within a bracket, and its doubt."""
-    for _ in range(_PASSES):
+    for _ in range(26):
         theta = np.linspace(low, high, _WITHIN)
         frequency = modes(theta).frequency
         gap = frequency[:, rank + 1] - frequency[:, rank]
         best = int(np.argmin(gap))
         low, high = theta[max(best - 1, 0)], theta[min(best + 1, _WITHIN - 1)]
         # About a veering the gap is flat; down to a crossing it falls to nothing.
-        if np.ptp(gap) <= _FLAT * gap[best] or high - low <= 1e-14 * max(1.0, abs(low)):
+        if np.ptp(gap) <= 1e-9 * gap[best] or high - low <= 1e-14 * max(1.0, abs(low)):
             break
     return float(0.5 * (low + high)), float(high - low)
 
@@ -140,7 +136,8 @@ def _slope(modes: Modes, angle: float, reach: float, rank: int) -> tuple[float, 
     """Return the difference of the slopes, from the gap's square, and the gap's round-off."""
     around = modes(angle + reach * np.array([-1.0, 0.0, 1.0]))
     gap = around.frequency[:, rank + 1] - around.frequency[:, rank]
-    error = _ROUNDED * float(np.max(around.error[:, rank : rank + 2]))
+    # Gaps smaller than so many round-offs are none.
+    error = 16.0 * float(np.max(around.error[:, rank : rank + 2]))
     bend = (gap[0] ** 2 + gap[2] ** 2) / 2.0 - gap[1] ** 2
     return float(np.sqrt(max(bend, 0.0)) / reach), error
 
@@ -162,8 +159,6 @@ _TIGHT = 1e-7
 # period; else it is but a gap.
 _TRADE = 0.5
 _WIDEST = 0.125
-# An encounter this close to the last one, over the period, is the same.
-_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -186,19 +181,7 @@ class Walk:
 
 
 def walk(modes: Modes, arrays: Arrays, period: float, count: int) -> Walk:
-    """Return a turn of the crank with the encounters of the lowest ``count`` modes.
-
-    Parameters
-    ----------
-    modes : callable
-        Crank angles ``(nt,)`` to frequencies and shapes.
-    arrays : callable
-        Crank angles to M and K.
-    period : float
-        Period [rad].
-    count : int
-        Number of modes.
-    """
+    """Return a turn of the crank with the encounters of the lowest ``count`` modes."""
     step = period / _INTERVALS
     theta = np.asarray(step * (np.arange(_INTERVALS + 1) + _OFFSET), dtype=np.float64)
     held = modes(theta)
@@ -343,12 +326,13 @@ def _narrows(
             if here**2 * (theta[k + 1] - low) ** 2 > (2 * _WIDEST * period) ** 2 * rise:
                 continue
             found = _looked_at(modes, arrays, low, theta[k + 1], rank, period)
+            # An encounter this close to the last one, over the period, is the same.
             near = [
                 one
                 for one in (*known, *out)
                 if one.lower == rank + 1
                 and abs((one.angle - found.angle + period / 2) % period - period / 2)
-                < _SAME * period + 0.25 * one.width
+                < 1e-9 * period + 0.25 * one.width
             ]
             trades = found.trade > _TRADE and found.width < _WIDEST * period
             if near:

@@ -161,14 +161,11 @@ def _held() -> NaturalFrequencies:
 
 def _meissner(speed: Array, intervals: int) -> Array:
     """Return J of so many intervals of the first mode; exact means of each."""
-    from ..frequencies.marked_speeds import meissner_function
+    from ..hill import Meissner, discriminant
 
     first = _held().frequency[:, 0]
     levels = first.reshape(intervals, -1).mean(axis=1)
-    step = 2.0 * np.pi / intervals
-    return meissner_function(
-        levels * step / speed[:, None], np.broadcast_to(levels, (len(speed), intervals))
-    )
+    return discriminant(Meissner.of(levels**2), 0.0, 1.0 / speed**2).value
 
 
 def figure_7_3(axes: Sequence[Axes]) -> Drawn:

@@ -176,9 +176,9 @@ def _weak_rows(curves: Sequence[Array]) -> list[Quoted]:
 
 
 def _mean_frequencies(frame: float) -> Array:
-    from ..frequencies import frozen_frequencies
+    from ..frequencies import natural_frequencies
 
-    return np.asarray(frozen_frequencies(beams(1, FULL, frame=frame)).mean[:4])
+    return np.asarray(natural_frequencies(beams(1, FULL, frame=frame), 0.0, 4).mean)
 
 
 # ---------------------------------------------------------------- Fig. 7.13
@@ -196,9 +196,7 @@ def bending_at_midpoint(
     motion = periodic(system if moving is None else moving, _SPEED)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        forces = recover(
-            system, motion, stations={"follower": [0.5]}, method="shape", finer_mesh=False
-        )
+        forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
     structure = system.structure
     assert structure is not None
     (section,) = (beam.section for beam in structure.beams if beam.name == "follower")

@@ -36,7 +36,7 @@ def midpoint(speed: float) -> ElasticCurve:
     from ..recovery import elastic_coupler_curve
 
     system = rig()
-    return elastic_coupler_curve(system, quiet_motion(system, speed), finer_mesh=False)
+    return elastic_coupler_curve(system, quiet_motion(system, speed))
 
 
 def figure_8_2(axes: Sequence[Axes]) -> Drawn:

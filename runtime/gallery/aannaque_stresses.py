@@ -219,9 +219,9 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
 
 def _first_mode_speeds() -> list[float]:
     """Return the speeds mean/3 of the first frequency: one, two, three elements and exact."""
-    from ..frequencies import frozen_frequencies
+    from ..frequencies import natural_frequencies
 
-    means = [float(frozen_frequencies(beams(count)).mean[0]) / 3.0 for count in (1, 2, 3)]
+    means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) / 3.0 for count in (1, 2, 3)]
     return [*means, float(np.mean(_hybrid(1e-10).first)) / 3.0]
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array
-from ..frequencies import frozen_frequencies
+from ..frequencies import natural_frequencies
 from ..periodic import floquet_multipliers
 from ..stability.charts.chart import StabilityChart, stability_chart
 from .beale_tip import FLEXIBLE, rod
@@ -54,7 +54,7 @@ def chart(formulation: str, modes: int, drop: tuple[str, ...]) -> StabilityChart
 @lru_cache(maxsize=4)
 def frequencies(formulation: str, modes: int) -> Array:
     """Return the natural frequencies [rad/s] of the rod as the crank's length goes to zero."""
-    return frozen_frequencies(
+    return natural_frequencies(
         rod(FLEXIBLE, formulation, modes, _PRINTED, links__crank_ratio=1e-6)
     ).mean
 

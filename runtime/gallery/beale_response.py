@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.families import Array, LinearPeriodic
-from ..frequencies import ResonanceCurve, frozen_frequencies, resonance_curve
+from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..periodic import floquet_multipliers
 from .beale_tip import FLEXIBLE, rod, tip_from_rest
 from .records import Drawn, Quoted, Table
@@ -37,14 +37,14 @@ def _rod(
 
 def mean_frequency(formulation: str = "polynomial", modes: int = 3, ratio: float = _RATIO) -> float:
     """Return the mean first natural frequency [rad/s] over the crank angle."""
-    return float(frozen_frequencies(_rod(formulation, modes, _PRINTED, ratio)).mean[0])
+    return float(natural_frequencies(_rod(formulation, modes, _PRINTED, ratio), 0.0, 1).mean[0])
 
 
 def figure_11(axes: Sequence[Axes]) -> Drawn:
     """Draw the first natural frequency with the crank held, against its angle."""
     ax = axes[0]
     for formulation, modes, style in (("polynomial", 3, "-"), ("overhang", _ENOUGH, "--")):
-        found = frozen_frequencies(_rod(formulation, modes, _PRINTED))
+        found = natural_frequencies(_rod(formulation, modes, _PRINTED))
         colour = COLOURS[0] if formulation == "polynomial" else COLOURS[1]
         label = f"{modes} {formulation} modes, mean {found.mean[0]:.1f} rad/s"
         ax.plot(np.degrees(found.theta), found.frequency[:, 0], style, color=colour, label=label)
@@ -52,7 +52,7 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
     crank_axis(ax)
     ax.set_ylabel("first natural frequency [rad/s]")
     legend_below(axes)
-    first = frozen_frequencies(_rod("polynomial", 3, _PRINTED)).frequency[:, 0]
+    first = natural_frequencies(_rod("polynomial", 3, _PRINTED)).frequency[:, 0]
     rows = (
         Quoted(
             "mean first natural frequency, three polynomial modes",

@@ -163,17 +163,10 @@ class EffectiveOperator:
     coupling: tuple[Complex, ...]
 
     def components(self, parameters: ArrayLike) -> tuple[Complex, Complex]:
-        """Evaluate the homogeneous components of A and B.
+        """Return the homogeneous components of A and B, ``(order, *batch)`` each, complex.
 
-        Parameters
-        ----------
-        parameters : array_like, shape (p, *batch)
-            Values of ``eps_1 ... eps_p``, and of K last where damped.
-
-        Returns
-        -------
-        A_k, B_k : ndarray, shape (order, *batch), complex
-            Component k stands at place k - 1; the sum over the first N is the value to order N.
+        ``parameters``, ``(p, *batch)``, has K last where damped.  Component k stands at place
+        k - 1; the sum over the first N is the value to order N.
         """
         values = np.asarray(parameters, dtype=float)
         flat = values.reshape(len(values), -1)
@@ -189,32 +182,15 @@ class EffectiveOperator:
 def effective_operator(
     parts: Sequence[PeriodicFunction], n: int, order: int, damped: bool = False
 ) -> EffectiveOperator:
-    """Return A and B of region n as polynomials in the parameters, to a total degree.
+    """Return A and B of region n as polynomials in the parameters, to a total degree up to 10.
 
-    Parameters
-    ----------
-    parts : sequence of PeriodicFunction
-        The functions ``f_1 ... f_p`` that the parameters multiply.
-    n : int
-        Number of the region, at least 0.
-    order : int
-        Highest total degree, 1 to 10.
-    damped : bool
-        True to have K of ``2 K y'`` as the last parameter.
-
-    Returns
-    -------
-    EffectiveOperator
-        The same object again for functions of the same coefficients.
+    The parameters multiply the functions ``parts``; where ``damped``, K of ``2 K y'`` is the last
+    one.  Smith (7.16)-(7.36) and (8.39)-(8.43) to any order and number of parameters.
 
     Raises
     ------
     BadInput
         If coefficients overflow.
-
-    Notes
-    -----
-    Smith (7.16)-(7.36) and (8.39)-(8.43) to any order and number of parameters.
     """
     return _operator(_key(parts), int(n), int(order), bool(damped))
 

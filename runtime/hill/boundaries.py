@@ -52,12 +52,8 @@ _BANDED, _SPARSE = 160, 4
 _SAMPLE, _STEP, LIMIT = 24, 1e-4, 4.0
 # exp(2 pi 80) leaves room for the rest of the arithmetic in doubles.
 _GROWTH = 80.0
-# Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
-_STRONG = 0.5
 # The square of K is added to lam2.
 _LARGEST = 1e100
-# A complex pair whose imaginary part is below so much of its round-off is sent to the half trace.
-_NEARLY = 4.0
 # Logarithms of ratios beyond this are all alike.
 _FAR = 700.0
 # Proposals of the error of a crossing, each so many times the one before.
@@ -371,7 +367,8 @@ def _damped(
     if float(k.max()) > _LARGEST:
         raise bad("damping", f"{k.max():.3g}", f"K up to {_LARGEST:g}", "scale the equation")
     ends = Ends(sharp.lower.copy(), sharp.upper.copy(), sharp.error.copy(), sharp.undecided.copy())
-    strong = (k > 0.0) if isinstance(f, Meissner) else (k > _STRONG)
+    # Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
+    strong = (k > 0.0) if isinstance(f, Meissner) else (k > 0.5)
     weak = (k > 0.0) & ~strong
     if weak.any() and not isinstance(f, Meissner):
         near = sharp.take(np.s_[:, weak])
@@ -415,7 +412,8 @@ def _from_matrix(
             last = np.where(inside, real, -np.inf).max(axis=1)
             whole = inside.sum(axis=1) >= (1 if regions[i] == 0 else 2)
             # Two ends that met are as far from being real as the root of what moves them.
-            blur = _NEARLY * np.sqrt(np.maximum(high[i] - low[i], slack) * slack)
+            # A complex pair that is real within four times its round-off goes to the half trace.
+            blur = 4.0 * np.sqrt(np.maximum(high[i] - low[i], slack) * slack)
             near = (place >= (low[i] - blur)[:, None]) & (place <= (high[i] + blur)[:, None])
             near &= np.abs(values.imag) <= blur[:, None]
             ends.undecided[i] = ~whole & (near.any(axis=1) if regions[i] else True)

@@ -45,8 +45,6 @@ _GOAL, _LOOSEST = 1e-26, 1e-3
 _VECTOR_BITS, _FUNCTION_BITS, _TURN_BITS = 62, 160, 60
 # What inner products count in, and products of the operator (which is taken four times).
 _SQUARE_UNIT, _UNIT = 1 << (2 * _VECTOR_BITS), 4 << _FUNCTION_BITS
-# How often an interval is halved before a region counts as undecided.
-_PIECES = 400
 
 
 class Ball(NamedTuple):
@@ -282,12 +280,6 @@ def spectrum(
 
     ``highest`` is even for the whole problem and odd for the half-whole one; ``shift`` asks for
     harmonics enough for eigenvalues that damping moves up by so much.
-
-    Raises
-    ------
-    BadInput
-        If more than 2048 harmonics would be needed, or the matrix is so large that rounding
-        leaves nothing proved.
     """
     cut = _cut(f, mu, highest, shift)
     harmonic = cut.harmonic + odd
@@ -613,7 +605,8 @@ class DampedProblem:
     def _has_none(self, low: float, high: float) -> bool:
         """Prove that no eigenvalue lies between two numbers; False where that does not succeed."""
         pending = [(low, high)]
-        for _ in range(_PIECES):
+        # How often an interval is halved before a region counts as undecided.
+        for _ in range(400):
             if not pending:
                 return True
             start, end = pending.pop()

@@ -21,11 +21,8 @@ from .transfer import EPS
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-# Far below a rounding, so that the truncation need not be weighed against it.
-_GOAL = 1e-20
-# On the residuals, which are round-off themselves; and the cosine between the two solutions from
-# which on they count as coming together.
-_MIXING, _ALIKE = 4.0, 0.95
+# Cosine between two solutions from which on they count as coming together.
+_ALIKE = 0.95
 _COEFFICIENT = re.compile(r"([ab])([0-9]+)")
 
 
@@ -263,7 +260,8 @@ class _Slice:
 
     def _cut(self, highest: int) -> Truncation:
         try:
-            return truncation(self.f, abs(self.mu), highest, self.k * self.k, goal=_GOAL)
+            # Far below a rounding, so that the truncation need not be weighed against it.
+            return truncation(self.f, abs(self.mu), highest, self.k * self.k, goal=1e-20)
         except BadInput:
             return truncation(self.f, abs(self.mu), highest, self.k * self.k)
 
@@ -308,5 +306,6 @@ class _Slice:
         further = self.f.error * abs(self.mu) + 100.0 * self.cut.left_out
         given = item.function.error if item.function is not None else 0.0
         tilt = self.vectors.tilt(group, further)
-        mixing = _MIXING * self.vectors.mixing(group[0]) if self.k else 0.0
+        # The residuals are round-off themselves.
+        mixing = 4.0 * self.vectors.mixing(group[0]) if self.k else 0.0
         return float(size * ((tilt + EPS) / (share * share) + mixing / share) + given)

@@ -24,13 +24,8 @@ Index = NDArray[np.intp]
 
 # What the cut leaves out by default: below the round-off of eigenvalues of size 1e3.
 _LEFT_OUT = 1e-13
-# Errors of LAPACK's eigenvalues in roundings of the norm: 5.4 was the most in 4000 random cases on
-# two machines; they grow with the root of the size beyond some 250 rows.
-_ROUNDINGS = 8.0
 # Entries of a stack of matrices, so that it stays in the cache.
 CHUNK = 2**18
-# Harmonics of mu f that are together smaller count by their norm.
-_DROPPED = 1e-17
 
 
 class Truncation(NamedTuple):
@@ -47,7 +42,9 @@ class Truncation(NamedTuple):
     @property
     def rounding(self) -> float:
         """Estimate of the round-off of eigenvalues."""
-        return EPS * max(_ROUNDINGS, 0.5 * sqrt(2.0 * self.harmonic)) * self.norm
+        # LAPACK's eigenvalues in roundings of the norm: 5.4 was the most in 4000 random cases on
+        # two machines; they grow with the root of the size beyond some 250 rows.
+        return EPS * max(8.0, 0.5 * sqrt(2.0 * self.harmonic)) * self.norm
 
 
 def truncation(
@@ -92,7 +89,8 @@ def _truncation(
 ) -> Truncation:
     half = (0.5 * reach) * f.amplitudes[1:]
     bound = 2.0 * float(half.sum())
-    kept = int(np.count_nonzero(np.cumsum(half[::-1]) > _DROPPED))
+    # Harmonics of mu f that are together smaller count by their norm.
+    kept = int(np.count_nonzero(np.cumsum(half[::-1]) > 1e-17))
     # Harmonics this small are left out of the majorant and counted by their norm (Weyl), once in
     # the equation and once in its matrix.
     dropped = 4.0 * float(half[kept:].sum())

@@ -34,8 +34,6 @@ _CHUNK = 2**19
 _STEEPEST = 300.0
 _MOST_INTERVALS = 2**16
 _MOST_HARMONICS = 100_000
-# Halvings of an interval of a few to the resolution of doubles.
-_BISECTIONS = 40
 
 
 @dataclass(frozen=True)
@@ -44,8 +42,7 @@ class Meissner:
 
     ``discriminant`` and ``characteristic_exponents`` take any number of levels, and
     ``hill_boundaries`` two (Aannaque (7.9)-(7.11), after Meissner).  A smooth f in N steps, the
-    method of Pipes and of Hsu (Aannaque 7.2.2), is
-    ``Meissner(f(2 pi (arange(N) + 0.5) / N), full(N, 2 pi / N))``.
+    method of Pipes and of Hsu (Aannaque 7.2.2), is ``Meissner.of(f(2 pi (arange(N) + 0.5) / N))``.
 
     Attributes
     ----------
@@ -74,6 +71,12 @@ class Meissner:
             raise bad("levels", lengths.size, f"at most {_MOST_INTERVALS}", "take fewer")
         object.__setattr__(self, "levels", tuple(levels.tolist()))
         object.__setattr__(self, "lengths", tuple(lengths.tolist()))
+
+    @classmethod
+    def of(cls, levels: ArrayLike) -> Meissner:
+        """Return f with these levels on intervals of equal length."""
+        values = tuple(finite("levels", levels).tolist())
+        return cls(values, (2.0 * pi / max(len(values), 1),) * len(values))
 
     @property
     def mean(self) -> float:
@@ -243,7 +246,8 @@ def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Ar
     low, high = (
         0.25 * n * n + reach[i] + side * (1e-3 + EPS * size) for i, side in ((0, -1), (1, 1))
     )
-    for _ in range(_BISECTIONS):
+    # Forty halvings of an interval of a few reach the resolution of doubles.
+    for _ in range(40):
         middle = 0.5 * (low + high)
         above = _phase(middle, mu, kind.start, f, t) >= target
         low, high = np.where(above, low, middle), np.where(above, middle, high)
@@ -252,7 +256,7 @@ def _root(f: Array, t: Array, mu: Array, n: int, kind: _Kind) -> tuple[Array, Ar
     wide = (high - low) + 64.0 * EPS * (1.0 + n) * (1.0 + np.abs(high) + size)
     low, high = low - wide, high + wide
     sign = (-1.0) ** (count + kind.row)
-    for _ in range(_BISECTIONS):
+    for _ in range(40):
         middle = 0.5 * (low + high)
         above = sign * _factor(middle, mu, kind, f, t)[0] > 0.0
         low, high = np.where(above, low, middle), np.where(above, middle, high)

@@ -37,8 +37,6 @@ CONTRACTION, _SHARE = 0.9, 0.5
 _CAUTION = 1.25
 # Factor on the two orders beyond: their sum is the larger part of what is left out.
 _DOUBT = 2.0
-# A coupling below so much of the largest that it could be is taken for round-off of zero.
-_CANCELLED = 1e-14
 # Points at a time, so that the components stay in the cache.
 _CHUNK = 2**13
 # Largest number of coefficients of the highest order: about a second of work.
@@ -477,7 +475,8 @@ def _leading(parts: Components) -> NDArray[np.intp]:
     """Return the degree s at which S begins, one more than there are where it vanishes."""
     b, drag = np.abs(parts.coupling), np.abs(parts.diagonal.imag)
     degree = np.arange(len(b))[:, None]
-    floor = _CANCELLED * parts.strength * (parts.strength / parts.distance) ** degree
+    # A coupling below so much of the largest that it could be is taken for round-off of zero.
+    floor = 1e-14 * parts.strength * (parts.strength / parts.distance) ** degree
     floor[0] = 0.0
     # Without damping Im A is of higher order than B.
     there = (b > floor) | ((drag > floor) & parts.damped)

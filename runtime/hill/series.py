@@ -38,18 +38,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# Origins of theta that show the round-off: the boundaries do not depend on it.
-_ORIGINS = (0.0, 1.0, 2.0, 3.0, 4.0)
 _CAUTION = 8.0
 # Roundings of the leading component of the root, which all others hang on.
 _LEADING = 4.0 * EPS
 # A leading coefficient of the root is taken for zero where it is within the round-off of the terms
 # that make it, so many units of their size; above this share of its majorant it cannot be.
 _ROUNDED, _CLEAR = 64.0, 1e-6
-# Turns of the phases of f, harmonic by harmonic: what cancels at one does not at another.
-_PHASES = (0.7, 1.3, 2.1)
 HIGHEST_FORMULA = max(hill_recursion.WORDS)
-_WIDTH = 200  # characters of source in a line of a sum
 _POWER = re.compile(r"R(?:\^(\d+))?")
 
 
@@ -171,7 +166,8 @@ def boundary_series(
     real = isinstance(damping_ratio, int | float | np.integer | np.floating)
     if not real or not 0.0 <= damping_ratio < np.inf:
         raise bad("damping_ratio", repr(damping_ratio), "a finite number >= 0", "correct it")
-    runs = [_alphas(_turned(f, origin), n, order, damping_ratio) for origin in _ORIGINS]
+    # The boundaries do not depend on the origin of theta: other ones show the round-off.
+    runs = [_alphas(_turned(f, float(k)), n, order, damping_ratio) for k in range(5)]
     (middle, half), splitting, doubt = runs[0]
     spread = np.max([np.abs(other - runs[0][0]) for other, *_ in runs[1:]], axis=0).sum(axis=0)
     error = _CAUTION * spread + 2.0 * EPS * (np.abs(middle) + np.abs(half)) + doubt
@@ -208,9 +204,10 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
     if size > _CLEAR * reach**k:
         return given
     point = np.array([[1.0], [0.0]])
+    # Other phases, harmonic by harmonic: what cancels at one does not at another.
     others = [
         effective_operator([_turned(f, phase, 2)], n, k, True).components(point)[1][-1, 0]
-        for phase in _PHASES
+        for phase in (0.7, 1.3, 2.1)
     ]
     return _ROUNDED * EPS * max(size, *(float(abs(other)) for other in others)) + given
 
@@ -483,7 +480,8 @@ def _written(
     lead = f"{left} &= "
     while texts:
         line = texts.pop(0)
-        while texts and len(line) + len(texts[0]) < _WIDTH:
+        # Characters of source in a line of a sum.
+        while texts and len(line) + len(texts[0]) < 200:
             line += " " + texts.pop(0)
         yield lead + line
         lead = r"&\quad "

@@ -44,15 +44,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 End = Literal["lower", "upper"]
 
-# The errors are estimates; the residual may exceed what they predict by so much.
-_LIMIT = 4.0
-# Roundings of one factor of a path: the coefficient, the elimination, its way back.
-_ROUNDINGS = 4.0
-# Share of the largest pair of harmonics from which that of n/2 is taken to eliminate the others.
-_ENOUGH = 0.1
-# What the harmonics beyond the cut may hold, relative to the resonant ones.
-_BEYOND_CUT = 1e-18
-
 
 @dataclass(frozen=True, kw_only=True)
 class BoundarySolution(Result):
@@ -243,11 +234,12 @@ def _result(
         leading = np.concatenate([a, b])
     scale = 1.0 / size if leading[np.argmax(np.abs(leading))] > 0.0 else -1.0 / size
     share = solution.residual / solution.predicted
+    # The errors are estimates; the residual may exceed what they predict by so much.
     return BoundarySolution(
         method="Hill matrix" if order is None else f"perturbation, order {order}",
         error=solution.error / size,
         error_norm="absolute, largest over theta; the mean square of y is 1",
-        checks={"residual of the equation over what the errors predict": Check(share, _LIMIT)},
+        checks={"residual of the equation over what the errors predict": Check(share, 4.0)},
         provenance=provenance(),
         wave_numbers=k,
         a=scale * a,
@@ -358,7 +350,8 @@ def _exact(f: PeriodicFunction, n: int, end: End, damping: float) -> _Solution:
         pair, gap = _leading_pair(f, n, harmonic, target, damping)
     while harmonic <= LARGEST:
         others = _Others(f, n, pair, harmonic, target, slack, damping)
-        if others.edge <= _BEYOND_CUT:
+        # What the harmonics beyond the cut may hold, relative to the resonant ones.
+        if others.edge <= 1e-18:
             return others.joined(end, gap)
         harmonic += max(harmonic // 2, f.harmonics)
     raise bad(
@@ -389,7 +382,8 @@ def _leading_pair(
     size = size.reshape(-1, 2).sum(axis=1)
     k = np.arange(size.size) + 0.5 * odd
     here = int(np.argmax(k == 0.5 * n))
-    chosen = here if size[here] >= _ENOUGH * size.max() else int(size.argmax())
+    # From this share of the largest pair of harmonics on, that of n/2 eliminates the others.
+    chosen = here if size[here] >= 0.1 * size.max() else int(size.argmax())
     return float(k[chosen]), float(sizes[-2])
 
 
@@ -415,7 +409,8 @@ class _Others:
         self.up, self.down = (int(np.argmax(k == side * pair)) for side in (1, -1))
         rest = np.delete(np.arange(k.size), [self.up, self.down])
         self.slack, self.drag = slack + f.error, -2.0 * damping * k
-        self.steps = _ROUNDINGS * (n + 2.0) * EPS
+        # Roundings of one factor of a path: the coefficient, the elimination, its way back.
+        self.steps = 4.0 * (n + 2.0) * EPS
         self.coupling = _couplings(f, k.size)
         self.sizes = np.abs(self.coupling)
         self.levels = k * k - lam2 - f.mean + 1j * self.drag

@@ -31,13 +31,11 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-# With more harmonics order 8 takes longer than the half trace.
-_MOST_HARMONICS = 200
 # Values of mu per decade in the search for the first crossing, and how far it goes: to mu f of so
 # many times the square of the region's number.  Where it begins without damping any width will do.
 _PER_DECADE, _FARTHEST, _SMALLEST = 24, 16.0, 1e-3
 # How often a maximum between those values is looked at more closely, and by how much.
-_ZOOMS, _ZOOM = 3, 8
+_ZOOM = 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,7 +192,8 @@ def _exact(f: PeriodicFunction, n: int, mu: Array) -> Closing:
     k, place, error = largest_exponent(f, n, mu, sharp)
     exact = Closing(k, place + k * k, error, np.zeros(mu.size, dtype=bool))
     coarse = np.flatnonzero(error > 1e-13 * k)
-    if coarse.size and f.harmonics <= _MOST_HARMONICS:
+    # With more harmonics order 8 takes longer than the half trace.
+    if coarse.size and f.harmonics <= 200:
         high = _closings(f, n, HIGHEST)(mu[coarse])
         # An order that does not see a tongue is not wrong about its width: the errors decide.
         better = ~high.outside & (high.error < error[coarse])
@@ -435,7 +434,7 @@ class _Opening:
             return np.zeros(0), np.zeros(0)
         low, high = np.log(grid[inner - 1]), np.log(grid[inner + 1])
         each = np.arange(inner.size)
-        for _ in range(_ZOOMS):
+        for _ in range(3):
             x = np.linspace(low, high, _ZOOM + 1)
             tops = self._sure(np.exp(x.ravel()))[0].reshape(x.shape)
             best, step = tops.argmax(axis=0), (high - low) / _ZOOM

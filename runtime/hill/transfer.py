@@ -28,7 +28,6 @@ Range = tuple[float, float]
 
 EPS = float(np.finfo(float).eps)
 _MOST_SEGMENTS = 2**16
-_MOST_LEVELS = 40
 _NODE_COUNTS = np.arange(8, 25)
 # Neglected part of the interpolant; the end values see about its square (superconvergence).
 _NODE_TAIL = 1e-9
@@ -142,14 +141,8 @@ class Transfer:
     ) -> tuple[Array, Array, Exponents, Array]:
         """Return half trace and error at points ``(n,)``, scaled against overflow.
 
-        Returns
-        -------
-        value, error : ndarray, shape (n,)
-            To be multiplied by ``2**exponent``.
-        exponent : ndarray of int, shape (n,)
-            Zeros unless the solutions grow beyond 1e100.
-        defect : ndarray, shape (n,)
-            Deviation of the product of the segments' determinants from 1 (Liouville).
+        Value and error are to be multiplied by ``2**exponent``, 1 unless solutions grow beyond
+        1e100.  Last, how far the product of the segments' determinants is from 1 (Liouville).
         """
         n = lam2.size
         value, error, defect = np.empty(n), np.empty(n), np.empty(n)
@@ -238,14 +231,7 @@ def normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
 
 
 def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
-    """Expand the transfer matrices over a box of parameters.
-
-    Parameters
-    ----------
-    f : PeriodicFunction
-        The coefficient function.
-    lam2, mu : (low, high)
-        The box.
+    """Expand the transfer matrices over a box ``(low, high)`` of each parameter.
 
     Raises
     ------
@@ -339,7 +325,7 @@ def _expand(
     u = free + _applied(source, onward)
     weighted = mu[1] * values
     weight = g * (lam2[1] + float(np.abs(weighted).max()))
-    for k in range(1, _MOST_LEVELS + 1):
+    for k in range(1, 41):
         source = np.empty((2 * (k + 1), segments, q))
         np.multiply(u, lam2[1], out=source[: 2 * k])
         source[2 * k :] = 0.0

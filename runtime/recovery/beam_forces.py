@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 METHODS = ("equilibrium", "shape")
 FORCES = ("axial", "shear", "moment")
-# Places per beam where none are asked for.
-_PLACES = 25
 # Exact for the shape functions (to degree 5) times the axial force (to degree 2) times x.
 _GAUSS_PLACES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
@@ -97,18 +95,9 @@ class Recovery:
     def values(
         self, name: str, speed: float, q: Array, dq: Array, ddq: Array | None = None
     ) -> Array:
-        """Return one quantity ``(nt, stations)`` in a motion.
+        """Return one of ``forms`` ``(nt, stations)`` in a motion: q and its slope by the angle.
 
-        Parameters
-        ----------
-        name : str
-            One of ``forms``.
-        speed : float
-            Crank speed [rad/s].
-        q, dq : ndarray, shape (nt, n)
-            Coordinates and their derivatives by the crank angle.
-        ddq : ndarray, shape (nt, n), optional
-            Second derivatives by the crank angle; by default from the equation of motion.
+        The second derivatives ``ddq`` come from the equation of motion where they are not given.
         """
         form = self.forms[name]
         if ddq is None:
@@ -122,20 +111,10 @@ class Recovery:
 def stations_of(
     structure: Structure, stations: int | Mapping[str, ArrayLike] | None = None
 ) -> tuple[Station, ...]:
-    """Return places on the beams of a structure.
+    """Return places on the beams of a structure, beam by beam.
 
-    Parameters
-    ----------
-    structure : Structure
-        The beams.
-    stations : int or mapping of str to array_like, optional
-        Number of places on each beam, its ends included; or by beam the places x/length.  By
-        default 25 on each.
-
-    Returns
-    -------
-    tuple of Station
-        Beam by beam.
+    ``stations`` is the number on each beam, its ends included (by default 25), or by beam the
+    places x/length.
 
     Raises
     ------
@@ -143,7 +122,7 @@ def stations_of(
         If a beam is unknown or a place lies off it.
     """
     if stations is None or isinstance(stations, int):
-        count = _PLACES if stations is None else stations
+        count = 25 if stations is None else stations
         if isinstance(stations, bool) or count < 2:
             raise bad("stations", repr(stations), "2 places or more on each beam", "choose 25")
         wanted: Mapping[str, ArrayLike] = {
@@ -177,13 +156,7 @@ def _station(structure: Structure, beam: Beam, place: float) -> Station:
 
 
 def require_method(method: str) -> None:
-    """Refuse a way to recover forces that is not known.
-
-    Raises
-    ------
-    BadInput
-        If it is none of ``METHODS``.
-    """
+    """Refuse a way to recover forces that is not known."""
     if method not in METHODS:
         raise bad("method", repr(method), f"one of {METHODS}", "choose 'equilibrium'")
 
@@ -195,21 +168,6 @@ def recovery(
     method: str = "equilibrium",
 ) -> Recovery:
     """Return forces and displacements along the beams of a system as linear forms.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    theta : array_like, shape (nt,)
-        Crank angles [rad].
-    stations : int, mapping or tuple of Station, optional
-        As :func:`stations_of` takes them.
-    method : str
-        ``"equilibrium"`` or ``"shape"``.
-
-    Returns
-    -------
-    Recovery
 
     Raises
     ------
@@ -402,7 +360,6 @@ def recover(
     *,
     stations: int | Mapping[str, ArrayLike] | None = None,
     method: str = "equilibrium",
-    finer_mesh: bool = True,
 ) -> BeamForces:
     """Return displacements and forces along the beams of a system in a motion.
 
@@ -417,8 +374,6 @@ def recover(
     method : str
         ``"equilibrium"``: end forces of the elements, and between nodes what balances inertia,
         weight and axial force.  ``"shape"``: E I v'' of the shape functions, Aannaque's way.
-    finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -433,7 +388,7 @@ def recover(
     chosen = stations_of(required_structure(system), stations)
     moving = beam_motion(system, motion)
     own: dict[str, Any] = dict(evaluated(system, moving, stations, method))
-    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own, finer_mesh))
+    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, own))
     return BeamForces(
         method=method,
         links=tuple(station.beam for station in chosen),
@@ -449,11 +404,10 @@ def _doubt(
     stations: int | Mapping[str, ArrayLike] | None,
     method: str,
     own: Mapping[str, Array],
-    finer_mesh: bool,
 ) -> dict[str, Any]:
-    """Return the error figure and its norm."""
+    """Return the error estimate and its norm."""
     norm = "largest error of axial force [N], shear force [N], moment [N m]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         other = next(name for name in METHODS if name != method)
         better = evaluated(system, moving, stations, other, FORCES)
@@ -478,19 +432,7 @@ def evaluated(
     *,
     frozen: bool = False,
 ) -> dict[str, Array]:
-    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates.
-
-    Parameters
-    ----------
-    system, stations, method
-        As :func:`recover` takes them.
-    motion : BeamMotion
-        The motion; a frozen one is taken for displacements without rates or accelerations.
-    names : tuple of str
-        Which quantities.
-    frozen : bool
-        Whether rates and accelerations of the coordinates are left out.
-    """
+    """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates."""
     parts: dict[str, list[Array]] = {name: [] for name in names}
     for chunk in chunks(motion):
         made = recovery(system, motion.theta[chunk], stations, method)

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
 
-# Mesh and equations err far more than this.
-_RTOL = 1e-7
 # Angles of one piece.
 _CHUNK = 256
 
@@ -151,20 +149,13 @@ def chunks(motion: BeamMotion) -> list[slice]:
 
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
-    """Return the steady state; the caller looks at the linear range.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    speed : float
-        Crank speed [rad/s].
-    """
+    """Return the steady state at a speed [rad/s]; the caller looks at the linear range."""
     from ..periodic import steady_state
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, rtol=_RTOL)
+        # Mesh and equations err far more than this.
+        return steady_state(system, speed, rtol=1e-7)
 
 
 def _steady(motion: SteadyState) -> BeamMotion:
@@ -192,13 +183,6 @@ def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
 
 def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
     """Return the equilibrium of a structure that stands still under constant loads.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : object
-        None: a structure that stands still has no other.
 
     Raises
     ------

@@ -19,7 +19,7 @@ from ..core.families import LinearPeriodic
 from ..core.results import Check, Result, provenance
 from .beam_motion import BeamMotion, chunks
 
-# Fields that are worked out when they are first looked at.
+# Fields that are computed when they are first looked at.
 _LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
 
@@ -36,7 +36,7 @@ class BeamResult(Result):
 
     Notes
     -----
-    The error figure is worked out when it is first looked at.
+    The error estimate is computed when it is first looked at.
     """
 
     speed: float
@@ -69,13 +69,7 @@ class StationResult(BeamResult):
 
 
 def stations_on(links: tuple[str, ...], link: str) -> NDArray[np.int64]:
-    """Return the places of a beam's stations among all.
-
-    Raises
-    ------
-    BadInput
-        If it has none.
-    """
+    """Return the places of a beam's stations among all; refuse a beam that has none."""
     if link not in links:
         known = ", ".join(dict.fromkeys(links))
         raise bad("link", repr(link), f"one of {known}", "choose one with stations")
@@ -88,25 +82,9 @@ def in_motion(
     doubt: DeferredGroup,
     checks: Mapping[str, Check] | None = None,
 ) -> dict[str, Any]:
-    """Return the fields that a result takes from its motion, and its error figure to be.
+    """Return the fields of :class:`BeamResult`, all but the method, with an error to be computed.
 
     Warns whoever called the caller where a deflection is beyond 5 % of the length of its beam.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : BeamMotion
-        Its motion.
-    doubt : DeferredGroup
-        Makes ``error`` and ``error_norm``.
-    checks : mapping of str to Check, optional
-        The result's own, beside those of the motion and of the linear range.
-
-    Returns
-    -------
-    dict of str to object
-        Fields of :class:`BeamResult` by name, all but the method.
     """
     return {
         "error": doubt.later("error"),
@@ -140,17 +118,7 @@ def _linear_range(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Check
 
 
 class MotionValues:
-    """Values of forms in a piece of a motion, accelerations by the equation of motion.
-
-    Parameters
-    ----------
-    forms : ElementForms
-        The structure at the angles of the piece.
-    motion : BeamMotion
-        The motion.
-    chunk : slice
-        Which of its angles.
-    """
+    """Values of forms in a piece of a motion, accelerations by the equation of motion."""
 
     def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice) -> None:
         self.speed = motion.speed
@@ -168,17 +136,7 @@ def over_motion(
     motion: BeamMotion,
     piece: Callable[[ElementForms, MotionValues], dict[str, Array]],
 ) -> dict[str, Array]:
-    """Return arrays over the angles of a motion by name, joined from its pieces.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : BeamMotion
-        The motion.
-    piece : callable
-        Returns the arrays of one piece from the structure at its angles, and values in it.
-    """
+    """Return arrays over the angles of a motion by name, joined from its pieces."""
     pieces = []
     for chunk in chunks(motion):
         forms = ElementForms(system, motion.theta[chunk])

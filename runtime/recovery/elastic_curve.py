@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from .beam_motion import Motion
 
-# Fields that are worked out when they are first looked at; of its own and not of BeamResult, as in
+# Fields that are computed when they are first looked at; of its own and not of BeamResult, as in
 # its files the place comes before the speed.
 _LATER = {name: DeferredField() for name in ("error", "error_norm")}
 
@@ -101,7 +101,6 @@ def elastic_coupler_curve(
     across: float = 0.0,
     *,
     link: str = "coupler",
-    finer_mesh: bool = True,
 ) -> ElasticCurve:
     """Return the curve of a point of an elastic link, beside that of the rigid linkage.
 
@@ -118,8 +117,6 @@ def elastic_coupler_curve(
         Place of the point in the link's own axes [m]; by default the middle of the axis.
     link : str
         Which link.
-    finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -141,7 +138,7 @@ def elastic_coupler_curve(
         raise bad("system", "a structure that stands still", "a linkage", "use recover()")
     place = (float(foot), float(across))
     shift, doubt = _shift(system, beam, moving, place)
-    later = DeferredGroup(partial(_doubt, system, moving, link, place, (shift, doubt), finer_mesh))
+    later = DeferredGroup(partial(_doubt, system, moving, link, place, (shift, doubt)))
     rigid = structure.configuration(moving.theta)[link].point(float(foot), float(across)).position
     return ElasticCurve(
         method="shape functions",
@@ -160,12 +157,11 @@ def _doubt(
     link: str,
     place: tuple[float, float],
     own: tuple[Array, float],
-    finer_mesh: bool,
 ) -> dict[str, float | str]:
-    """Return the error figure and its norm."""
+    """Return the error estimate and its norm."""
     shift, doubt = own
     error, norm = float(np.sqrt(2.0)) * doubt, "largest error of a place [m]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         norm = f"{norm}, by that of the coordinates; the mesh apart"
     else:

@@ -37,11 +37,6 @@ def finer_structure(structure: Structure) -> Structure:
 
     A single cubic becomes two quintics: of two cubics the lowest modes are still too far off.
     More elements, and not only better ones, as the axial displacement is linear in all of them.
-
-    Parameters
-    ----------
-    structure : Structure
-        Beams and nodes.
     """
     return replace(structure, beams=tuple(_finer(beam) for beam in structure.beams))
 
@@ -55,13 +50,7 @@ def _finer(beam: Beam) -> Beam:
 
 
 def finer_system(system: LinearPeriodic) -> LinearPeriodic | None:
-    """Return the same system on a finer mesh; None where its terms tell no other mesh.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    """
+    """Return the same system on a finer mesh; None where its terms tell no other mesh."""
     if system.remesh is None or not _is_remade(system):
         return None
     try:
@@ -94,17 +83,8 @@ def on_finer_mesh(
 ) -> tuple[LinearPeriodic, BeamMotion] | None:
     """Return the system on a finer mesh, and its motion at the same angles.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a structure of beams.
-    motion : BeamMotion
-        A steady state that was computed, or the equilibrium of a structure that stands still.
-
-    Returns
-    -------
-    tuple of LinearPeriodic and BeamMotion, or None
-        None where the motion is none of these, or the system tells no other mesh.
+    None where the motion is neither a computed steady state nor a standing equilibrium, or the
+    system tells no other mesh.
     """
     still = system.structure is not None and not system.structure.moving
     if not still and motion.solved is None:
@@ -141,19 +121,7 @@ def intervals_for(q: Array) -> int:
 
 
 def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> tuple[Array, Array]:
-    """Return q and qd ``(count, n)`` of the steady state, on so many intervals and no more.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        With forces.
-    speed : float
-        Crank speed [rad/s].
-    intervals : int
-        Intervals of collocation of order 15.
-    count : int
-        Even crank angles.
-    """
+    """Return q and qd ``(count, n)`` of the steady state at even angles, on so many intervals."""
     # Loaded here: only this error estimate of the beams needs motions.
     from ..periodic.equation import equation_of
     from ..periodic.periodic_motion import ring_motion
@@ -165,19 +133,10 @@ def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> 
 
 
 def answered(system: LinearPeriodic, speed: float, q: Array) -> Array:
-    """Return a periodic motion with what it leaves of the equation answered statically.
+    """Return a periodic motion ``(nt, n)`` with what it leaves of the equation answered statically.
 
     A displacement that is wrong by a millionth, across the beams, may stretch them by far more
     than they are: stiff directions are taken from the forces instead.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        With forces.
-    speed : float
-        Crank speed [rad/s].
-    q : ndarray, shape (nt, n)
-        Coordinates at even angles.
     """
     period = system.period
     theta = period * np.arange(len(q)) / len(q)

@@ -120,9 +120,7 @@ class PinReactions(BeamResult):
         return ax
 
 
-def pin_reactions(
-    system: LinearPeriodic, motion: Motion | float | None = None, *, finer_mesh: bool = True
-) -> PinReactions:
+def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) -> PinReactions:
     """Return the forces at the nodes of a structure of beams, and of its ground.
 
     They come from the end forces of the elements: stiffness, inertia of the rigid and the elastic
@@ -135,9 +133,6 @@ def pin_reactions(
         Of a structure of beams.
     motion : SteadyState, Trajectory, BeamMotion, float or None
         A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
-    finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does; of a motion
-        that is given, or marched, it cannot be, and ``error_norm`` says so.
 
     Returns
     -------
@@ -158,7 +153,7 @@ def pin_reactions(
     largest = max(float(np.max(np.abs(v[:, :2]))) for v in on_beams.values())
     gap = float(np.max(np.abs(total + drag - rate)))
     checks = {"balance": Check(gap / largest if largest else gap, _ROUNDING)}
-    doubt = DeferredGroup(partial(_doubt, system, moving, on_beams, finer_mesh))
+    doubt = DeferredGroup(partial(_doubt, system, moving, on_beams))
     return PinReactions(
         method="end forces of the elements",
         on_beams=on_beams,
@@ -244,18 +239,17 @@ def _doubt(
     system: LinearPeriodic,
     motion: BeamMotion,
     on_beams: Mapping[tuple[str, str], Array],
-    finer_mesh: bool,
 ) -> dict[str, float | str]:
-    """Return the error figure and its norm."""
-    finer = on_finer_mesh(system, motion) if finer_mesh else None
+    """Return the error estimate and its norm."""
+    finer = on_finer_mesh(system, motion)
     norm = "largest error of a force [N]; of a moment, over the longest beam's length"
     return {
-        "error": _figure(system, motion, on_beams, finer),
+        "error": _motion_error(system, motion, on_beams, finer),
         "error_norm": norm if finer else f"{norm}; that of the mesh apart",
     }
 
 
-def _figure(
+def _motion_error(
     system: LinearPeriodic,
     motion: BeamMotion,
     on_beams: Mapping[tuple[str, str], Array],
@@ -267,8 +261,8 @@ def _figure(
     by_motion = float(np.hypot(doubt[0], doubt[1]) + doubt[2] / longest)
     scale = np.array([1.0, 1.0, 1.0 / longest])
     own = np.stack(list(on_beams.values())) * scale
-    figure = by_motion + ROUNDING * float(np.max(np.abs(own)))
+    error = by_motion + ROUNDING * float(np.max(np.abs(own)))
     if finer is None:
-        return figure
+        return error
     better = np.stack(list(_forces(*finer)[0].values())) * scale
-    return figure + CAUTION * float(np.max(np.linalg.norm(better - own, axis=-1)))
+    return error + CAUTION * float(np.max(np.linalg.norm(better - own, axis=-1)))

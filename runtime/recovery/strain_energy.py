@@ -84,17 +84,7 @@ def _none(elements: int) -> Callable[[Array], Array]:
 
 
 class Energies:
-    """Energies and powers of a motion at some of its angles.
-
-    Parameters
-    ----------
-    forms : ElementForms
-        At these angles.
-    values : MotionValues
-        The motion there.
-    slopes : mapping
-        As :func:`force_slopes` returns them.
-    """
+    """Energies and powers of a motion at some of its angles."""
 
     def __init__(self, forms: ElementForms, values: MotionValues, slopes: Slopes) -> None:
         self.forms, self.values = forms, values
@@ -243,10 +233,6 @@ def _square(direct: Array, mass: Array, spun: Array, across: Array, centre: Arra
     return plain + 2.0 * _dot(direct, spun @ across.T)
 
 
-# Round-off of energies that are sums of large parts, over the largest power.
-_ROUNDING = 1e-9
-
-
 @dataclass(frozen=True, kw_only=True)
 class BeamEnergies(BeamResult):
     """Energies of a structure of beams in a motion.
@@ -328,9 +314,7 @@ class BeamEnergies(BeamResult):
         return ax
 
 
-def beam_energies(
-    system: LinearPeriodic, motion: Motion | float | None = None, *, finer_mesh: bool = True
-) -> BeamEnergies:
+def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) -> BeamEnergies:
     """Return the energies of a structure of beams over the cycle.
 
     Parameters
@@ -339,8 +323,6 @@ def beam_energies(
         Of a structure of beams.
     motion : SteadyState, Trajectory, BeamMotion, float or None
         A computed motion; a crank speed [rad/s], for the steady state there; None for a frame.
-    finer_mesh : bool
-        Whether the error of the mesh is told by a finer one, as :func:`stress` does.
 
     Returns
     -------
@@ -364,7 +346,7 @@ def beam_energies(
     moving = beam_motion(system, motion)
     structure = required_structure(system)
     joined = _energies(system, moving)
-    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"], finer_mesh))
+    doubt = DeferredGroup(partial(_doubt, system, moving, joined["strain"]))
     shared = in_motion(system, moving, doubt)
     made = BeamEnergies(
         method="element matrices",
@@ -377,12 +359,11 @@ def beam_energies(
     return made
 
 
-def _doubt(
-    system: LinearPeriodic, moving: BeamMotion, strain: Array, finer_mesh: bool
-) -> dict[str, float | str]:
-    """Return the error figure and its norm."""
-    error, norm = _figure(system, moving), "largest error of the strain energy of all beams [J]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[str, float | str]:
+    """Return the error estimate and its norm."""
+    error = _motion_error(system, moving)
+    norm = "largest error of the strain energy of all beams [J]"
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         norm = f"{norm}, by that of the motion; the mesh apart"
     else:
@@ -414,11 +395,12 @@ def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
     # The rate of the highest harmonic enlarges an error of the motion; squares of a motion have
     # twice its harmonics, and those beyond the samples fall upon the upper ones.
     beyond = 4.0 * float(np.sum(np.abs(spectrum[count // 3 :]))) / count
-    limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + _ROUNDING
+    # Round-off of energies that are sums of large parts, over the largest power.
+    limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + 1e-9
     return Check(float(np.max(np.abs(rate - power))) / largest if largest else 0.0, limit)
 
 
-def _figure(system: LinearPeriodic, motion: BeamMotion) -> float:
+def _motion_error(system: LinearPeriodic, motion: BeamMotion) -> float:
     """Return what the error of the motion can do to the strain energy [J]."""
     if not np.any(motion.doubt):
         return 0.0

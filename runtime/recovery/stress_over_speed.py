@@ -22,26 +22,20 @@ from ..periodic.multipliers import floquet_multipliers
 from ..periodic.periodic_motion import by_segments
 from ..periodic.swept_motions import Growth, Truncations, speed_ranges
 from ..periodic.truncation import arrays_at
-from .beam_forces import METHODS, Recovery, recovery
-from .stresses import fibre_factors
+from .beam_forces import METHODS
+from .stresses import stress_operator
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
-# Stations per link by default: with three elements their ends and middles.
-_STATIONS = 7
 # Angles of a revolution at first and at the most, and the upper quarter of a motion's harmonics,
 # over the largest, times the wanted error, that asks for more of them.
 _ANGLES, _MOST_ANGLES, _TAIL = 64, 1024, 0.01
-# Error of the transition matrices over the wanted error of the stress.
-_FLOW = 1e-4
 # At a few speeds a motion on the next larger number of modes tells what truncation changes; how
 # much larger it may be at other speeds (up to 1.5 times the fourfold in 216 random ones).
 _ELSEWHERE = 8.0
-# An error of the motion stresses a link as the motion does, times this at the most.
-_MARGIN = 3.0
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.
 _FINER, _NEAR = 8, 0.6
@@ -219,7 +213,8 @@ def stress_curve(
     given = _checked(system, speeds, rtol, modes, method)
     _require_damped(system)
     rising, back = np.unique(given, return_inverse=True)
-    places = _STATIONS if stations is None else stations
+    # Stations per link by default: with three elements their ends and middles.
+    places = 7 if stations is None else stations
     work = _Work(system, Fibres(system, places, method), rtol, modes)
     parts = [work.range_of(rising[part]) for part in speed_ranges(rising)]
     size, error = (
@@ -272,30 +267,19 @@ class Fibres:
     ) -> None:
         self._system, self._stations, self._method = system, stations, method
         self._forms: dict[int, LinearForm] = {}
-        where = self._recovery(np.zeros(1)).stations
+        where = stress_operator(system, np.zeros(1), stations, method=method)[1]
         self.links = tuple(dict.fromkeys(station.beam for station in where))
         link = np.array([self.links.index(station.beam) for station in where])
         place = np.array([station.place for station in where])
         self.link, self.place = np.tile(link, 2), np.tile(place, 2)
         self.sign = np.repeat([1.0, -1.0], len(place))
 
-    def _recovery(self, theta: Array) -> Recovery:
-        return recovery(self._system, theta, self._stations, self._method)
-
     def form(self, theta: Array) -> LinearForm:
         """Return the stresses [Pa] at even angles of the period as a form of the motion."""
         if len(theta) not in self._forms:
-            made = self._recovery(theta)
-            area, lever = fibre_factors(self._system, made.stations)
-            axial, moment = made.forms["axial"], made.forms["moment"]
-            parts = {}
-            for key in dict.fromkeys((*axial.parts, *moment.parts)):
-                tail = (1,) * (0 if key[0] == RIGID else 1)
-                along = axial.parts.get(key, 0.0) * area.reshape(-1, *tail)
-                across = moment.parts.get(key, 0.0) * lever.reshape(-1, *tail)
-                # The positive fibre is pressed where the beam is hollow on its positive side.
-                parts[key] = np.concatenate([along - across, along + across], axis=1)
-            self._forms[len(theta)] = LinearForm(parts)
+            self._forms[len(theta)], _ = stress_operator(
+                self._system, theta, self._stations, method=self._method, accelerations=True
+            )
         return self._forms[len(theta)]
 
     def peaks(self, theta: Array, q: Array, speeds: Array) -> Peaks:
@@ -369,7 +353,8 @@ class _Work:
     ) -> None:
         self.system, self.fibres, self.rtol, self.wanted = system, fibres, rtol, modes
         self.truncations = Truncations(system, modes)
-        self.flow = max(1e-11, _FLOW * rtol)
+        # Error of the transition matrices over the wanted error of the stress.
+        self.flow = max(1e-11, 1e-4 * rtol)
         self.angles, self.least = _ANGLES, self.truncations.numbers[0]
 
     def range_of(self, speeds: Array) -> _Range:
@@ -394,11 +379,12 @@ class _Work:
         # A link that happens to be at rest is moved by an error as at its worst speed.
         share = size / np.concatenate(norms)
         weight = np.max(share, axis=1, keepdims=True) / share
+        # An error of the motion stresses a link as the motion does, times this at the most.
         return _Range(
             size=size,
             theta=np.concatenate([p.theta for p in peaks], axis=1),
             row=np.concatenate([p.row for p in peaks], axis=1),
-            error=_MARGIN * weight * np.concatenate(errors) + error + _ELSEWHERE * change[:, None],
+            error=3.0 * weight * np.concatenate(errors) + error + _ELSEWHERE * change[:, None],
             modes=chosen,
             growth=moving.growth(speeds),
             defect=defect,

@@ -141,9 +141,6 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     return min(wrong / total, 0.5) if total else 0.0
 
 
-_MEGA = 1e-6
-
-
 def draw(result: StressResult, ax: Axes | None = None) -> Axes:
     """Draw the stress at each beam's worst place over the crank angle, its static part dashed.
 
@@ -155,7 +152,7 @@ def draw(result: StressResult, ax: Axes | None = None) -> Axes:
     if len(result.theta) == 1:
         for link in result.maxima:
             own = stations_on(result.links, link)
-            ax.plot(result.places[own], _MEGA * result.stress[0, own], label=link, linewidth=0.9)
+            ax.plot(result.places[own], 1e-6 * result.stress[0, own], label=link, linewidth=0.9)
         ax.set_xlabel("place x/length")
         ax.set_ylabel("largest stress [MPa]")
         ax.legend()
@@ -165,11 +162,11 @@ def draw(result: StressResult, ax: Axes | None = None) -> Axes:
     angles = np.degrees(result.theta if period is None else np.append(result.theta, period))
     for link, peak in result.maxima.items():
         parts = [result.at(link, peak.place, peak.fibre, name) for name in ("all", "quasi-static")]
-        whole, still = (_MEGA * (np.append(p, p[:1]) if closed else p) for p in parts)
+        whole, still = (1e-6 * (np.append(p, p[:1]) if closed else p) for p in parts)
         label = f"{link}, x/length = {peak.place:.3g}"
         line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
         ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
-        ax.plot(np.degrees(peak.theta), _MEGA * peak.value, "o", color=line.get_color(), ms=3)
+        ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
     ax.set_xlabel("crank angle [deg]")
     ax.set_ylabel("stress at the worst fibre [MPa]")
     ax.set_title(f"{result.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
@@ -181,7 +178,7 @@ FIBRES = ("positive", "negative")
 PARTS = ("all", "quasi-static", "dynamic")
 # Angles per given one at which a periodic stress is looked at for its maximum.
 _FINER = 8
-# Fields that are worked out when they are first looked at.
+# Fields that are computed when they are first looked at.
 _LATER = {
     name: DeferredField()
     for name in ("static_axial", "static_bending", "motion_error", "mesh_error")
@@ -229,14 +226,14 @@ class StressResult(StationResult):
         The same of the quasi-static motion: equilibrium at each angle under the inertia of the
         rigid motion and the constant loads, no rates.
     motion_error, mesh_error : float
-        The parts of the error figure [Pa]: of the motion's own error, and of the mesh.
+        The parts of the error estimate [Pa]: of the motion's own error, and of the mesh.
     period : float or None
         Period [rad] that the angles divide evenly; None of a motion that is not periodic.
 
     Notes
     -----
-    The quasi-static part and the parts of the error figure are worked out when they are first
-    looked at, as the figure itself.
+    The quasi-static part and the parts of the error estimate are computed when they are first
+    looked at, as the estimate itself.
     """
 
     axial: Array
@@ -384,7 +381,6 @@ def stress(
     *,
     stations: int | Mapping[str, ArrayLike] | None = None,
     method: str = "equilibrium",
-    finer_mesh: bool = True,
 ) -> StressResult:
     """Return the stresses along the beams of a linkage over the cycle, or of a frame.
 
@@ -398,10 +394,6 @@ def stress(
         Places on each beam: how many, or by beam the places x/length; by default 25.
     method : str
         How forces are recovered: ``"equilibrium"`` or ``"shape"``, see :func:`recover`.
-    finer_mesh : bool
-        Whether the motion is found once more on a finer mesh, for the error figure; it takes a few
-        times as long as the motion itself.  The next call for the same system, speed and angles
-        has it at hand.
 
     Returns
     -------
@@ -414,7 +406,7 @@ def stress(
 
         Of a motion that is given, or marched, the mesh's part is the difference of the two
         recoveries, for ``equilibrium`` times the square root of the mesh's relative error, and
-        says nothing about the frequencies of the mesh; likewise without ``finer_mesh``.
+        says nothing about the frequencies of the mesh.
 
     Warns
     -----
@@ -439,9 +431,7 @@ def stress(
     moving = beam_motion(system, motion)
     own = stresses(system, moving, stations, method, levers)
     still = DeferredGroup(partial(_still, system, moving, stations, method, levers))
-    doubt = DeferredGroup(
-        partial(_doubt, system, moving, stations, method, levers, own, finer_mesh)
-    )
+    doubt = DeferredGroup(partial(_doubt, system, moving, stations, method, levers, own))
     return StressResult(
         method=method,
         links=tuple(station.beam for station in chosen),
@@ -477,12 +467,11 @@ def _doubt(
     method: str,
     levers: tuple[Array, Array],
     own: tuple[Array, Array],
-    finer_mesh: bool,
 ) -> dict[str, float | str]:
-    """Return the error figure with its parts and its norm."""
+    """Return the error estimate with its parts and its norm."""
     by_motion = motion_error(system, moving, stations, levers)
     norm = "largest error of a stress over angles and stations [Pa]"
-    finer = on_finer_mesh(system, moving) if finer_mesh else None
+    finer = on_finer_mesh(system, moving)
     if finer is None:
         other = next(name for name in METHODS if name != method)
         by_mesh = largest_difference(own, stresses(system, moving, stations, other, levers))

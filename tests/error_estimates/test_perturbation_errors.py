@@ -11,7 +11,6 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import hill_boundaries, perturbation_boundaries
 from smith_chapter_8.surd import ExactHarmonics
 
-SCENES = 60
 POINTS = 6
 
 
@@ -89,7 +88,7 @@ def sweep(scenes):
 
 
 scenes = pytest.mark.parametrize(
-    "count", [pytest.param(SCENES, id="some"), pytest.param(400, marks=pytest.mark.slow, id="all")]
+    "count", [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]
 )
 
 
@@ -167,7 +166,7 @@ def exact_scene(seed):
 
 
 @pytest.mark.parametrize(
-    "count", [pytest.param(20, id="some"), pytest.param(300, marks=pytest.mark.slow, id="all")]
+    "count", [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]
 )
 def test_down_to_round_off(count):
     """Against 30 digits: there the error of Hill's matrix in doubles hides nothing."""

@@ -10,7 +10,7 @@ import pytest
 from elastolink import resonance_curve
 from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.frequencies import campbell, critical_speeds, frozen_frequencies
+from elastolink.runtime.frequencies import campbell, critical_speeds, natural_frequencies
 from elastolink.runtime.periodic import steady_peaks
 from honesty import verdict
 from manufactured import manufactured
@@ -65,7 +65,7 @@ def test_held_frequencies_and_campbell():
     for _ in range(SCENES):
         scene = Turned(rng, wavy=False)
         angles = rng.uniform(0.0, 6.0, 3)
-        found = frozen_frequencies(scene.system, angles)
+        found = natural_frequencies(scene.system, angles, scene.system.size)
         frozen.append(above(found.error, found.frequency - scene.natural, scene.natural))
         drawn = campbell(scene.system, np.linspace(2.0, 9.0, 4), exponents=False)
         held.append(above(drawn.error, drawn.held - scene.natural, scene.natural))

@@ -8,7 +8,6 @@ from elastolink.runtime.beams.elements import (
     KINDS,
     NODAL_VALUES,
     element_arrays,
-    rigid_field,
     section_rotation,
     shape_functions,
 )
@@ -89,21 +88,6 @@ def test_shear_force_of_timoshenkos_beam_from_either_side():
     np.testing.assert_allclose(SHEAR * (slope - turn) @ q, -BENDING * second @ q, rtol=1e-8)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_rigid_fields_are_carried_exactly(kind):
-    start, turning = np.array([[0.3, -0.2], [1.0, 2.0]]), np.array([0.7, -3.0])
-    end = start + np.stack([np.full(2, 0.05), LENGTH * turning], axis=-1)
-    values = rigid_field(kind, start, end, turning)
-    assert values.shape == (2, len(NODAL_VALUES[kind]))
-    xi = np.linspace(0.0, 1.0, 7)
-    u, v = shape_functions(kind, xi, LENGTH, **STIFF)
-    exact = start[:, None, :] + xi[:, None] * (end - start)[:, None, :]
-    np.testing.assert_allclose(values @ u.T, exact[..., 0], rtol=1e-14)
-    np.testing.assert_allclose(values @ v.T, exact[..., 1], rtol=1e-13, atol=1e-14)
-    turned = values @ section_rotation(kind, xi, LENGTH, **STIFF).T
-    np.testing.assert_allclose(turned, np.broadcast_to(turning[:, None], (2, 7)), rtol=1e-12)
-
-
 def test_kinds_without_shear_do_not_use_its_numbers():
     bare = arrays("cubic", shear_stiffness=None, rotary_inertia=0.0)
     np.testing.assert_array_equal(arrays("cubic").mass, bare.mass)
@@ -124,8 +108,6 @@ def test_kinds_without_shear_do_not_use_its_numbers():
         (lambda: shape_functions("cubic", [0.5], 1.0, 4), "derivative"),
         (lambda: shape_functions("timoshenko", [0.5], 1.0), "bending_stiffness"),
         (lambda: section_rotation("cubic", [0.5], 1.0, 3), "derivative"),
-        (lambda: rigid_field("cubic", [1.0], [1.0, 2.0], 0.0), "start"),
-        (lambda: rigid_field("other", [1.0, 2.0], [1.0, 2.0], 0.0), "kind"),
     ],
 )
 def test_unusable_input_is_refused(call, word):

@@ -172,9 +172,10 @@ def test_a_curve_that_leaves_the_ranks_asked_for():
     assert found.branch_mean[0] > found.mean[0]
 
 
-def test_random_diagonal_systems_are_followed_exactly():
+@pytest.mark.parametrize("cases", [1, pytest.param(8, marks=pytest.mark.slow)])
+def test_random_diagonal_systems_are_followed_exactly(cases):
     rng = np.random.default_rng(5)
-    for _ in range(4):
+    for _ in range(cases):
         wave, phase = rng.uniform(0.5, 3.0, 4), rng.uniform(0, 2 * np.pi, 4)
         turn = np.linalg.qr(rng.normal(size=(4, 4)))[0]
 

@@ -13,7 +13,6 @@ from elastolink.runtime.frequencies import (
     draw_mode,
     draw_modes,
     frequency_exponents,
-    frozen_frequencies,
     link_frequencies,
     natural_frequencies,
     pinned_frequency,
@@ -45,14 +44,6 @@ def test_frequencies_of_the_linkage_to_their_error(linkage):
     assert np.max(found.error / found.frequency) < 1e-9
 
 
-def test_frequencies_agree_with_the_frozen_ones(linkage):
-    theta = np.linspace(0.0, 2 * np.pi, 13)
-    found, plain = natural_frequencies(linkage, theta, 9), frozen_frequencies(linkage, theta)
-    np.testing.assert_array_equal(found.frequency, plain.frequency)
-    np.testing.assert_allclose(found.mean, plain.mean, rtol=1e-11)
-    assert found.passed and plain.passed
-
-
 def test_shapes_are_modes_of_unit_mass(linkage):
     theta = np.linspace(0.0, 2 * np.pi, 13)
     found = natural_frequencies(linkage, theta, 4)
@@ -78,14 +69,6 @@ def test_the_linkage_has_a_veering_of_modes_two_and_three(linkage):
     gap = np.diff(natural_frequencies(linkage, dense, 3).frequency[:, 1:], axis=1)[:, 0]
     assert abs(gap.min() - veering.gap) < 1e-4 * veering.gap
     assert abs(dense[int(np.argmin(gap))] - veering.angle) <= 1e-4
-
-
-def test_mean_with_its_error_against_the_trapezoidal_rule(linkage):
-    found = natural_frequencies(linkage, 0.0, 4)
-    even = 2 * np.pi * np.arange(2000) / 2000
-    values = frozen_frequencies(linkage, even).frequency[:, :4]
-    allowed = found.mean_error + 1e-13 * found.mean
-    assert np.all(np.abs(values.mean(axis=0) - found.mean) <= allowed)
 
 
 def test_a_standing_frame_has_the_same_frequencies_at_every_angle():

@@ -11,10 +11,9 @@ from elastolink.runtime.hill import (
     critical_damping,
     discriminant,
     hill_boundaries,
-    perturbation_boundaries,
 )
 from elastolink.runtime.hill.boundaries import half_trace_check
-from hill_functions import functions
+from hill_functions import functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -61,46 +60,6 @@ def test_mathieu_characteristic_values(q, lowest, first, second, fifth):
         np.testing.assert_allclose(both, [first, second, fifth], rtol=0, atol=6e-9)
 
 
-def hill_matrix_in_mpmath(f, mu, odd, harmonic):
-    """Eigenvalues of Hill's matrix in exp(i k theta), made real by hand, at mpmath's precision."""
-    from mpmath import mp, mpf
-
-    k = [mpf(j) + mpf(odd) / 2 for j in range(-harmonic, harmonic + 1 - odd)]
-    n = len(k)
-    matrix = mp.zeros(2 * n)
-    for i in range(n):
-        for j in range(n):
-            m = abs(i - j)
-            real = imaginary = mpf(0)
-            if 0 < m <= f.harmonics:
-                real = -mpf(mu) * mpf(f.a[m]) / 2
-                imaginary = mpf(mu) * mpf(f.b[m]) / 2 * (1 if i > j else -1)
-            if i == j:
-                real = k[i] ** 2 - mpf(mu) * mpf(f.a[0])
-            matrix[i, j] = matrix[n + i, n + j] = real
-            matrix[n + i, j], matrix[i, n + j] = imaginary, -imaginary
-    return sorted(mp.eigsy(matrix, eigvals_only=True))[::2]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("mu", [0.8, -0.8])
-def test_boundaries_against_mpmath_eigenvalues(mu):
-    from mpmath import mp
-
-    f = FUNCTIONS["f3 (5,1,5,2)"].truncated(1e-7)
-    found = hill_boundaries(f, mu, (0, 1, 2, 3, 4))
-    with mp.workdps(25):
-        even, odd = (hill_matrix_in_mpmath(f, mu, parity, 14) for parity in (0, 1))
-        truth = [even[0], odd[0], odd[1], even[1], even[2], odd[2], odd[3], even[3], even[4]]
-        ours = [found.upper[0]]
-        for n in (1, 2, 3, 4):
-            ours += [found.lower[n], found.upper[n]]
-        gaps = np.array([float(abs(x - float(y))) for x, y in zip(truth, ours, strict=True)])
-    assert gaps.max() < 1e-12
-    # The test's own matrix is cut where the coupling squared is below 1e-14.
-    assert gaps.max() <= found.error.max() + 1e-14
-
-
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_mu_zero_gives_the_squares(name):
     regions = range(0, 9)
@@ -109,18 +68,6 @@ def test_mu_zero_gives_the_squares(name):
     np.testing.assert_allclose(found.upper, exact, rtol=0, atol=1e-13)
     np.testing.assert_allclose(found.lower[1:], exact[1:], rtol=0, atol=1e-13)
     assert np.all(np.abs(found.upper - exact) <= found.error)
-
-
-def test_closed_tongues_are_closed():
-    """f = cos 2 theta has only tongues of even n: odd ones coexist."""
-    f = PeriodicFunction([0.0, 0.0, 1.0])
-    found = hill_boundaries(f, np.array([0.5, 1.3, -2.0]), (1, 2, 3, 4, 5))
-    assert np.all(np.abs(found.width[[0, 2, 4]]) <= 2 * found.error[[0, 2, 4]])
-    assert np.all(found.width[[1, 3]] > 1e-3)
-    # In phi = 2 theta it is Mathieu's equation with lam2/4 and mu/4.
-    same = hill_boundaries(COSINE, found.mu / 4, (1, 2))
-    np.testing.assert_allclose(found.lower[[1, 3]], 4 * same.lower, atol=1e-12)
-    np.testing.assert_allclose(found.upper[[1, 3]], 4 * same.upper, atol=1e-12)
 
 
 def test_whittaker_coexistence_of_ince_type():
@@ -145,14 +92,7 @@ def test_whittaker_coexistence_of_ince_type():
     assert np.all(np.abs(found.width[2:]) <= 2 * found.error[2:] + 1e-13)
 
 
-def test_the_mean_only_shifts():
-    f, mu = FUNCTIONS["24 harmonics"], np.array([0.3, -1.1])
-    plain, shifted = hill_boundaries(f, mu, (1, 2)), hill_boundaries(f + 5.0, mu, (1, 2))
-    np.testing.assert_allclose(shifted.lower, plain.lower - 5 * mu, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(shifted.upper, plain.upper - 5 * mu, rtol=0, atol=1e-13)
-
-
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(
     shape=st.sampled_from([(), (1,), (5,), (2, 3), (0,), (2, 1, 2)]),
     regions=st.lists(st.integers(0, 8), max_size=4),
@@ -185,6 +125,8 @@ def test_shapes_and_independence_of_the_batch(shape, regions, seed):
         ((1e9, (1,)), "2048 harmonics"),
         ((1e301, (1,)), "2048 harmonics"),
         ((1.0, (5000,)), "at most 2048"),
+        ((1.0, (1,), 0.0, "no"), "certified"),
+        ((1.0, (1,), 1e308), "damping"),
     ],
 )
 def test_bad_input(arguments, message):
@@ -214,8 +156,8 @@ CHECK = "half trace at the ends over what the errors explain"
         {"mu": np.linspace(0.0, 3.0, 50), "regions": (1, 2), "damping": 0.1},
         {"mu": 1e4, "regions": (1, 2)},
         # Solutions grow beyond the range of doubles there.
-        {"mu": 1e6, "regions": (1, 2)},
-        {"mu": -1e5, "regions": (0, 3), "damping": 200.0},
+        pytest.param({"mu": 1e6, "regions": (1, 2)}, marks=pytest.mark.slow),
+        pytest.param({"mu": -1e5, "regions": (0, 3), "damping": 200.0}, marks=pytest.mark.slow),
     ],
 )
 def test_the_half_trace_confirms_the_ends(given):
@@ -246,12 +188,6 @@ def test_checks_are_made_late_once_and_survive_pickling():
     assert len(nothing.checks) == 0
 
 
-@pytest.mark.parametrize("word", ["no", 1, None])
-def test_certified_is_true_or_false(word):
-    with pytest.raises(BadInput, match="certified"):
-        hill_boundaries(PeriodicFunction([0.0, 1.0]), 0.1, (1,), certified=word)
-
-
 def level_off(f, found, i, n, k):
     """How far the damped half trace is from its level, and what the figure allows, where open."""
     there = ~np.isnan(found.lower[i])
@@ -268,7 +204,7 @@ def level_off(f, found, i, n, k):
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-@pytest.mark.parametrize("k", [1e-6, 1e-3, 0.03, 0.2])
+@pytest.mark.parametrize("k", [1e-6, 0.03, 0.2])
 def test_the_half_trace_stands_at_its_damped_level(name, k):
     f = FUNCTIONS[name]
     mu = np.linspace(-2, 2, 17)
@@ -337,18 +273,6 @@ def test_near_the_tip_the_error_grows_and_still_covers():
     assert 1e-9 < errors[-1] < 1e-5
 
 
-def test_a_rough_function_keeps_its_damped_tongues():
-    """Meissner's square wave cut at 201 harmonics."""
-    m = np.arange(202)
-    a = np.where(m % 2 == 1, 4 / np.pi * np.sin(m * np.pi / 2) / np.maximum(m, 1), 0.0)
-    f = PeriodicFunction(a)
-    found = hill_boundaries(f, np.array([0.4, 0.9]), (1, 2, 3), 0.02)
-    for i, n in enumerate(found.regions):
-        for off, allowed in level_off(f, found, i, n, 0.02):
-            assert np.all(off <= allowed)
-    assert not np.isnan(found.lower[0]).any()
-
-
 @pytest.mark.parametrize(
     ("mu", "n", "k"), [(150.0, 1, 5.137), (100.0, 3, 6.0), (30.0, 0, 2.0), (-2000.0, 2, 10.9)]
 )
@@ -387,29 +311,6 @@ def test_region_zero_under_huge_damping(k):
     assert gap <= found.error[0] + 1e-3 * 0.01 / (8.0 * k * k)
 
 
-def test_damping_beyond_all_bounds_is_refused():
-    with pytest.raises(BadInput, match="damping"):
-        hill_boundaries(COSINE, 0.1, damping=1e308)
-
-
-def general(harmonics, fall, seed=0):
-    rng = np.random.default_rng(seed)
-    size = fall ** np.arange(harmonics + 1)
-    b = rng.uniform(-1, 1, harmonics + 1) * size
-    b[0] = 0.0
-    return PeriodicFunction(rng.uniform(-1, 1, harmonics + 1) * size, b)
-
-
-@pytest.mark.parametrize("mu", [1e-300, 1e-20, 1e-8])
-def test_mu_tends_to_zero(mu):
-    regions = (0, 1, 2, 3, 6)
-    found = hill_boundaries(COSINE, mu, regions)
-    first = perturbation_boundaries(COSINE, mu, regions)
-    slack = found.error + first.error
-    assert np.all(np.abs(found.upper - first.upper) <= slack)
-    assert np.all(np.abs(found.lower[1:] - first.lower[1:]) <= slack[1:])
-
-
 @pytest.mark.parametrize("mu", [100.0, -1e4])
 def test_deep_wells_have_the_levels_of_the_oscillator(mu):
     """Levels r of a deep cosine well, Abramowitz & Stegun 20.2.30 with q = 2 mu, a = 4 lam2."""
@@ -444,14 +345,3 @@ def test_sparse_harmonics():
     np.testing.assert_allclose(found.upper, 100 * same.upper, rtol=0, atol=1e-11)
     others = hill_boundaries(f, 2.0, (1, 2, 3, 11, 19))
     assert np.all(np.abs(others.width) <= 2 * others.error)
-
-
-def test_rounding_of_a_single_harmonic_is_covered():
-    """Cases at the limit of LAPACK's accuracy; the proved ends are good to 1e-17."""
-    rng = np.random.default_rng(0)
-    for _ in range(30):
-        f = PeriodicFunction(rng.uniform(-1, 1, 2))
-        mu = float(rng.uniform(100, 800) * rng.choice([-1, 1]))
-        found, proved = (hill_boundaries(f, mu, (3,), certified=c) for c in (False, True))
-        for side in ("lower", "upper"):
-            assert np.abs(getattr(found, side) - getattr(proved, side)) <= found.error

@@ -111,12 +111,6 @@ def test_euler_relation_ties_the_coefficients_to_mu():
         assert np.all(np.abs(total - 0.8 * end[0]) <= 2 * found.error.sum(axis=0) + 1e-15)
 
 
-def test_without_damping_the_slope_in_k_vanishes():
-    found = boundary_derivatives(GENERAL, 0.8, REGIONS, ("K",))
-    np.testing.assert_allclose(found.lower, 0.0, atol=1e-14)
-    assert not found.double.any()
-
-
 def test_closed_regions_give_nan():
     found = boundary_derivatives(COSINE, 0.1, REGIONS, ("mu", "K"), 0.3)
     assert np.isnan(found.lower).all() and np.isnan(found.error).all()

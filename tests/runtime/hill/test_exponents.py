@@ -60,13 +60,6 @@ def test_without_a_function_the_bands_are_parabolas():
     assert np.all(np.abs(found.lam2 - exact) <= found.error)
 
 
-def test_phase_symmetries():
-    base = bands_of(GENERAL, 1.3, 0.2)
-    for nu in (-0.2, 0.8, 1.2, -3.2):
-        other = bands_of(GENERAL, 1.3, nu)
-        assert np.all(np.abs(other.lam2 - base.lam2) <= base.error + other.error)
-
-
 def eigenvalues(f, mu, nu, size):
     """Return the eigenvalues lam2 of Hill's matrix at nu, in mpmath's working precision."""
     from mpmath import mp, mpf
@@ -79,18 +72,6 @@ def eigenvalues(f, mu, nu, size):
             matrix[i, j] = -mpf(mu) * c
         matrix[i, i] = (i - size + mpf(nu)) ** 2 - mpf(mu) * mpf(f.a[0])
     return sorted(mp.eighe(matrix, eigvals_only=True))
-
-
-def test_against_mpmath_at_30_digits():
-    from mpmath import mp, mpf
-
-    f, mu, nu = GENERAL, 0.9, 0.3
-    found = bands_of(f, mu, nu, (0, 1, 2, 3, 4))
-    with mp.workdps(30):
-        truth = eigenvalues(f, mu, nu, 20)[:5]
-    gaps = [abs(float(mpf(float(x)) - y)) for x, y in zip(found.lam2, truth, strict=True)]
-    assert np.all(np.array(gaps) <= found.error)
-    assert found.error.max() < 3e-12
 
 
 @pytest.mark.parametrize("k", [0.0, 0.1])
@@ -119,7 +100,7 @@ def test_exponents_close_to_the_end_of_a_band_against_mpmath(band):
     found = characteristic_exponents(GENERAL, lam2, 1.1)
     with mp.workdps(30):
         start, step = mpf("0.02"), mpf("1e-12")
-        at, ahead = (eigenvalues(GENERAL, 1.1, nu, 16)[band] for nu in (start, start + step))
+        at, ahead = (eigenvalues(GENERAL, 1.1, nu, 11)[band] for nu in (start, start + step))
         truth = start + (mpf(lam2) - at) * step / (ahead - at)
         off = float(abs(mpf(float(found.nu)) - truth))
     assert off <= found.error

@@ -9,79 +9,29 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import discriminant, hill_boundaries
 from half_trace_truth import half_traces
-from hill_functions import functions
+from hill_functions import functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 FUNCTIONS = functions()
-SOME = [
-    name if place == 0 else pytest.param(name, marks=pytest.mark.slow)
-    for place, name in enumerate(FUNCTIONS)
-]
-
 extended = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
 
 
 @pytest.mark.smoke
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("name", ["f3 (5,1,5,2)", "24 harmonics"])
 @extended
 def test_half_traces_against_a_taylor_series_in_extended_precision(name):
     f = FUNCTIONS[name]
     rng = np.random.default_rng(1)
-    lam2, mu = rng.uniform(0, 30, 12), rng.uniform(-2, 2, 12)
+    lam2, mu = rng.uniform(0, 30, 6), rng.uniform(-2, 2, 6)
     lam2[:3], mu[:3] = [0.0, 0.0, 30.0], [2.0, -2.0, 0.0]
     found = discriminant(f, lam2, mu)
     error = np.abs(found.value - half_traces(f, lam2, mu)).astype(float)
     assert error.max() < 1e-11
     assert np.all(error <= found.error)
     assert found.passed
-
-
-def taylor_half_trace(f, lam2, mu, steps=64, order=36):
-    """Integrate by Taylor series with mpmath's numbers, at its current precision."""
-    from mpmath import mp, mpf
-
-    h = 2 * mp.pi / steps
-    a, b = [mpf(x) for x in f.a], [mpf(x) for x in f.b]
-    columns = [[mpf(1), mpf(0)], [mpf(0), mpf(1)]]
-    for step in range(steps):
-        series = [mpf(0)] * order
-        for m in range(f.harmonics + 1):
-            cos, sin = mp.cos_sin(m * h * step)
-            value, slope, factor = a[m] * cos + b[m] * sin, b[m] * cos - a[m] * sin, mpf(1)
-            for k in range(order):
-                series[k] += factor * (value, slope, -value, -slope)[k % 4]
-                factor *= m * h / (k + 1)
-        potential = [mpf(mu) * s for s in series]
-        potential[0] += mpf(lam2)
-        for column in columns:
-            terms = [column[0], column[1] * h]
-            for k in range(order - 2):
-                total = mp.fdot(potential[: k + 1], terms[k::-1])
-                terms.append(-h * h * total / ((k + 1) * (k + 2)))
-            column[:] = mp.fsum(terms), mp.fsum(k * t for k, t in enumerate(terms)) / h
-    return (columns[0][0] + columns[1][1]) / 2
-
-
-@pytest.mark.parametrize(
-    ("name", "lam2", "mu"),
-    [
-        pytest.param("f3 (5,1,5,2)", 2.25, 1.5, marks=pytest.mark.slow),
-        ("f3 (10,1,10,4)", 9.1, -2.0),
-        pytest.param("24 harmonics", 0.3, 0.9, marks=pytest.mark.slow),
-    ],
-)
-def test_half_traces_against_mpmath(name, lam2, mu):
-    from mpmath import mp
-
-    f = FUNCTIONS[name]
-    with mp.workdps(30):
-        truth = taylor_half_trace(f, lam2, mu)
-        found = discriminant(f, lam2, mu)
-        assert abs(truth - float(found.value)) < 1e-13
-        assert abs(truth - float(found.value)) <= found.error
 
 
 @given(
@@ -98,40 +48,6 @@ def test_a_constant_coefficient_has_its_closed_form(lam2, mean, mu, k):
     # The closed form loses digits itself: the argument's round-off times its size.
     slack = 1e-15 * (1 + 2 * np.pi * abs(root)) * np.exp(2 * np.pi * (abs(root.imag) - k))
     assert abs(found.value - exact) <= found.error + 4 * slack
-
-
-def test_meissner_equation_through_its_fourier_series():
-    """A square wave: the product of two constant segments is exact; the series tends to it."""
-    lam2, mu = 1.3, 0.7
-    p, q = np.sqrt(lam2 + mu), np.sqrt(lam2 - mu)
-    cp, sp, cq, sq = np.cos(np.pi * p), np.sin(np.pi * p), np.cos(np.pi * q), np.sin(np.pi * q)
-    exact = cp * cq - 0.5 * (p / q + q / p) * sp * sq
-    gaps = []
-    tops = (159, 319, 639)
-    for top in tops:
-        m = np.arange(top + 1)
-        a = np.where(m % 2 == 1, 4 / np.pi * np.sin(m * np.pi / 2) / np.maximum(m, 1), 0.0)
-        gaps.append(abs(discriminant(PeriodicFunction(a), lam2, mu).value - exact))
-    slopes = np.log2(np.array(gaps[:-1]) / gaps[1:])
-    # The tail of the series enters squared over its frequency squared: third order.
-    np.testing.assert_allclose(slopes, 3.0, atol=0.1)
-
-
-@pytest.mark.parametrize("name", SOME)
-@extended
-def test_a_chart_is_within_its_figure_everywhere(name):
-    f = FUNCTIONS[name]
-    lam2, mu = np.linspace(0, 30, 300), np.linspace(0, 2, 200)
-    found = discriminant(f, lam2[:, None], mu)
-    assert found.value.shape == found.error.shape == (300, 200)
-    assert "Chebyshev" in found.method
-    rng = np.random.default_rng(2)
-    i, j = rng.integers(0, 300, 60), rng.integers(0, 200, 60)
-    i[:4], j[:4] = [0, 0, 299, 299], [0, 199, 0, 199]
-    gap = np.abs(found.value[i, j] - half_traces(f, lam2[i], mu[j])).astype(float)
-    assert np.all(gap <= found.error[i, j])
-    assert found.error.max() < 1e-10
-    assert found.passed
 
 
 def test_grid_scattered_and_single_points_agree():
@@ -155,7 +71,7 @@ def test_grid_scattered_and_single_points_agree():
 SHAPES = [(), (1,), (3,), (3, 1), (1, 4), (3, 4), (2, 1, 1), (1, 3, 1), (2, 3, 4), (0,), (2, 0)]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(shapes=st.tuples(*[st.sampled_from(SHAPES)] * 3), seed=st.integers(0, 99))
 def test_arguments_broadcast(shapes, seed):
     f = PeriodicFunction([0.1, 1.0, 0.2], [0, -0.3, 0.1])
@@ -207,14 +123,6 @@ def test_the_error_of_the_function_enters():
     assert abs(found.value - moved.value) < found.error < 1e-4
 
 
-def test_the_same_input_gives_the_same_bytes():
-    f = FUNCTIONS["f3 (2,1,2,2)"]
-    lam2, mu = np.linspace(0, 30, 200), np.linspace(0, 2, 200)
-    first, second = (discriminant(f, lam2[:, None], mu) for _ in range(2))
-    assert first.value.tobytes() == second.value.tobytes()
-    assert first.error.tobytes() == second.error.tobytes()
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -230,11 +138,6 @@ def test_the_same_input_gives_the_same_bytes():
 def test_bad_input(arguments, message):
     with pytest.raises(BadInput, match=message):
         discriminant(PeriodicFunction([0.0, 1.0]), *arguments)
-
-
-def test_anything_but_a_periodic_function_is_refused():
-    with pytest.raises(BadInput, match="PeriodicFunction"):
-        discriminant(np.cos, 1.0, 1.0)
 
 
 def test_plots():
@@ -257,38 +160,14 @@ def test_an_overflow_fails_a_check():
     assert discriminant(PeriodicFunction([0.0, 1.0]), [-1e3, 1.0], 1.0).passed
 
 
-def test_a_grid_leaves_as_long_form_with_its_verdict(tmp_path):
-    lam2, mu = np.linspace(0.0, 2.0, 4), np.linspace(0.0, 1.0, 3)
-    found = discriminant(PeriodicFunction([0.0, 1.0]), lam2[:, None], mu)
-    header, *lines = found.save(tmp_path / "d.csv").read_text().splitlines()
-    rows = [dict(zip(header.split(","), line.split(","), strict=True)) for line in lines]
-    assert len(rows) == 12
-    for row, (i, j) in zip(rows, np.ndindex(4, 3), strict=True):
-        assert float(row["lam2"]) == lam2[i] and float(row["mu"]) == mu[j]
-        assert float(row["value"]) == found.value[i, j]
-        assert row["stable"] == str(found.stable[i, j])
-    assert found.to_dict()["stable"] == found.stable.tolist()
-    assert {"elastolink", "numpy"} <= set(found.provenance)
-
-
 COSINE = PeriodicFunction([0.0, 1.0])
-
-
-def general(harmonics, fall, seed=0):
-    rng = np.random.default_rng(seed)
-    size = fall ** np.arange(harmonics + 1)
-    b = rng.uniform(-1, 1, harmonics + 1) * size
-    b[0] = 0.0
-    return PeriodicFunction(rng.uniform(-1, 1, harmonics + 1) * size, b)
 
 
 @extended
 @pytest.mark.parametrize(
     ("low", "high", "reach", "shape"),
     [
-        pytest.param(-300.0, 30.0, 3.0, (60, 40), marks=pytest.mark.slow),
         (-30.0, 30.0, 60.0, (70, 70)),
-        pytest.param(0.0, 4000.0, 2.0, (90, 40), marks=pytest.mark.slow),
         pytest.param(3990.0, 4000.0, 2.0, (60, 60), marks=pytest.mark.slow),
         (1.0, 1.0 + 1e-9, 1e-9, (60, 60)),
         (-1.0, 20.0, 1e-14, (60, 60)),
@@ -300,7 +179,7 @@ def test_any_box_is_within_its_figure(low, high, reach, shape):
     lam2, mu = np.linspace(low, high, shape[0]), np.linspace(-reach, reach, shape[1])
     found = discriminant(f, lam2[:, None], mu)
     rng = np.random.default_rng(1)
-    i, j = rng.integers(0, shape[0], 20), rng.integers(0, shape[1], 20)
+    i, j = rng.integers(0, shape[0], 8), rng.integers(0, shape[1], 8)
     i[:4], j[:4] = [0, 0, -1, -1], [0, -1, 0, -1]
     truth = half_traces(f, lam2[i], mu[j])
     gap = np.abs(found.value[i, j] - truth).astype(float)
@@ -310,16 +189,6 @@ def test_any_box_is_within_its_figure(low, high, reach, shape):
     relative = found.error / np.maximum(1.0, np.abs(found.value))
     assert relative.max() < 1e-9
     assert np.all(gap <= 1e-11 * np.maximum(1.0, np.abs(truth.astype(float))))
-
-
-@extended
-@pytest.mark.slow
-def test_a_rough_function_of_many_harmonics():
-    f = rough(150)
-    lam2, mu = np.array([0.2, 7.0, 20.0]), np.array([-2.0, 0.7, 2.0])
-    found = discriminant(f, lam2, mu)
-    assert np.all(np.abs(found.value - half_traces(f, lam2, mu)) <= found.error)
-    assert np.all(found.error < 1e-12 * np.maximum(1.0, np.abs(found.value)))
 
 
 @pytest.mark.slow
@@ -365,15 +234,6 @@ def test_thousands_of_oscillations_per_turn():
     slack = 2 * np.pi * np.sqrt(lam2) * 4e-16
     assert np.all(np.abs(found.value - exact) <= found.error + slack)
     assert found.error.max() < 1e-7
-
-
-def test_points_that_hardly_differ():
-    """A box of one unit in the last place still ends."""
-    one = np.nextafter(1.0, 2.0)
-    lam2 = np.tile([1.0, one], 5000)
-    mu = np.repeat([0.5, np.nextafter(0.5, 1.0)], 5000)
-    found = discriminant(COSINE, lam2, mu)
-    np.testing.assert_allclose(found.value, found.value[0], atol=1e-14)
 
 
 def test_many_regions_of_a_wild_scatter():

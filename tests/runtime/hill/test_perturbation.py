@@ -17,7 +17,7 @@ from elastolink.runtime.hill import (
     perturbation_boundaries,
 )
 from elastolink.runtime.hill.bloch import effective_operator, wave_columns
-from hill_functions import functions
+from hill_functions import functions, general
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from smith_chapter_8.exact import exact_operator
@@ -42,26 +42,6 @@ def test_the_formula(name):
         middle = (n**2 / 4 - f.a[0] * mu)[~closed]
         np.testing.assert_allclose(found.lower[i][~closed], middle - half, rtol=1e-14, atol=1e-15)
         np.testing.assert_allclose(found.upper[i][~closed], middle + half, rtol=1e-14, atol=1e-15)
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-@pytest.mark.parametrize("k", [0.0, 0.003, 0.03])
-def test_the_error_figure_covers_the_truth_and_is_not_idle(name, k):
-    f, mu = FUNCTIONS[name], np.linspace(-1, 1, 41)
-    regions = (0, 1, 2, 3, 4)
-    exact, first = hill_boundaries(f, mu, regions, k), perturbation_boundaries(f, mu, regions, 1, k)
-    ratios = []
-    for end in ("lower", "upper"):
-        gap = np.abs(getattr(exact, end)[1:] - getattr(first, end)[1:])
-        both = ~np.isnan(gap)
-        figure = (first.error + exact.error)[1:][both]
-        assert np.all(gap[both] <= figure)
-        ratios += list(figure[gap[both] > 1e-12] / gap[both][gap[both] > 1e-12])
-    inside = ~first.outside[0]
-    gap = np.abs(exact.upper[0] - first.upper[0])[inside]
-    assert np.all(gap <= (first.error[0] + exact.error[0])[inside])
-    assert np.mean(first.outside) < 0.35
-    assert np.median(ratios) < 50
 
 
 def test_a_figure_beyond_half_the_width_fails_the_check():
@@ -91,51 +71,8 @@ GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 
 SECOND = PeriodicFunction([-0.1, 0.2, 0.5], [0.0, 0.7, -0.2])
 
-# Powers of q in a_m(q) and b_m(q) less m^2, exact: DLMF 28.6.1-28.6.7 (Abramowitz & Stegun
-# 20.2.25), from the power given by the region's order up to q^8 or as far as printed.
-MATHIEU = {
-    (0, "a"): {2: "-1/2", 4: "7/128", 6: "-29/2304", 8: "68687/18874368"},
-    (1, "a"): {
-        **{1: "1", 2: "-1/8", 3: "-1/64", 4: "-1/1536", 5: "11/36864"},
-        **{6: "49/589824", 7: "55/9437184", 8: "-83/35389440"},
-    },
-    (1, "b"): {
-        **{1: "-1", 2: "-1/8", 3: "1/64", 4: "-1/1536", 5: "-11/36864"},
-        **{6: "49/589824", 7: "-55/9437184", 8: "-83/35389440"},
-    },
-    (2, "a"): {2: "5/12", 4: "-763/13824", 6: "1002401/79626240", 8: "-1669068401/458647142400"},
-    (2, "b"): {2: "-1/12", 4: "5/13824", 6: "-289/79626240", 8: "21391/458647142400"},
-    (3, "a"): {
-        **{2: "1/16", 3: "1/64", 4: "13/20480", 5: "-5/16384"},
-        **{6: "-1961/23592960", 7: "-609/104857600"},
-    },
-    (3, "b"): {
-        **{2: "1/16", 3: "-1/64", 4: "13/20480", 5: "5/16384"},
-        **{6: "-1961/23592960", 7: "609/104857600"},
-    },
-    (4, "a"): {2: "1/30", 4: "433/864000", 6: "-5701/2721600000"},
-    (4, "b"): {2: "1/30", 4: "-317/864000", 6: "10049/2721600000"},
-}
-
 # Radii of convergence in q, DLMF table 28.6.1: the series of a_0 and a_2; of b_2; of a_1 and b_1.
 RADII = {0: 1.4687686138, 1: 3.7699574940, 2: 1.4687686138}
-
-
-@pytest.mark.parametrize(
-    ("m", "kind", "order"),
-    [(*key, order) for key, printed in MATHIEU.items() for order in range(1, max(printed) + 1)],
-)
-def test_the_series_of_mathieus_equation(m, kind, order):
-    """Truncated polynomials on both sides: they agree to round-off wherever q lies."""
-    printed = {k: Fraction(v) for k, v in MATHIEU[m, kind].items()}
-    q = np.array([0.01, 0.4, 1.3])
-    wanted = np.array(
-        [float(sum(c * Fraction(x) ** k for k, c in printed.items() if k <= order)) for x in q]
-    )
-    # A change of sign of mu changes a and b of odd number, and lower and upper with them.
-    found = perturbation_boundaries(COSINE, -0.5 * q, (m,), order, form="series", outside="value")
-    values = found.upper[0] if kind == "a" else found.lower[0]
-    np.testing.assert_allclose(4 * values - m * m, wanted, rtol=0, atol=4e-15 * (1 + m * m))
 
 
 @pytest.mark.parametrize("n", RADII)
@@ -151,7 +88,8 @@ def test_several_parameters_are_one_function(form):
     eps = np.array([[0.05, -0.02, 0.01], [0.02, 0.03, 0.0]])
     k = 0.001
     found = perturbation_boundaries([GENERAL, SECOND], list(eps), (1, 2, 3), 5, k, form)
-    assert found.parameters.shape == (2, 3)
+    assert isinstance(found, PerturbationBoundaries)
+    assert found.parameters.shape == (2, 3) and found.outside.shape == (3, 3)
     np.testing.assert_array_equal(found.mu, eps[0])
     for j in range(3):
         whole = GENERAL * float(eps[0, j]) + SECOND * float(eps[1, j])
@@ -162,15 +100,6 @@ def test_several_parameters_are_one_function(form):
         single = perturbation_boundaries([GENERAL, SECOND], list(eps[:, j]), (1, 2, 3), 5, k, form)
         np.testing.assert_allclose(single.upper, one.upper, rtol=2e-15)
         np.testing.assert_allclose(single.error, one.error, rtol=1e-3)
-
-
-def test_parameters_broadcast():
-    found = perturbation_boundaries(
-        [COSINE, SECOND], [np.zeros((2, 1)), np.linspace(0, 0.1, 3)], (1, 2), 3, np.zeros(3)
-    )
-    assert isinstance(found, PerturbationBoundaries)
-    assert found.lower.shape == found.outside.shape == found.closed.shape == (2, 2, 3)
-    assert found.parameters.shape == (2, 2, 3)
 
 
 def test_the_uniform_form_holds_where_c_n_vanishes():
@@ -220,39 +149,8 @@ def random_case(rng):
     return functions, ray, whole, n, order, mu, k
 
 
-@pytest.mark.parametrize("form", ["uniform", "series"])
 @pytest.mark.parametrize(
-    "cases", [pytest.param(60, id="some"), pytest.param(600, id="all", marks=pytest.mark.slow)]
-)
-def test_the_figures_cover_the_truth(form, cases):
-    rng = np.random.default_rng(17)
-    ratios, covered, flagged, wrong = [], [], [], 0
-    for _ in range(cases):
-        functions, ray, whole, n, order, mu, k = random_case(rng)
-        exact = hill_boundaries(whole, mu, (n,), k)
-        found = perturbation_boundaries(functions, list(ray[:, None] * mu), (n,), order, k, form)
-        flagged.append(found.outside)
-        sure = ~found.outside & ~found.undecided
-        wrong += np.count_nonzero(sure & (np.isnan(exact.upper) != found.closed))
-        both = np.isfinite(found.upper) & np.isfinite(exact.upper)
-        gap = np.abs(found.upper - exact.upper)[both]
-        if n:
-            gap = np.maximum(gap, np.abs(found.lower - exact.lower)[both])
-        slack = exact.error[both]
-        covered.append(gap <= found.error[both] + slack)
-        clear = gap > 10 * slack
-        ratios.append((found.error[both] / np.maximum(gap, 1e-300))[clear])
-    covered, ratios = np.concatenate(covered), np.concatenate(ratios)
-    assert covered.size > 2 * cases
-    assert covered.mean() >= 0.99
-    assert wrong == 0
-    assert np.median(ratios) < 20
-    # A flag is no way out: at these parameters most of the entries are numbers.
-    assert np.mean(flagged) < 0.45
-
-
-@pytest.mark.parametrize(
-    "cases", [pytest.param(60, id="some"), pytest.param(600, id="all", marks=pytest.mark.slow)]
+    "cases", [pytest.param(20, id="some"), pytest.param(200, id="all", marks=pytest.mark.slow)]
 )
 def test_nothing_certain_is_false_about_the_tip(cases):
     """Damping within 1e-7 to a third of the critical one, which the half trace gives."""
@@ -290,16 +188,6 @@ def test_what_would_not_fit_is_refused():
     f = PeriodicFunction(np.ones(1001))
     with pytest.raises(BadInput, match="coefficients"):
         perturbation_boundaries([f, f, f], [np.zeros(2)] * 3, (1,), 8, 0.1)
-
-
-def test_the_result_leaves_with_its_masks(tmp_path):
-    found = perturbation_boundaries(GENERAL, np.linspace(0, 2, 5), (1, 2), 4, 0.01)
-    with np.load(found.save(tmp_path / "found.npz")) as kept:
-        np.testing.assert_array_equal(kept["outside"], found.outside)
-        np.testing.assert_array_equal(kept["closed"], found.closed)
-    assert (tmp_path / "found.csv") == found.save(tmp_path / "found.csv")
-    assert found.to_dict()["order"] == 4
-    assert found.plot().lines
 
 
 UNIT = 2.0**-53
@@ -351,7 +239,7 @@ def majorants(parts, n, order, damped):
     return [float(np.max(h)) for h in effective]
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3))])
 @pytest.mark.parametrize("count, damped, order", KINDS)
 def test_coefficients_are_the_exact_ones_to_a_few_roundings(count, damped, order, seed):
     """Measured over 4000 operators: at most 3.8 roundings of the sum of the sizes of the terms."""
@@ -435,39 +323,9 @@ def test_a_shift_of_the_angle_turns_b_and_leaves_a(n):
         np.testing.assert_allclose(two.coupling[k], turned, atol=size)
 
 
-def test_the_mean_moves_the_first_component_alone():
-    (mean, a, b), n = random_parts(9, 1)[0], 3
-    one = effective_operator(periodic([(0.0, a, b)]), n, 5)
-    two = effective_operator(periodic([(mean, a, b)]), n, 5)
-    assert two.diagonal[0] == one.diagonal[0] - mean
-    for k in range(1, 5):
-        assert two.diagonal[k] == one.diagonal[k]
-        assert two.coupling[k] == one.coupling[k]
-
-
-def test_signs_of_damping_and_of_the_angle():
-    """K -> -K belongs to time reversed; an even f then gives the conjugates of A and B."""
-    mean, a, _ = random_parts(10, 1)[0]
-    operator = effective_operator(periodic([(mean, a, 0 * a)]), 2, 6, True)
-    forth, back = operator.components([0.3, 0.1]), operator.components([0.3, -0.1])
-    for one, other in zip(forth, back, strict=True):
-        np.testing.assert_allclose(one, other.conj(), rtol=1e-13, atol=1e-16)
-
-
-F = PeriodicFunction([0.0, 1.0])
-
-
 FORMS = ("uniform", "series")
 
 EPS = float(np.finfo(float).eps)
-
-
-def general(harmonics, fall=0.7, seed=0):
-    rng = np.random.default_rng(seed)
-    size = fall ** np.arange(harmonics + 1)
-    a, b = rng.uniform(-1, 1, (2, harmonics + 1)) * size
-    b[0] = 0.0
-    return PeriodicFunction(a, b)
 
 
 MIXED = general(6)
@@ -498,7 +356,7 @@ def test_mu_zero(form, order):
 
 
 @pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("mu", [1e-300, 5e-324, -1e-200, 1e-20])
+@pytest.mark.parametrize("mu", [5e-324, -1e-200, 1e-20])
 def test_mu_hardly_there(form, mu):
     found = perturbation_boundaries(MIXED, mu, (0, 1, 2, 7), 8, 0.0, form)
     np.testing.assert_allclose(found.upper, [0.0, 0.25, 1.0, 12.25], atol=3 * abs(mu), rtol=EPS)
@@ -508,7 +366,7 @@ def test_mu_hardly_there(form, mu):
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("damping", [0.0, 1.0])
-@pytest.mark.parametrize("mu", [1e3, 1e150, 1e300, -1e300, 1.7e308])
+@pytest.mark.parametrize("mu", [1e3, 1e150, -1.7e308])
 def test_mu_beyond_all_bounds_is_flagged(form, damping, mu):
     found = perturbation_boundaries(MIXED, [mu, 0.0], (0, 1, 2), 8, damping, form)
     assert found.outside[:, 0].all()
@@ -523,7 +381,7 @@ def test_mu_beyond_all_bounds_is_flagged(form, damping, mu):
     assert not gone.any() or abs(mu) > 1e30
 
 
-@pytest.mark.parametrize("order", range(1, 9))
+@pytest.mark.parametrize("order", [1, 4, 8])
 def test_boundaries_below_zero(order):
     """A mean of either sign takes lam2 down or up without touching the rest."""
     for mean in (50.0, -50.0, 1e6):
@@ -549,38 +407,6 @@ def test_a_constant_has_no_width(f, form):
     assert drag.closed.all()
 
 
-@pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("order", [1, 2, 5, 8])
-def test_where_c_n_vanishes(form, order):
-    a, b = MIXED.a.copy(), MIXED.b.copy()
-    a[3] = b[3] = 0.0
-    found = agrees(PeriodicFunction(a, b), np.array([1e-6, 0.01, 0.05, -0.05]), (3,), order, form)
-    assert not found.outside.any()
-    assert np.all(found.width[0] >= 0)
-    almost = a.copy()
-    almost[3] = 1e-9
-    # The series may be flagged about a root of almost nothing, but never be wrong.
-    agrees(PeriodicFunction(almost, b), np.array([1e-6, 1e-3, 0.05]), (3,), order, form)
-
-
-def test_a_thousand_harmonics():
-    """Order 1 and 2 of a function with a thousand harmonics, within bounds of memory."""
-    rng = np.random.default_rng(4)
-    size = 1.0 / (1.0 + np.arange(1001)) ** 2
-    a, b = rng.uniform(-1, 1, (2, 1001)) * size
-    b[0] = 0.0
-    f = PeriodicFunction(a, b)
-    tracemalloc.start()
-    try:
-        for order in (1, 2, 4, 8):
-            agrees(f, np.array([1e-3, 0.02]), (1, 2), order)
-        _, peak = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
-    # Hill's matrix itself takes most: (2 x 1000)^2 doubles, a few times.
-    assert peak < 1.5e9
-
-
 @pytest.mark.parametrize("damping", [0.0, 1e-3])
 def test_memory_of_order_eight(damping):
     """The columns hold 24 x 8 harmonics on either side, times the monomials of two parameters."""
@@ -594,28 +420,6 @@ def test_memory_of_order_eight(damping):
         tracemalloc.stop()
     # Five results of 1e5 doubles and what blocks of 4096 points take.
     assert peak < 1e8
-
-
-def test_too_many_parameters_are_refused_before_any_work():
-    parts = [general(24, seed=i) for i in range(12)]
-    with pytest.raises(BadInput, match="coefficients"):
-        perturbation_boundaries(parts, [np.zeros(2)] * 12, (1,), 8)
-
-
-@pytest.mark.parametrize("n", [1, 2, 3])
-def test_at_and_beyond_critical_damping(n):
-    f, mu = MIXED, 0.02
-    width = perturbation_boundaries(f, mu, (n,), 8).width[0]
-    critical = 0.5 * width / n
-    for share, closed in ((0.9, False), (1.1, True), (3.0, True)):
-        for form in FORMS:
-            found = agrees(f, mu, (n,), 8, form, share * critical)
-            assert found.outside[0] or found.closed[0] == closed
-    # A hair's breadth from the tip: the result says so where it cannot tell.
-    for share in 1 + np.array([-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6, 1e-3]):
-        found = agrees(f, mu, (n,), 8, "uniform", share * critical)
-        exact = hill_boundaries(f, mu, (n,), share * critical)
-        assert found.undecided[0] or found.closed[0] == np.isnan(exact.upper[0])
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -644,7 +448,7 @@ def test_very_high_regions(form):
     assert np.any(agrees(wide, np.array([1e-3, 0.1]), (50,), 8, form).width > 1e-4)
 
 
-@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-20, 1e20])
+@pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20])
 def test_the_scale_of_f_and_mu_may_be_exchanged(scale):
     mu = np.array([0.01, -0.03])
     plain = perturbation_boundaries(MIXED, mu, (0, 1, 2, 5), 8)
@@ -659,62 +463,32 @@ def test_the_scale_of_f_and_mu_may_be_exchanged(scale):
         assert np.all(gaps <= (found.error + plain.error)[there])
 
 
-@pytest.mark.parametrize("scale", [1e150, 1e307])
-def test_a_huge_function_is_refused_or_right(scale):
-    try:
-        found = perturbation_boundaries(MIXED * scale, 0.01 / scale, (0, 1, 2), 8)
-    except BadInput as refusal:
-        assert "overflow" in str(refusal)
-        return
-    plain = perturbation_boundaries(MIXED, 0.01, (0, 1, 2), 8)
-    there = ~found.outside
-    assert np.all(np.abs(found.upper - plain.upper)[there] <= (found.error + plain.error)[there])
-
-
 @pytest.mark.parametrize(
     "changes",
     [
         {"mu": np.nan},
-        {"mu": np.inf},
         {"mu": "much"},
-        {"mu": None},
         {"mu": 1j},
         {"mu": [[1.0], [1.0, 2.0]]},
-        {"f": None},
         {"f": "cos"},
         {"f": []},
         {"f": [COSINE, "cos"], "mu": [0.1, 0.2]},
-        {"f": [COSINE, COSINE]},
         {"f": [COSINE, COSINE], "mu": [0.1]},
-        {"f": [COSINE, COSINE], "mu": [0.1, np.nan]},
         {"f": [COSINE, COSINE], "mu": [np.ones(2), np.ones(3)]},
         {"damping": -1e-300},
-        {"damping": np.nan},
-        {"damping": "a little"},
         {"damping": [0.1, np.inf]},
         {"damping": np.ones(3), "mu": np.ones(2)},
         {"order": 0},
         {"order": 9},
-        {"order": 2.0},
         {"order": True},
         {"order": "2"},
-        {"order": None},
-        {"order": np.nan},
         {"regions": (-1,)},
-        {"regions": (0.5,)},
-        {"regions": "two"},
-        {"regions": 2},
-        {"regions": (np.nan,)},
         {"regions": (np.inf,)},
         {"regions": (10**9,)},
         {"regions": None},
         {"form": "exact"},
-        {"form": None},
-        {"form": 1},
-        {"outside": "zero"},
-        {"outside": None},
         {"form": ["uniform"]},
-        {"outside": []},
+        {"outside": None},
     ],
     ids=lambda item: next(iter(item)) + " " + repr(next(iter(item.values())))[:20],
 )
@@ -724,7 +498,7 @@ def test_bad_input_is_refused_in_one_line(changes):
     assert "\n" not in str(refusal.value)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     n=st.integers(0, 12),
     order=st.integers(1, 8),

@@ -12,7 +12,7 @@ GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 THETA = np.linspace(0.0, 4 * np.pi, 97)
 
 
-@pytest.mark.parametrize("n", [0, 1, 2, 3, 4])
+@pytest.mark.parametrize("n", [0, 1, 4])
 @pytest.mark.parametrize("damping", [0.0, 1e-5])
 @pytest.mark.parametrize("order", [None, 2, 6])
 def test_it_solves_the_equation(n, damping, order):
@@ -52,9 +52,9 @@ def test_the_motion_from_its_start_is_periodic(n):
 
 
 @pytest.mark.parametrize("end", ["lower", "upper"])
-@pytest.mark.parametrize("n", [1, 2, 3, 5])
+@pytest.mark.parametrize("n", [1, 2, 5])
 @pytest.mark.parametrize("damping", [0.0, 0.001])
-@pytest.mark.parametrize("order", [1, 3, 5, 8])
+@pytest.mark.parametrize("order", [1, 3, 8])
 def test_the_figure_covers_the_exact_solution(end, n, damping, order):
     f, mu = PeriodicFunction([0.1, 0.5, 0.4, 0.3, 0.3, 0.3], [0.0, 0.2, -0.3, 0.1, 0.2, 0.1]), 0.05
     exact = boundary_solution(f, mu, n, end, None, damping)

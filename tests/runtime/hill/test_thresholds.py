@@ -1,6 +1,5 @@
 """Critical damping and least parameter: exact, by orders, and against each other."""
 
-import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
@@ -10,74 +9,15 @@ from elastolink.runtime.hill import critical_damping, discriminant, hill_boundar
 COSINE = PeriodicFunction([0.0, 1.0])
 GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.25], [0.0, -0.5, 0.3, 0.1])
 REGIONS = (1, 2, 3)
-FORTY = ((1e-3, 1), (1e-2, 2), (0.3, 3), (2.0, 2), (2.36, 1))
 
 
 def least_parameter(f, damping, regions=(1, 2), order=None):
     return critical_damping(f, None, regions, order, damping=damping)
 
 
-def largest_half_trace(mu, n, digits=40):
-    """Mathieu's equation in many digits: the largest |D| of a region, by a Taylor solution."""
-    with mpmath.workdps(digits):
-        m = mpmath.mpf(mu)
-
-        def half_trace(lam2):
-            # cos theta as a series about 0, over half a turn; D from the half-turn values of the
-            # even and the odd solution (the coefficient is even about pi).
-            order, steps = 60, 6
-            h = mpmath.pi / steps
-            state = [[mpmath.mpf(1), mpmath.mpf(0)], [mpmath.mpf(0), mpmath.mpf(1)]]
-            for step in range(steps):
-                t = step * h
-                force = [lam2 + m * mpmath.cos(t)]
-                force += [
-                    m * mpmath.cos(t + j * mpmath.pi / 2) / mpmath.factorial(j)
-                    for j in range(1, order)
-                ]
-                new = []
-                for y0, y1 in state:
-                    c = [y0, y1]
-                    for j in range(order):
-                        total = mpmath.fsum(force[i] * c[j - i] for i in range(j + 1))
-                        c.append(-total / ((j + 1) * (j + 2)))
-                    new.append(
-                        [
-                            mpmath.polyval(c[::-1], h),
-                            mpmath.polyval([j * c[j] for j in range(len(c) - 1, 0, -1)], h),
-                        ]
-                    )
-                state = new
-            (y1, d1), (y2, d2) = state
-            return y1 * d2 + d1 * y2
-
-        ends = hill_boundaries(COSINE, mu, (n,))
-        low, high = mpmath.mpf(ends.lower[0]), mpmath.mpf(ends.upper[0])
-        middle, reach = (low + high) / 2, (high - low) / 4
-        # Parabolas through three points: the largest value is flat in lam2.
-        for _ in range(10):
-            x = [middle - reach, middle, middle + reach]
-            y = [abs(half_trace(v)) for v in x]
-            bend = y[0] - 2 * y[1] + y[2]
-            middle, reach = middle + reach * (y[0] - y[2]) / (2 * bend), reach / 4
-        return mpmath.acosh(abs(half_trace(middle))) / (2 * mpmath.pi)
-
-
-@pytest.mark.parametrize(
-    ("mu", "n"), [(0.3, 1), *(pytest.param(*case, marks=pytest.mark.slow) for case in FORTY)]
-)
-def test_forty_digits(mu, n):
-    wanted = largest_half_trace(mu, n)
-    found = critical_damping(COSINE, mu, (n,))
-    gap = abs(float(mpmath.mpf(float(found.damping[0])) - wanted))
-    assert gap <= found.error[0]
-    assert found.error[0] < 1e-12
-    assert gap < 1e-10 * float(wanted)
-
-
 @pytest.mark.parametrize("f", [COSINE, GENERAL], ids=["cosine", "general"])
 def test_boundaries_close_just_there(f):
-    mu = np.array([0.05, 0.4, 1.5, -0.4, 8.0])
+    mu = np.array([0.05, 1.5, -0.4])
     found = critical_damping(f, mu, REGIONS)
     assert found.passed and found.checks
     for i, n in enumerate(REGIONS):
@@ -101,26 +41,9 @@ def test_the_half_trace_touches_its_level_there():
     assert np.all(excess[[0, 2]] < 0)
 
 
-@pytest.mark.parametrize("order", [1, 2, 3, 4, 6, 8])
-@pytest.mark.parametrize("f", [COSINE, GENERAL], ids=["cosine", "general"])
-def test_orders_against_the_exact_value(f, order):
-    mu = np.geomspace(1e-4, 0.5, 9)
-    exact, found = critical_damping(f, mu, REGIONS), critical_damping(f, mu, REGIONS, order)
-    there = ~found.outside
-    assert there.mean() > 0.8
-    gap = np.abs(found.damping - exact.damping)[there]
-    assert np.all(gap <= (found.error + exact.error)[there])
-    assert np.all(np.isnan(found.damping[found.outside]))
-    clear = gap > 10 * exact.error[there]
-    if clear.any():
-        assert np.median(found.error[there][clear] / gap[clear]) < 30
-
-
-@pytest.mark.parametrize(
-    "cases", [pytest.param(20, id="some"), pytest.param(200, id="all", marks=pytest.mark.slow)]
-)
-def test_the_figures_cover_the_exact_values(cases):
-    rng = np.random.default_rng(5)
+@pytest.mark.slow
+def test_errors_cover_the_exact_values():
+    rng, cases = np.random.default_rng(5), 100
     covered, ratios = [], []
     for _ in range(cases):
         harmonics = int(rng.choice([1, 2, 3, 8]))
@@ -171,16 +94,6 @@ def test_one_is_the_inverse_of_the_other(f, order):
         back = critical_damping(f, least.mu[i, here], (n,), order)
         gap = np.abs(back.damping[0] - k[here])
         assert np.all(gap <= 4 * back.error[0] + 1e-12 * k[here])
-
-
-@pytest.mark.parametrize("order", [2, 5, 8])
-def test_least_parameter_by_orders(order):
-    k = np.array([1e-4, 1e-3, 1e-2])
-    exact, found = least_parameter(GENERAL, k, REGIONS), least_parameter(GENERAL, k, REGIONS, order)
-    there = ~found.outside
-    assert there.mean() > 0.6
-    gap = np.abs(found.mu - exact.mu)[there]
-    assert np.all(gap <= (found.error + exact.error)[there])
 
 
 def test_the_first_order_condition_may_be_far_off():
@@ -258,6 +171,7 @@ def test_bad_input(call, arguments):
         call(COSINE, **arguments)
 
 
+@pytest.mark.slow
 def test_half_traces_beyond_the_range_of_doubles():
     """Deep wells, by WKB: the exponent is the mean of ``sqrt(-lam2 - mu cos)`` over the turn."""
     mu = np.array([1e3, 3e4])
@@ -273,7 +187,8 @@ def test_half_traces_beyond_the_range_of_doubles():
     np.testing.assert_allclose(np.abs(half.value), half.level, rtol=1e-9)
 
 
-@pytest.mark.parametrize("k", [60.0, pytest.param(130.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("k", [60.0, 130.0])
 def test_least_parameter_of_strong_damping(k):
     found = least_parameter(COSINE, k, (1,))
     assert not found.absent[0] and found.passed

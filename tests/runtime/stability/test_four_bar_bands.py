@@ -3,7 +3,7 @@
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.frequencies.marked_speeds import multiplier_maxima
+from elastolink.runtime.frequencies.multiplier_maxima import multiplier_maxima
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, reduced_system
 from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
 from elastolink.runtime.stability import unstable_bands

@@ -1,0 +1,275 @@
+"""Speeds at which a mechanism's multipliers say that it responds most.
+
+Local maxima over the speed of the multipliers' real parts (Aannaque 7.2.3), and the same of each
+mode by itself from intervals of constant frequency (Meissner's J_N, 7.11).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import BadInput, bad
+from ..core.families import LinearPeriodic
+from ..core.results import Check
+from ..core.trigonometric import even_angles
+from ..hill import Meissner, discriminant
+from ..periodic import monodromy
+from ..periodic.decoupled.exponents import SlowModes, SlowMultipliers
+from ..periodic.decoupled.frames import held_modes
+from ..periodic.first_order import canonical_form
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+# Turn of the highest mode between two samples [rad].
+_TURN = 0.35
+_MOST_SAMPLES = 4000
+# Lowest frequency left out, over the highest wanted and over the highest kept.
+_BEYOND, _GAP = 4.0, 1.3
+# Error of the transition matrices: the place of a maximum is open by the root of it.
+_RTOL = 1e-9
+
+
+class Maxima(NamedTuple):
+    """Local maxima over the speed of what the modes' multipliers say, ``(k,)`` each."""
+
+    speed: Array
+    """Crank speeds [rad/s]."""
+    mode: Whole
+    """Mode, from 1."""
+    value: Array
+    error: Array
+    """Absolute error of each speed [rad/s]."""
+    method: str
+    checks: Mapping[str, Check]
+
+
+def multiplier_maxima(
+    system: LinearPeriodic, speed_range: tuple[float, float], count: int | None = None
+) -> Maxima:
+    """Return the local maxima over the speed [rad/s] of the real parts of the multipliers.
+
+    Each mode's multiplier of the larger real part is followed over the speed; where its real part
+    has a local maximum the mechanism answers most to its periodic forcing (Aannaque 7.2.3).  In an
+    unstable band with real multipliers beyond +1 it is the speed of greatest growth.  Where a few
+    modes stand apart from the rest the speeds are swept on those alone; what that costs at the
+    highest speed is in the error.  A maximum between two samples, of which the highest mode turns
+    by 0.35 rad at most, may be missed.
+
+    Raises
+    ------
+    BadInput
+        If the range needs more than 4000 samples.
+    """
+    low, high = speed_range
+    slow = SlowModes(system, {})
+    top = slow.highest_frequency(high, count)
+    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / _TURN)) + 8
+    if number > _MOST_SAMPLES:
+        raise bad(
+            "speed_range",
+            f"a lowest speed of {low:.4g} rad/s, which needs {number} samples",
+            f"at most {_MOST_SAMPLES}",
+            "raise the lowest speed or ask for fewer modes",
+        )
+    speed = 1.0 / np.linspace(1 / high, 1 / low, number)
+    wanted = slow.wanted(count)
+    few = few_modes(slow.system, high, wanted)
+    # At the highest speed the modes left out matter most.
+    whole = slow.exponents(speed if few is None else speed[:1], wanted, rtol=_RTOL)
+    values = whole.multipliers if few is None else few.multipliers(speed, wanted)
+    real = _larger(values)
+
+    def value(at: Array, mode: Whole) -> Array:
+        if few is None:
+            got = slow.exponents(at, wanted, rtol=_RTOL).multipliers
+        else:
+            got = few.multipliers(at, wanted)
+        return np.asarray(_larger(got)[np.arange(len(at)), mode])
+
+    row, mode = _peaks(real)
+    brackets = speed[row - 1], speed[row], speed[row + 1]
+    around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
+    at, best, width = _refined(value, mode, brackets, around)
+    noise = np.max(whole.error[row if few is None else np.zeros_like(row)], axis=-1)
+    span = np.abs(brackets[2] - brackets[0])
+    error = width + np.minimum(_blur(around, span, noise), span)
+    method = "local maxima of the real parts of the multipliers"
+    if few is not None:
+        error = error + _slip(whole, values[0]) * at
+        method += f", on {few.system.size} natural modes"
+    return Maxima(at, mode + 1, best, error, method, whole.checks)
+
+
+def _blur(values: tuple[Array, Array, Array], across: Array, noise: Array) -> Array:
+    """Return how far the place of a maximum is open: rounding leaves it so by its root.
+
+    From the values before, at and after the highest sample, and how far the outer two are apart.
+    """
+    curve = np.abs(values[0] - 2 * values[1] + values[2])
+    return np.asarray(np.sqrt(2 * noise * (across**2 / 4) / np.maximum(curve, 1e-300)))
+
+
+def _larger(values: ComplexArray) -> Array:
+    """Return the larger real part of each mode's two multipliers, ``(ns, m)``."""
+    return np.asarray(np.max(values.real.reshape(len(values), -1, 2), axis=-1))
+
+
+def _slip(whole: SlowMultipliers, values: ComplexArray) -> float:
+    """Return the relative error of speeds by the modes left out, from one speed.
+
+    A multiplier's turn is its frequency over the speed: what it is off by, the speed is.
+    """
+    gap = np.abs(whole.multipliers[0][:, None] - values)
+    nearest = np.argmin(gap, axis=0)
+    turn = whole.frequency[0, nearest] * whole.period / whole.speed[0]
+    return float(np.max(np.min(gap, axis=0) / np.abs(values) / turn))
+
+
+def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return row and column of the entries above both neighbours in their column."""
+    inner = values[1:-1]
+    above = (inner >= values[:-2]) & (inner > values[2:])
+    column, row = np.nonzero(above.T)
+    return row + 1, column
+
+
+def _refined(
+    call: Callable[[Array, Whole], Array],
+    mode: Whole,
+    brackets: tuple[Array, Array, Array],
+    values: tuple[Array, Array, Array],
+) -> tuple[Array, Array, Array]:
+    """Refine maxima between samples by parabolas, all at once; return places, values, errors.
+
+    ``brackets`` and ``values`` are first, middle and last, the middle value the largest.
+    """
+    x, f = np.stack(brackets), np.stack(values)
+    moved = np.max(np.abs(x - x[1]), axis=0)
+    for _ in range(12):
+        # Relative step at which a maximum is found: beyond, the values say no more.
+        wide = moved > 1e-7 * x[1]
+        if not np.any(wide):
+            break
+        with np.errstate(divide="ignore", invalid="ignore"):
+            left, right = (f[1] - f[0]) / (x[1] - x[0]), (f[2] - f[1]) / (x[2] - x[1])
+            curve = (right - left) / (x[2] - x[0])
+            vertex = 0.5 * (x[0] + x[1]) - 0.5 * left / curve
+        low, high = np.minimum(x[0], x[2]), np.maximum(x[0], x[2])
+        usable = np.isfinite(vertex) & (vertex > low) & (vertex < high)
+        trial = np.where(usable & (vertex != x[1]), vertex, 0.5 * (x[1] + x[2]))
+        got = np.array(f[1])
+        got[wide] = call(trial[wide], mode[wide])
+        moved = np.where(wide, np.abs(trial - x[1]), moved)
+        better = wide & (got > f[1])
+        beyond = (trial - x[1]) * (x[2] - x[1]) > 0
+        for side, chosen in ((0, beyond), (2, ~beyond)):
+            # The old middle closes the bracket behind a better place.
+            own = better & chosen
+            x[side, own], f[side, own] = x[1, own], f[1, own]
+        for side, chosen in ((2, beyond), (0, ~beyond)):
+            own = wide & ~better & chosen
+            x[side, own], f[side, own] = trial[own], got[own]
+        x[1], f[1] = np.where(better, trial, x[1]), np.where(better, got, f[1])
+    return x[1], f[1], moved
+
+
+def meissner_maxima(frequencies: Array, period: float, speed_range: tuple[float, float]) -> Maxima:
+    """Return the local maxima over the speed of Meissner's J_N, each mode by itself.
+
+    Its frequency, in a column of ``(N, m)`` at even angles with N even, is constant in each of N
+    intervals: ``y'' + (v_i/w)^2 y = 0``, as in Aannaque's Fig. 7.3.  What modes exchange, and the
+    change of their shapes, is not in it.  The error is the distance to the maximum of half the
+    intervals.
+    """
+    count = len(frequencies)
+    halved = frequencies.reshape(count // 2, 2, -1).mean(axis=1)
+    parts = []
+    for mode, levels in enumerate(frequencies.T):
+        place, value, width = _meissner_maxima(levels, period, speed_range)
+        compared = _meissner_maxima(halved[:, mode], period, speed_range)[0]
+        gap = np.min(np.abs(place[:, None] - compared), axis=1, initial=np.inf)
+        # A maximum that half the intervals do not have is not known at all.
+        error = width + np.minimum(gap, place)
+        parts.append((place, np.full(len(place), mode + 1), value, error))
+    speed, number, value, error = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return Maxima(
+        speed,
+        number.astype(np.int64),
+        value,
+        error,
+        f"local maxima of Meissner's J_{count}",
+        {},
+    )
+
+
+def _meissner_maxima(
+    levels: Array, period: float, span: tuple[float, float]
+) -> tuple[Array, Array, Array]:
+    """Return places, values and errors of the maxima of one mode."""
+    turn = period / (2.0 * np.pi)
+    steps = Meissner.of((levels * turn) ** 2)
+
+    def half_trace(at: Array, _: Whole | None = None) -> Array:
+        return discriminant(steps, 0.0, 1.0 / at**2).value
+
+    number = int(np.ceil(period * np.mean(levels) * (1 / span[0] - 1 / span[1]) / 0.05)) + 8
+    speed = 1.0 / np.linspace(1 / span[1], 1 / span[0], number)
+    values = half_trace(speed)
+    row, mode = _peaks(values[:, None])
+    brackets = speed[row - 1], speed[row], speed[row + 1]
+    around = values[row - 1], values[row], values[row + 1]
+    return _refined(half_trace, mode.astype(np.int64), brackets, around)
+
+
+class FewModes(NamedTuple):
+    """The lowest natural modes of a stiff system, up to a highest speed [rad/s]."""
+
+    system: LinearPeriodic
+    highest: float
+
+    def multipliers(self, speed: Array, count: int) -> ComplexArray:
+        """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+        half = self.system.size
+        found = monodromy(self.system, speed, rtol=_RTOL)
+        values, vectors = np.linalg.eig(np.ldexp(found.scaled, found.exponent[:, None, None]))
+        # In velocities of time, not of angle, a state is the same at all speeds.
+        size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
+        level = self._level(vectors * size[:, :, None])
+        order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+        return np.take_along_axis(values.astype(complex), order, axis=-1)
+
+    def _level(self, states: ComplexArray) -> Array:
+        """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
+        form = canonical_form(self.system, np.array([self.highest]), {})
+        frequency, shapes, mass, _ = held_modes(form, np.zeros(1))
+        half = self.system.size
+        rest = np.abs(shapes[0].T @ mass[0] @ states[:, :half]) ** 2
+        moved = np.abs(shapes[0].T @ states[:, half:]) ** 2
+        rate = np.maximum(frequency[0], 1.0)[:, None]
+        energy = rate**2 * rest + moved
+        return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+
+
+def few_modes(system: LinearPeriodic, highest: float, count: int) -> FewModes | None:
+    """Return the lowest modes up to a speed; None where no few modes stand apart from the rest."""
+    from ..periodic.reduced import reduced_system
+
+    form = canonical_form(system, np.array([highest]), {})
+    frequency = held_modes(form, even_angles(system.period, 128))[0]
+    top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
+    for kept in range(count, system.size):
+        apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]
+        if not apart:
+            continue
+        try:
+            reduced = reduced_system(system, kept)
+        except BadInput:
+            continue
+        return FewModes(reduced, highest)
+    return None

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
+from ..core.progress import time_taken
 from . import (
     balancing,
     beams,
@@ -57,6 +58,7 @@ _GROUPS = (
 _BAD_INPUT = 2
 _INTERRUPTED = 130
 _MODULES = "ELASTOLINK_GENERATED"
+_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -108,8 +110,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     options = build_parser().parse_args(arguments)
     prefix = f"elastolink {options.command}"
+    _one_thread()
+    folder = getattr(options, "modules", None)
     try:
-        with _module_folder(getattr(options, "modules", None)), _short_warnings(prefix):
+        with _module_folder(folder), _short_warnings(prefix), time_taken():
             status: int = options.run(options)
             sys.stdout.flush()
             return status
@@ -128,6 +132,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _complain(prefix, "interrupted; no file is left half written")
         return _INTERRUPTED
     return _BAD_INPUT
+
+
+def _one_thread() -> None:
+    """Let linear algebra use one thread, unless the user has set how many, or NumPy is loaded.
+
+    Matrices of a few rows gain nothing from more: on two cores that others used as well the
+    commands took five to ten times the processor time, and longer.
+    """
+    if "numpy" not in sys.modules and not any(name in os.environ for name in _THREADS):
+        os.environ.update(dict.fromkeys(_THREADS, "1"))
 
 
 def _complain(prefix: str, message: str) -> None:

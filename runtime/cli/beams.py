@@ -304,7 +304,7 @@ def _running(options: argparse.Namespace) -> int:
     scene, system = _of_beams(options, moving=True)
     limit = _limit(options)
     assert limit is not None
-    found = running_speed(system, _speeds(options, scene), limit)
+    found = running_speed(system, _speeds(options, scene), limit, progress=_shown(options))
     lines = [
         f"running speed: {found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}",
         f"quiet from {found.band.low:.5g} to {found.band.high:.5g} rad/s",

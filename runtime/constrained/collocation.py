@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..core.errors import bad
-from ..integrators.tableau import gauss_tableau
+from ..integrators import gauss_tableau
 from .equations import (
     SMALL,
     Array,

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
-from typing import TypeGuard
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import BadInput, Problem, bad
-from .namespaces import in_numpy_if_foreign
 
 
 def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[int]:
@@ -54,6 +53,19 @@ def require_whole(where: str, value: object, least: int, most: int, fix: str = "
     return int(value)
 
 
+# The kind of device, in DLPack's numbering, whose memory NumPy sees.
+_HOST = 1
+
+
+def as_numpy(value: Any) -> Any:
+    """Return an array of another namespace as NumPy's, from any device; anything else as it is."""
+    if not hasattr(value, "__array_namespace__") or isinstance(value, (np.ndarray, np.generic)):
+        return value
+    if value.__dlpack_device__()[0] == _HOST:
+        return np.array(np.from_dlpack(value))
+    return np.array(np.from_dlpack(value, device="cpu"))
+
+
 def numbers(name: str, value: object) -> NDArray[np.float64]:
     """Return an argument as an array of floats.
 
@@ -65,7 +77,7 @@ def numbers(name: str, value: object) -> NDArray[np.float64]:
         If it is not made of real numbers; text that spells a number is none.
     """
     try:
-        given = np.asarray(in_numpy_if_foreign(value))
+        given = np.asarray(as_numpy(value))
     except ValueError as ragged:
         raise bad(name, repr(value), "numbers", "correct it") from ragged
     except (TypeError, RuntimeError, BufferError) as unreadable:

@@ -1,9 +1,16 @@
-"""A progress bar for long work, with the time left, loaded only when it is wanted."""
+"""Progress of long work: a bar with the time left where steps are counted, else the time taken."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Event, Thread
+from time import monotonic
+
+# Time without a sign of life, and between two signs [s].
+_SILENCE, _BETWEEN = 2.0, 1.0
+_bars: list[object] = []
 
 
 @contextmanager
@@ -33,4 +40,34 @@ def bar(
         def tick(done: int) -> None:
             display.update(done - display.n)
 
-        yield tick
+        _bars.append(display)
+        try:
+            yield tick
+        finally:
+            _bars.remove(display)
+
+
+@contextmanager
+def time_taken() -> Iterator[None]:
+    """Show on a terminal how long work has taken, from two seconds on, while there is no bar."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    done, start = Event(), monotonic()
+
+    def show() -> None:
+        wait = _SILENCE
+        while not done.wait(wait):
+            wait = _BETWEEN
+            if not _bars:
+                # Back to the line's start, so that what is written next covers it.
+                text = f"{monotonic() - start:.0f} s"
+                print(f"{text}\r", end="", file=sys.stderr, flush=True)
+
+    clock = Thread(target=show, daemon=True)
+    clock.start()
+    try:
+        yield
+    finally:
+        done.set()
+        clock.join()

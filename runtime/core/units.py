@@ -6,7 +6,7 @@ Two rules go beyond a table of units, both about rates of rotation (dimension ``
   unit that names an angle (``rad/s``, ``deg/s``, ``turn/s``, ``rpm``) is converted as it stands;
 - a bare ``"1/s"`` says neither, and is refused.
 
-Pint is imported only when a text with a unit is met.
+Pint is imported only for an unusual unit.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -72,13 +72,51 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
     }
 )
 
-# What a misspelt unit is compared with.
-_COMMON = (
-    "m mm cm km um in inch ft yd kg g lb lbm slug oz tonne N kN lbf kgf dyn s ms min minute hour "
-    "Hz kHz rpm rad deg degree turn rev cycle Pa kPa MPa GPa psi ksi J W percent"
-)
-_ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond", "revolutions_per")
-_CYCLE = Decimal("6.283185307179586476925286766559")
+
+@dataclass(frozen=True)
+class _Unit:
+    """A unit, or a product of units.
+
+    Attributes
+    ----------
+    factor : Decimal
+        To the SI unit; not a number where it is no multiple of it (degrees Celsius).
+    powers : mapping of str to Fraction
+        Of the base dimensions, by pint's names, such as ``[length]``; zeros are left out.
+    counts : frozenset of str
+        ``cycles`` or ``angle`` where it counts them.
+    """
+
+    factor: Decimal
+    powers: Mapping[str, Fraction]
+    counts: frozenset[str] = frozenset()
+
+
+_ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond", "revolution")
+_TURN = Decimal("6.283185307179586476925286766559")
+_BASE = {
+    "m": _Unit(Decimal(1), {"[length]": Fraction(1)}),
+    "kg": _Unit(Decimal(1), {"[mass]": Fraction(1)}),
+    "s": _Unit(Decimal(1), {"[time]": Fraction(1)}),
+    "rad": _Unit(Decimal(1), {}, frozenset(["angle"])),
+    "Hz": _Unit(Decimal(1), {"[time]": Fraction(-1)}, frozenset(["cycles"])),
+    "percent": _Unit(Decimal("0.01"), {}),
+}
+# Definitions of the usual units, exact where they are no angles; all others are left to pint, which
+# takes half a second to load.
+_USUAL = {
+    **{"mm": "0.001 m", "cm": "0.01 m", "km": "1000 m", "um": "0.000001 m"},
+    **{"in": "0.0254 m", "inch": "1 in", "ft": "12 in", "yd": "36 in"},
+    **{"g": "0.001 kg", "tonne": "1000 kg", "lb": "0.45359237 kg", "lbm": "1 lb", "pound": "1 lb"},
+    **{"oz": "0.0625 lb", "slug": "1 lbf*s**2/ft"},
+    **{"ms": "0.001 s", "min": "60 s", "minute": "60 s", "hour": "3600 s"},
+    **{"N": "1 kg*m/s**2", "kN": "1000 N", "dyn": "0.00001 N"},
+    **{"lbf": "9.80665 lb*m/s**2", "kgf": "9.80665 N"},
+    **{"Pa": "1 N/m**2", "kPa": "1e3 Pa", "MPa": "1e6 Pa", "GPa": "1e9 Pa"},
+    **{"psi": "1 lbf/in**2", "ksi": "1000 psi", "J": "1 N*m", "W": "1 J/s"},
+    **{"turn": f"{_TURN} rad", "rev": "1 turn", "deg": f"{_TURN / 360} rad", "degree": "1 deg"},
+    **{"rpm": "1 turn/min", "kHz": "1000 Hz"},
+}
 _OPEN = frozenset("*/·(")
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)")
 _TOKEN = re.compile(r"\s*(?:(\*\*|\^)\s*([+-]?\d{1,2})(?!\d)|([*/()·])|([^\W\d_]\w*|1(?!\d)))")
@@ -203,70 +241,80 @@ def _factors(unit: str, where: str, text: str) -> list[tuple[str, int]]:
 
 def _factor(unit: str, dimension: str, where: str, text: str) -> Decimal:
     """Return the factor from a unit to the SI unit of a dimension."""
-    factors = tuple(item for item in _factors(unit, where, text) if item[0] != "1")
-    unknown = [name for name, _ in factors if not _known(name)]
+    factors = [item for item in _factors(unit, where, text) if item[0] != "1"]
+    unknown = [name for name, _ in factors if _unit(name) is None]
     if unknown:
         raise BadInput(*(_unknown_unit(name, where, text) for name in dict.fromkeys(unknown)))
-    factor, found, cycles, angle = _convert(factors, dimension)
-    if factor is None:
+    found = _product(factors)
+    if found.powers != _powers(dimension) or found.factor.is_nan():
         raise _wrong_dimension(found, dimension, where, text)
-    if dimension == "frequency" and not angle:
-        if not cycles:
+    if dimension == "frequency" and "angle" not in found.counts:
+        if "cycles" not in found.counts:
             raise bad(
                 where,
                 repr(text),
                 "a rate that says whether it counts cycles or radians",
                 "write Hz, rpm or rad/s instead of 1/s",
             )
-        return factor * _CYCLE
-    return factor
+        return found.factor * _TURN
+    return found.factor
+
+
+def _product(factors: Iterable[tuple[str, int]]) -> _Unit:
+    """Return the product of powers of known units."""
+    factor, powers, counts = Decimal(1), dict[str, Fraction](), frozenset[str]()
+    for name, power in factors:
+        unit = _unit(name)
+        if unit is not None:
+            factor *= unit.factor**power
+            counts |= unit.counts
+            for base, exponent in unit.powers.items():
+                powers[base] = powers.get(base, Fraction(0)) + exponent * power
+    return _Unit(factor, {base: power for base, power in powers.items() if power}, counts)
+
+
+@lru_cache(maxsize=512)
+def _unit(name: str) -> _Unit | None:
+    """Return a unit by its name: a usual one or, else, one that pint knows; None where unknown."""
+    if name in _BASE:
+        return _BASE[name]
+    if name not in _USUAL:
+        return _unit_of_pint(name)
+    number, _, units = _USUAL[name].partition(" ")
+    defined = _product(_factors(units, name, units))
+    return replace(defined, factor=Decimal(number) * defined.factor)
 
 
 @lru_cache(maxsize=1)
 def _registry() -> Any:
     import pint
 
-    registry = pint.UnitRegistry(cache_folder=None, non_int_type=Decimal)
-    registry.define("@alias pound = lbm")
-    registry.define("@alias turn = rev")
-    return registry
+    return pint.UnitRegistry(cache_folder=None, non_int_type=Decimal)
 
 
-@lru_cache(maxsize=512)
-def _known(name: str) -> bool:
-    import pint
-
-    try:
-        _registry().parse_units(name)
-    except (pint.errors.PintError, AttributeError, ValueError):
-        return False
-    return True
-
-
-@lru_cache(maxsize=512)
-def _convert(
-    factors: tuple[tuple[str, int], ...], dimension: str
-) -> tuple[Decimal | None, str, bool, bool]:
-    """Return factor (None where the dimension differs), dimension found, and rate markers."""
+def _unit_of_pint(name: str) -> _Unit | None:
     import pint
 
     registry = _registry()
-    unit = registry.Unit("")
-    for name, power in factors:
-        unit = unit * registry.parse_units(name) ** power
-    target = registry.parse_units(DIMENSIONS[dimension].si)
-    names = dict(unit._units)
-    cycles = any(name.endswith("hertz") for name in names)
-    angle = any(mark in name for name in names for mark in _ANGLES)
-    if unit.dimensionality != target.dimensionality:
-        weight = target.dimensionality * registry.parse_units("m/s**2").dimensionality
-        kind = "weight" if unit.dimensionality == weight else str(unit.dimensionality)
-        return None, kind, cycles, angle
     try:
-        factor = Decimal(registry.Quantity(Decimal(1), unit).to(target).magnitude)
-    except (pint.errors.PintError, ArithmeticError):
-        return None, str(unit.dimensionality), cycles, angle
-    return factor, str(unit.dimensionality), cycles, angle
+        unit = registry.parse_units(name)
+        zero, one = (registry.Quantity(Decimal(n), unit).to_base_units() for n in (0, 1))
+    except (pint.errors.PintError, AttributeError, ValueError, ArithmeticError, TypeError):
+        return None
+    names = " ".join(unit._units)
+    angle = any(mark in names for mark in _ANGLES)
+    return _Unit(
+        # Offsets and logarithms do not take zero to zero.
+        Decimal(one.magnitude) if zero.magnitude == 0 else Decimal("nan"),
+        {base: Fraction(power) for base, power in one.dimensionality.items()},
+        frozenset(["angle"] if angle else ["cycles"] if "hertz" in names else []),
+    )
+
+
+@lru_cache(maxsize=64)
+def _powers(dimension: str) -> Mapping[str, Fraction]:
+    unit = DIMENSIONS[dimension].si
+    return _product(_factors(unit, dimension, unit)).powers if unit else {}
 
 
 def _write_like(dimension: str) -> str:
@@ -293,7 +341,7 @@ def _unreadable(unit: str, where: str, text: str) -> BadInput:
 
 def _unknown_unit(name: str, where: str, text: str) -> Problem:
     lowered: dict[str, str] = {}
-    for unit in _COMMON.split():
+    for unit in (*_BASE, *_USUAL):
         lowered.setdefault(unit.lower(), unit)
     close = difflib.get_close_matches(name.lower(), list(lowered), n=3, cutoff=0.55)
     fix = "check the spelling and the capitals"
@@ -302,14 +350,28 @@ def _unknown_unit(name: str, where: str, text: str) -> Problem:
     return Problem(where, f"unknown unit '{name}' in {_show(text)}", "a unit that pint knows", fix)
 
 
-def _wrong_dimension(found: str, dimension: str, where: str, text: str) -> BadInput:
-    if found == "weight":
+def _wrong_dimension(found: _Unit, dimension: str, where: str, text: str) -> BadInput:
+    per_gravity = {**found.powers, "[length]": found.powers.get("[length]", 0) - 1}
+    per_gravity["[time]"] = found.powers.get("[time]", 0) + 2
+    if {base: power for base, power in per_gravity.items() if power} == _powers(dimension):
         return bad(
             where,
             f"{_show(text)}, which is a weight",
             expected(dimension),
             "a weight divided by gravity is a mass: write lb instead of lbf, or divide by g",
         )
-    return bad(
-        where, f"{_show(text)}, of dimension {found}", expected(dimension), _write_like(dimension)
+    told = f"{_show(text)}, of dimension {_in_words(found.powers)}"
+    return bad(where, told, expected(dimension), _write_like(dimension))
+
+
+def _in_words(powers: Mapping[str, Fraction]) -> str:
+    """Return ``[length] ** 2 / [time]`` or the like."""
+    above, below = (
+        [
+            base if abs(power) == 1 else f"{base} ** {abs(power)}"
+            for base, power in sorted(powers.items())
+            if (power > 0) == up
+        ]
+        for up in (True, False)
     )
+    return " / ".join([" * ".join(above) or ("1" if below else "dimensionless"), *below])

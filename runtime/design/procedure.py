@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, bad
+from ..core.errors import LINEAR_RANGE, BadInput, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
+from ..core.progress import bar
 from ..core.results import Check, Result
-from ..recovery.stress_over_speed import stress_curve
-from .effects import StressEffect, damping_effect, length_effect
+from ..recovery.stress_over_speed import StressCurve, stress_curve
+from .effects import StressEffect, effect_of, with_transmission
 from .quiet import Band, QuietSpeeds, quiet_speeds
 from .speed_profile import Array
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
 _LENGTHS = tuple(1.0 + 0.02 * k for k in range(12))
-# Speeds of a run-up at which the stresses are looked at.
+# Speeds of a run-up at which the stresses are looked at, about.
 _RUN_UP_SPEEDS = 200
 
 
@@ -45,8 +46,8 @@ class RunningSpeed(Result):
     best_damping : float or None
         The ratio with the least largest stress there.
     length : StressEffect or None
-        Stresses on the way up, for several values of the length; None where nothing has to be
-        passed.
+        Stresses on the way up, for values of the length, the nearest to the design's first, up to
+        the first that keeps the limits; None where nothing has to be passed.
     run_up_length : float or None
         The value nearest the design's at which every steady speed of the way is within the limits;
         None where no value that was tried is.
@@ -81,6 +82,7 @@ def running_speed(
     values: Sequence[float] | None = None,
     highest: bool = True,
     rtol: float = 1e-3,
+    progress: bool = False,
 ) -> RunningSpeed:
     """Return a running speed above a limiting critical speed, and how to get there.
 
@@ -105,6 +107,8 @@ def running_speed(
         Whether the highest quiet band is chosen, or the one with the least stress.
     rtol : float
         Wanted error of the stresses, relative.
+    progress : bool
+        Whether to show a progress bar.
 
     Returns
     -------
@@ -134,15 +138,22 @@ def running_speed(
     offered = quiet.quiet or quiet.bands
     band = offered[-1] if highest else min(offered, key=lambda one: one.ratio)
     allowed = np.array([_limit(limits, link) for link in quiet.links])
-    damping = best = None
-    if "damping_ratio" in system.parameters:
-        own = system.parameters["damping_ratio"]
-        ratios = [own * factor for factor in _DAMPING]
-        damping = damping_effect(system, [band.best], ratios, rtol=rtol)
-        best = float(ratios[int(np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2))))])
-    way, chosen = None, None
-    if band.above is not None:
-        way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol)
+    damping = best = way = chosen = None
+    with bar(progress, len(_DAMPING) + len(tried)) as tick:
+        if "damping_ratio" in system.parameters:
+            own = system.parameters["damping_ratio"]
+            ratios = own * np.array(_DAMPING)
+            damping = effect_of(
+                "damping_ratio",
+                ratios,
+                [system.with_parameters(damping_ratio=float(ratio)) for ratio in ratios],
+                quiet.curve.at(np.array([_place(quiet, band)])),
+                rtol,
+                tick=tick,
+            )
+            best = float(ratios[np.argmin(np.max(_ratios(damping, quiet, allowed), axis=(1, 2)))])
+        if band.above is not None:
+            way, chosen = _way_up(system, quiet, band, allowed, length, tried, rtol, tick)
     return RunningSpeed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),
@@ -150,7 +161,7 @@ def running_speed(
         checks={
             **quiet.checks,
             # Of the speed that was chosen: at the critical speeds it is left in any case.
-            "linear range": _linear_range(system, band.best, rtol),
+            **_linear_range(quiet, band),
             "within limits": Check(band.ratio * (1.0 + _doubt(quiet, band)), 1.0),
             "stable": Check(_largest_multiplier(quiet, band), 1.0),
         },
@@ -168,19 +179,27 @@ def running_speed(
 
 def _doubt(quiet: QuietSpeeds, band: Band) -> float:
     """Return the relative error of the stresses at the running speed."""
-    return float(np.asarray(quiet.error)[int(np.argmin(np.abs(quiet.speed - band.best)))])
+    return float(np.asarray(quiet.error)[_place(quiet, band)])
+
+
+def _place(quiet: QuietSpeeds, band: Band) -> int:
+    """Return the place of the running speed among the speeds."""
+    return int(np.argmin(np.abs(quiet.speed - band.best)))
 
 
 def _largest_multiplier(quiet: QuietSpeeds, band: Band) -> float:
     """Return the largest multiplier's modulus at the running speed, with its error."""
     size, error = quiet.curve.multiplier, quiet.curve.multiplier_error
     assert size is not None and error is not None
-    place = int(np.argmin(np.abs(quiet.speed - band.best)))
+    place = _place(quiet, band)
     return float(size[place] + error[place])
 
 
-def _linear_range(system: LinearPeriodic, speed: float, rtol: float) -> Check:
-    return stress_curve(system, [speed], rtol=rtol, stability=False).checks["linear range"]
+def _linear_range(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:
+    deflection = quiet.curve.deflection
+    if deflection is None:
+        return {}
+    return {"linear range": Check(float(deflection[_place(quiet, band)]), LINEAR_RANGE)}
 
 
 def _limit(limits: float | Mapping[str, float], link: str) -> float:
@@ -200,20 +219,28 @@ def _way_up(
     length: str,
     tried: Sequence[float],
     rtol: float,
+    tick: Callable[[int], None] | None,
 ) -> tuple[StressEffect, float | None]:
     """Return stresses on the way to the band for several lengths, and the least change that does.
 
     A value passes where the steady stresses at all speeds of the way are within the limits.
     """
-    own = system.geometry.get(length, np.nan)
-    way = np.linspace(quiet.speed[0], band.best, _RUN_UP_SPEEDS)
-    effect = length_effect(system, length, tried, way, rtol=rtol)
-    worst = np.max(_ratios(effect, quiet, allowed), axis=(1, 2))
-    passing = np.flatnonzero(worst < 1.0)
-    if not passing.size:
-        return effect, None
-    nearest = passing[int(np.argmin(np.abs(effect.values[passing] - own)))]
-    return effect, float(effect.values[nearest])
+    own, end = system.geometry[length], _place(quiet, band)
+    every = max(1, end // _RUN_UP_SPEEDS)
+    values = np.array(sorted(tried, key=lambda value: abs(value - own)))
+    systems = [system.with_geometry(**{length: float(value)}) for value in values]
+    way = quiet.curve.at(np.arange(end % every, end + 1, every))
+    if values[0] != own:
+        way = stress_curve(systems[0], way.speed, rtol=rtol, stability=False)
+    chosen = [way.links.index(link) for link in quiet.links]
+
+    def passes(curve: StressCurve) -> bool:
+        return bool(np.all(curve.maximum[:, chosen] < allowed))
+
+    effect = effect_of(length, values, systems, way, rtol, enough=passes, tick=tick)
+    found = float(effect.values[-1])
+    passed = bool(np.all(effect.maximum[-1][:, chosen] < allowed))
+    return with_transmission(effect, system), found if passed else None
 
 
 def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) -> list[float]:

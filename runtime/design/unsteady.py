@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.families import DAMPING, LinearPeriodic
-from ..integrators.tableau import GaussTableau, gauss_tableau
+from ..integrators import CollocationTableau, gauss_tableau
 from .speed_profile import Array, SpeedProfile
 
 # Floats of the stage equations of a block of steps that are solved together.
@@ -144,7 +144,7 @@ def march(
 
 
 def _step_maps(
-    tableau: GaussTableau, step: float, generator: Array, forcing: Array
+    tableau: CollocationTableau, step: float, generator: Array, forcing: Array
 ) -> tuple[Array, Array]:
     """Return the change of the state over each step: ``P y + r``.
 

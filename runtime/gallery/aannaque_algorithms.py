@@ -9,8 +9,8 @@ import numpy as np
 
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
-from ..integrators.newmark import newmark_rule, step_maps
 from ..periodic.ring import solve_ring
+from .historic_steps import newmark_matrices
 
 
 def second_order_form(
@@ -37,9 +37,7 @@ def newmark_maps(system: LinearPeriodic, speed: float, intervals: int) -> tuple[
     """Return maps ``(N, 2n, 2n)`` and loads ``(N, 2n)`` on (q, q') of Newmark's steps (6.5)."""
     arrays = second_order_form(system, speed, intervals)
     mass, rate, stiffness, force = (np.concatenate([array, array[:1]]) for array in arrays)
-    step = system.period / intervals
-    whole = step_maps(newmark_rule(), mass, rate, stiffness, force, step)
-    return whole[:, :-1, :-1], whole[:, :-1, -1]
+    return newmark_matrices(mass, rate, stiffness, force, system.period / intervals)
 
 
 def transition_nodes(maps: Array, loads: Array) -> Array:

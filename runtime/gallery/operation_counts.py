@@ -166,7 +166,7 @@ def operation_count(
 
 
 def newmark_steps(tally: Tally, n: int, intervals: int) -> None:
-    """Count the maps of Newmark steps, as :func:`~..integrators.newmark.step_maps` takes them."""
+    """Count the maps of Newmark steps, as :func:`~.historic_steps.newmark_matrices` takes them."""
     wide = 2 * n + 1
     # q'' at the left end, then q and v without the new acceleration.
     tally.solve(n, wide, intervals)

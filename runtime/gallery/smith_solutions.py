@@ -12,10 +12,10 @@ import numpy as np
 
 from ..core.families import LinearPeriodic
 from ..hill import discriminant
-from ..integrators import de_vogelaere, kutta_merson
 from ..periodic import simulate
 from ..periodic.equation import equation_of
 from ..scenes import load_scene
+from .historic_steps import de_vogelaere_maps, de_vogelaere_start, kutta_merson
 from .records import Drawn, Quoted
 from .smith_linkages import Array, f3_series, linkage_of
 from .style import COLOURS, crank_axis, legend_below, panel_title
@@ -105,11 +105,11 @@ def _march(step: float, turns: int, start: tuple[float, float] | None = None) ->
         return out
 
     count, unit = round(180.0 / step), float(equation.scale[0, 0])
-    maps = de_vogelaere.maps(spring, 2.0 * h * np.arange(float(count)), h)
+    maps = de_vogelaere_maps(spring, 2.0 * h * np.arange(float(count)), h)
     q, rate = (0.0, 0.0) if start is None else start
     one, zero = np.ones(int(equation.forced)), np.zeros(int(equation.forced))
     first = np.append(q / unit, one), np.append(rate / unit, zero)
-    states = [de_vogelaere.start(spring, 0.0, h, *first)]
+    states = [de_vogelaere_start(spring, 0.0, h, *first)]
     for _ in range(turns):
         for matrix in maps:
             states.append(matrix @ states[-1])
@@ -130,13 +130,12 @@ def _kutta_merson(turns: int) -> _Run:
     begin = simulate(system, speed, 0.25 / _LAMBDA, samples=16 * round(_LAMBDA))
     peak = np.max(np.abs(begin.q)) / unit + np.max(np.abs(begin.qd)) / speed * unit
     theta = np.radians(np.arange(360.0 * turns + 1.0))
-    run = kutta_merson.adaptive(
+    run = kutta_merson(
         lambda angles: equation.generator(angles)[0],
         theta,
         np.array([0.0, 0.0, 1.0]),
         _KUTTA_MERSON_RTOL,
         np.full(3, 1e-2 * _KUTTA_MERSON_RTOL * peak),
-        stop=lambda state: False,
         first=0.1 / _LAMBDA,
     )
     q = unit * run.states[:, :1]
@@ -245,7 +244,7 @@ def _free_decay(step: float, lam: float) -> float:
     def generator(theta: Array) -> Array:
         return np.full((len(theta), 1, 1), -lam * lam)
 
-    step_map = de_vogelaere.maps(generator, np.zeros(1), h)[0]
+    step_map = de_vogelaere_maps(generator, np.zeros(1), h)[0]
     return float(np.max(np.abs(np.linalg.eigvals(step_map))) ** (pi / h))
 
 

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import BadInput, bad
 from ..core.families import DAMPING, LinearPeriodic, Term
 from ..core.inputs import numbers
-from ..core.namespaces import BlockMatrices, in_numpy, namespace_of, to_numpy
 from ..core.trigonometric import even_angles
 from .equation import SPEED_POWER
 
@@ -187,29 +186,31 @@ class CanonicalForm:
         carried = self.assemble("D", theta)
         inertia = self.assemble("B", theta)
         stiffness = self.assemble(("K", "Kg"), theta)
-        sizes = (n, n, 1)[: 2 + self.forced]
-        out = BlockMatrices((len(self.speed), len(theta)), sizes, flexibility)
-        out.add(0, 1, flexibility)
-        for part, sign in ((inertia, 1), (stiffness, -1), (carried, -1)):
+        size = 2 * n + self.forced
+        out = np.zeros((len(self.speed), len(theta), size, size))
+        q, p = slice(0, n), slice(n, 2 * n)
+        out[..., q, p] = flexibility
+        if inertia is not None:
+            out[..., p, q] += inertia
+        for part in (stiffness, carried):
             if part is not None:
-                out.add(1, 0, part, sign)
+                out[..., p, q] -= part
         # q' = M^-1 (p - A q) enters p' through A^T - C.
         feedback: Array | None = None if damping is None else -damping
         if gyro is not None:
-            transposed = namespace_of(gyro).matrix_transpose(gyro)
+            transposed = np.matrix_transpose(gyro)
             feedback = transposed if feedback is None else feedback + transposed
-            out.add(0, 0, flexibility @ gyro, -1)
+            out[..., q, q] = -(flexibility @ gyro)
         if feedback is not None:
             through = feedback @ flexibility
-            out.add(1, 1, through)
+            out[..., p, p] = through
             if gyro is not None:
-                out.add(1, 0, through @ gyro, -1)
+                out[..., p, q] -= through @ gyro
         if self.forced:
             force = self.assemble(("f", "h", "p"), theta)
             if force is not None:
-                out.add(1, 2, force[..., None])
-        whole: Array = out.whole()
-        return whole
+                out[..., p, -1] = force
+        return out
 
     def _first_of_equal(self, array: str) -> CanonicalForm:
         """Return the form of the first member where all have an array in common, else itself."""
@@ -259,18 +260,14 @@ class CanonicalForm:
     def _inverse_mass(self, theta: Array) -> Array:
         mass = self.require_mass(self.assemble("M", theta))
         if mass.shape[-1] == 1:
-            if not namespace_of(mass).all(mass > 0):
-                raise _bad_mass(to_numpy(mass))
+            if not np.all(mass > 0):
+                raise _bad_mass(mass)
             return 1.0 / mass
-        xp = namespace_of(mass)
         try:
-            root = xp.linalg.cholesky(mass)
+            np.linalg.cholesky(mass)
         except np.linalg.LinAlgError as indefinite:
-            raise _bad_mass(to_numpy(mass)) from indefinite
-        if not in_numpy(mass) and not xp.all(xp.isfinite(root)):
-            # Where a namespace does not raise.
-            raise _bad_mass(to_numpy(mass))
-        inverse: Array = xp.linalg.inv(mass)
+            raise _bad_mass(mass) from indefinite
+        inverse = np.asarray(np.linalg.inv(mass), dtype=np.float64)
         return inverse
 
     @cached_property

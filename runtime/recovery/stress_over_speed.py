@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING, ClassVar
 
@@ -67,6 +67,8 @@ class StressCurve(Result):
         not of its elements or of the choice of stations.
     modes : ndarray of int
         Modes kept at each speed, ``(ns,)``.
+    deflection : ndarray or None
+        Largest deflection over the length of its link, ``(ns,)``; None where links have none.
     multiplier, multiplier_error : ndarray or None
         Modulus of the largest Floquet multiplier, and its absolute error, ``(ns,)``; None where
         that was not asked for.
@@ -79,6 +81,7 @@ class StressCurve(Result):
     place: Array
     fibre: Array
     modes: NDArray[np.int64]
+    deflection: Array | None = None
     multiplier: Array | None = None
     multiplier_error: Array | None = None
 
@@ -86,6 +89,7 @@ class StressCurve(Result):
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "speed": ("speed",),
         "modes": ("speed",),
+        "deflection": ("speed",),
         "stable": ("speed",),
         "multiplier": ("speed",),
         "multiplier_error": ("speed",),
@@ -140,6 +144,17 @@ class StressCurve(Result):
             raise bad("link", repr(link), f"one of {', '.join(self.links)}", fix)
         return np.asarray(self.maximum[:, self.links.index(link)])
 
+    def at(self, places: NDArray[np.intp]) -> StressCurve:
+        """Return the same at some of the speeds, by their places."""
+        rows = {
+            name: value[places]
+            for name, axes in self.dimensions.items()
+            if axes[0] == "speed" and name != "stable"
+            for value in (getattr(self, name),)
+            if value is not None
+        }
+        return replace(self, **rows)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the speed, unstable ranges shaded."""
         from ..core.plotting import axes_or_new
@@ -172,6 +187,7 @@ def stress_curve(
     modes: int | None = None,
     method: str = "equilibrium",
     stability: bool = True,
+    whole: bool = True,
 ) -> StressCurve:
     """Return the largest stress of each link of a structure of beams against the crank speed.
 
@@ -196,12 +212,15 @@ def stress_curve(
         ``"equilibrium"`` or ``"shape"``, as :func:`elastolink.stress` takes it.
     stability : bool
         Whether the largest multiplier is computed at each speed too.
+    whole : bool
+        Whether the whole equation is solved too, at two speeds; twice what this changes is part of
+        the error.
 
     Returns
     -------
     StressCurve
-        Its checks: ``converged``, the largest error over ``rtol``; ``equation``, the largest
-        relative change of a maximum by solving the whole equation, at two speeds;
+        Its checks: ``converged``, the largest error over ``rtol``; ``equation``, if ``whole``, the
+        largest relative change of a maximum by solving the whole equation, at two speeds;
         ``linear range``, the largest deflection over the length of its link.
 
     Raises
@@ -220,21 +239,23 @@ def stress_curve(
     size, error = (
         np.concatenate([getattr(p, k) for p in parts], axis=1) for k in ("size", "error")
     )
-    # The whole equation at the highest speed, and where the modes answer most.
-    most = int(np.argmax(np.max(size, axis=0) / rising**2))
-    change = np.max([work.changed(rising[k], size[:, k]) for k in {len(rising) - 1, most}], axis=0)
-    error = (error + 2.0 * change[:, None]).T[back]
-    checks = {
-        "converged": Check(float(np.max(error)), rtol),
-        "equation": Check(float(np.max(change)), rtol),
-    }
+    checks, deflection = {}, None
+    if whole:
+        # At the highest speed, and where the modes answer most.
+        most = int(np.argmax(np.max(size, axis=0) / rising**2))
+        tried = {len(rising) - 1, most}
+        change = np.max([work.changed(rising[k], size[:, k]) for k in tried], axis=0)
+        error += 2.0 * change[:, None]
+        checks["equation"] = Check(float(np.max(change)), rtol)
+    checks["converged"] = Check(float(np.max(error)), rtol)
     if system.relative_deflection is not None:
-        checks["linear range"] = Check(max(part.deflection for part in parts), LINEAR_RANGE)
+        deflection = np.concatenate([part.deflection for part in parts])[back]
+        checks["linear range"] = Check(float(np.max(deflection)), LINEAR_RANGE)
     growth = _growth(system, parts, rising) if stability else None
     row = np.concatenate([part.row for part in parts], axis=1).T[back]
     return StressCurve(
         method="modal truncation, transition matrices in tables of the inverse speed",
-        error=error,
+        error=error.T[back],
         error_norm="of each link's largest stress, relative",
         checks=checks,
         provenance=provenance(system.provenance),
@@ -245,6 +266,7 @@ def stress_curve(
         place=work.fibres.place[row],
         fibre=work.fibres.sign[row],
         modes=np.concatenate([np.full(part.size.shape[1], part.modes) for part in parts])[back],
+        deflection=deflection,
         multiplier=None if growth is None else growth[0][back],
         multiplier_error=None if growth is None else growth[1][back],
     )
@@ -314,7 +336,7 @@ class _Range:
 
     ``size``, ``theta``, ``row``, ``error``: of the largest stresses, ``(links, ns)``.  ``growth``:
     the largest multipliers; ``defect``: what the modes left out change of one, over its condition.
-    ``deflection``: the largest one.
+    ``deflection``: the largest at each speed, ``(ns,)``.
     """
 
     size: Array
@@ -324,7 +346,7 @@ class _Range:
     modes: int
     growth: Growth
     defect: float
-    deflection: float
+    deflection: Array
 
 
 @dataclass(frozen=True)
@@ -367,12 +389,12 @@ class _Work:
         chosen = many.modes if self.wanted is None else self.wanted
         moving = self.truncations.motions(chosen, self.angles, (low, high), self.flow)
         theta = moving.truncated.theta
-        peaks, errors, norms, deflection = [], [], [], 0.0
+        peaks, errors, norms, deflection = [], [], [], []
         for part, q, error in moving.blocks(speeds):
             peaks.append(self.fibres.peaks(theta, q, speeds[part]))
             errors.append(error)
             norms.append(np.max(np.abs(q), axis=(1, 2)))
-            deflection = max(deflection, self._deflection(theta, q))
+            deflection.append(self._deflection(theta, q))
         size, error = (
             np.concatenate([getattr(p, k) for p in peaks], axis=1) for k in ("size", "error")
         )
@@ -388,7 +410,7 @@ class _Work:
             modes=chosen,
             growth=moving.growth(speeds),
             defect=defect,
-            deflection=deflection,
+            deflection=np.concatenate(deflection),
         )
 
     def changed(self, speed: float, size: Array) -> Array:
@@ -425,11 +447,11 @@ class _Work:
         size = self.fibres.peaks(tried.truncated.theta, tried.q, speeds).size
         return _Trial(modes, size, tried.growth, tried.tail)
 
-    def _deflection(self, theta: Array, q: Array) -> float:
+    def _deflection(self, theta: Array, q: Array) -> Array:
         if self.system.relative_deflection is None:
-            return 0.0
+            return np.zeros(len(q))
         rows = self.system.relative_deflection(theta)
-        return float(np.max(np.abs(rows @ np.moveaxis(q, 0, -1))))
+        return np.asarray(np.max(np.abs(rows @ np.moveaxis(q, 0, -1)), axis=(0, 1)))
 
 
 def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple[Array, Array]:

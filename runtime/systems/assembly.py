@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Collection, Iterable, Mapping
-from copy import copy
 from functools import partial
 from types import ModuleType
 from typing import Any, Protocol, TypeAlias
@@ -213,13 +212,6 @@ class _Integrals:
             arrays[name] = self._basis.array(name, place)
         return arrays[name]
 
-    def with_functions(self, change: Callable[[Any], Any]) -> _Integrals:
-        """Return the same with its emitted functions changed, for example compiled."""
-        changed = copy(self)
-        changed._place, changed._multiply = change(self._place), change(self._multiply)
-        changed._last = None
-        return changed
-
     def _product(self, name: str, place: Array, arrays: dict[str, Array]) -> Array:
         """Return a matrix that is a product of vectors."""
         if name not in arrays:
@@ -259,11 +251,6 @@ class _Shared:
             table = {n: np.asarray(v) for n, v in zip(self.names, values, strict=True)}
             last = self._last = (theta.copy(), table)
         return last[1]
-
-    def with_functions(self, change: Callable[[Any], Any]) -> _Shared:
-        """Return the same with its emitted function changed, for example compiled."""
-        external = {name: change(given) for name, given in self._external.items()}
-        return _Shared(change(self._function), self.names, self._fixed, external)
 
 
 def _angle_kernels(

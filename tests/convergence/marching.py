@@ -1,12 +1,13 @@
-"""Marching through a forced system with fixed steps of an integrator."""
+"""Marching through a forced system with fixed steps of Gauss collocation."""
 
 from __future__ import annotations
 
 import numpy as np
+from elastolink.runtime.integrators import gauss_maps
 from elastolink.runtime.periodic.equation import equation_of
 
 
-def marched(method, system, speed, steps, turns, *, start=0.0, q=None, slope=None):
+def marched(stages, system, speed, steps, turns, *, start=0.0, q=None, slope=None):
     """Return q ``(steps turns + 1, n)`` at the ends of even steps; from rest by default.
 
     Coefficients repeat with each turn of the crank; ``slope`` is dq/dtheta.
@@ -14,7 +15,7 @@ def marched(method, system, speed, steps, turns, *, start=0.0, q=None, slope=Non
     equation, n = equation_of(system, speed, {}, forcing=True), system.size
     step = 2 * np.pi / steps
     theta = start + step * np.arange(steps)
-    maps = method.maps(lambda angles: equation.generator(angles)[0], theta, step)
+    maps = gauss_maps(stages, lambda angles: equation.generator(angles)[0], theta, step)
     rest = np.zeros(n)
     first = equation.state(start, rest if q is None else q, rest if slope is None else slope)
     states = [np.append(first, 1.0)]

@@ -208,10 +208,6 @@ class _AtState:
     def _batched(self) -> Callable[..., Mapping[str, Array]]:
         return array_function(self.module, self.name)
 
-    def with_functions(self, change: Callable[[ModuleType], ModuleType]) -> _AtState:
-        """Return the same of a changed module, for example a compiled one."""
-        return _AtState(change(self.module), self.name, self.given, self.values)
-
     def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
         """Evaluate at coordinates, more vectors, and time last."""
         *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)

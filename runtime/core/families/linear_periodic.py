@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from ..namespaces import in_numpy_if_foreign
+from ..inputs import as_numpy
 from .spectrum import term_spectrum
 
 if TYPE_CHECKING:
@@ -308,7 +308,7 @@ class LinearPeriodic:
             raise bad(
                 "parameters", unknown, f"some of {sorted(self.parameters)}", "correct the name"
             )
-        changes = {name: in_numpy_if_foreign(value) for name, value in changes.items()}
+        changes = {name: as_numpy(value) for name, value in changes.items()}
         for name, value in changes.items():
             self._within_limits(name, value)
         return self.scales({**self.parameters, **changes})
@@ -358,7 +358,7 @@ class LinearPeriodic:
     def with_parameters(self, **changes: float) -> LinearPeriodic:
         """Return the same system with other parameter values."""
         self.scale_values(**changes)
-        changes = {name: in_numpy_if_foreign(value) for name, value in changes.items()}
+        changes = {name: as_numpy(value) for name, value in changes.items()}
         return replace(
             self,
             parameters={**self.parameters, **changes},
@@ -510,7 +510,7 @@ def _without(arrays: tuple[str, ...], system: LinearPeriodic) -> LinearPeriodic:
 
 def _told(value: ArrayLike) -> str:
     """Return a parameter value as text: a number, or how many from where to where."""
-    values = np.asarray(in_numpy_if_foreign(value), dtype=float)
+    values = np.asarray(as_numpy(value), dtype=float)
     if values.size == 1:
         return repr(float(values.flat[0]))
     if values.size == 0:

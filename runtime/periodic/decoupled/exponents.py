@@ -13,7 +13,7 @@ from ...core.errors import BadInput, bad
 from ...core.families import LinearPeriodic
 from ...core.results import Check, provenance
 from ...core.trigonometric import even_angles
-from ...integrators.gauss_legendre import gauss_maps
+from ...integrators import gauss_maps
 from .. import FloquetMultipliers
 from ..equation import at_geometry
 from ..first_order import CanonicalForm, canonical_form

@@ -1,6 +1,7 @@
 """The command line: what each subcommand prints, draws and returns, and how it refuses."""
 
 import json
+import os
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -484,3 +485,28 @@ def test_stability_as_json_holds_the_verdict(capsys):
     assert found["stable"] is False and found["growth"] > 0
     _, out, _ = run(capsys, "stability", RIG, "--speed", "300 rpm", "--json")
     assert json.loads(out)["stable"] is True
+
+
+def test_one_thread_unless_the_user_says_otherwise_and_the_time_taken(tmp_path):
+    code = (
+        "import os, sys, time\n"
+        "from elastolink.runtime.cli import application\n"
+        "from elastolink.runtime.core import progress\n"
+        "progress._SILENCE = progress._BETWEEN = 0.01\n"
+        "sys.stderr.isatty = lambda: True\n"
+        "assert application.main(['scenes', '--json']) == 0\n"
+        "with progress.time_taken():\n"
+        "    time.sleep(0.5)\n"
+        "print(os.environ.get('OPENBLAS_NUM_THREADS'), os.environ['OMP_NUM_THREADS'])\n"
+    )
+    for given, expected in (({}, "1 1"), ({"OMP_NUM_THREADS": "2"}, "None 2")):
+        environment = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env={**environment, **given},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert done.stdout.splitlines()[-1] == expected
+        assert "0 s" in done.stderr

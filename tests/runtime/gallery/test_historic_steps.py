@@ -1,0 +1,172 @@
+"""The documents' one-step methods: de Vogelaere, Kutta-Merson, Newmark."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.gallery.historic_steps import (
+    de_vogelaere_maps,
+    de_vogelaere_start,
+    kutta_merson,
+    merson_step,
+    newmark_matrices,
+)
+from elastolink.runtime.gallery.newmark_stability import newmark_limit, newmark_regions
+from elastolink.runtime.integrators import gauss_maps
+from seed_listings import de_vogelaere
+
+START = np.array([0.3, -1.0, 0.7])
+
+
+def wavy(theta):
+    """A smooth 3 x 3 generator without any symmetry."""
+    c, s = np.cos(theta), np.sin(2 * theta)
+    out = np.zeros((len(theta), 3, 3))
+    out[:, 0, 1] = 1.0 + 0.3 * c
+    out[:, 1, 0] = -2.0 + s
+    out[:, 1, 2] = c
+    out[:, 2, 0] = 0.5 * s
+    out[:, 2, 2] = -0.4 + 0.1 * c
+    return out
+
+
+def constant(theta):
+    return np.broadcast_to(wavy(np.array([1.1])), (len(theta), 3, 3))
+
+
+# Kutta-Merson -----------------------------------------------------------------------------------
+
+
+def test_merson_estimate_is_exact_to_leading_order_for_constant_coefficients():
+    ratios = []
+    for step in (0.1, 0.05, 0.025, 0.0125):
+        exact = scipy.linalg.expm(step * constant([0.0])[0]) @ START
+        end, estimate = merson_step(constant, 0.0, step, START)
+        ratios.append(np.linalg.norm(estimate) / np.linalg.norm(end - exact))
+    gaps = np.abs(np.array(ratios) - 1)
+    assert gaps[-1] < 0.01
+    assert np.all(gaps[1:] < 0.6 * gaps[:-1])
+
+
+def test_merson_estimate_exceeds_the_error_for_angle_dependent_coefficients():
+    # The other solution of the pair is then of order three only, so the excess grows as 1/step.
+    ratios, errors = [], []
+    for step in (0.2, 0.1, 0.05, 0.025):
+        exact = gauss_maps(8, wavy, np.array([0.2]), step)[0] @ START
+        end, estimate = merson_step(wavy, 0.2, step, START)
+        errors.append(np.linalg.norm(end - exact))
+        ratios.append(np.linalg.norm(estimate) / errors[-1])
+    assert ratios[0] > 1
+    assert np.all(np.diff(ratios) > 0)
+    # The error of one step is of fifth order.
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 5.0, atol=0.3)
+
+
+def test_kutta_merson_keeps_its_tolerance():
+    theta = np.linspace(0.0, 6.0, 13)
+    exact = [START]
+    for left in theta[:-1]:
+        state = exact[-1]
+        for matrix in gauss_maps(8, wavy, left + 0.05 * np.arange(10), 0.05):
+            state = matrix @ state
+        exact.append(state)
+    counts = []
+    for rtol in (1e-5, 1e-7, 1e-9):
+        run = kutta_merson(wavy, theta, START, rtol, np.full(3, rtol), first=0.3)
+        assert np.max(np.abs(run.states - np.array(exact))) < 20 * rtol
+        counts.append(run.accepted)
+    # With these coefficients the estimate is of fourth order in the step: 100**(1/4) = 3.16.
+    assert 2.8 < counts[2] / counts[1] < 3.4
+
+
+# De Vogelaere -----------------------------------------------------------------------------------
+
+
+def hill(theta):
+    """P of a forced Hill equation; its second component stays 1."""
+    out = np.zeros((len(theta), 2, 2))
+    out[:, 0, 0] = -30.0 * (1 + 0.3 * np.cos(theta))
+    out[:, 0, 1] = 0.2 * np.sin(theta)
+    return out
+
+
+def march(generator, x0, h, steps, y0, z0):
+    states = [de_vogelaere_start(generator, x0, h, np.array([y0, 1.0]), np.array([z0, 0.0]))]
+    for matrix in de_vogelaere_maps(generator, x0 + 2 * h * np.arange(steps), h):
+        states.append(matrix @ states[-1])
+    return np.array(states)[:, 0]
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.1, 0.0), (0.0, 0.0, 0.4), (0.7, 0.05, -0.2)])
+def test_de_vogelaere_equals_the_recurrence_of_the_listing(start):
+    h = np.radians(0.5)
+
+    def force(theta, y):
+        return -30.0 * (1 + 0.3 * np.cos(theta)) * y + 0.2 * np.sin(theta)
+
+    _, listed = de_vogelaere(force, *start, h, 720, ("slope", "start"))
+    found = march(hill, start[0], h, 720, *start[1:])[1:]
+    np.testing.assert_allclose(found, listed, rtol=0, atol=1e-12 * np.max(np.abs(listed)))
+
+
+def test_de_vogelaere_is_of_fourth_order():
+    ends = [march(hill, 0.3, np.pi / n, n, 0.3, 0.1)[-1] for n in (1024, 2048, 4096, 32768)]
+    errors = np.abs(np.array(ends[:3]) - ends[3])
+    np.testing.assert_allclose(np.log2(errors[:2] / errors[1:]), 4.0, atol=0.1)
+
+
+# Newmark ----------------------------------------------------------------------------------------
+
+
+def growth(phase, damping=0.0, **weights):
+    """Return the largest modulus of a multiplier of a step of one freedom."""
+    one = np.ones((2, 1, 1))
+    rate, force = 2 * damping * phase * one, np.zeros((2, 1))
+    maps, _ = newmark_matrices(one, rate, phase**2 * one, force, 1.0, **weights)
+    return float(np.max(np.abs(np.linalg.eigvals(maps[0]))))
+
+
+@pytest.mark.parametrize(
+    ("gamma", "beta", "limit"),
+    [
+        # Central differences; Fox and Goodwin; linear acceleration: 4/(1 - 4 beta), squared.
+        (0.5, 0.0, 2.0),
+        (0.5, 1.0 / 12.0, 6.0**0.5),
+        (0.5, 1.0 / 6.0, 12.0**0.5),
+        (0.5, 0.25, np.inf),
+        (0.8, 0.4, np.inf),
+        (0.4, 0.25, 0.0),
+    ],
+)
+def test_known_limits(gamma, beta, limit):
+    assert newmark_limit(gamma, beta) == pytest.approx(limit, rel=1e-12)
+
+
+def test_the_limit_is_where_the_steps_begin_to_grow():
+    random = np.random.default_rng(8)
+    for _ in range(100):
+        gamma, beta, damping = random.uniform(0.0, 1.0, 3) * (1.2, 0.5, 0.5)
+        limit = float(newmark_limit(gamma, beta, damping))
+        if np.isinf(limit):
+            assert growth(1e3, damping, gamma=gamma, beta=beta) <= 1.0 + 1e-9
+        else:
+            assert growth(0.999 * limit, damping, gamma=gamma, beta=beta) <= 1.0 + 1e-9
+            assert growth(1.01 * limit, damping, gamma=gamma, beta=beta) > 1.0
+
+
+def test_damping_helps_below_gamma_one_half_and_not_at_one_half():
+    # Without damping no step is short enough; with it some are.
+    assert newmark_limit(0.4, 0.25) == 0.0 < newmark_limit(0.4, 0.25, 0.02)
+    # At gamma = 1/2 the limit does not feel the damping.
+    assert newmark_limit(0.5, 0.0, 0.3) == pytest.approx(2.0, rel=1e-12)
+
+
+def test_the_map_has_four_regions():
+    gamma = np.array([0.4, 0.6, 0.6, 0.6])
+    beta = np.array([0.3, 0.2, 0.301, 0.4])
+    assert newmark_regions(gamma, beta).tolist() == [0, 1, 2, 3]
+
+
+def test_bad_parameters_are_refused():
+    with pytest.raises(BadInput, match="newmark_limit"):
+        newmark_limit(0.5, np.nan)

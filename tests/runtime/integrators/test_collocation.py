@@ -1,0 +1,116 @@
+"""Collocation: coefficients that prove themselves, and single steps."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+from elastolink.runtime.core.errors import SelfCheckFailed
+from elastolink.runtime.integrators import (
+    CollocationTableau,
+    gauss_maps,
+    gauss_tableau,
+    legendre_integrals,
+    radau_tableau,
+)
+
+
+def wavy(theta):
+    """A smooth 3 x 3 generator without any symmetry."""
+    c, s = np.cos(theta), np.sin(2 * theta)
+    out = np.zeros((len(theta), 3, 3))
+    out[:, 0, 1] = 1.0 + 0.3 * c
+    out[:, 1, 0] = -2.0 + s
+    out[:, 1, 2] = c
+    out[:, 2, 0] = 0.5 * s
+    out[:, 2, 2] = -0.4 + 0.1 * c
+    return out
+
+
+@pytest.mark.smoke
+@pytest.mark.parametrize(("family", "less"), [(gauss_tableau, 0), (radau_tableau, 1)])
+@pytest.mark.parametrize("stages", [1, 2, 3, 6, 8, 16, 32])
+def test_coefficients_prove_themselves(family, less, stages):
+    tableau = family(stages)
+    assert tableau.order == 2 * stages - less
+    with pytest.raises(SelfCheckFailed):
+        CollocationTableau(tableau.family, stages, tableau.c, tableau.b, tableau.a + 1e-9)
+
+
+def test_two_stages_are_those_of_the_textbook():
+    root = np.sqrt(3.0) / 6
+    tableau = gauss_tableau(2)
+    np.testing.assert_allclose(tableau.c, [0.5 - root, 0.5 + root], rtol=1e-15)
+    np.testing.assert_allclose(tableau.a, [[0.25, 0.25 - root], [0.25 + root, 0.25]], rtol=1e-14)
+    tableau = radau_tableau(2)
+    np.testing.assert_allclose(tableau.c, [1 / 3, 1.0], rtol=1e-15)
+    np.testing.assert_allclose(tableau.a, [[5 / 12, -1 / 12], [3 / 4, 1 / 4]], rtol=1e-14)
+
+
+def test_integrals_of_legendre_polynomials():
+    x = np.linspace(-1.0, 1.0, 7)
+    polynomials = [np.polynomial.Legendre.basis(k).integ(lbnd=-1.0)(x) for k in range(5)]
+    np.testing.assert_allclose(legendre_integrals(x, 5), np.transpose(polynomials), atol=1e-15)
+
+
+@pytest.mark.parametrize("stages", [6, 7])
+def test_steps_are_exponentials_where_coefficients_are_constant(stages):
+    matrix = wavy(np.array([1.1]))[0]
+
+    def constant(theta):
+        return np.broadcast_to(matrix, (len(theta), 3, 3))
+
+    step = gauss_maps(stages, constant, np.array([0.0]), 0.2)[0]
+    np.testing.assert_allclose(step, scipy.linalg.expm(0.2 * matrix), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("stages", [2, 6])
+def test_a_batch_gives_the_same_steps_as_its_members(stages):
+    theta = np.array([0.0, 0.5, 1.0])
+    maps = gauss_maps(stages, lambda at: np.stack([wavy(at), 2 * wavy(at)]), theta, 0.1)
+    for index, factor in enumerate((1, 2)):
+        alone = gauss_maps(stages, lambda at, f=factor: f * wavy(at), theta, 0.1)
+        np.testing.assert_allclose(maps[index], alone, rtol=1e-14, atol=1e-16)
+
+
+@pytest.mark.parametrize("stages", [2, 6, 8])
+def test_steps_are_symplectic_and_undo_themselves(stages):
+    # y' = J S(theta) y with symmetric S: two freedoms, undamped.
+    rng = np.random.default_rng(3)
+    first, second = (half + half.T for half in rng.standard_normal((2, 4, 4)))
+    unit = np.kron([[0.0, 1.0], [-1.0, 0.0]], np.eye(2))
+
+    def generator(theta):
+        return unit @ (first + np.cos(theta)[:, None, None] * second)
+
+    theta = np.array([0.0, 0.4, 0.8])
+    steps = gauss_maps(stages, generator, theta, 0.4)
+    back = gauss_maps(stages, generator, theta + 0.4, -0.4)
+    size = np.max(np.abs(steps))
+    defect = np.swapaxes(steps, -1, -2) @ unit @ steps - unit
+    assert np.max(np.abs(defect)) < 1e-14 * size**2
+    assert np.max(np.abs(back @ steps - np.eye(4))) < 1e-13 * size**2
+
+
+@pytest.mark.parametrize("stages", [6, 8])
+@pytest.mark.parametrize("phase", [3.0, 3000.0])
+def test_slow_modes_survive_steps_long_beside_a_fast_one(stages, phase):
+    count = 40
+    step = 2 * np.pi / count
+    frequency = phase / step
+
+    def stiff(theta):
+        """A fast and a slow mode, weakly coupled by a term that varies with the angle."""
+        out = np.zeros((len(theta), 4, 4))
+        out[:, 0, 2] = out[:, 1, 3] = 1.0
+        out[:, 2, 0], out[:, 3, 1] = -(frequency**2), -4.0 - np.cos(theta)
+        out[:, 2, 1] = out[:, 3, 0] = 0.5 * np.sin(theta)
+        return out
+
+    theta = step * np.arange(count)
+    state, alone = np.array([0.0, 1.0, 0.0, 0.0]), np.array([1.0, 0.0])
+    slow = gauss_maps(8, lambda at: stiff(at)[:, 1::2, 1::2], theta, step)
+    for matrix, single in zip(gauss_maps(stages, stiff, theta, step), slow, strict=True):
+        state, alone = matrix @ state, single @ alone
+        # The fast mode is not driven beyond the static deflection by the coupling.
+        assert np.max(np.abs(state * [frequency, 1.0, 1.0, 1.0])) < 50.0
+    # The coupling bends the slow mode by its square over the fast stiffness.
+    assert np.max(np.abs(state[1::2] - alone)) < 20.0 * 0.25 / frequency**2 + 2e-4

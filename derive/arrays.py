@@ -45,15 +45,8 @@ class CrankMotion:
     def derivative(self, expression: sp.Expr) -> sp.Expr:
         """Return the total derivative of ``expression`` with respect to the crank angle.
 
-        Parameters
-        ----------
-        expression : Expr
-            In theta, the symbols of the chain and constants.
-
-        Raises
-        ------
-        ValueError
-            If the expression contains a symbol at which the chain ends.
+        ``expression``: in theta, the symbols of the chain and constants. Raises ``ValueError`` if
+        the expression contains a symbol at which the chain ends.
         """
         stuck = sorted(str(s) for s in expression.free_symbols & set(self.chain_ends()))
         if stuck:
@@ -315,18 +308,10 @@ class DiscreteSystem:
     def matrix(self, name: str, modes: int | None = None) -> sp.ImmutableDenseMatrix:
         """Return an array as an explicit matrix, zeros where it is absent.
 
-        Parameters
-        ----------
-        name : str
-            Name of the array.
-        modes : int, optional
-            Number of modes; needed where the arrays are closed in the mode indices.
-
-        Raises
-        ------
-        ValueError
-            If the number of modes is needed and not given, or contradicts the system's own, or the
-            array consists of integrals over shapes that are passed in.
+        ``name``: name of the array; ``modes``: number of modes; needed where the arrays are closed
+        in the mode indices. Raises ``ValueError`` if the number of modes is needed and not given,
+        or contradicts the system's own, or the array consists of integrals over shapes that are
+        passed in.
         """
         size = self.modes if modes is None else modes
         if size is None:

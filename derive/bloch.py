@@ -115,10 +115,7 @@ class Element:
     def put(self, values: Callable[[Letter], Element | None]) -> Element:
         """Return the element with elements in the place of letters.
 
-        Parameters
-        ----------
-        values : callable
-            A letter to what stands for it, or to None where it stays.
+        ``values``: a letter to what stands for it, or to None where it stays.
         """
         total = ZERO
         for word, value in self.terms.items():
@@ -132,10 +129,8 @@ class Element:
     def solved_for(self, letter: Letter) -> Element:
         """Return what a letter has to be for the element to vanish.
 
-        Raises
-        ------
-        ValueError
-            If the letter does not occur as a word of its own, or occurs in others too.
+        Raises ``ValueError`` if the letter does not occur as a word of its own, or occurs in others
+        too.
         """
         own = self.terms.get((letter,), Fraction(0))
         rest = {word: value for word, value in self.terms.items() if word != (letter,)}
@@ -232,10 +227,7 @@ def recursion(order: int) -> tuple[Step, ...]:
     The part of each equation on the resonant states determines ``h_k``, the rest, inverted by the
     resolvent, determines ``Omega_k``.
 
-    Parameters
-    ----------
-    order : int
-        Highest power, at least 1.
+    ``order``: highest power, at least 1.
     """
     steps = []
     for k in range(1, order + 1):
@@ -346,10 +338,7 @@ class Recursion:
     def only(self, names: tuple[str, ...]) -> Recursion:
         """Return the recursion to some of the orders, by the names of the functions.
 
-        Raises
-        ------
-        ValueError
-            If one is not there.
+        Raises ``ValueError`` if one is not there.
         """
         known = {function_name(order): order for order in self.orders}
         unknown = sorted(set(names) - set(known))
@@ -380,10 +369,7 @@ def _whole(value: Any) -> int:
 def assignments(order: int) -> tuple[Assignment, ...]:
     """Return the recursion up to an order as assignments, in order of evaluation.
 
-    Raises
-    ------
-    ValueError
-        If the derived words are not of the form that the algebra serves.
+    Raises ``ValueError`` if the derived words are not of the form that the algebra serves.
     """
     found: list[Assignment] = []
     for step in recursion(order):

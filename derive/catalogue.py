@@ -46,30 +46,19 @@ class CatalogueEntry:
         return tuple(_MODELS / name for name in self.sources)
 
 
-def _forces(mechanism: str, *more: str) -> CatalogueEntry:
-    """Return the entry of a rigid linkage's forces."""
+def _rigid(mechanism: str, formulation: str, part: str, *drop: str) -> CatalogueEntry:
+    """Return the entry of a rigid linkage's forces, or of its redundant coordinates."""
     return CatalogueEntry(
         mechanism=mechanism,
-        formulations=("forces",),
-        module=f".models.{mechanism}_forces",
-        sources=(f"{mechanism}.py", f"{mechanism}_forces.py", *more),
-        specs=(ModelSpec(mechanism, "forces"),),
-        choices=Choices(drop=("across", "crank_acceleration")),
+        formulations=(formulation,),
+        module=f".models.{mechanism}_forces{part}",
+        sources=(f"{mechanism}.py", f"{mechanism}_forces.py"),
+        specs=(ModelSpec(mechanism, formulation),),
+        choices=Choices(drop=("across", *drop)),
     )
 
 
-def _multibody(mechanism: str, *more: str) -> CatalogueEntry:
-    """Return the entry of a rigid linkage in redundant coordinates."""
-    return CatalogueEntry(
-        mechanism=mechanism,
-        formulations=("multibody",),
-        module=f".models.{mechanism}_forces:MULTIBODY",
-        sources=(f"{mechanism}.py", f"{mechanism}_forces.py", *more),
-        specs=(ModelSpec(mechanism, "multibody"),),
-        choices=Choices(drop=("across", "drive")),
-    )
-
-
+_LINKAGES = ("four_bar", "slider_crank", "quick_return")
 _BEAMS = ("cubic", "internal_node", "curvature", "timoshenko")
 _COUPLER = ("complete", "printed", "reduced")
 
@@ -196,17 +185,12 @@ CATALOGUE = (
             "overhang_ends.py",
             "overhang_integrals.py",
             "overhang_modes.py",
-            "overhang_problem.py",
             "overhang_waves.py",
         ),
         specs=(ModelSpec("quick_return", "overhang_modes"),),
     ),
-    _forces("four_bar", "four_bar_vectors.py"),
-    _forces("slider_crank"),
-    _forces("quick_return"),
-    _multibody("four_bar", "four_bar_vectors.py"),
-    _multibody("slider_crank"),
-    _multibody("quick_return"),
+    *(_rigid(name, "forces", "", "crank_acceleration") for name in _LINKAGES),
+    *(_rigid(name, "multibody", ":MULTIBODY", "drive") for name in _LINKAGES),
     CatalogueEntry(
         mechanism="hill",
         formulations=("plain",),
@@ -234,10 +218,7 @@ CATALOGUE = (
 def find(spec: ModelSpec) -> CatalogueEntry:
     """Return the entry that derives ``spec``.
 
-    Raises
-    ------
-    LookupError
-        If no packaged model does; the message lists what there is.
+    Raises ``LookupError`` if no packaged model does; the message lists what there is.
     """
     for entry in CATALOGUE:
         if entry.mechanism == spec.mechanism and spec.formulation in entry.formulations:

@@ -28,19 +28,9 @@ class TemplateKeys(KeyError):  # noqa: N818 - reads as what it is
 def emit(module: ModuleSpec, content: str) -> str:
     """Return the text of an emitted module.
 
-    Parameters
-    ----------
-    module : ModuleSpec
-        What the module consists of.
-    content : str
-        Content hash, shown in the header.
-
-    Raises
-    ------
-    TemplateKeys
-        If the template uses a key that is not supplied, or the reverse.
-    ValueError
-        If one name stands for two quantities.
+    ``module``: what the module consists of; ``content``: content hash, shown in the header. Raises
+    ``TemplateKeys`` if the template uses a key that is not supplied, or the reverse; ``ValueError``
+    if one name stands for two quantities.
     """
     keys = _keys(module, content)
     environment = jinja2.Environment(

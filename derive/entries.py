@@ -42,10 +42,7 @@ class MatrixForm:
     def only(self, names: Iterable[str]) -> MatrixForm:
         """Return the form with some of its arrays.
 
-        Raises
-        ------
-        ValueError
-            If one is not there.
+        Raises ``ValueError`` if one is not there.
         """
         return replace(self, arrays=chosen_outputs(self.arrays, names))
 
@@ -124,10 +121,7 @@ def lower_constrained(
 ) -> ModuleSpec:
     """Return the module of a constrained system: ``constraints``, ``dynamics``, ``variations``.
 
-    Raises
-    ------
-    ValueError
-        If an open function is applied to more than one argument.
+    Raises ``ValueError`` if an open function is applied to more than one argument.
     """
     e, v, modes = system.equations, system.variations, system.modes
     outer = {argument.name: argument for argument in description.arguments}

@@ -40,15 +40,9 @@ class ExternalValues:
 def external_values(forms: Iterable[sp.Basic]) -> ExternalValues:
     """Name the values and derivatives of all open functions in expressions or matrices.
 
-    Parameters
-    ----------
-    forms : iterable of Expr or Matrix
-        With applied undefined functions of one argument each, as differentiation leaves them.
-
-    Raises
-    ------
-    ValueError
-        If a function has several arguments, or is applied to different ones.
+    ``forms``: with applied undefined functions of one argument each, as differentiation leaves
+    them. Raises ``ValueError`` if a function has several arguments, or is applied to different
+    ones.
     """
     table: dict[sp.Expr, sp.Symbol] = {}
     arguments: dict[str, sp.Expr] = {}

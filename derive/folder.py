@@ -25,23 +25,10 @@ def update(
 ) -> None:
     """Derive and write what is not current, and say so.
 
-    Parameters
-    ----------
-    folder : Path
-        Made where it does not exist.
-    jobs : sequence of Job
-        What the folder shall hold.
-    processes : int
-        How many modules are derived at a time.
-    whole : bool
-        True where the folder shall hold nothing else: the rest is removed.
-    force : bool
-        Derive also what is current.
-
-    Raises
-    ------
-    UsageError
-        If the folder cannot be written, or a model refuses its spec.
+    ``folder``: made where it does not exist; ``jobs``: what the folder shall hold; ``processes``:
+    how many modules are derived at a time; ``whole``: true where the folder shall hold nothing
+    else: the rest is removed; ``force``: derive also what is current. Raises ``UsageError`` if the
+    folder cannot be written, or a model refuses its spec.
     """
     entries = read_manifest(folder)
     stale = [
@@ -69,18 +56,9 @@ def update(
 def check(folder: Path, jobs: Sequence[Job], processes: int, *, whole: bool) -> int:
     """Derive everything anew, compare byte for byte, and print unified diffs.
 
-    Parameters
-    ----------
-    folder, jobs, processes
-        As for :func:`update`.
-    whole : bool
-        True where the folder shall hold nothing else: a stale file differs from no file, and the
-        manifest is compared, too.
-
-    Returns
-    -------
-    int
-        Number of files that differ, are missing, or are stale.
+    ``folder``, ``jobs``, ``processes``: as for :func:`update`; ``whole``: true where the folder
+    shall hold nothing else: a stale file differs from no file, and the manifest is compared, too.
+    Result: number of files that differ, are missing, or are stale.
     """
     expected: dict[str, str] = {}
     entries: dict[str, Entry] = {}

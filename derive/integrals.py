@@ -297,19 +297,9 @@ def mode_integral(
 ) -> IndexedEntry:
     """Integrate a product of two modes for all mode numbers: equal and different ones apart.
 
-    Parameters
-    ----------
-    integrand : Expr
-        In x and the integer symbols m (row) and n (column).
-    x, m, n : Symbol
-        Variable and mode numbers; m and n must be declared integer.
-    lower, upper : Expr
-        Limits.
-
-    Raises
-    ------
-    UnknownIntegrand
-        As for :func:`definite`.
+    ``integrand``: in x and the integer symbols m (row) and n (column); ``x``, ``m``, ``n``:
+    variable and mode numbers; m and n must be declared integer; ``lower``, ``upper``: limits.
+    Raises ``UnknownIntegrand`` as for :func:`definite`.
     """
     _require_integers(m, n)
     integrand = sp.sympify(integrand)
@@ -330,10 +320,7 @@ def mode_vector(
 ) -> IndexedVector:
     """Integrate an expression with one mode in it, for all mode numbers.
 
-    Raises
-    ------
-    UnknownIntegrand
-        As for :func:`definite`.
+    Raises ``UnknownIntegrand`` as for :func:`definite`.
     """
     _require_integers(m)
     return IndexedVector(definite(integrand, x, lower, upper), m)

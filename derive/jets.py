@@ -125,14 +125,8 @@ class JetSpace:
 def order_part(expression: sp.Expr, orders: Mapping[sp.Expr, int], power: int) -> sp.Expr:
     """Return the part of an expression that is of one power of the small parameter.
 
-    Parameters
-    ----------
-    expression : Expr
-        In fields, their derivatives and anything else.
-    orders : mapping
-        Field to its power of the small parameter (0 for a field that is not small).
-    power : int
-        Which power is wanted.
+    ``expression``: in fields, their derivatives and anything else; ``orders``: field to its power
+    of the small parameter (0 for a field that is not small); ``power``: which power is wanted.
     """
     expression = sp.sympify(expression)
     if not orders:
@@ -176,17 +170,8 @@ def _entered(expression: sp.Expr, field: sp.Expr) -> tuple[sp.Expr, dict[sp.Symb
 def linear_jets(expression: sp.Expr, field: sp.Expr) -> tuple[Flux, sp.Expr]:
     """Split an expression that is linear in one field.
 
-    Returns
-    -------
-    coefficients : dict
-        Coefficient of ``d^(k+j) field / dx^k dt^j`` by ``(k, j)``.
-    rest : Expr
-        What is free of the field.
-
-    Raises
-    ------
-    ValueError
-        If the expression is not linear in the field.
+    Returns ``coefficients``: coefficient of ``d^(k+j) field / dx^k dt^j`` by ``(k, j)``; ``rest``:
+    what is free of the field. Raises ``ValueError`` if the expression is not linear in the field.
     """
     entered, present = _entered(expression, field)
     rest = entered.xreplace(dict.fromkeys(present, sp.S.Zero))
@@ -203,18 +188,9 @@ def quadratic_jets(
 ) -> tuple[dict[tuple[Order, Order], sp.Expr], Flux]:
     """Split an expression that is at most quadratic in one field.
 
-    Returns
-    -------
-    quadratic : dict
-        Second derivative of the expression with respect to two jets, by their orders; both
-        orders of a pair are listed.
-    linear : dict
-        Coefficients of the linear terms by ``(k, j)``.
-
-    Raises
-    ------
-    ValueError
-        If the expression is not a polynomial of second degree in the field.
+    Returns ``quadratic``: second derivative of the expression with respect to two jets, by their
+    orders; both orders of a pair are listed; ``linear``: coefficients of the linear terms by ``(k,
+    j)``. Raises ``ValueError`` if the expression is not a polynomial of second degree in the field.
     """
     entered, present = _entered(expression, field)
     at_rest = dict.fromkeys(present, sp.S.Zero)

@@ -56,10 +56,7 @@ class Job:
     def model(self) -> Model:
         """Import what derives it; from here on SymPy is needed.
 
-        Raises
-        ------
-        UsageError
-            If a user's file cannot be imported or defines no model.
+        Raises ``UsageError`` if a user's file cannot be imported or defines no model.
         """
         if self.module.startswith("."):
             file, _, name = self.module.partition(":")
@@ -71,10 +68,8 @@ class Job:
     def text(self) -> str:
         """Run the whole pipeline.
 
-        Raises
-        ------
-        UsageError
-            If the model refuses the spec, or cannot be brought into its family's form.
+        Raises ``UsageError`` if the model refuses the spec, or cannot be brought into its family's
+        form.
         """
         from .emission import TemplateKeys
         from .lowering import CannotPrint
@@ -93,21 +88,10 @@ def jobs_of(
 ) -> list[Job]:
     """Return what was asked for, each spec once, in one order.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of modules as ``--list`` prints them.
-    scenes : sequence of str
-        Scene files, for their ``[model]`` tables.
-    texts : sequence of str
-        ``[model]`` tables as JSON.
-    model : str, optional
-        A user's model file; without it the packaged models are meant.
-
-    Raises
-    ------
-    UsageError
-        If one of them does not exist or makes no sense.
+    ``names``: names of modules as ``--list`` prints them; ``scenes``: scene files, for their
+    ``[model]`` tables; ``texts``: ``[model]`` tables as JSON; ``model``: a user's model file;
+    without it the packaged models are meant. Raises ``UsageError`` if one of them does not exist or
+    makes no sense.
     """
     specs = [_spec_of_scene(Path(file)) for file in scenes]
     specs += [_spec_of_text(text) for text in texts]

@@ -308,10 +308,7 @@ class _Arrays:
     def refuse_lost(self) -> None:
         """Refuse what the arrays cannot hold.
 
-        Raises
-        ------
-        NotRepresentable
-            With the terms that are left over.
+        Raises ``NotRepresentable`` with the terms that are left over.
         """
         for what, lost in self._lost.items():
             if (left := sp.expand(sp.Add(*lost))) != 0:

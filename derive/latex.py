@@ -92,21 +92,9 @@ def _name(name: str) -> str:
 def latex_document(models: Sequence[tuple[ModelSpec, Model]]) -> str:
     """Return the equations of motion of models as one complete LaTeX document.
 
-    Parameters
-    ----------
-    models : sequence of (ModelSpec, Model)
-        Each model is derived and set as one section: energies, field equations, natural and jump
-        conditions, and the projected arrays.
-
-    Returns
-    -------
-    str
-        Needs the packages amsmath and geometry alone; the same on every run.
-
-    Raises
-    ------
-    ValueError
-        If a model refuses its spec.
+    ``models``: each model is derived and set as one section: energies, field equations, natural and
+    jump conditions, and the projected arrays. Result: needs the packages amsmath and geometry
+    alone; the same on every run. Raises ``ValueError`` if a model refuses its spec.
     """
     sections = ["".join(_section(spec, model)) for spec, model in models]
     return _HEAD + "\n".join(sections) + "\\end{document}\n"

@@ -36,18 +36,9 @@ class CannotPrint(TypeError):  # noqa: N818 - reads as what it is
 def to_line(expression: sp.Expr, scalars: Iterable[sp.Symbol] = ()) -> str:
     """Return one expression as Python source, with functions taken from the namespace ``xp``.
 
-    Parameters
-    ----------
-    expression : Expr
-        What to print.
-    scalars : iterable of Symbol
-        Symbols that stand for single numbers.  They come first in each product, so that they are
-        multiplied with each other before they meet an array.
-
-    Raises
-    ------
-    CannotPrint
-        If the expression has no form in an emitted module.
+    ``expression``: what to print; ``scalars``: symbols that stand for single numbers. They come
+    first in each product, so that they are multiplied with each other before they meet an array.
+    Raises ``CannotPrint`` if the expression has no form in an emitted module.
     """
     return _Printer(frozenset(scalars)).line(sp.sympify(expression))[0]
 
@@ -253,21 +244,10 @@ def lower_kernel(
     Steps that no output needs are pruned; one canonical common-subexpression elimination runs
     over all that is left; each statement stands as late as its first use allows.
 
-    Parameters
-    ----------
-    name, summary : str
-        Name of the emitted function and first line of its docstring.
-    arguments : sequence of Argument
-        Inputs, in order.
-    steps : Steps
-        Intermediate quantities.
-    outputs : sequence of (Result, Expr)
-        Returned quantities.
-
-    Raises
-    ------
-    CannotPrint
-        If a symbol is neither an argument nor a step, or an expression has no emitted form.
+    ``name``, ``summary``: name of the emitted function and first line of its docstring;
+    ``arguments``: inputs, in order; ``steps``: intermediate quantities; ``outputs``: returned
+    quantities. Raises ``CannotPrint`` if a symbol is neither an argument nor a step, or an
+    expression has no emitted form.
     """
     finals = [sp.sympify(expression) for _, expression in outputs]
     kept, finals = _without_trivial(steps.needed(finals), finals)
@@ -517,19 +497,8 @@ def fold_scalars(
 ) -> tuple[Steps, list[sp.Expr]]:
     """Name every product and sum of single numbers that stands beside an array.
 
-    Parameters
-    ----------
-    steps : Steps
-        Intermediate quantities.
-    outputs : sequence of Expr
-        What is returned.
-    scalars : iterable of str
-        Names of the arguments that are single numbers.
-
-    Returns
-    -------
-    steps, outputs
-        With further steps, in numbers alone.
+    ``steps``: intermediate quantities; ``outputs``: what is returned; ``scalars``: names of the
+    arguments that are single numbers. Result: with further steps, in numbers alone.
     """
     folding = _Folding(set(scalars))
     found: list[Step] = []

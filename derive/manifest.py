@@ -45,12 +45,8 @@ def _shared_sources() -> str:
 def content_hash(spec: ModelSpec, sources: Iterable[Path]) -> str:
     """Return the hash of all that an emitted module depends on.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        The model.
-    sources : iterable of Path
-        Files that derive this model, beside those that serve every model.
+    ``spec``: the model; ``sources``: files that derive this model, beside those that serve every
+    model.
     """
     digest = hashlib.sha256(_shared_sources().encode())
     digest.update(spec.canonical().encode())

@@ -93,25 +93,10 @@ def closed_in_modes(
 ) -> tuple[EquationsOfMotion, VariationalEquations, Steps]:
     """Return the equations for any number of modes.
 
-    Parameters
-    ----------
-    modes : Modes
-        What bears an index for each mode; the amplitudes are the last coordinates.
-    one, two : tuple
-        The equations of one and of two modes, with variations.
-
-    Returns
-    -------
-    equations, variations
-        With one coordinate for all the modes.  A row or column of it holds vectors, its diagonal
-        block a sum of numbers times matrices.
-    steps : Steps
-        Sums over the modes, and products with matrices.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If an entry is no such sum, or two modes say something else.
+    ``modes``: what bears an index for each mode; the amplitudes are the last coordinates; ``one``,
+    ``two``: the equations of one and of two modes, with variations. Result: with one coordinate for
+    all the modes. A row or column of it holds vectors, its diagonal block a sum of numbers times
+    matrices; ``steps``: sums over the modes, and products with matrices.
     """
     closing = _Closing(modes)
     equations, variations = (

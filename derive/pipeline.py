@@ -94,14 +94,8 @@ class Model:
 def module_text(spec: ModelSpec, model: Model, content: str) -> str:
     """Derive, lower and emit one module: the whole pipeline.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        What is wanted.
-    model : Model
-        How its energies are written down.
-    content : str
-        Content hash for the header.
+    ``spec``: what is wanted; ``model``: how its energies are written down; ``content``: content
+    hash for the header.
     """
     energies = model.energies(spec)
     equations = equations_of_motion(energies)
@@ -122,10 +116,7 @@ def equations_of_motion(energies: Energies) -> Equations:
 def only_wanted(spec: ModelSpec, system: System) -> System:
     """Drop what the spec does not ask for: the forcing of a stability-only module, idle outputs.
 
-    Raises
-    ------
-    ValueError
-        If the spec asks for something that does not exist.
+    Raises ``ValueError`` if the spec asks for something that does not exist.
     """
     if not spec.outputs:
         return system

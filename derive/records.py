@@ -261,10 +261,8 @@ class FieldEquations:
     def condition(self, position: sp.Expr, field_: sp.Expr, order: int) -> sp.Expr:
         """Return the natural condition of one kind.
 
-        Raises
-        ------
-        KeyError
-            If there is no such condition (the value is prescribed, or does not occur).
+        Raises ``KeyError`` if there is no such condition (the value is prescribed, or does not
+        occur).
         """
         for item in self.natural:
             if (item.position, item.field, item.order) == (sp.sympify(position), field_, order):

@@ -48,22 +48,11 @@ def bernstein_in_cosine(
     values have one sign, nothing cancels, however close the factor comes to zero; and the end
     values factor into differences of lengths, which are computed to the last digit.
 
-    Parameters
-    ----------
-    expression : Expr
-        Polynomial in ``cosine``; it is factored first, each factor must be linear in it.
-    cosine : Symbol
-        Stands for ``cos x``.
-    cos_half_squared, sin_half_squared : Expr
-        Symbols or expressions for ``cos^2(x/2)`` and ``sin^2(x/2)``.
-    sums : mapping, optional
-        Symbols by sums and differences that are formed first, for example ``a: (s + d) / 2``; the
-        end values are written in these, so that three lengths never meet in an order of chance.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If a factor is not linear in the cosine.
+    ``expression``: polynomial in ``cosine``; it is factored first, each factor must be linear in
+    it; ``cosine``: stands for ``cos x``; ``cos_half_squared``, ``sin_half_squared``: symbols or
+    expressions for ``cos^2(x/2)`` and ``sin^2(x/2)``; ``sums``: symbols by sums and differences
+    that are formed first, for example ``a: (s + d) / 2``; the end values are written in these, so
+    that three lengths never meet in an order of chance.
     """
     constant, factors = sp.factor_list(expression)
     rewritten = constant
@@ -88,22 +77,9 @@ def solve_cosine_sine(
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """Solve ``a cos x + b sin x = c`` for ``(cos x, sin x)``.
 
-    Parameters
-    ----------
-    a, b, c : Expr
-        Coefficients.
-    root : Expr
-        Symbol for the signed square root of the discriminant.
-
-    Returns
-    -------
-    cos, sin, discriminant : Expr
-        ``discriminant = a^2 + b^2 - c^2`` is the square of ``root``.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If the solution does not satisfy the equation or the unit circle.
+    ``a``, ``b``, ``c``: coefficients; ``root``: symbol for the signed square root of the
+    discriminant. Returns ``cos, sin, discriminant``: ``discriminant = a^2 + b^2 - c^2`` is the
+    square of ``root``.
     """
     square = a**2 + b**2
     cos = (a * c - b * root) / square
@@ -127,21 +103,9 @@ def root_of_parts(
     Where a and b nearly agree, an error moves digits from one to the other and should leave the
     product alone; computed apart they do not know of each other.  Divided by their sum they do.
 
-    Parameters
-    ----------
-    parts : tuple of Expr
-        a and b; their sum is to be free of what they vary with.
-    names : tuple of Symbol
-        Symbols that stand for a and b.
-    root : Symbol
-        Stands for ``sqrt(a b)`` from the computed values.
-    product : Expr
-        What a b must expand to.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If a b is not the product.
+    ``parts``: a and b; their sum is to be free of what they vary with; ``names``: symbols that
+    stand for a and b; ``root``: stands for ``sqrt(a b)`` from the computed values; ``product``:
+    what a b must expand to.
     """
     first, second = parts
     if sp.expand(first * second - product) != 0:

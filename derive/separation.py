@@ -277,19 +277,9 @@ def lower_linear_periodic(
 ) -> ModuleSpec:
     """Return the module of a linear-periodic system: stages as functions, terms as a table.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        The model.
-    staged : StagedSystem
-        Arrays and the closed forms that they need.
-    description : Description
-        Words, units and arguments.
-
-    Raises
-    ------
-    NotSeparable
-        If an array is not a sum of products of parameters, functions of angle and modal arrays.
+    ``spec``: the model; ``staged``: arrays and the closed forms that they need; ``description``:
+    words, units and arguments. Raises ``NotSeparable`` if an array is not a sum of products of
+    parameters, functions of angle and modal arrays.
     """
     stages = _Stages.of(staged, ())
     scale_name: _Names[Any] = _Names("", stages.parameters)
@@ -440,10 +430,7 @@ def _numbers(matrix: sp.ImmutableDenseMatrix, *, column: bool) -> tuple[Any, ...
 def _basis_table(factors: Iterable[BasisFactor]) -> tuple[Table, ...]:
     """Return the definitions of all integrals that the terms and their products need, once each.
 
-    Raises
-    ------
-    ValueError
-        If two different integrals bear one name.
+    Raises ``ValueError`` if two different integrals bear one name.
     """
     found: dict[str, tuple[object, ...]] = {}
     for integral in _integrals(factors):
@@ -485,16 +472,8 @@ def _basis_kernels(
 ) -> tuple[Kernel, ...]:
     """Return the function that gives the place xi, and the one that gives products of vectors.
 
-    Parameters
-    ----------
-    factors : iterable of BasisIntegral or BasisProduct
-        What the terms need.
-    place : Symbol
-        The step that is xi.
-    steps : Steps
-        Closed forms of what follows the crank.
-    description : Description
-        Words of the arguments.
+    ``factors``: what the terms need; ``place``: the step that is xi; ``steps``: closed forms of
+    what follows the crank; ``description``: words of the arguments.
     """
     used = {place.name}.union(*({s.name for s in v.free_symbols} for _, v in _chain(place, steps)))
     arguments = [a for a in description.arguments if a.name in used]

@@ -47,10 +47,7 @@ def series_terms(expression: sp.Expr, variable: sp.Symbol) -> Iterator[tuple[int
     The parts ``c variable^n exp(a variable)`` of the expression go on by ``a / k`` from term to
     term, in the field of their coefficients.
 
-    Parameters
-    ----------
-    expression, variable
-        As for :func:`taylor`.
+    ``expression``, ``variable``: as for :func:`taylor`.
     """
     terms = sp.Add.make_args(sp.expand(sp.sympify(expression).rewrite(sp.exp)))
     parts = [_part(term, variable) for term in terms if term != 0]

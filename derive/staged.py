@@ -60,10 +60,7 @@ class Steps:
 def vanishing(terms: Mapping[str, Iterable[str]]) -> dict[tuple[str, ...], tuple[str, ...]]:
     """Return what vanishes where some of the terms are dropped, by each choice of them.
 
-    Parameters
-    ----------
-    terms : mapping
-        Term to the names of arguments, numbers or multipliers that vanish without it.
+    ``terms``: term to the names of arguments, numbers or multipliers that vanish without it.
     """
     return {
         chosen: tuple(name for term in chosen for name in terms[term])
@@ -77,10 +74,7 @@ def chosen_outputs(
 ) -> tuple[tuple[str, Output], ...]:
     """Return those outputs that are named, in their own order.
 
-    Raises
-    ------
-    ValueError
-        If one is not there.
+    Raises ``ValueError`` if one is not there.
     """
     chosen, known = set(names), [name for name, _ in outputs]
     unknown = sorted(chosen - set(known))
@@ -110,10 +104,7 @@ class ClosedForm:
     def only(self, names: Iterable[str]) -> ClosedForm:
         """Return the closed form with some of its outputs, and no step that they do not need.
 
-        Raises
-        ------
-        ValueError
-            If one is not there.
+        Raises ``ValueError`` if one is not there.
         """
         outputs = chosen_outputs(self.outputs, names)
         steps = self.steps.needed(expression for _, expression in outputs)
@@ -147,10 +138,7 @@ class KernelForms:
     def only(self, names: Iterable[str]) -> KernelForms:
         """Return some of the functions.
 
-        Raises
-        ------
-        ValueError
-            If one is not there.
+        Raises ``ValueError`` if one is not there.
         """
         known = [(kernel.name, kernel) for kernel in self.kernels]
         return replace(self, kernels=tuple(k for _, k in chosen_outputs(known, names)))

@@ -85,10 +85,7 @@ def hamilton(action: ActionDensity) -> FieldEquations:
 def drag_by_order(action: ActionDensity, item: sp.Expr) -> list[tuple[int, sp.Expr]]:
     """Return what dissipation works on each varied x derivative of a field: (order, force).
 
-    Raises
-    ------
-    ValueError
-        If the dissipation is no function of first time derivatives.
+    Raises ``ValueError`` if the dissipation is no function of first time derivatives.
     """
     if action.dissipation == 0:
         return []
@@ -263,17 +260,9 @@ def solve_end_value(condition: sp.Expr, unknown: sp.Expr) -> sp.Expr:
 def undeflected_tension(equations: FieldEquations, along: sp.Expr, tension: sp.Expr) -> sp.Expr:
     """Return the tension in an undeflected link, from its slope and the condition at the far end.
 
-    Parameters
-    ----------
-    equations : FieldEquations
-        With the equation of the displacement along the link.
-    along, tension : Expr
-        That displacement, and the multiplier that is the tension.
-
-    Raises
-    ------
-    ValueError
-        If either is not linear in the tension.
+    ``equations``: with the equation of the displacement along the link; ``along``, ``tension``:
+    that displacement, and the multiplier that is the tension. Raises ``ValueError`` if either is
+    not linear in the tension.
     """
     action = equations.action
     x, end, orders = action.x, action.length, action.orders

@@ -9,8 +9,8 @@ Nodal values, the columns: u1, v1, r1, u2, v2, r2; u along the axis and v across
 curvatures; node 3 is the middle.
 
 Cost per evaluation:
-    shapes: 86 operations
-Content hash 16e8412fbb77ae20bafad652ba258d30; derived with SymPy 1.14.0.
+    shapes: 96 operations
+Content hash 35e35539d82aca32da613d04abe20874; derived with SymPy 1.14.0.
 """
 
 __all__ = ["shapes"]
@@ -19,7 +19,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"timoshenko","mechanism":"beam_shapes","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "16e8412fbb77ae20bafad652ba258d30"
+CONTENT = "35e35539d82aca32da613d04abe20874"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {
@@ -65,34 +65,37 @@ def shapes(xi, length, bending_stiffness, shear_stiffness):
     """
     x0 = 1 / length**2
     shear_ratio = x0 * bending_stiffness / shear_stiffness
-    x1 = 2 * xi - 1
-    centred = x1
-    x2 = xi - 1
+    x1 = xi - 1
+    beyond = -x1
     x3 = 1 / length
-    x4 = centred / 2
+    x4 = xi**2
     x5 = 12 * shear_ratio
-    x6 = centred**2
-    x7 = x5 + 1
-    x8 = 1 / x7
-    x9 = x8 * x2
-    x10 = 6 * shear_ratio
-    x11 = x9 * xi
-    x12 = length * x11
-    x13 = x8 * xi
-    x14 = 6 * x8
-    x15 = x14 * x3 * (x6 / 4 - 2 * shear_ratio - 1 / 4)
-    x16 = x10 * centred + x4
-    x17 = x0 * x14
-    x18 = x17 * x1
-    x19 = -3 * xi
-    x20 = 2 * x3 * x8
-    x21 = 3 * xi
-    x22 = 12 * x8 / length**3
-    x23 = 6 * x3 * x11
-    del centred, x1, x11
+    x6 = 3 * xi
+    x7 = (8 * shear_ratio + 1) * x6 * beyond
+    x8 = beyond**2
+    x9 = x5 + 1
+    x11 = 1 / x9
+    x12 = x11 * x1
+    x13 = 6 * shear_ratio
+    x14 = x13 + 1
+    x15 = x12 * xi
+    x16 = length * x15
+    x17 = x11 * xi
+    x18 = 2 * shear_ratio
+    x19 = 6 * x11
+    x20 = x19 * x3 * (-(4 * shear_ratio + 1) * beyond * xi - x18 * x4 - x18 * x8)
+    x21 = 2 * xi
+    x22 = x21 * beyond
+    x23 = x0 * x19
+    x24 = x23 * (x21 - 1)
+    x25 = -3 * xi
+    x26 = 2 * x11 * x3
+    x27 = 12 * x11 / length**3
+    x28 = 6 * x3 * x15
+    del beyond, x21, x15
     return (
-        -x2, xi, -x3, x3, x9 * (x4 - x5 + x6 / 2 - 1), x12 * (xi - x10 - 1),
-        (x4 - x6 / 2 + x7) * x13, x12 * (x10 + xi), x15, x8 * (3 * x6 / 4 - x16 - 1 / 4), -x15,
-        x8 * (x16 + 3 * x6 / 4 - 1 / 4), x18, -x20 * (x10 + x19 + 2), -x18, x20 * (x10 + x21 - 1),
-        x22, x17, -x22, x23, x9 * (-x7 - x19), -x23, x13 * (x21 + x5 - 2),
+        -x1, xi, -x3, x3, x12 * (-x5 * x4 - x7 - x9 * x8), x16 * (xi - x14),
+        (x9 * x4 + x5 * x8 + x7) * x17, x16 * (x13 + xi), x20, x11 * (x14 * x8 - x13 * x4 - x22),
+        -x20, x11 * (x14 * x4 - x13 * x8 - x22), x24, -x26 * (x13 + x25 + 2), -x24,
+        x26 * (x13 + x6 - 1), x27, x23, -x27, x28, x12 * (-x9 - x25), -x28, x17 * (x5 + x6 - 2),
     )

@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash d10145c416d3f8d42dd14b14c0da4286; derived with SymPy 1.14.0.
+Content hash 4f6e9fc44e40817616c884cf6ad672f8; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "d10145c416d3f8d42dd14b14c0da4286"
+CONTENT = "4f6e9fc44e40817616c884cf6ad672f8"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

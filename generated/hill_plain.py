@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 2a9b3a3114ebeac4bc4e1392267c827c; derived with SymPy 1.14.0.
+Content hash c485b68189ec9ecceecb18903020d6a5; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "2a9b3a3114ebeac4bc4e1392267c827c"
+CONTENT = "c485b68189ec9ecceecb18903020d6a5"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

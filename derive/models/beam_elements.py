@@ -49,10 +49,7 @@ turn = sp.Function("turn")(t)
 def beam_action(kind: str) -> ActionDensity:
     """Return the action of a beam in a frame that turns, under axial force and distributed load.
 
-    Parameters
-    ----------
-    kind : str
-        One of ``KINDS``; Timoshenko's beam has shear and rotary inertia, the others have not.
+    ``kind``: one of ``KINDS``; Timoshenko's beam has shear and rotary inertia, the others have not.
     """
     spin, s = turn.diff(t), x / length
     along = u.diff(t) - spin * v
@@ -84,17 +81,8 @@ def beam_action(kind: str) -> ActionDensity:
 def element_system(action: ActionDensity, kind: str) -> DiscreteSystem:
     """Expand an action in the shape functions of an element.
 
-    Parameters
-    ----------
-    action : ActionDensity
-        In the fields of :func:`beam_action`; ``turn`` is the crank angle.
-    kind : str
-        Whose shape functions.
-
-    Returns
-    -------
-    DiscreteSystem
-        Arrays of the linear periodic family, the distributed load in p.
+    ``action``: in the fields of :func:`beam_action`; ``turn`` is the crank angle; ``kind``: whose
+    shape functions. Result: arrays of the linear periodic family, the distributed load in p.
     """
     coordinates = tuple(sp.Function(value.label)(t) for value in nodal_values(kind))
     lagrangian = assumed_shapes(action, coordinates, field_shapes(kind))

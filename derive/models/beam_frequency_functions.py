@@ -49,12 +49,8 @@ def lag(v: sp.Expr) -> sp.Expr:
 def numerators() -> tuple[dict[str, sp.Expr], sp.Expr]:
     """Return the frequency functions of bending over a common divisor, in the whole phase.
 
-    Returns
-    -------
-    numerators : dict
-        By name, in z.
-    divisor : Expr
-        It vanishes at the frequencies of the clamped-clamped beam.
+    Returns ``numerators``: by name, in z; ``divisor``: it vanishes at the frequencies of the
+    clamped-clamped beam.
     """
     even, odd = half_problem(False, 1), half_problem(False, -1)
     divisor = sp.expand(even.divisor * odd.divisor)
@@ -111,13 +107,7 @@ def steps() -> Steps:
 
 
 def scaled(expression: sp.Expr, wave: Wave) -> sp.Expr:
-    """Return ``2 exp(-v)`` times a function linear in sinh v and cosh v, without cancellation.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If terms that cancel at small phases are not one of the differences that keep their digits.
-    """
+    """Return ``2 exp(-v)`` times a function linear in sinh v and cosh v, without cancellation."""
     v = wave.phase
     plain = sp.expand(expression.subs(Z, v if wave is FULL else 2 * v))
     waves = (sp.sin, sp.cos, sp.sinh, sp.cosh)
@@ -155,13 +145,7 @@ def functions() -> dict[str, sp.Expr]:
 
 
 def _prove(form: sp.Expr, original: sp.Expr) -> None:
-    """Raise where a form is not the original.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If it is not.
-    """
+    """Raise where a form is not the original."""
     f, s, c = sp.symbols("f s c", positive=True)  # exp(-z/2), sin z/2, cos z/2
     whole = {
         sp.sin(Z): 2 * s * c,
@@ -188,11 +172,6 @@ def rate_forms() -> dict[str, sp.Expr]:
 
     The shortest combination of the functions and of products of two of them, of the right power
     of z, that is equal.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If there is none.
     """
     above, divisor = numerators()
     waves = (sp.sin(Z), sp.cos(Z), sp.sinh(Z), sp.cosh(Z))
@@ -250,23 +229,10 @@ def nested(
 ) -> tuple[int, sp.Expr]:
     """Return a power series that serves below ``switch``, nested, its numbers rounded once.
 
-    Parameters
-    ----------
-    expression : Expr
-        Entire function.
-    variable : Symbol
-        Its argument.
-    switch : Expr
-        Where it has to be exact to the last digit; so many terms are taken.
-    power : Symbol
-        Stands for the power of the variable by which the series goes.
-
-    Returns
-    -------
-    start : int
-        Power of the variable in front.
-    value : Expr
-        The rest, in ``power``.
+    ``expression``: entire function; ``variable``: its argument; ``switch``: where it has to be
+    exact to the last digit; so many terms are taken; ``power``: stands for the power of the
+    variable by which the series goes. Returns ``start``: power of the variable in front; ``value``:
+    the rest, in ``power``.
     """
     found: list[tuple[int, sp.Expr]] = []
     total = sp.S.Zero
@@ -384,11 +350,6 @@ def bending_poles() -> ClosedForm:
     Its sign changes once in each interval between two whole multiples of pi, but for the first
     one; at the multiples it is that of ``-cos`` there.  The sign is that of the computed divisor:
     count and stiffness change together.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If the divisor is another function.
     """
     divisor = numerators()[1]
     cosine = divisor.coeff(sp.cosh(Z))

@@ -39,12 +39,7 @@ def stretching() -> ActionDensity:
 def wave_numbers(equations: FieldEquations, frequency: sp.Expr) -> tuple[sp.Expr, ...]:
     """Return the exponents of ``exp(rate x)`` that solve the field equation, in a fixed order.
 
-    Parameters
-    ----------
-    equations : FieldEquations
-        Of one field.
-    frequency : Expr
-        Of the harmonic motion.
+    ``equations``: of one field; ``frequency``: of the harmonic motion.
     """
     (field,) = equations.action.fields
     trial = sp.exp(_RATE * X) * sp.cos(_OMEGA * TIME)
@@ -57,14 +52,8 @@ def wave_numbers(equations: FieldEquations, frequency: sp.Expr) -> tuple[sp.Expr
 def end_forces(equations: FieldEquations, frequency: sp.Expr, shape: sp.Expr) -> list[sp.Expr]:
     """Return the generalised forces at the right end that keep up a harmonic motion.
 
-    Parameters
-    ----------
-    equations : FieldEquations
-        Of one field; a force at an end adds to its natural condition.
-    frequency : Expr
-        Of the motion.
-    shape : Expr
-        Function of the place from the middle.
+    ``equations``: of one field; a force at an end adds to its natural condition; ``frequency``: of
+    the motion; ``shape``: function of the place from the middle.
     """
     (field,) = equations.action.fields
     swing = sp.cos(_OMEGA * TIME)
@@ -101,12 +90,7 @@ class HalfProblem:
 def half_problem(axial: bool, parity: int) -> HalfProblem:
     """Solve the boundary value problem of one parity.
 
-    Parameters
-    ----------
-    axial : bool
-        True for the motion along the beam.
-    parity : int
-        1 for even shapes, -1 for odd ones.
+    ``axial``: true for the motion along the beam; ``parity``: 1 for even shapes, -1 for odd ones.
     """
     equations = hamilton(stretching() if axial else bending())
     frequency = B if axial else Z**2

@@ -46,19 +46,8 @@ def _whole_shape(which: int) -> tuple[sp.Expr, sp.Expr]:
 def end_derivative(which: int, end: int, order: int) -> sp.Expr:
     """Return the second or third derivative of a shape at an end: a frequency function.
 
-    Parameters
-    ----------
-    which : int
-        0 for the unit deflection of the right end, 1 for its unit rotation.
-    end : int
-        1 for the right end, -1 for the left one.
-    order : int
-        2 or 3.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If it is none of the functions.
+    ``which``: 0 for the unit deflection of the right end, 1 for its unit rotation; ``end``: 1 for
+    the right end, -1 for the left one; ``order``: 2 or 3.
     """
     above, _ = _whole_shape(which)
     derived = sp.diff(above, MIDDLE, order).subs(MIDDLE, end * HALF)

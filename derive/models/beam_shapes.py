@@ -23,7 +23,7 @@ from ..variational import hamilton
 
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 
-x, t, xi, centred = sp.symbols("x t xi centred", real=True)
+x, t, xi, centred, beyond = sp.symbols("x t xi centred beyond", real=True)
 shear_ratio = sp.Symbol("shear_ratio", real=True, nonnegative=True)
 length, bending, shear = sp.symbols(
     "length bending_stiffness shear_stiffness", real=True, positive=True
@@ -71,16 +71,8 @@ def nodal_values(kind: str) -> tuple[Condition, ...]:
 def field_shapes(kind: str) -> Mapping[sp.Expr, tuple[sp.Expr, ...]]:
     """Return for each field its shape functions of x, one per nodal value.
 
-    Parameters
-    ----------
-    kind : str
-        One of ``KINDS``.
-
-    Returns
-    -------
-    mapping
-        u and v, and for Timoshenko's beam psi, to as many shapes as there are nodal values; these
-        contain ``shear_ratio``.
+    ``kind``: one of ``KINDS``. Result: u and v, and for Timoshenko's beam psi, to as many shapes as
+    there are nodal values; these contain ``shear_ratio``.
     """
     values = nodal_values(kind)
     fields = (u, v, psi) if kind == "timoshenko" else (u, v)
@@ -167,23 +159,36 @@ def _form(spec: ModelSpec) -> MatrixForm:
         entries = (sp.diff(shape, x, order).subs(x, xi * length) for shape in shapes[item])
         arrays.append((name, sp.ImmutableDenseMatrix([[_safe(entry) for entry in entries]])))
     steps = shear_steps() if psi in shapes else Steps()
-    return MatrixForm(tuple(arrays), steps.then((centred, 2 * xi - 1)))
+    return MatrixForm(tuple(arrays), steps.then((centred, 2 * xi - 1), (beyond, 1 - xi)))
 
 
 def _safe(entry: sp.Expr) -> sp.Expr:
     """Return a polynomial in xi in factors that keep their digits.
 
-    Linear factors hold the zeros at nodes.  The others do not vanish at the ends; about the middle
-    their coefficients are smallest.
+    Linear factors hold the zeros at nodes.  Of the others those without shear do not vanish at the
+    ends; about the middle their coefficients are smallest.  With next to no shear they may: then
+    their values at the ends are coefficients of Bernstein's polynomials.
     """
     over, under = sp.fraction(sp.factor(entry))
     constant, factors = sp.factor_list(over, xi)
     kept = [constant / under]
     for factor, power in factors:
         if sp.degree(factor, xi) > 1:
-            factor = sp.expand(factor.subs(xi, (centred + 1) / 2))
+            plain = sp.expand(factor.subs(xi, (centred + 1) / 2))
+            factor = _bernstein(factor) if factor.has(shear_ratio) else plain
         kept.append(factor**power)
     return sp.Mul(*kept)
+
+
+def _bernstein(polynomial: sp.Expr) -> sp.Expr:
+    """Return a polynomial in xi in products of powers of xi and ``beyond = 1 - xi``."""
+    listed = sp.Poly(polynomial, xi).all_coeffs()[::-1]
+    n = len(listed) - 1
+    total = sp.S.Zero
+    for j in range(n + 1):
+        value = sp.Add(*(sp.binomial(n - k, j - k) * listed[k] for k in range(j + 1)))
+        total += sp.factor(value) * xi**j * beyond ** (n - j)
+    return total
 
 
 def _describe(spec: ModelSpec) -> Description:

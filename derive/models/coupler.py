@@ -66,10 +66,7 @@ y, u, tension = (sp.Function(name)(x, t) for name in ("y", "u", "N"))
 def dropped(spec: ModelSpec) -> frozenset[str]:
     """Return the names of the terms that a spec leaves out.
 
-    Raises
-    ------
-    ValueError
-        If the spec names a term that does not exist.
+    Raises ``ValueError`` if the spec names a term that does not exist.
     """
     unknown = sorted(set(spec.drop) - set(TERMS))
     if unknown:
@@ -113,11 +110,8 @@ def pin_force(spec: ModelSpec) -> tuple[sp.Expr, sp.Expr]:
 
     The rigid coupler and follower, joined at C by a constraint whose multipliers are the force.
 
-    Returns
-    -------
-    along, across : Expr
-        In the kinematic symbols of :func:`four_bar.kinematics`, ``theta2_rate`` and
-        ``theta2_acceleration``; tension is positive.
+    Returns ``along, across``: in the kinematic symbols of :func:`four_bar.kinematics`,
+    ``theta2_rate`` and ``theta2_acceleration``; tension is positive.
     """
     without = dropped(spec)
     k = four_bar.kinematics()

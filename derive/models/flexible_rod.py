@@ -57,10 +57,7 @@ v, u, tension = (sp.Function(name)(x, t) for name in ("v", "u", "N"))
 def dropped(spec: ModelSpec) -> frozenset[str]:
     """Return the names of the terms that a spec leaves out.
 
-    Raises
-    ------
-    ValueError
-        If the spec names a term that does not exist.
+    Raises ``ValueError`` if the spec names a term that does not exist.
     """
     unknown = sorted(set(spec.drop) - set(TERMS))
     if unknown:
@@ -144,10 +141,7 @@ def buckens_frame() -> FloatingFrame:
 def frame_part(force: sp.Expr) -> Moments:
     """Return what the frame's rotation adds to the Lagrangian of the tension ``-N v_x^2/2``.
 
-    Parameters
-    ----------
-    force : Expr
-        The tension N(x), which vanishes at the tip.
+    ``force``: the tension N(x), which vanishes at the tip.
     """
     frame_ = buckens_frame()
     turn = sp.Symbol("turn", real=True)

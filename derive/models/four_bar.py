@@ -132,10 +132,7 @@ def kinematics() -> Kinematics:
     The coupler turns by ``theta3`` so that C, a distance ``l3`` from B, lies ``l4`` from D; the
     diagonal from B to D carries all dependence on the crank angle.
 
-    Returns
-    -------
-    Kinematics
-        Steps free of cancellation beyond that of the lengths themselves.
+    Result: steps free of cancellation beyond that of the lengths themselves.
     """
     k = Kinematics.unsolved(_EMITTED)
     lengths = (

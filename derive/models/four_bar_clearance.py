@@ -41,13 +41,7 @@ _COSINE = sp.Symbol("cosine", real=True)
 
 
 def cosine_difference() -> sp.Expr:
-    """Return ``2 BD turning (cos(angle) - cos(other angle))`` by two lengths of the other side.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If it depends on anything but the two lengths, ``r`` and ``r_other``.
-    """
+    """Return ``2 BD turning (cos(angle) - cos(other angle))`` by two lengths of the other side."""
     side, other = sp.symbols("r r_other", positive=True)
     # The closure (Smith 2.1) squared: |BD - turning e|^2 = r^2.
     twice = [_adjacent(length) for length in (side, other)]

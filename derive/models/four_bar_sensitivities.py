@@ -38,20 +38,8 @@ _SPREAD_RATE, _PACE, _PACE_RATE, _PER3, _PER4, _DOUBLE, _LEAN, _LEAN_RATE, _SWAY
 def turns(length: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return the derivatives of theta3 and theta4 by a length, from the closure of the loop.
 
-    Parameters
-    ----------
-    length : Symbol
-        One of the four lengths.
-
-    Returns
-    -------
-    tuple of Expr
-        In the angles ``th2``, ``th3``, ``th4`` and the lengths.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If an unknown is left where it should have dropped out.
+    ``length``: one of the four lengths. Result: in the angles ``th2``, ``th3``, ``th4`` and the
+    lengths.
     """
     links = ((crank, _TH2), (coupler, _TH3), (-follower, _TH4), (-frame, sp.S.Zero))
     # The component of the closure (Smith 2.1) along a fixed direction.

@@ -51,17 +51,9 @@ def end_value() -> sp.Expr:
 def boundary_problem(parity: int) -> tuple[sp.Expr, sp.Expr]:
     """Solve the boundary value problem of one parity.
 
-    Parameters
-    ----------
-    parity : int
-        1 for even modes, -1 for odd ones.
-
-    Returns
-    -------
-    shape : Expr
-        Mode in s and b, with ``psi'' = 0`` at the ends and unit square on a root.
-    characteristic : Expr
-        ``psi'''`` at the end: vanishes on a root.
+    ``parity``: 1 for even modes, -1 for odd ones. Returns ``shape``: mode in s and b, with ``psi''
+    = 0`` at the ends and unit square on a root; ``characteristic``: ``psi'''`` at the end: vanishes
+    on a root.
     """
     factors = sp.symbols("swing rise")
     shape = sum(c * f(_B * MIDDLE) for c, f in zip(factors, _SHAPES[parity], strict=True))
@@ -73,13 +65,7 @@ def boundary_problem(parity: int) -> tuple[sp.Expr, sp.Expr]:
 
 @lru_cache(maxsize=1)
 def characteristic() -> sp.Expr:
-    """Return the characteristic function of all modes, ``cos b - 1 / cosh b`` up to its sign.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If it is not the product of those of either parity but for factors without roots.
-    """
+    """Return the characteristic function of all modes, ``cos b - 1 / cosh b`` up to its sign."""
     both = sp.S.One
     for parity, (swing, rise) in _SHAPES.items():
         scale = swing(_B / 2) * rise(_B / 2) / _B**3
@@ -136,13 +122,7 @@ def stable_shape() -> sp.Expr:
 
 @lru_cache(maxsize=1)
 def verify() -> None:
-    """Verify the stable forms against the boundary value problem.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If one of them is not the same on the roots.
-    """
+    """Verify the stable forms against the boundary value problem."""
     for parity, (swing, rise) in _SHAPES.items():
         shape, closing = boundary_problem(parity)
         ratio = sp.Symbol("ratio")  # tan(b/2) or cot(b/2): the other function over its own
@@ -169,12 +149,7 @@ def verify() -> None:
 def slope_integral(power: int, same: bool) -> sp.Expr:
     """Return ``int s^power psi_i' psi_j' ds`` in roots, parities and end slopes of the modes.
 
-    Parameters
-    ----------
-    power : int
-        0, 1 or 2.
-    same : bool
-        True for i = j.
+    ``power``: 0, 1 or 2; ``same``: true for i = j.
     """
     verify()
     modes = ((ROOT, PARITY), (ROOT, PARITY) if same else (OTHER, OTHER_PARITY))
@@ -213,12 +188,7 @@ def shortening() -> dict[str, sp.Expr]:
 def shortening_number(name: str, same: bool) -> sp.Expr:
     """Return what a product of two modes' slopes adds to the foreshortening.
 
-    Parameters
-    ----------
-    name : str
-        ``inward`` or ``retreat``.
-    same : bool
-        True for a mode with itself.
+    ``name``: ``inward`` or ``retreat``; ``same``: true for a mode with itself.
     """
     slopes = {sp.Symbol(f"w_{power}"): slope_integral(power, same) for power in range(3)}
     value = shortening()[name].subs(slopes)

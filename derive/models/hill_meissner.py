@@ -1,22 +1,116 @@
 """Meissner's equation as emitted closed forms: J_2, J_3, J_4 and the recursion for any J_N.
 
-Safe where a level q = v^2 vanishes or is negative: cosine and cosh are the two branches of one
-entire function of q, and so are sin(v t) / v and sinh; only these are ever formed.
+On an interval of length t where y'' + q y = 0 has constant q = v^2, (y, y') is carried over by
+
+    C + s N,    N = [[0, 1], [-q, 0]],    C = cos v t,  s = sin(v t) / v,
+
+both real for either sign of q: cosine and cosh are the two branches of one entire function of q,
+and so are sin(v t) / v and sinh; only these are ever formed.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import sympy as sp
 
 from ..ir import Argument, Description, Result
 from ..pipeline import Model
-from ..projection import piecewise
+from ..safe import UnsafeRewriting
 from ..spec import ModelSpec
 from ..staged import ClosedForm, KernelForm, KernelForms, Steps
 
 _SHAPE = "ndarray, shape (...)"
 _COUNTS = {2: "two_intervals", 3: "three_intervals", 4: "four_intervals"}
-_BEFORE = piecewise.Parts(
+
+
+def cosine(i: int) -> sp.Symbol:
+    """Return the symbol of C_i (intervals count from 1)."""
+    return sp.Symbol(f"c{i}", real=True)
+
+
+def sine(i: int) -> sp.Symbol:
+    """Return the symbol of ``s_i = S_i / v_i``."""
+    return sp.Symbol(f"s{i}", real=True)
+
+
+def level(i: int) -> sp.Symbol:
+    """Return the symbol of ``q_i = v_i^2``."""
+    return sp.Symbol(f"q{i}", real=True)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A matrix ``[[h + d, upper], [lower, h - d]]`` by its four parts.
+
+    Attributes
+    ----------
+    half_trace, half_difference : Expr
+        h and d: half the sum and half the difference of the diagonal.
+    upper, lower : Expr
+        The entries off the diagonal.
+    """
+
+    half_trace: sp.Expr
+    half_difference: sp.Expr
+    upper: sp.Expr
+    lower: sp.Expr
+
+    @classmethod
+    def of(cls, matrix: sp.Matrix) -> Parts:
+        """Take a matrix apart."""
+        a, b, c, d = (sp.expand(entry) for entry in matrix)
+        return cls(sp.expand((a + d) / 2), sp.expand((a - d) / 2), b, c)
+
+    def matrix(self) -> sp.Matrix:
+        """Put the matrix together."""
+        h, d = self.half_trace, self.half_difference
+        return sp.Matrix([[h + d, self.upper], [self.lower, h - d]])
+
+    def named(self) -> tuple[tuple[str, sp.Expr], ...]:
+        """Return the parts with their names."""
+        return tuple((name, getattr(self, name)) for name in self.__dataclass_fields__)
+
+
+def propagator(i: int) -> sp.Matrix:
+    """Return the matrix of interval i: what (y, y') at its start becomes at its end."""
+    return sp.Matrix([[cosine(i), sine(i)], [-level(i) * sine(i), cosine(i)]])
+
+
+def monodromy(count: int) -> Parts:
+    """Multiply the matrices of ``count`` intervals out, the first one acting first."""
+    product = sp.eye(2)
+    for i in range(1, count + 1):
+        product = (propagator(i) * product).expand()
+    return Parts.of(product)
+
+
+def one_more(before: Parts, i: int) -> Parts:
+    """Return what a further interval makes of a matrix: the recursion for any number of them."""
+    return Parts.of(propagator(i) * before.matrix())
+
+
+def half_turn_matrix() -> sp.Matrix:
+    """Return the matrix over half of a turn that starts in the middle of interval 1 of two.
+
+    The coefficient is even about the middle of either interval, and its half trace factors: with
+    ``[[y1, y2], [y1', y2']]`` over the half turn, ``J_2 = 1 + 2 y1' y2 = 2 y1 y2' - 1``.
+    """
+    half = (propagator(2) * propagator(1)).expand()
+    double: dict[sp.Symbol, sp.Expr] = {}
+    for i in (1, 2):
+        double |= {cosine(i): 1 - 2 * level(i) * sine(i) ** 2, sine(i): 2 * sine(i) * cosine(i)}
+    whole = monodromy(2).half_trace.xreplace(double)
+    first, second = 1 + 2 * half[1, 0] * half[0, 1], 2 * half[0, 0] * half[1, 1] - 1
+    circle = {cosine(i) ** 2: 1 - level(i) * sine(i) ** 2 for i in (1, 2)}
+    for form in (first, second):
+        rest = sp.expand(whole - form).subs(circle)
+        if sp.expand(rest) != 0:
+            raise UnsafeRewriting(f"{form} is not {whole}")
+    return half
+
+
+_BEFORE = Parts(
     *sp.symbols("half_trace_before half_difference_before upper_before lower_before", real=True)
 )
 
@@ -50,13 +144,13 @@ def _interval() -> KernelForm:
 
 def _symbols(count: int) -> tuple[sp.Symbol, ...]:
     """Return the arguments of a closed form of several intervals, interval by interval."""
-    kinds = (piecewise.cosine, piecewise.sine, piecewise.level)
+    kinds = (cosine, sine, level)
     return tuple(kind(i) for i in range(1, count + 1) for kind in kinds)
 
 
 def _closed(count: int) -> KernelForm:
     """Return the parts of the matrix over ``count`` intervals; the half trace is J_N."""
-    parts = piecewise.monodromy(count)
+    parts = monodromy(count)
     outputs = tuple((name, _tidy(value, count)) for name, value in parts.named())
     return KernelForm(
         _COUNTS[count],
@@ -67,7 +161,7 @@ def _closed(count: int) -> KernelForm:
 
 def _tidy(expression: sp.Expr, count: int) -> sp.Expr:
     """Collect the words of a polynomial: one factor before each product of C and s."""
-    letters = [kind(i) for i in range(1, count + 1) for kind in (piecewise.cosine, piecewise.sine)]
+    letters = [kind(i) for i in range(1, count + 1) for kind in (cosine, sine)]
     found = sp.Poly(expression, *letters)
     return sp.Add(
         *(
@@ -78,7 +172,7 @@ def _tidy(expression: sp.Expr, count: int) -> sp.Expr:
 
 
 def _recursion() -> KernelForm:
-    parts = piecewise.one_more(_BEFORE, 1)
+    parts = one_more(_BEFORE, 1)
     names = {_BEFORE.half_trace, _BEFORE.half_difference, _BEFORE.upper, _BEFORE.lower}
     outputs = tuple(
         (name, sp.collect(sp.expand(value), sorted(names, key=str)))
@@ -93,7 +187,7 @@ def _recursion() -> KernelForm:
 
 
 def _halves() -> KernelForm:
-    half = piecewise.halves()
+    half = half_turn_matrix()
     names = ("y1", "y2", "y1_slope", "y2_slope")
     return KernelForm(
         "half_turn",

@@ -140,14 +140,8 @@ RATE = sp.Symbol("rate", real=True)  # of a root, over it: B' / B = 4 rate
 def pair_integral(weight: sp.Expr, row: Factor, column: Factor, ends: tuple[Ends, Ends]) -> sp.Expr:
     """Return an integral over two different modes.
 
-    Parameters
-    ----------
-    weight : Expr
-        Polynomial in eta.
-    row, column : (str, int)
-        Factor of the first mode, and of the second.
-    ends : (Ends, Ends)
-        Of the two modes.
+    ``weight``: polynomial in eta; ``row``, ``column``: factor of the first mode, and of the second;
+    ``ends``: of the two modes.
     """
     form = primitive(sp.sympify(weight), eta, (row[1], column[1]), (_P, _Q))
     kinds = (row[0], column[0])
@@ -207,12 +201,8 @@ def gap_step(ends: tuple[Ends, Ends]) -> tuple[sp.Symbol, sp.Expr]:
 def pair_rate(integral: sp.Expr, ends: tuple[Ends, Ends]) -> sp.Expr:
     """Return the derivative by the support's place of an integral over two modes.
 
-    Parameters
-    ----------
-    integral : Expr
-        As :func:`in_roots` returns it, in values at the support and the constants' difference.
-    ends : (Ends, Ends)
-        Of the two modes.
+    ``integral``: as :func:`in_roots` returns it, in values at the support and the constants'
+    difference; ``ends``: of the two modes.
     """
     total = sp.diff(integral, GAP) * (ends[0].constant_rate - ends[1].constant_rate)
     for mode in ends:
@@ -278,11 +268,6 @@ def square_primitive(square: Square, power: int) -> Mapping[tuple[Square, int], 
     """Return what has ``x^power`` times a product of factors of one mode as its derivative.
 
     At ``B = B' = 1``: the coordinate x is then ``beta eta``, and the drift in units of B' / B.
-
-    Raises
-    ------
-    NoPrimitive
-        If a polynomial of the degree ``power + 3`` in x does not suffice.
     """
     total = square[0][1] + square[1][1] - power
     drifts = _drifts(square)

@@ -128,13 +128,7 @@ SINK = sp.Symbol("sink", real=True)
 
 
 def proven(form: sp.Expr, original: sp.Expr) -> sp.Expr:
-    """Return a form of an expression, having shown that it is equal.
-
-    Raises
-    ------
-    UnsafeRewriting
-        If it is not.
-    """
+    """Return a form of an expression, having shown that it is equal."""
     difference = form - original
     for wave in (RUN, SPAN, REST, HANG):
         difference = wave.elementary(difference)

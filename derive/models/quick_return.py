@@ -95,10 +95,7 @@ _LOOP = (
 def kinematics() -> Kinematics:
     """Solve the loop closure DB = DA + AB for the rod and the block.
 
-    Returns
-    -------
-    Kinematics
-        Steps free of cancellation beyond that of the lengths themselves.
+    Result: steps free of cancellation beyond that of the lengths themselves.
     """
     k = Kinematics.unsolved(_EMITTED)
     start = (

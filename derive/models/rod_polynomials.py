@@ -27,12 +27,8 @@ _Rate = Callable[[sp.Expr], sp.Expr]
 def _six(shape: sp.Expr, along: _Rate, across: _Rate) -> tuple[tuple[str, sp.Expr], ...]:
     """Return a shape with its derivatives along the rod and by the block's place.
 
-    Parameters
-    ----------
-    shape : Expr
-        With one open function.
-    along, across : callable
-        Derivative by eta at fixed xi, and by xi at fixed eta.
+    ``shape``: with one open function; ``along``, ``across``: derivative by eta at fixed xi, and by
+    xi at fixed eta.
     """
     slopes = [shape]
     for _ in range(3):

@@ -106,10 +106,7 @@ _LOOP = (
 def kinematics() -> Kinematics:
     """Solve the loop closure AB + BC = AC for coupler and slider.
 
-    Returns
-    -------
-    Kinematics
-        Steps free of cancellation beyond that of the lengths themselves.
+    Result: steps free of cancellation beyond that of the lengths themselves.
     """
     k = Kinematics.unsolved(_EMITTED)
     start = (

@@ -137,10 +137,7 @@ class _Integrals:
     def along(self, expression: sp.Expr, weight: sp.Expr = sp.S.One) -> sp.Expr:
         """Return the integral of an expression times a weight in the coordinates.
 
-        Raises
-        ------
-        ValueError
-            If the expression is no polynomial in the fields.
+        Raises ``ValueError`` if the expression is no polynomial in the fields.
         """
         space = JetSpace(self._action.fields)
         entered = sp.expand(space.enter(expression))

@@ -312,20 +312,8 @@ def _by_shape(table: dict[sp.Expr, sp.Expr]) -> dict[sp.Expr, sp.Expr]:
 def modal_terms(entry: ArrayEntry) -> tuple[tuple[sp.Expr, ArrayEntry], ...]:
     """Split indexed entries into (factor free of the indices) times (array of the indices alone).
 
-    Parameters
-    ----------
-    entry : IndexedEntry or IndexedVector
-        An array of a projected system.
-
-    Returns
-    -------
-    tuple of (Expr, IndexedEntry or IndexedVector)
-        Their products sum up to the entries; factors that share an array are put together.
-
-    Raises
-    ------
-    TypeError
-        If the entry is an explicit matrix.
+    ``entry``: an array of a projected system. Result: their products sum up to the entries; factors
+    that share an array are put together. Raises ``TypeError`` if the entry is an explicit matrix.
     """
     if isinstance(entry, IndexedVector):
         vector = _by_shape(_by_cofactor(entry.entry, (entry.m,)))

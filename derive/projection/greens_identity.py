@@ -29,26 +29,10 @@ def primitive(
 ) -> Mapping[Place, sp.Expr]:
     """Return the form whose derivative is ``weight`` times derivatives of modes.
 
-    Parameters
-    ----------
-    weight : Expr
-        Polynomial in x.
-    x : Symbol
-        Running coordinate.
-    orders : tuple of int
-        Order of the derivative (0 to 3) of each mode in the product; one or two modes.
-    constants : tuple of Symbol
-        The constant b of each mode; the same symbol twice for the product of a mode with itself.
-
-    Returns
-    -------
-    mapping
-        Orders of the derivatives to their coefficient, a polynomial in x.
-
-    Raises
-    ------
-    NoPrimitive
-        If there is none, which would be an error in here: the result is differentiated again.
+    ``weight``: polynomial in x; ``x``: running coordinate; ``orders``: order of the derivative (0
+    to 3) of each mode in the product; one or two modes; ``constants``: the constant b of each mode;
+    the same symbol twice for the product of a mode with itself. Result: orders of the derivatives
+    to their coefficient, a polynomial in x.
     """
     places = list(product(_JET, repeat=len(orders)))
     same = len(constants) == 2 and constants[0] == constants[1]
@@ -171,16 +155,8 @@ def integral(
 ) -> sp.Expr:
     """Return the difference of a form's end values.
 
-    Parameters
-    ----------
-    form : mapping
-        As :func:`primitive` returns it.
-    x : Symbol
-        Running coordinate.
-    ends : tuple of Expr
-        From where to where.
-    values : callable
-        ``(mode, order, end)`` to the derivative of that order of mode 0 or 1 there.
+    ``form``: as :func:`primitive` returns it; ``x``: running coordinate; ``ends``: from where to
+    where; ``values``: ``(mode, order, end)`` to the derivative of that order of mode 0 or 1 there.
     """
     total = sp.S.Zero
     for sign, end in zip((-1, 1), ends, strict=True):

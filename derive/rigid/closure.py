@@ -35,10 +35,7 @@ class SolvedLoop:
     def unsolved(cls, emitted: Mapping[str, str]) -> Self:
         """Return the symbols without steps, each named as its field.
 
-        Parameters
-        ----------
-        emitted : mapping of str to str
-            Other names, for what the emitted function returns.
+        ``emitted``: other names, for what the emitted function returns.
         """
         names = [item.name for item in fields(cls) if item.name != "steps"]
         made = {name: sp.Symbol(emitted.get(name, name), real=True) for name in names}
@@ -58,16 +55,9 @@ def closure_rates(
 ) -> tuple[list[sp.Expr], list[sp.Expr]]:
     """Differentiate the closure of a loop once and twice by the crank angle.
 
-    Parameters
-    ----------
-    loop : iterable of Expr
-        Components of the sum that vanishes, in functions of t.
-    t : Symbol
-        Stands for the crank angle.
-    rates : mapping
-        Each function to its first and second derivative.
-    names : mapping
-        What else to replace: sines, cosines and places by their symbols.
+    ``loop``: components of the sum that vanishes, in functions of t; ``t``: stands for the crank
+    angle; ``rates``: each function to its first and second derivative; ``names``: what else to
+    replace: sines, cosines and places by their symbols.
     """
     first = {function.diff(t): rate for function, (rate, _) in rates.items()}
     second = {function.diff(t, 2): change for function, (_, change) in rates.items()}

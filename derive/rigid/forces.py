@@ -255,14 +255,8 @@ def rate_symbols(coordinate: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
 def forces(spec: ModelSpec, linkage: PlanarLinkage, motion: SolvedMotion) -> KernelForms:
     """Return the functions of a linkage's forces.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        ``drop`` may name the crank's acceleration and the masses' places across the links.
-    linkage : PlanarLinkage
-        Bodies, joints and drive.
-    motion : SolvedMotion
-        Its kinematics in closed form.
+    ``spec``: ``drop`` may name the crank's acceleration and the masses' places across the links;
+    ``linkage``: bodies, joints and drive; ``motion``: its kinematics in closed form.
     """
     parts = _Forces(spec, linkage, motion)
     drive = (speed,) if parts.steady else (speed, acceleration)
@@ -344,20 +338,9 @@ def description(
 ) -> Description:
     """Return the words of a module of forces.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        What the module is.
-    mechanism : str
-        Its linkage, in words.
-    theta2 : Argument
-        Crank angle.
-    geometry : sequence of Argument
-        Lengths and assembly.
-    references : tuple of str
-        Equations of the documents.
-    sliding : str
-        The pair of links of a sliding joint, if there is one.
+    ``spec``: what the module is; ``mechanism``: its linkage, in words; ``theta2``: crank angle;
+    ``geometry``: lengths and assembly; ``references``: equations of the documents; ``sliding``: the
+    pair of links of a sliding joint, if there is one.
     """
     arguments = [theta2, *_DRIVE, *geometry]
     for words in (MOMENT_WORDS, LOAD_WORDS):

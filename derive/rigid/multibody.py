@@ -43,10 +43,7 @@ def constraints(linkage: PlanarLinkage) -> list[tuple[sp.Symbol, sp.Expr]]:
     Written as place on the second link less place on the first, so that multipliers are what the
     first link does to the second.
 
-    Parameters
-    ----------
-    linkage : PlanarLinkage
-        With free bodies.
+    ``linkage``: with free bodies.
     """
     found = []
     for joint in linkage.joints:
@@ -73,12 +70,8 @@ def _of_slide(linkage: PlanarLinkage, joint: Slide, pair: str) -> list[tuple[sp.
 def lagrangian(spec: ModelSpec, closed: PlanarLinkage) -> Lagrangian:
     """Return energies, constraints and loads of a linkage in redundant coordinates.
 
-    Parameters
-    ----------
-    spec : ModelSpec
-        ``drop`` may name the drive: then its torque is a load, and the crank is free.
-    closed : PlanarLinkage
-        The linkage as its forces use it; its joints and masses are taken.
+    ``spec``: ``drop`` may name the drive: then its torque is a load, and the crank is free;
+    ``closed``: the linkage as its forces use it; its joints and masses are taken.
     """
     linkage = free_bodies(closed)
     energy = sp.Add(*(kinetic_energy(body, linkage.t) for body in linkage.bodies))
@@ -147,14 +140,8 @@ def multibody_model(
 ) -> Model:
     """Return the model of a linkage in redundant coordinates.
 
-    Parameters
-    ----------
-    mechanism, words : str
-        Name for specs, and in words.
-    linkage : callable
-        ModelSpec to the linkage.
-    geometry : sequence of Argument
-        Lengths.
+    ``mechanism``, ``words``: name for specs, and in words; ``linkage``: ModelSpec to the linkage;
+    ``geometry``: lengths.
     """
 
     def energies(spec: ModelSpec) -> Lagrangian:

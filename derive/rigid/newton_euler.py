@@ -15,7 +15,7 @@ from itertools import combinations
 import sympy as sp
 
 from ..staged import Step
-from .planar import FRAME, Joint, PlanarLinkage, Slide, Vector, Wrench, cross
+from .planar import Joint, PlanarLinkage, Slide, Wrench, cross
 
 TORQUE = sp.Symbol("torque", real=True)
 Named = Callable[[sp.Expr], sp.Expr]
@@ -98,24 +98,10 @@ def solve(
 ) -> tuple[Step, ...]:
     """Solve linear equations block by block, the smallest first.
 
-    Parameters
-    ----------
-    equations : sequence of Expr
-        Each to vanish; linear in the unknowns.
-    unknowns : sequence of Symbol
-        As many.
-    divide : callable, optional
-        Determinant of a block to its reciprocal, for example in a name that is already there.
-
-    Returns
-    -------
-    tuple of (Symbol, Expr)
-        Unknowns in the order of their solution, each by those before it.
-
-    Raises
-    ------
-    ValueError
-        If no order exists: the linkage is not statically determinate.
+    ``equations``: each to vanish; linear in the unknowns; ``unknowns``: as many; ``divide``:
+    determinant of a block to its reciprocal, for example in a name that is already there. Result:
+    unknowns in the order of their solution, each by those before it. Raises ``ValueError`` if no
+    order exists: the linkage is not statically determinate.
     """
     reciprocal = divide or (lambda determinant: 1 / determinant)
     left = [sp.expand(equation) for equation in equations]
@@ -150,22 +136,6 @@ def unknowns_of(linkage: PlanarLinkage) -> tuple[sp.Symbol, ...]:
     return (*joints, TORQUE)
 
 
-def frame_load(linkage: PlanarLinkage) -> tuple[Vector, sp.Expr]:
-    """Return the force on the frame and the moment about the fixed origin, by the reactions.
-
-    The drive is fixed to the frame, so that its reaction ``-torque`` belongs to the moment: Smith
-    (4.12), and (4.13) completed.
-    """
-    x, y, moment = sp.S.Zero, sp.S.Zero, -TORQUE
-    for reaction in reactions(linkage):
-        joint = reaction.joint
-        sign = (joint.second == FRAME) - (joint.first == FRAME)
-        at = linkage.place(joint)
-        x, y = x + sign * reaction.x, y + sign * reaction.y
-        moment += sign * (cross(at, (reaction.x, reaction.y)) + reaction.couple)
-    return (x, y), sp.expand(moment)
-
-
 def shaking(linkage: PlanarLinkage) -> Wrench:
     """Return force on the frame and moment about the fixed origin by the momenta alone.
 
@@ -185,14 +155,8 @@ def virtual_power(linkage: PlanarLinkage, rate: Mapping[sp.Expr, sp.Expr], named
 
     No joint force enters: ``torque = sum (d origin / d theta2 . force + w moment)``.
 
-    Parameters
-    ----------
-    linkage : PlanarLinkage
-        The mechanism.
-    rate : mapping
-        Time derivative of each coordinate to its derivative by the crank angle.
-    named : callable
-        Applied to the coefficients, which are functions of the coordinates.
+    ``linkage``: the mechanism; ``rate``: time derivative of each coordinate to its derivative by
+    the crank angle; ``named``: applied to the coefficients, which are functions of the coordinates.
     """
     total = sp.S.Zero
     for number, push in zip(linkage.numbers, wrench_symbols(linkage), strict=True):

@@ -41,11 +41,8 @@ class MassMoments:
     def integral(self, density: sp.Expr) -> sp.Expr:
         """Return the integral of a polynomial in the body's coordinates xi, eta over the mass.
 
-        Raises
-        ------
-        ValueError
-            If it is not a quadratic one with equal coefficients of xi^2 and eta^2: then four
-            numbers do not describe the body.
+        Raises ``ValueError`` if it is not a quadratic one with equal coefficients of xi^2 and
+        eta^2: then four numbers do not describe the body.
         """
         terms = sp.Poly(sp.expand(density), XI, ETA).as_dict()
         known = {(0, 0): self.mass, (1, 0): self.along, (0, 1): self.across}
@@ -222,12 +219,7 @@ def cross(a: Vector, b: Vector) -> sp.Expr:
 def inertia_wrench(body: Body, t: sp.Symbol) -> Wrench:
     """Return what the acceleration of a body takes: the integrals of a dm and of its moment.
 
-    Parameters
-    ----------
-    body : Body
-        Angle and origin as functions of time.
-    t : Symbol
-        Time.
+    ``body``: angle and origin as functions of time; ``t``: time.
     """
     place = body.place(XI, ETA)
     pull = place[0].diff(t, 2), place[1].diff(t, 2)

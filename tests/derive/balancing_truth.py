@@ -111,12 +111,3 @@ def smith_bars():
         for m, size in zip(weights, lengths[1:], strict=True)
     ]
     return lengths, bars
-
-
-def with_points(bars, points):
-    """Return the bars with point masses: link index, mass, along, across."""
-    found = [list(bar) for bar in bars]
-    for link, mass, along, across in points:
-        more = (mass, mass * along, mass * across, mass * (along**2 + across**2))
-        found[link] = [a + b for a, b in zip(found[link], more, strict=True)]
-    return [tuple(bar) for bar in found]

@@ -111,3 +111,21 @@ def cartesian(mechanism, found, numbers):
         normal = found["normal34"]
         found = {**found, "x34": -normal * np.sin(angle), "y34": normal * np.cos(angle)}
     return {name: value for name, value in found.items() if not name.startswith("normal")}
+
+
+def eliminate(module, numbers):
+    """Return accelerations and multipliers of an emitted module at one state, by elimination."""
+    kernel, table = module.dynamics, module.ARRAYS["dynamics"]
+    wanted = kernel.__code__.co_varnames[: kernel.__code__.co_argcount]
+    values = kernel(**{name: numbers.get(name, 0.0) for name in wanted})
+    filled = {}
+    for name, (shape, entries) in table.items():
+        filled[name] = np.zeros(shape)
+        for i, j, place in entries:
+            filled[name][i, j] = values[place]
+    jacobian = filled["jacobian"]
+    rows = len(jacobian)
+    whole = np.block([[filled["mass"], -jacobian.T], [jacobian, np.zeros((rows, rows))]])
+    right = np.concatenate([filled["forces"] - filled["rest"], filled["gamma"]])[:, 0]
+    solution = np.linalg.solve(whole, right)
+    return solution[:9], dict(zip(module.MULTIPLIERS, solution[9:], strict=True))

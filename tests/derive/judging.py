@@ -1,4 +1,4 @@
-"""Numeric proof of emitted functions: their error at 50 digits, over the error that inputs justify.
+"""Numeric proof of emitted functions: their error at 80 digits, over the error that inputs justify.
 
 A function evaluated in double precision may be off by the rounding of its result and by what a
 rounding of its inputs would do.  The measure of an output f at a point x is
@@ -33,14 +33,8 @@ Reference: TypeAlias = Callable[[Numbers], Numbers]
 class Point:
     """Arguments of an emitted function at which it is judged.
 
-    Attributes
-    ----------
-    name : str
-        What is special about it.
-    inputs : mapping
-        Argument name to double; taken as exact.
-    fixed : mapping
-        Arguments that only choose a branch or count something, and so have no error of their own.
+    ``name`` says what is special about it; ``inputs`` are doubles taken as exact; ``fixed`` only
+    choose a branch or count something, and so have no error of their own.
     """
 
     name: str
@@ -55,21 +49,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Judgement:
-    """Error of one output at one point.
-
-    Attributes
-    ----------
-    output : str
-        Name of the output.
-    point : Point
-        Where.
-    value : float
-        What the emitted function returned.
-    error : float
-        Its absolute error.
-    fair : float
-        ``|f| + sum_i |x_i df/dx_i|``.
-    """
+    """Error of one output at one point; ``fair`` is ``|f| + sum_i |x_i df/dx_i|``."""
 
     output: str
     point: Point
@@ -96,29 +76,19 @@ def reference_of(
     outputs: Sequence[tuple[str, sp.Expr]],
     steps: Steps | None = None,
 ) -> Reference:
-    """Return a function that evaluates expressions before any lowering, in many digits.
-
-    Parameters
-    ----------
-    inputs : sequence of Symbol
-        Arguments; their names are the keys of the numbers that the reference takes.
-    outputs : sequence of (str, Expr)
-        What it returns, by name.
-    steps : Steps, optional
-        Named intermediate quantities.
-    """
+    """Return a function of mpmath numbers by name: expressions before any lowering."""
     chain = [] if steps is None else list(steps.needed(e for _, e in outputs).steps)
     known = list(inputs)
     stages = []
     for symbol, expression in chain:
-        stages.append((symbol.name, sp.lambdify(list(known), expression, modules="mpmath")))
+        stages.append(sp.lambdify(list(known), expression, modules="mpmath"))
         known.append(symbol)
     final = sp.lambdify(known, [sp.sympify(e) for _, e in outputs], modules="mpmath")
     names = [name for name, _ in outputs]
 
     def evaluate(numbers: Numbers) -> Numbers:
         values = [numbers[symbol.name] for symbol in inputs]
-        for _, stage in stages:
+        for stage in stages:
             values.append(stage(*values))
         return dict(zip(names, final(*values), strict=True))
 
@@ -127,15 +97,7 @@ def reference_of(
 
 @dataclass(frozen=True)
 class Exact:
-    """Exact outputs at one point, computed when they are looked at.
-
-    Attributes
-    ----------
-    point : Point
-        Where.
-    compute : callable
-        Returns the values, mpmath numbers by output name, and their ``|f| + sum_i |x_i df/dx_i|``.
-    """
+    """Exact outputs at one point and their fair sizes, computed when they are looked at."""
 
     point: Point
     compute: Callable[[], tuple[Numbers, Numbers]]
@@ -158,15 +120,7 @@ class Exact:
 def exact_at(reference: Reference, point: Point, digits: int = DIGITS) -> Exact:
     """Return the values of a reference and of its gradient at a point.
 
-    Parameters
-    ----------
-    reference : callable
-        Exact values by name from mpmath numbers by name.
-    point : Point
-        Where.
-    digits : int
-        Decimal digits; the gradient is a forward difference with a relative step of
-        ``10**(-0.4 digits)``, so that it keeps as many digits itself.
+    The gradient is a forward difference with a relative step of ``10**(-0.4 digits)``.
     """
 
     def compute() -> tuple[Numbers, Numbers]:
@@ -187,22 +141,7 @@ def exact_at(reference: Reference, point: Point, digits: int = DIGITS) -> Exact:
 
 
 def judge(function: Callable[..., Any], names: Sequence[str], exact: Exact) -> list[Judgement]:
-    """Compare one call of an emitted function with exact values.
-
-    Parameters
-    ----------
-    function : callable
-        Emitted; called with those of the point's arguments that it takes, by name.
-    names : sequence of str
-        Names of what it returns, in order.
-    exact : Exact
-        Values of at least these names.
-
-    Raises
-    ------
-    ValueError
-        If the function does not return what ``names`` says.
-    """
+    """Compare one call of an emitted function, which returns ``names``, with exact values."""
     taken = inspect.signature(function).parameters
     arguments = {name: value for name, value in exact.point.arguments.items() if name in taken}
     returned = function(**arguments)

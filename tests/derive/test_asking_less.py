@@ -24,7 +24,6 @@ from elastolink.derive.entries import ConstrainedSystem, MatrixForm
 from elastolink.derive.models import coupler
 from elastolink.derive.pipeline import only_wanted
 from elastolink.derive.separation import StagedSystem
-from elastolink.derive.spec import ModelSpec
 from elastolink.derive.staged import ClosedForm
 
 
@@ -207,19 +206,6 @@ def test_each_term_of_the_coupler_dropped_costs_less(spec, term):
         assert tables[0] == tables[1]
     else:
         assert fewer < operations and shorter < size
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("formulation", ["complete", "printed"])
-def test_a_balanced_coupler_costs_less(formulation):
-    spec = ModelSpec("four_bar", formulation, flexible=("coupler",))
-    balanced = lowered(spec.with_(balanced=("coupler",)))
-    operations, size = cost(lowered(spec))
-    fewer, shorter = cost(balanced)
-    assert fewer < operations and shorter < size
-    returned = [[r.name for k in m.kernels for r in k.results] for m in (lowered(spec), balanced)]
-    assert any("first_moment" in name for name in returned[0])
-    assert not any("first_moment" in name for name in returned[1])
 
 
 def test_every_model_is_looked_at():

@@ -8,15 +8,11 @@ import inspect
 import numpy as np
 import pytest
 from elastolink.derive import bloch
-from elastolink.derive.catalogue import find
-from elastolink.derive.emission import emit
 from elastolink.derive.latex import latex_document
 from elastolink.derive.models.hill import RECURSION as MODEL
-from elastolink.derive.pipeline import lower, module_text, only_wanted
+from elastolink.derive.pipeline import module_text
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import hill_recursion
-from smith_chapter_8.exact import _Algebra
-from smith_chapter_8.surd import ExactHarmonics
 
 SPEC = ModelSpec("hill", "recursion")
 ORDERS = range(1, 11)
@@ -44,25 +40,6 @@ def test_with_words_for_its_algebra_it_returns_the_words(order):
     )
     assert list(effective) == [bloch.effective_words(k) for k in range(1, order + 1)]
     assert list(wave) == [bloch.wave_words(k) for k in range(1, order + 1)]
-
-
-def test_the_table_of_words_is_the_derived_one():
-    assert list(hill_recursion.WORDS) == list(range(1, bloch.LISTED_ORDER + 1))
-    for order, rows in hill_recursion.WORDS.items():
-        derived = bloch.effective_words(order).terms
-        assert [word for _, word in rows] == [bloch.word_text(word) for word in derived]
-        assert [size for size, _ in rows] == list(derived.values())
-
-
-@pytest.mark.parametrize("order", ORDERS)
-def test_it_returns_what_the_assignments_do_in_exact_arithmetic(order):
-    parts = [ExactHarmonics.of(0, [1, 2], [3, -1]), ExactHarmonics.of(0, [0, 0, 5], [1, 0, 0])]
-    algebra = _Algebra(parts, 2, order // 2, damped=True)
-    effective, wave = run_in(algebra, order)
-    values = bloch.run(algebra, order)
-    for k in range(1, order + 1):
-        assert effective[k - 1] == values[f"h{k}"]
-        assert wave[k - 1].rows == values[f"omega{k}"].rows
 
 
 class Plain:
@@ -94,21 +71,6 @@ def slopes(found, exact):
 
 def resonant_eigenvalues(h):
     return np.sort_complex(np.linalg.eigvals(h))
-
-
-@pytest.mark.parametrize("order", [1, 2, 3, 4, 6])
-def test_three_resonant_states_of_a_matrix_without_symmetry(order):
-    """Eigenvalues of h against those of the whole matrix: the next power of t is left."""
-    rng = np.random.default_rng(3)
-    levels = np.array([0.0, 1.5, 0.0, -2.0, 3.0, 0.0, 2.5])
-    algebra = Plain(levels, rng.uniform(-1.0, 1.0, (7, 7)))
-    effective, _ = run_in(algebra, order)
-    found, exact = [], []
-    for t in (0.04, 0.02):
-        found.append(resonant_eigenvalues(sum(t**k * h for k, h in enumerate(effective, 1))))
-        whole = np.linalg.eigvals(np.diag(levels) + t * algebra.v)
-        exact.append(np.sort_complex(whole[np.argsort(np.abs(whole))[:3]]))
-    assert slopes(found, exact) == pytest.approx(order + 1, abs=0.35)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 5])
@@ -182,16 +144,6 @@ def test_a_single_order_stands_on_its_own():
             np.testing.assert_array_equal(one, other)
     with pytest.raises(ValueError, match="unknown outputs"):
         module_text(SPEC.with_(outputs=("order_11",)), MODEL, "0" * 32)
-
-
-def test_the_packaged_module_is_what_the_model_gives():
-    assert find(SPEC).specs == (SPEC,)
-    system = only_wanted(SPEC, MODEL.discretise(SPEC, MODEL.energies(SPEC)))
-    text = emit(lower(SPEC, system, MODEL.describe(SPEC)), hill_recursion.CONTENT)
-    packaged = inspect.getsource(hill_recursion)
-    before, after = (t.split("derived with SymPy ") for t in (text, packaged))
-    assert before[0] == after[0]
-    assert before[1].partition("\n")[2] == after[1].partition("\n")[2]
 
 
 def test_the_latex_document_sets_the_recursion_and_the_words():

@@ -7,7 +7,6 @@ import json
 import shutil
 from dataclasses import replace
 
-import jinja2
 import numpy as np
 import pytest
 from elastolink.derive import emission
@@ -136,18 +135,3 @@ def test_a_key_that_is_not_supplied_is_an_error(templates):
     base.write_text(base.read_text() + "{{ colour }}")
     with pytest.raises(TemplateKeys, match=r"not supplied \['colour'\]"):
         emit(CLOSED, CONTENT)
-
-
-def test_an_attribute_that_does_not_exist_is_an_error(templates):
-    base = templates / "module.py.j2"
-    base.write_text(base.read_text().replace("{{ kernel.docstring }}", "{{ kernel.docsting }}"))
-    with pytest.raises(jinja2.UndefinedError, match="docsting"):
-        emit(CLOSED, CONTENT)
-
-
-def test_a_function_without_arrays_asks_for_no_namespace():
-    plain = replace(KERNEL, statements=(), returns=("theta", "length_0"))
-    text = emit(replace(CLOSED, kernels=(plain,)), CONTENT)
-    body = text.partition("def angle_functions(")[2]
-    assert "_namespace" not in body
-    assert load(text)["angle_functions"](3.0, *range(12)) == (3.0, 0)

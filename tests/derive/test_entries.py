@@ -84,15 +84,6 @@ def test_a_function_of_zeros_is_not_emitted():
     np.testing.assert_array_equal(array_function(loaded(spec), "element")(1.0, 2.0)["O"], 0.0)
 
 
-def test_only_some_arrays():
-    form = MatrixForm((("K", sp.ImmutableDenseMatrix([a])), ("M", sp.ImmutableDenseMatrix([b]))))
-    assert [name for name, _ in form.only(["M"]).arrays] == ["M"]
-    with pytest.raises(ValueError, match=r"unknown outputs \['G'\]"):
-        form.only(["G"])
-    with pytest.raises(ValueError, match="named twice"):
-        MatrixForm(form.arrays + form.arrays[:1])
-
-
 def test_an_undeclared_symbol_is_refused():
     with pytest.raises(CannotPrint, match="stray"):
         matrices(("K", sp.Matrix([a + sp.Symbol("stray")])))
@@ -130,16 +121,6 @@ def test_open_functions_are_passed_in():
     assert found["rest"][0, 0] == pytest.approx(by_hand, rel=1e-14)
 
 
-def test_open_function_of_a_composite_argument():
-    x, y = coordinate("x"), coordinate("y")
-    potential = sp.Function("phi")(x**2 + y**2)
-    equations = motion(m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) - potential, x, y)
-    module = loaded(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
-    assert module.EXTERNAL == ("phi_d1",)
-    found = array_function(module, "dynamics")(0.5, 0.2, 0.0, 0.0, 0.0, phi_d1=3.0, m=1.0, k=0.0)
-    np.testing.assert_allclose(found["rest"][:, 0], [3.0, 1.2], rtol=1e-15)
-
-
 def test_one_open_function_has_one_argument():
     x = coordinate("x")
     f = sp.Function("f")
@@ -147,22 +128,6 @@ def test_one_open_function_has_one_argument():
         external_values([f(x) + f(2 * x)])
     with pytest.raises(ValueError, match="one argument"):
         external_values([sp.Function("g")(x, t)])
-
-
-def test_words_of_the_description_reach_the_arguments():
-    x = coordinate("x")
-    equations = motion(m / 2 * x.diff(t) ** 2 - k / 2 * x**2, x)
-    words = au.Description(
-        title="Oscillator",
-        references=("hand",),
-        arguments=(au.scalar("x", "m", "Place of the mass"),),
-        parameters=PARAMETERS,
-    )
-    kernel = lower_constrained(SPEC, ConstrainedSystem(equations), words).kernels[0]
-    by_name = {argument.name: argument for argument in kernel.arguments}
-    assert by_name["x"].meaning == "Place of the mass"
-    assert by_name["x_dot"].meaning == ""  # its name says what it is
-    assert list(by_name) == ["x", "x_dot", "t", "m", "k"]
 
 
 def test_variations_are_emitted_only_when_wanted():
@@ -209,13 +174,6 @@ def test_dynamic_stiffness_is_square():
 
 
 # Pipeline ------------------------------------------------------------------------------------
-
-
-def test_equations_of_a_discrete_system_need_no_discretisation():
-    x = coordinate("x")
-    lagrangian = au.Lagrangian((x,), t, m / 2 * x.diff(t) ** 2 - k / 2 * x**2)
-    model = Model("some", ("thing",), lambda spec: lagrangian, lambda spec: WORDS)
-    assert 'FAMILY = "constrained"' in module_text(SPEC, model, "0")
 
 
 def test_a_continuum_does():

@@ -8,7 +8,6 @@ import inspect
 import json
 
 import numpy as np
-import pytest
 import sympy as sp
 from elastolink import generated
 from elastolink.derive.ir import Argument, Result
@@ -34,11 +33,6 @@ def test_signs_and_lone_symbols_stay_where_they_are():
     assert values == [-a * x, a * x, 2 * x, -2 * a * x, a + b + x]
     assert outputs[:3] == [-a * x, a * x, 2 * x]
     assert [value for _, value in steps.steps] == [2 * a, a + b]
-
-
-def test_a_step_in_numbers_alone_counts_as_one():
-    steps, (output,) = fold_scalars(Steps(((y, a + b),)), [y * c * x], "abc")
-    assert dict(steps.steps)[next(iter(output.free_symbols - {x}))] == y * c
 
 
 def test_scalars_lead_a_product_and_carry_its_sign():
@@ -86,9 +80,3 @@ def test_a_released_kernel_still_computes():
     found = eval(kernel.returns[0], scope)
     expected = sp.lambdify(x, steps.inline(total))(np.linspace(0.0, 1.0, 5))
     np.testing.assert_allclose(found, expected, rtol=1e-14)
-
-
-@pytest.mark.parametrize("text", ["abc", ("a", "b")])
-def test_without_arrays_nothing_is_folded(text):
-    steps, outputs = fold_scalars(Steps(), [a * b], text)
-    assert (steps.steps, outputs) == ((), [a * b])

@@ -7,17 +7,14 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink.derive.catalogue import find
 from elastolink.derive.models import free_free_modes as ff
 from elastolink.derive.models import free_free_rod as rod
 from elastolink.derive.projection import greens_identity
 from elastolink.derive.projection.greens_identity import (
     NoPrimitive,
-    derivative,
     integral,
     primitive,
 )
-from elastolink.derive.spec import ModelSpec
 
 S = ff.MIDDLE
 B, C = sp.symbols("b4 c4", positive=True)
@@ -48,12 +45,6 @@ def test_integrals_from_end_values(power, orders, pair):
     numbers = {B: sp.Float(truth.root(pair[0]), 50) ** 4, C: sp.Float(truth.root(pair[1]), 50) ** 4}
     exact = truth.integral(power, *pair, orders)
     assert abs(found.subs(numbers).evalf(40) - sp.Float(exact, 50)) < 1e-25 * (1 + abs(exact))
-
-
-def test_the_form_has_the_wanted_derivative():
-    form = primitive(1 + S**2, S, (1, 2), (B, C))
-    left = {k: sp.cancel(v) for k, v in derivative(form, S, (B, C)).items()}
-    assert {k: v for k, v in left.items() if v != 0} == {(1, 2): 1 + S**2}
 
 
 def test_a_form_with_another_derivative_is_refused(monkeypatch):
@@ -166,8 +157,3 @@ def test_dropping_the_tension_leaves_the_printed_energy():
     printed = length * (rates[0] ** 2 + rates[1] ** 2) + turning
     printed += length**3 * (rates[3] ** 2 + rates[4] ** 2)
     assert sp.expand(energy - m / 2 * printed) == 0
-
-
-def test_the_tension_may_be_dropped():
-    spec = ModelSpec("quick_return", "free_free", flexible=("rod",))
-    assert find(spec).choices.drop == ("tension",)

@@ -169,20 +169,6 @@ def equation_of_motion(system: DiscreteSystem, q: sp.Matrix, qd: sp.Matrix, qdd:
     return left - td**2 * array("f") - td * array("h") - tdd * array("g") - array("p")
 
 
-def test_quadratic_form_of_a_spinning_frame():
-    p, q = functions("p q")
-    energy = m1 / 2 * ((p.diff(t) - td * q) ** 2 + (q.diff(t) + td * p) ** 2)
-    energy -= k / 2 * (p**2 + q**2) + w / 2 * p**2
-    system = quadratic_form(energy, (p, q), CRANK, t, forces={p: -c * p.diff(t)}, geometric=(w,))
-    assert system.matrix("M") == m1 * sp.eye(2)
-    assert system.matrix("A") == sp.Matrix([[0, -m1], [m1, 0]])
-    assert system.matrix("B") == m1 * sp.eye(2)
-    assert system.matrix("C") == sp.diag(c, 0)
-    assert system.matrix("K") == k * sp.eye(2)
-    assert system.matrix("Kg") == sp.diag(w, 0)
-    assert sorted(system.arrays) == ["A", "B", "C", "K", "Kg", "M"]
-
-
 def test_quadratic_form_gives_the_equations_that_lagrange_gives():
     p, q = functions("p q")
     angle = sp.Function("angle")(t)

@@ -46,21 +46,6 @@ def turning_mass() -> sp.Expr:
     return energy - k / 2 * (x**2 + 3 * y**2) - load * sp.cos(turn) * x * y
 
 
-def test_turning_mass_by_hand():
-    found = linear_periodic(
-        equations(turning_mass(), forces={x: -c * x.diff(t)}), CRANK, (load,), followers=ANGLE
-    )
-    assert found.matrix("M") == m * sp.eye(2)
-    assert found.matrix("C") == sp.Matrix([[c, 0], [0, 0]])
-    assert found.matrix("K") == sp.diag(k, 3 * k)
-    assert found.matrix("Kg") == load * sp.cos(theta) * sp.Matrix([[0, 1], [1, 0]])
-    assert found.matrix("A") == m * sp.Matrix([[0, -1], [1, 0]])
-    assert found.matrix("B") == m * sp.eye(2)
-    assert not found.has("S")
-    assert found.matrix("f") == sp.Matrix([m * p, 0])
-    assert found.matrix("g") == sp.Matrix([0, -m * p])
-
-
 def test_agrees_with_the_quadratic_form_of_the_lagrangian():
     """Two routes, with a mass matrix and a coupling that vary with the angle."""
     energy = turning_mass()

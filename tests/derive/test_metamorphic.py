@@ -24,7 +24,6 @@ from elastolink.derive.records import (
     Essential,
     Lagrangian,
     PointTerm,
-    Support,
 )
 from elastolink.derive.variational import (
     hamilton,
@@ -94,30 +93,18 @@ def test_tip_mass_changes_only_the_shear_condition_and_the_mass_matrix():
     assert before.matrix("K")[0, 1] == 6 * EI / L**3
 
 
-@pytest.mark.parametrize("ratio", [0, 1])
-def test_tip_mass_frequencies_against_the_transcendental_equation(ratio):
-    """1 + cos b cosh b + ratio b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
+def test_tip_mass_frequencies_against_the_transcendental_equation():
+    """1 + cos b cosh b + b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
     system = project_action(tip_massed(), y, clamped_polynomials(9), CRANK)
-    found = frequencies(system, {**UNIT, tip: ratio})
+    found = frequencies(system, {**UNIT, tip: 1})
 
     def characteristic(b):
         bend = mpmath.cos(b) * mpmath.sinh(b) - mpmath.sin(b) * mpmath.cosh(b)
-        return 1 + mpmath.cos(b) * mpmath.cosh(b) + ratio * b * bend
+        return 1 + mpmath.cos(b) * mpmath.cosh(b) + b * bend
 
-    for guess, frequency in zip(
-        (1.875, 4.694) if not ratio else (1.248, 4.031), found, strict=False
-    ):
+    for guess, frequency in zip((1.248, 4.031), found, strict=False):
         exact = mpmath.findroot(characteristic, guess) ** 2
         assert abs(frequency - exact) < 1e-6 * exact
-
-
-def test_tip_mass_on_the_coupler_raises_its_tension():
-    """A mass at the sliding pin pulls on the whole link with its centripetal force."""
-    plain, _ = rotating()
-    loaded, _ = rotating(tip_mass=tip)
-    w2, w3, psi = th2.diff(t), th3.diff(t), th2 - th3
-    pull = l2 * (w2**2 * sp.cos(psi) + th2.diff(t, 2) * sp.sin(psi)) + L * w3**2
-    assert zero(loaded - plain - tip * pull)
 
 
 # ---------------------------------------------------------------- spring at x = a
@@ -162,13 +149,6 @@ def test_varying_mass_per_length():
         assert sp.simplify(mass[i - 1, j - 1] - by_hand) == 0
     plain = project(hamilton(beam(essential=PINNED)), y, sine_basis(x, L, sp.S.One), CRANK)
     assert system.matrix("K", 3) == plain.matrix("K", 3)
-
-
-def test_varying_mass_changes_the_tension_of_the_coupler():
-    force, _ = rotating(mass=mu * (1 + beta * x / L), crank=False)
-    w3 = th3.diff(t)
-    by_hand = Fx + mu * w3**2 * ((L**2 - x**2) / 2 + beta * (L**3 - x**3) / (3 * L))
-    assert zero(force - by_hand)
 
 
 # ---------------------------------------------------------------- rotation
@@ -231,17 +211,9 @@ def test_without_foreshortening_only_the_spin_softening_is_left():
     assert not y_equation.has(y.diff(x), y.diff(x, 2))
 
 
-def test_constant_rotation_alone():
-    """In the plane of rotation: mu y_tt + EI y'''' - mu w^2 ((L^2 - x^2) y'/2)' - mu w^2 y."""
-    _, action = rotating(crank=False)
-    w = sp.Symbol("w")
-    found = hamilton(action).equations[y].subs({th3: w * t, Fx: 0}).doit()
-    by_hand = mu * y.diff(t, 2) + EI * y.diff(x, 4) - mu * w**2 * y
-    by_hand -= mu * w**2 * sp.diff((L**2 - x**2) / 2 * y.diff(x), x)
-    assert zero(found + by_hand)
-
-
-@pytest.mark.parametrize(("spin", "first"), [(2, 4.1373), (12, 13.1702)])
+@pytest.mark.parametrize(
+    ("spin", "first"), [pytest.param(2, 4.1373, marks=pytest.mark.slow), (12, 13.1702)]
+)
 def test_rotating_cantilever_against_the_published_table(spin, first):
     """Flapping frequencies of Wright, Smith, Thresher and Wang (1982), given to 4 decimals."""
     _, action = rotating(crank=False, essential=CLAMPED, out_of_plane=True)
@@ -276,38 +248,6 @@ def test_gravity_adds_a_load_and_a_tension_by_weight():
 # ---------------------------------------------------------------- interior support
 
 
-def test_interior_support_of_a_static_beam():
-    """Pinned beam with a third support in the middle under uniform load: R = 5 q L / 4 on L."""
-    q, R = sp.symbols("q R")
-    half = L / 2
-    action = beam(
-        density=-EI / 2 * y.diff(x, 2) ** 2 + q * y,
-        essential=PINNED,
-        supports=(Support(half, y, R),),
-    )
-    equations = hamilton(action)
-    spans = [sp.symbols("c0:4"), sp.symbols("d0:4")]
-    left, right = (
-        q * x**4 / (24 * EI) + sum(c * x**i for i, c in enumerate(span)) for span in spans
-    )
-
-    def on(expression: sp.Expr, curve: sp.Expr, at: sp.Expr) -> sp.Expr:
-        return expression.subs(y, curve).doit().subs(x, at)
-
-    assert zero(on(equations.equations[y], left, x))
-    conditions = [left.subs(x, 0), right.subs(x, L), left.subs(x, half), right.subs(x, half)]
-    conditions.append((left - right).diff(x).subs(x, half))
-    for condition in equations.natural:
-        curve = left if condition.position == 0 else right
-        conditions.append(on(condition.expression, curve, condition.position))
-    for jump in equations.jumps:
-        step = on(jump.value, right, half) - on(jump.value, left, half)
-        conditions.append(step - jump.applied - jump.reaction)
-    solution = sp.solve(conditions, [*spans[0], *spans[1], R], dict=True)
-    assert len(solution) == 1
-    assert sp.simplify(solution[0][R] + sp.Rational(5, 8) * q * L) == 0
-
-
 # ---------------------------------------------------------------- discrete systems
 
 
@@ -317,14 +257,6 @@ def pendulum(*, spring: bool = False, vibrating: bool = False) -> Lagrangian:
     px, py = L * sp.sin(angle), lift - L * sp.cos(angle)
     energy = tip / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2) - tip * g * py
     return Lagrangian((angle,), t, energy - (k / 2 * angle**2 if spring else 0))
-
-
-def test_a_spring_in_the_lagrangian_reaches_the_rest_alone():
-    plain, sprung = euler_lagrange(pendulum()), euler_lagrange(pendulum(spring=True))
-    (q,) = plain.coordinates
-    assert sprung.mass == plain.mass
-    assert sp.expand(sprung.rest[0] - plain.rest[0] - k * q) == 0
-    assert sp.simplify(plain.rest[0] - tip * g * L * sp.sin(q)) == 0
 
 
 def test_a_shaken_pivot_becomes_a_mathieu_equation():

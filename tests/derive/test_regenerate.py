@@ -177,12 +177,6 @@ def test_check_shows_a_missing_file(copy, capsys):
     assert not (copy / f"{QUICK}.py").exists()
 
 
-def test_check_survives_a_file_that_is_no_text(copy, capsys):
-    (copy / f"{QUICK}.py").write_bytes(b"\xff\xfe\x00")
-    assert main(["--out", str(copy), "--check", QUICK]) == 1
-    assert "1 differ" in capsys.readouterr().out
-
-
 def test_stale_modules_of_a_checkout_are_shown_and_removed(checkout, monkeypatch, capsys):
     """In a checkout of a few models, as a check derives them all."""
     monkeypatch.setattr(jobs, "CATALOGUE", [e for e in CATALOGUE if e.specs[0].name() == QUICK])
@@ -200,14 +194,6 @@ def test_stale_modules_of_a_checkout_are_shown_and_removed(checkout, monkeypatch
     assert main([]) == 0
     assert capsys.readouterr().out == "removed five_bar_dream.py\n"
     assert texts(checkout) == before
-
-
-def test_entries_of_dropped_models_leave_the_manifest_of_a_checkout(checkout, emitted, own):
-    assert main(["--model", str(own)]) == 0
-    assert (checkout / "pair_plain.py").exists()
-    assert len(read_manifest(checkout)) == len(read_manifest(emitted)) + 1
-    assert main([]) == 0
-    assert texts(checkout) == texts(emitted)
 
 
 def test_a_cache_keeps_what_the_user_emitted(emitted, own, tmp_path, monkeypatch, capsys):

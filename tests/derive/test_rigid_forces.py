@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
 from dataclasses import replace
 from types import SimpleNamespace
@@ -13,139 +12,32 @@ import pytest
 import sympy as sp
 from derivations import namespace_of
 from elastolink.derive.lagrange import euler_lagrange
-from elastolink.derive.models import four_bar, four_bar_forces
-from elastolink.derive.models.four_bar_vectors import link_vectors
+from elastolink.derive.models import four_bar_forces
 from elastolink.derive.rigid.multibody import lagrangian
 from elastolink.derive.rigid.newton_euler import (
-    TORQUE,
     balances,
-    frame_load,
-    shaking,
     solve,
     unknowns_of,
-    wrench_symbols,
 )
-from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin, inertia_wrench, momenta
+from elastolink.derive.rigid.planar import ETA, XI, MassMoments, Pin
 from elastolink.derive.spec import ModelSpec
-from force_machines import SIDES, call, cartesian, change_points, emitted, random_machine, state_of
-from forces_truth import LOADS, MECHANISMS, forces, links, loads
-from judging import reference_of
-from multibody_truth import solve as eliminate
+from force_machines import (
+    SIDES,
+    call,
+    cartesian,
+    change_points,
+    eliminate,
+    emitted,
+    random_machine,
+    state_of,
+)
+from forces_truth import LOADS, MECHANISMS, forces, loads
 
 STRAIGHT = ModelSpec("four_bar", "forces", drop=("across",))
 FULL = ModelSpec("four_bar", "forces")
 
 
 # ---------------------------------------------------------------- Smith's own equations
-
-
-def _circle_form(expression, angles):
-    """Return an expression in sines and cosines with each pair on its circle: 0 if it vanishes."""
-    names, circles = {}, []
-    for i, angle in enumerate(angles):
-        s, c = sp.symbols(f"s{i} c{i}")
-        names |= {sp.sin(angle): s, sp.cos(angle): c}
-        circles.append(s**2 + c**2 - 1)
-    numerator = sp.numer(sp.together(sp.expand_trig(expression).subs(names)))
-    symbols = [name for name in names.values()]
-    return sp.reduced(sp.expand(numerator), circles, *symbols)[1]
-
-
-def test_newton_and_euler_give_smiths_pin_forces_and_torque():
-    """Smith (4.7)-(4.11) for links whose centres of gravity lie on them, a2 included."""
-    linkage = four_bar_forces.linkage(STRAIGHT)
-    t = linkage.t
-    th2, th3, th4 = (body.angle for body in linkage.bodies)
-    w2, w3, w4, a2, a3, a4 = sp.symbols("w2 w3 w4 a2 a3 a4")
-    rates = {
-        **{th.diff(t, 2): a for th, a in ((th2, a2), (th3, a3), (th4, a4))},
-        **{th.diff(t): w for th, w in ((th2, w2), (th3, w3), (th4, w4))},
-    }
-    pushes = {}
-    for body, push in zip(linkage.bodies, wrench_symbols(linkage), strict=True):
-        for symbol, part in zip(push, inertia_wrench(body, t), strict=True):
-            pushes[symbol] = part.subs(rates)
-    found = {}
-    for symbol, value in solve(balances(linkage), unknowns_of(linkage)):
-        found[symbol.name] = value.subs(pushes).subs(
-            {sp.Symbol(n, real=True): v for n, v in found.items()}
-        )
-    l2, l3, l4 = four_bar.crank, four_bar.coupler, four_bar.follower
-    (_, s2, _, i2), (m3, s3, _, i3), (_, s4, _, i4) = (
-        vars(body.moments).values() for body in linkage.bodies
-    )
-    below = l3 * l4 * sp.sin(th3 - th4)
-    pulled = w2**2 * sp.sin(th2 - th3) - a2 * sp.cos(th2 - th3)
-    smith = {}
-    for axis, trig in (("x", sp.cos), ("y", sp.sin)):
-        smith[f"{axis}34"] = (
-            i3 * a3 * l4 * trig(th4) + i4 * a4 * l3 * trig(th3) - s3 * l2 * l4 * trig(th4) * pulled
-        ) / below
-
-    def falling(theta, w, a):
-        return (
-            w**2 * sp.cos(theta) + a * sp.sin(theta),
-            w**2 * sp.sin(theta) - a * sp.cos(theta),
-        )
-
-    crank, coupler, follower = falling(th2, w2, a2), falling(th3, w3, a3), falling(th4, w4, a4)
-    for i, axis in enumerate("xy"):
-        smith[f"{axis}23"] = smith[f"{axis}34"] - m3 * l2 * crank[i] - s3 * coupler[i]
-        smith[f"{axis}12"] = smith[f"{axis}23"] - s2 * crank[i]
-        smith[f"{axis}41"] = smith[f"{axis}34"] + s4 * follower[i]
-    smith["torque"] = i2 * a2 + l2 * (smith["y23"] * sp.cos(th2) - smith["x23"] * sp.sin(th2))
-    assert set(smith) == set(found)
-    for name, value in smith.items():
-        assert _circle_form(value - found[name], (th2, th3, th4)) == 0, name
-
-
-def test_the_shaking_moment_needs_the_drives_reaction():
-    """Smith (4.12) as printed; (4.13) is l1 Y41, complete it is l1 Y41 - T."""
-    (x, y), moment = frame_load(four_bar_forces.linkage(STRAIGHT))
-    x12, y12, x41, y41 = sp.symbols("x12 y12 x41 y41", real=True)
-    assert (sp.expand(x - x41 + x12), sp.expand(y - y41 + y12)) == (0, 0)
-    assert sp.expand(moment - four_bar.frame * y41 + TORQUE) == 0
-
-
-@pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_reactions_and_momenta_load_the_frame_alike(mechanism):
-    """The sum of what acts on the links is what they take, whatever that is: symbolically."""
-    model = importlib.import_module(f"elastolink.derive.models.{mechanism}_forces")
-    linkage = model.linkage(ModelSpec(mechanism, "forces"))
-    (x, y), moment = frame_load(linkage)
-    whole = shaking(linkage)
-    rows = balances(linkage)
-    origins = [body.origin for body in linkage.bodies]
-    total = [sum(rows[i::3]) for i in (0, 1)]
-    turned = sum(
-        rows[3 * n + 2] + ox * rows[3 * n + 1] - oy * rows[3 * n]
-        for n, (ox, oy) in enumerate(origins)
-    )
-    closing = model.motion().named
-    pairs = ((x, whole.x, total[0]), (y, whole.y, total[1]), (moment, whole.moment, turned))
-    numbers = _pose_numbers(model, mechanism)
-    for by_joints, by_momenta, balance in pairs:
-        gap = closing(by_joints - by_momenta + balance)
-        value = model.motion().steps.inline(gap).subs(numbers)
-        # The reactions are left; each of their factors vanishes at a closed pose.
-        factors = (
-            sp.Poly(value, *sorted(value.free_symbols, key=str)).coeffs() if value != 0 else []
-        )
-        assert all(abs(sp.N(factor, 30)) < 1e-25 for factor in factors)
-
-
-def _pose_numbers(model, mechanism):
-    lengths = {
-        "frame": sp.Integer(5),
-        "crank": sp.Rational(3, 2),
-        "coupler": sp.Integer(4),
-        "follower": sp.Integer(3),
-        "offset": sp.Rational(1, 2),
-        "assembly": sp.Integer(-1),
-        "theta2": sp.Rational(7, 5),
-    }
-    symbols = {s for _, value in model.motion().steps.steps for s in value.free_symbols}
-    return {s: lengths[s.name] for s in symbols if s.name in lengths}
 
 
 # ---------------------------------------------------------------- four ways to the same numbers
@@ -242,57 +134,6 @@ def test_the_free_linkage_follows_its_torque(mechanism):
 # ---------------------------------------------------------------- momenta and power, differentiated
 
 
-def _momenta(mechanism, numbers, time):
-    """Return momentum, moment of momentum about A and energy after a time, in many digits."""
-    moved = dict(numbers)
-    speed, acceleration = numbers["speed"], numbers["acceleration"]
-    moved["theta2"] += speed * time + acceleration * time**2 / 2
-    moved["speed"] = mpmath.mpf(1)
-    moved["acceleration"] = mpmath.mpf(0)
-    rate = speed + acceleration * time
-    bodies, _ = links(mechanism, moved)
-    step = mpmath.mpf(10) ** -18
-    ahead, behind = (
-        links(mechanism, {**moved, "theta2": moved["theta2"] + s * step})[0] for s in (1, -1)
-    )
-    momentum, turning, energy = mpmath.mpc(0), mpmath.mpf(0), mpmath.mpf(0)
-    for n, (body, after, before) in enumerate(zip(bodies, ahead, behind, strict=True), start=2):
-        mass, along, across, inertia = (
-            numbers[f"{name}{n}"] for name in ("mass", "along", "across", "inertia")
-        )
-        velocity = (after[0] - before[0]) / (2 * step) * rate
-        omega = mpmath.im((after[2] - before[2]) / (2 * step) / body[2]) * rate
-        arm = mpmath.mpc(along, across) * body[2]
-        own = mass * velocity + mpmath.mpc(0, omega) * arm
-        momentum += own
-        turning += mpmath.im(mpmath.conj(body[0]) * own + mpmath.conj(arm) * velocity)
-        turning += inertia * omega
-        energy += mass * abs(velocity) ** 2 / 2 + inertia * omega**2 / 2
-        energy += mpmath.re(mpmath.conj(velocity) * mpmath.mpc(0, omega) * arm)
-    return momentum, turning, energy
-
-
-@pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_shaking_is_the_change_of_momentum_and_torque_that_of_energy(mechanism):
-    random = np.random.default_rng(10)
-    module = emitted(f"{mechanism}_forces")
-    for _ in range(12):
-        numbers = random_machine(mechanism, random)
-        closed = call(module, "forces", numbers)
-        size = max(abs(value) for value in closed.values())
-        with mpmath.workdps(50):
-            exact = {name: mpmath.mpf(value) for name, value in numbers.items()}
-            step = mpmath.mpf(10) ** -9
-            after, before = (_momenta(mechanism, exact, s * step) for s in (1, -1))
-            force, moment, power = (
-                (a - b) / (2 * step) for a, b in zip(after, before, strict=True)
-            )
-            assert abs(closed["shaking_x"] + force.real) < 1e-10 * size
-            assert abs(closed["shaking_y"] + force.imag) < 1e-10 * size
-            assert abs(closed["shaking_moment"] + moment) < 1e-10 * size
-            assert abs(closed["torque"] * numbers["speed"] - power) < 1e-10 * size * 20
-
-
 # ---------------------------------------------------------------- derived means derived
 
 
@@ -367,40 +208,6 @@ def _multipliers(equations):
     whole = np.block([[mass, -jacobian.T], [jacobian, zero]])
     solution = np.linalg.solve(whole, np.concatenate(right)[:, 0])[9:]
     return {m.name: value for m, value in zip(equations.multipliers, solution, strict=True)}
-
-
-def test_momentum_differentiates_to_the_inertia_force():
-    linkage = four_bar_forces.linkage(FULL)
-    for body in linkage.bodies:
-        taken, held = inertia_wrench(body, linkage.t), momenta(body, linkage.t)
-        assert sp.simplify(held.x.diff(linkage.t) - taken.x) == 0
-        about_a = taken.moment + body.origin[0] * taken.y - body.origin[1] * taken.x
-        assert sp.simplify(held.moment.diff(linkage.t) - about_a) == 0
-
-
-def test_vectors_are_those_of_the_kinematics():
-    """Every step against the kinematics module's own, in 40 digits, for both assemblies."""
-    v, k = link_vectors(), four_bar.kinematics()
-    pairs = [
-        (v.coupler_x, four_bar.coupler * k.cos3),
-        (v.coupler_y, four_bar.coupler * k.sin3),
-        (v.follower_x, four_bar.follower * k.cos4),
-        (v.follower_y, four_bar.follower * k.sin4),
-        *((getattr(v, name), getattr(k, name)) for name in ("w3", "w4", "a3", "a4", "spread")),
-        (v.slip3, k.slip3),
-        (v.slip4, k.slip4),
-    ]
-    inputs = (four_bar.theta2, *(sp.Symbol(a.name) for a in four_bar.ARGUMENTS[1:]))
-    names = [str(i) for i, _ in enumerate(pairs)]
-    vectors = reference_of(inputs, [(n, p[0]) for n, p in zip(names, pairs, strict=True)], v.steps)
-    angles = reference_of(inputs, [(n, p[1]) for n, p in zip(names, pairs, strict=True)], k.steps)
-    with mpmath.workdps(40):
-        lengths = map(mpmath.mpf, (1.3, 5, 2, 4.5, 3))
-        given = dict(zip((a.name for a in four_bar.ARGUMENTS), lengths, strict=False))
-        for assembly in (1, -1):
-            given["assembly"] = mpmath.mpf(assembly)
-            one, two = vectors(given), angles(given)
-            assert all(abs(one[name] - two[name]) < mpmath.mpf(10) ** -37 for name in names)
 
 
 # ---------------------------------------------------------------- refusals

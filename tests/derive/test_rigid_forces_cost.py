@@ -6,8 +6,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from elastolink.derive.catalogue import find
-from elastolink.derive.spec import ModelSpec
 from force_machines import call, emitted, random_machine
 from forces_truth import MECHANISMS, MOMENTS
 
@@ -50,15 +48,6 @@ def test_operations_on_arrays_of_the_four_bar():
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_asking_for_less_costs_less(mechanism):
-    module = emitted(f"{mechanism}_forces")
-    counts = {name: array_operations(module, name) for name in module.RETURNS}
-    parts = ("driving_torque", "shaking_force", "shaking_moment")
-    assert all(counts[name] < counts["pin_forces"] < counts["forces"] for name in parts)
-    assert counts["load_forces"] < counts["pin_forces"]
-
-
-@pytest.mark.parametrize("mechanism", MECHANISMS)
 def test_forces_are_linear_in_the_moments(mechanism):
     """At unit values of one moment the function returns the derivatives by it."""
     module = emitted(f"{mechanism}_forces")
@@ -71,15 +60,3 @@ def test_forces_are_linear_in_the_moments(mechanism):
             total[name] += numbers[moment] * value
     size = max(abs(value) for value in whole.values())
     assert all(abs(total[name] - value) < 1e-11 * size for name, value in whole.items())
-
-
-def test_no_angle_is_taken_back_from_its_sine():
-    for mechanism in MECHANISMS:
-        names = emitted(f"{mechanism}_forces").forces.__code__.co_names
-        assert set(names) <= {"_namespace", "sin", "cos", "tan", "sqrt"}
-
-
-def test_the_catalogue_finds_every_formulation():
-    for mechanism in MECHANISMS:
-        for formulation in ("forces", "multibody"):
-            assert find(ModelSpec(mechanism, formulation)).mechanism == mechanism

@@ -36,12 +36,6 @@ def test_end_values_reproduce_any_product_of_linear_factors(pairs):
     assert not form.has(cosine)
 
 
-def test_end_values_are_differences_of_lengths():
-    """a^2 + b^2 - 2 a b cos x is (a - b)^2 cos^2(x/2) + (a + b)^2 sin^2(x/2)."""
-    form = bernstein_in_cosine(a**2 + b**2 - 2 * a * b * cosine, cosine, upper, lower)
-    assert form == (a - b) ** 2 * upper + (a + b) ** 2 * lower
-
-
 def test_end_values_keep_the_digits_of_a_nearly_vanishing_length():
     """The law of cosines at 1e-9 rad with sides that differ by 1e-12: all digits against none."""
     form = bernstein_in_cosine(a**2 + b**2 - 2 * a * b * cosine, cosine, upper, lower)
@@ -65,10 +59,6 @@ def test_end_values_in_given_sums():
 def test_a_factor_that_is_not_linear_is_refused():
     with pytest.raises(UnsafeRewriting, match="is not linear in cosine"):
         bernstein_in_cosine(a + b * cosine**2, cosine, upper, lower)
-
-
-def test_what_does_not_vary_is_left_alone():
-    assert bernstein_in_cosine(a**2 * b, cosine, upper, lower) == a**2 * b
 
 
 # ---------------------------------------------------------------- a cos x + b sin x = c
@@ -100,15 +90,6 @@ def test_root_of_parts_is_the_root():
     assert form == 2 * s * root / (a + b)
     exact = form.subs({a: s - d, b: s + d, root: sp.sqrt(s**2 - d**2)})
     assert sp.simplify(exact - sp.sqrt(s**2 - d**2)) == 0
-
-
-def test_root_of_parts_forgives_digits_that_moved_from_one_to_the_other():
-    """2 sqrt((1 + x)(1 - x)) with x = 1e-9 lost in one part only."""
-    form = sp.lambdify((s, a, b, root), root_of_parts((s - d, s + d), (a, b), root, s**2 - d**2))
-    off = 1e-6
-    part, other = 1.0 + off, 1.0
-    assert form(1.0, part, other, math.sqrt(part * other)) == pytest.approx(1.0, abs=off**2)
-    assert abs(math.sqrt(part * other) - 1.0) > off / 3
 
 
 def test_parts_that_do_not_make_the_product_are_refused():

@@ -159,17 +159,6 @@ def test_a_constant_term_stays_constant_whatever_its_number(number, tmp_path):
         np.testing.assert_allclose(found.array("K", THETA)[:, 0, 0], expected, rtol=1e-14)
 
 
-def test_terms_alike_but_for_their_number_are_added():
-    arrays = {
-        "M": sp.ImmutableDenseMatrix(sp.eye(2)),
-        "B": sp.ImmutableDenseMatrix(sp.eye(2) * (sp.cos(theta) + 3 * turned) * mass),
-    }
-    module = lowered(arrays)
-    rows = [r for r in rows_of(module) if r.array == "B"]
-    assert len(rows) >= 1
-    assert {r.scale for r in rows} == {"mass"}
-
-
 def test_what_is_constant_is_declared_so_and_zero_is_absent(tmp_path):
     arrays = {
         "M": sp.ImmutableDenseMatrix(sp.eye(2) * mass),
@@ -186,23 +175,6 @@ def test_what_is_constant_is_declared_so_and_zero_is_absent(tmp_path):
     assert not found.has("C") and not found.has("f")
     expected = np.diag([9.81 / 2.5, 0.4])
     np.testing.assert_allclose(found.array("K", THETA)[1], expected, rtol=1e-15)
-
-
-def test_functions_of_angle_stand_with_the_stage_that_needs_them():
-    arrays = {
-        "M": sp.ImmutableDenseMatrix(sp.eye(2)),
-        "B": sp.ImmutableDenseMatrix(sp.eye(2) * sp.cos(theta)),
-        "S": sp.ImmutableDenseMatrix(sp.eye(2) * sp.sin(theta)),
-        "f": sp.ImmutableDenseMatrix([turned, 0]),
-        "g": sp.ImmutableDenseMatrix([0, turned]),
-    }
-    kernels = {k.name: [r.name for r in k.results] for k in lowered(arrays).kernels}
-    assert kernels == {
-        "angle_functions": ["angle_theta"],
-        "acceleration_functions": ["acceleration_theta"],
-        "forcing_functions": ["forcing_turned"],
-        "acceleration_forcing_functions": ["acceleration_forcing_turned"],
-    }
 
 
 def test_a_supplied_function_of_angle_is_named_and_not_emitted(tmp_path):
@@ -257,18 +229,3 @@ def test_closed_entries_serve_any_number_of_modes(tmp_path):
             expected = by_sympy(entry.matrix(modes))
             expected = expected if name in MATRICES else expected[..., 0]
             np.testing.assert_allclose(found.array(name, THETA), expected, rtol=1e-13, atol=1e-14)
-
-
-def test_on_the_diagonal_the_difference_of_mode_numbers_is_not_divided_by():
-    module = lowered(closed_arrays())
-    kernel = next(k for k in module.kernels if k.name == "modal_matrices")
-    assert any(s.target == "apart" and "xp.where" in s.expression for s in kernel.statements)
-
-
-def test_terms_with_one_scale_and_one_modal_array_are_one_term():
-    arrays = {
-        "M": IndexedEntry(sp.Integer(1), sp.Integer(0), m, n),
-        "B": IndexedEntry(m**2 * (turned + 3 * sp.cos(theta)), sp.Integer(0), m, n),
-    }
-    rows = [r for r in rows_of(lowered(arrays)) if r.array == "B"]
-    assert len(rows) == 1 and rows[0].modal == "modal_2"

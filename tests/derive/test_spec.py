@@ -62,17 +62,6 @@ def test_every_field_counts_in_key_and_name(field):
     assert changed.name() != BASE.name()
 
 
-def test_everything_there_is_means_everything():
-    both = BASE.with_(outputs=("stability", "forcing"))
-    assert both == BASE
-    assert BASE.with_(outputs=("stability",)) != BASE
-
-
-def test_a_dash_in_a_name_becomes_an_underscore():
-    spec = ModelSpec.from_mapping({"mechanism": "four-bar", "formulation": "x"})
-    assert spec.name() == "four_bar_x"
-
-
 @pytest.mark.parametrize(
     ("part", "found", "expected"),
     [
@@ -126,21 +115,6 @@ def test_the_cache_folder_follows_the_environment(environment, expected, monkeyp
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     assert cache_folder() == expected
-
-
-@pytest.mark.parametrize(
-    ("platform", "expected"),
-    [
-        ("linux", ".cache/elastolink/modules"),
-        ("darwin", "Library/Caches/elastolink/modules"),
-    ],
-)
-def test_the_cache_folder_follows_the_platform(platform, expected, monkeypatch, tmp_path):
-    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    monkeypatch.delenv("LOCALAPPDATA", raising=False)
-    monkeypatch.setattr(Path, "home", lambda: tmp_path)
-    monkeypatch.setattr(sys, "platform", platform)
-    assert cache_folder() == tmp_path / expected
 
 
 def test_the_spec_loads_with_the_standard_library_alone():

@@ -17,7 +17,6 @@ from elastolink.derive.variational import (
     hamilton,
     in_crank_angle,
     linearise,
-    order_part,
     quadratic_action,
     solve_end_value,
     solve_tension,
@@ -41,14 +40,6 @@ def test_string_and_euler_bernoulli_beam():
     assert zero(result.equations[y] + mu * d(y, (t, 2)) + EI * d(y, (x, 4)))
     assert zero(result.condition(l3, y, 0) - EI * d(y, (x, 3)))
     assert zero(result.condition(l3, y, 1) + EI * d(y, (x, 2)))
-
-
-def test_varying_section_is_differentiated():
-    section = sp.Function("B")(x)
-    action = ActionDensity(x, t, l3, (y,), -section / 2 * y.diff(x, 2) ** 2)
-    result = hamilton(action)
-    assert zero(result.equations[y] + sp.diff(section * y.diff(x, 2), x, 2))
-    assert zero(result.condition(l3, y, 0) - sp.diff(section * y.diff(x, 2), x))
 
 
 def test_mixed_derivatives_of_rotary_inertia():
@@ -139,15 +130,6 @@ def test_mass_that_moves_along_a_string():
     assert zero(slope.applied)
 
 
-def test_coupler_tension():
-    equations = hamilton(coupler())
-    assert zero(equations.condition(l3, u, 0) - (Fx - N))
-    w2, w3, psi = th2.diff(t), th3.diff(t), th2 - th3
-    pull = w2**2 * sp.cos(psi) + th2.diff(t, 2) * sp.sin(psi)
-    by_hand = Fx + mu * (l2 * (l3 - x) * pull + (l3**2 - x**2) * w3**2 / 2)
-    assert zero(tension(equations) - by_hand)
-
-
 def test_coupler_transverse_equation():
     equations = hamilton(coupler())
     force = tension(equations)
@@ -164,19 +146,6 @@ def test_coupler_transverse_equation():
     )
     assert zero(linear + by_hand)
     assert zero(equations.equations[N] + d(u, x) + d(y, x) ** 2 / 2)
-
-
-def test_terms_linear_in_y_inside_the_tension_are_of_second_order():
-    equations = hamilton(coupler())
-    first = order_part(equations.equations[u], equations.action.orders, 1)
-    w3 = th3.diff(t)
-    assert zero(first - mu * (y * th3.diff(t, 2) + 2 * w3 * d(y, t)))
-    # N = N0 + eps N1: the part of the y equation that contains N1 is of second order
-    N1 = sp.Function("N1")(x, t)
-    split = equations.equations[y].subs(N, N + N1).doit()
-    orders = {**equations.action.orders, N1: 1}
-    assert not linearise(split, orders, 1).has(N1)
-    assert order_part(split, orders, 2).has(N1)
 
 
 def test_quadratic_action_gives_the_linearised_equation():
@@ -196,12 +165,6 @@ def test_quadratic_action_refuses_a_wrong_tension():
         quadratic_action(equations.action, {N: force + x}, (u,))
     with pytest.raises(ValueError, match="not stationary at an end"):
         quadratic_action(equations.action, {N: force + 1}, (u,))
-
-
-def test_order_parts_of_a_function_that_is_no_polynomial():
-    assert order_part(sp.cos(y), {y: 1}, 2) == -(y**2) / 2
-    assert order_part(sp.sin(y) * y.diff(x), {y: 1}, 4) == -(y**3) * y.diff(x) / 6
-    assert linearise(sp.exp(u + y), {y: 1, u: 2}, 2) == 1 + y + u + y**2 / 2
 
 
 def test_crank_angle_rewriting_is_the_chain_rule():

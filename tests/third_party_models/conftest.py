@@ -1,4 +1,4 @@
-"""Each tenant enters by the front door: regenerate-equations on its model file."""
+"""Each third-party model enters by the front door: regenerate-equations on its model file."""
 
 from __future__ import annotations
 

@@ -59,11 +59,6 @@ def test_the_motion_between_the_steps(bead):
     np.testing.assert_allclose(qd, exact[1], atol=1e-10)
 
 
-def test_samples_of_the_motion_are_a_guess_too(bead):
-    t = np.arange(40) * (BEAD.period / 40)
-    rough = [values + 0.01 * np.cos(3 * t)[:, None] for values in BEAD.state(t)]
-    orbit = periodic_orbit(bead(BEAD), BEAD.period, *rough)
-    np.testing.assert_allclose(orbit.q, BEAD.state(orbit.t)[0], atol=2e-14)
 
 
 @pytest.mark.parametrize(

@@ -145,14 +145,6 @@ def test_the_distance_from_the_guess_is_told(free):
     assert 0.3 < far.moved < 1.5 and np.max(gap) > 0.3
 
 
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [({"q": "x"}, "q"), ({"qd": ["a", 0, 0]}, "qd"), ({"advance": "x"}, "advance")],
-)
-def test_text_for_numbers_is_refused(pendulum, changes, named):
-    given = {"q": [0.0, 0.0, -ROD], "qd": [0.0, 0.0, 0.0], **changes}
-    with pytest.raises(BadInput, match=f"{named}: .* expected real numbers"):
-        periodic_orbit(pendulum, PERIOD, **given)
 
 
 def test_an_orbit_that_is_not_isolated_does_not_pass(emit):

@@ -184,10 +184,12 @@ def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEff
     if not set(_LENGTHS) <= set(system.geometry):
         return effect
     lengths = {name: system.geometry[name] for name in _LENGTHS}
-    angles = [
-        transmission_angle(FourBar(**{**lengths, effect.name: float(value)}))
-        for value in effect.values
-    ]
+    angles = []
+    for value in effect.values:
+        frame, crank, coupler, follower = (
+            float(value) if name == effect.name else lengths[name] for name in _LENGTHS
+        )
+        angles.append(transmission_angle(FourBar(frame, crank, coupler, follower)))
     return replace(
         effect, transmission=np.array([[angle.least, angle.greatest] for angle in angles])
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import mpmath
 import numpy as np
+import pytest
 from elastolink.runtime.linkages import FourBar, SliderCrank, transmission_angle
 from elastolink.runtime.rigid import (
     Machine,

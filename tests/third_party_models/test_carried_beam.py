@@ -91,8 +91,6 @@ def test_arrays_against_quadrature(beam, modes):
         np.testing.assert_allclose(pushed + arrays["p"], force, rtol=1e-12, atol=1e-12)
 
 
-
-
 def test_cantilever_frequencies(beam):
     """Three polynomials hold 1.8751^2 to 4e-4, two to 5e-3, from above."""
     unit = PARAMETERS["bending_stiffness"] / (

@@ -52,8 +52,6 @@ def test_motion_against_the_loop_at_30_digits(module, offset):
                 assert found[name][k] == pytest.approx(float(value), abs=2e-15), name
 
 
-
-
 def test_only_what_is_wanted_is_emitted(emit, module):
     spec = ModelSpec("offset_slider", "kinematics", outputs=("position",))
     lean = emit("offset_slider", spec).module
@@ -61,5 +59,3 @@ def test_only_what_is_wanted_is_emitted(emit, module):
     theta = np.linspace(0.0, 6.0, 7)
     expected = motion(module, theta, 0.02)["position"]
     np.testing.assert_array_equal(lean.motion(theta, CRANK, ROD, 0.02), expected)
-
-

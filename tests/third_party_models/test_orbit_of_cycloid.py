@@ -59,8 +59,6 @@ def test_the_motion_between_the_steps(bead):
     np.testing.assert_allclose(qd, exact[1], atol=1e-10)
 
 
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

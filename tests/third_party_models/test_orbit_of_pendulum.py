@@ -145,8 +145,6 @@ def test_the_distance_from_the_guess_is_told(free):
     assert 0.3 < far.moved < 1.5 and np.max(gap) > 0.3
 
 
-
-
 def test_an_orbit_that_is_not_isolated_does_not_pass(emit):
     """Without gravity the rod rests at every angle: a double multiplier 1."""
     found = emit("sliding_pendulum", ModelSpec("sliding_pendulum", "driven"))

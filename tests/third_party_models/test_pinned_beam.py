@@ -33,8 +33,6 @@ def bisect(system: Transcendental, number: int, low: float, high: float) -> floa
             high = middle
 
 
-
-
 def test_count_has_no_spurious_step(beam):
     """A fine sweep over the poles of D, too: the count never falls and steps by one."""
     waves = np.linspace(0.0, 12.4 * np.pi, 40_001)
@@ -47,8 +45,6 @@ def test_count_has_no_spurious_step(beam):
 def test_frequencies_by_bisection(beam, number):
     found = bisect(beam, number, 1.0, 1e5)
     assert found == pytest.approx((number * np.pi) ** 2, rel=1e-12)
-
-
 
 
 @pytest.mark.parametrize("wave", [1e-3, 0.5, 1.0, 1.001, 3.0, 4.0, 4.7, 5.0, 20.3, 301.0])
@@ -74,7 +70,3 @@ def test_no_overflow_far_beyond_cosh(beam):
         count = beam.count(np.array([1e3, 3e3]) ** 2)
     assert np.all(np.isfinite(stiffness))
     np.testing.assert_array_equal(count, np.floor(np.array([1e3, 3e3]) / np.pi))
-
-
-
-

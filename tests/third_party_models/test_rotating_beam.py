@@ -139,10 +139,6 @@ def test_flap_frequencies_against_publication_and_power_series(element, speed, p
     assert np.all(excess < 1.2e-2)
 
 
-
-
-
-
 def test_stretch_of_the_steady_rotation(element):
     system = blade(element, 8, forcing=True)
     speed = 0.5
@@ -157,8 +153,6 @@ def test_stretch_of_the_steady_rotation(element):
     steady = np.linalg.solve(second_order(system, 4.0)[2], 16.0 * system.array("f", 0.0)[0])
     moved = simulate(system, 4.0, 1.0, initial=(steady, np.zeros(system.size)))
     assert np.max(np.abs(moved.q - steady)) < 1e-9 * np.max(np.abs(steady))
-
-
 
 
 def nearest(found: np.ndarray, expected: np.ndarray) -> float:

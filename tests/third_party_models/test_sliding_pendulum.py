@@ -26,8 +26,6 @@ def systems(emit):
     return system
 
 
-
-
 def textbook(state, m=NUMBERS):
     """Accelerations of block and rod angle by hand: momentum along the line, moment about it."""
     s, a, sd, ad = state
@@ -76,12 +74,6 @@ def test_redundant_and_minimal_coordinates_agree(systems):
     by_hand = textbook(one, {**NUMBERS, "damping": 2.0})
     emitted = systems("minimal", damping=2.0).accelerations(np.array(one[:2]), np.array(one[2:]))
     np.testing.assert_allclose(emitted[0], by_hand, rtol=1e-13)
-
-
-
-
-
-
 
 
 def test_variational_equations_are_the_derivative_of_the_motion(systems):

@@ -1,9 +1,8 @@
 """Errors of every moving basis of the rod against the number of modes, on equal physics.
 
 Frozen frequencies are compared with the roots of the pinned beam with an overhang; tip deflections
-with those of sixteen two-segment polynomials, which agree with twelve to ten digits.  The steady
-motion is found by Fourier collocation, the one from rest by Gauss collocation of order 12: neither
-is the solver of the library.
+with those of sixteen two-segment polynomials, which agree with twelve to ten digits and, from rest,
+with a fixed mesh (``test_rod_tip_deflection.py``).
 """
 
 from __future__ import annotations
@@ -12,10 +11,9 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import numpy as np
-from elastolink.runtime.core.trigonometric import even_angles
+from elastolink.runtime.integrators.gauss_legendre import gauss_legendre
 from elastolink.runtime.linkages import QuickReturn
-from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.periodic.first_order import canonical_form
+from elastolink.runtime.periodic import floquet_multipliers, steady_state
 from elastolink.runtime.systems.rod import (
     FreeFreeBasis,
     OverhangBasis,
@@ -24,6 +22,7 @@ from elastolink.runtime.systems.rod import (
     overhang_roots,
     rod_system,
 )
+from marching import marched
 from rod_reference import Rod, flexible, stiff
 from scipy.linalg import eigh
 
@@ -37,10 +36,9 @@ RODS: Mapping[str, Callable[[], Rod]] = {
     "flexible": lambda: flexible(0.01, 100.0),
     "stiff": stiff,
 }
-# Harmonics that the tip deflection of either rod needs for twelve digits, and steps a turn.
-_ANGLES = {"flexible": 31, "stiff": 61}
+# Angles of the steady motion, and steps of the one from rest: twice as many change nothing here.
+_SAMPLES = 64
 _STEPS = 512
-_STAGES = 6
 REFERENCE = 16
 
 
@@ -77,57 +75,16 @@ def _tip(rod: Rod, basis, theta: np.ndarray, q: np.ndarray) -> np.ndarray:
     return np.einsum("tn,tn->t", shapes[:, 0], q)
 
 
-def _form(rod: Rod, basis, theta: np.ndarray):
-    """Return generator and forcing of (q, p), and the scale of q."""
-    system = made(rod, basis)
-    form = canonical_form(system, rod.speed, {}, forcing=True)
-    n = 2 * system.size
-    generator = form.generator(theta)[0]
-    return generator[:, :n, :n], generator[:, :n, -1], form.scale[0, : system.size]
+def steady_tip(rod: Rod, basis) -> np.ndarray:
+    """Return the periodic tip deflection at even angles."""
+    found = steady_state(made(rod, basis), rod.speed, rtol=1e-11, samples=_SAMPLES)
+    return found.deflection(1.0) / rod.length
 
 
-def steady_tip(rod: Rod, basis, count: int) -> np.ndarray:
-    """Return the periodic tip deflection at an odd number of even angles."""
-    theta = even_angles(2 * np.pi, count)
-    generator, forcing, scale = _form(rod, basis, theta)
-    m, k = generator.shape[-1], np.arange(count)
-    apart = k[:, None] - k + np.eye(count)
-    slope = np.where(np.eye(count), 0.0, 0.5 * (-1.0) ** (k[:, None] - k))
-    slope /= np.sin(np.pi * apart / count)
-    matrix = np.einsum("jk,ab->jakb", slope, np.eye(m))
-    matrix[k, :, k, :] -= generator
-    states = np.linalg.solve(matrix.reshape(count * m, -1), forcing.ravel()).reshape(count, m)
-    return _tip(rod, basis, theta, states[:, : m // 2] * scale)
-
-
-@lru_cache(maxsize=1)
-def _gauss() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return nodes, stage weights and final weights of Gauss collocation on [0, 1]."""
-    x = (1 + np.polynomial.legendre.leggauss(_STAGES)[0]) / 2
-    powers = np.arange(_STAGES)
-    vandermonde = np.linalg.inv(x[:, None] ** powers)
-    inner = (x[:, None] ** (powers + 1) / (powers + 1)) @ vandermonde
-    return x, inner, (1 / (powers + 1)) @ vandermonde
-
-
-def transient_tip(rod: Rod, basis, steps: int = _STEPS) -> np.ndarray:
+def transient_tip(rod: Rod, basis) -> np.ndarray:
     """Return the tip deflection from rest over the first turn, at the end of each step."""
-    x, inner, final = _gauss()
-    h = 2 * np.pi / steps
-    starts = h * np.arange(steps)
-    generator, forcing, scale = _form(rod, basis, (starts[:, None] + h * x).ravel())
-    m = generator.shape[-1]
-    generator = generator.reshape(steps, _STAGES, m, m)
-    right = np.concatenate([generator, forcing.reshape(steps, _STAGES, m, 1)], axis=-1)
-    matrix = -h * np.einsum("tiab,ij->tiajb", generator, inner).reshape(steps, _STAGES * m, -1)
-    matrix += np.eye(_STAGES * m)
-    slopes = np.linalg.solve(matrix, right.reshape(steps, _STAGES * m, -1))
-    maps = h * np.einsum("j,tjab->tab", final, slopes.reshape(steps, _STAGES, m, m + 1))
-    states = np.zeros((steps + 1, m))
-    for k in range(steps):
-        states[k + 1] = states[k] + maps[k] @ np.append(states[k], 1.0)
-    theta = h * np.arange(steps + 1)
-    return _tip(rod, basis, theta, states[:, : m // 2] * scale)
+    q = marched(gauss_legendre(6), made(rod, basis), rod.speed, _STEPS, 1)
+    return _tip(rod, basis, 2 * np.pi / _STEPS * np.arange(_STEPS + 1), q)
 
 
 @lru_cache(maxsize=8)
@@ -139,7 +96,7 @@ def reference(rod_name: str, kind: str) -> np.ndarray:
 def _deflection(rod_name: str, basis, kind: str) -> np.ndarray:
     rod = RODS[rod_name]()
     if kind == "steady":
-        return steady_tip(rod, basis, _ANGLES[rod_name])
+        return steady_tip(rod, basis)
     return transient_tip(rod, basis)
 
 

@@ -5,34 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, beam_linkage, linear_system
+from elastolink.runtime.integrators import METHODS
 from elastolink.runtime.linkages import QuickReturn
-from elastolink.runtime.periodic.first_order import canonical_form
-from rod_reference import _A, _C, CASES
+from marching import marched
+from rod_reference import CASES
 from rod_tip_deflections import TIPS
 
 NAME = "flexible, ratio 0.2, 300 rad/s"
-
-
-def _march(system, speed, steps):
-    """Return displacements from rest after each step of a revolution: Radau IIA, order 5."""
-    size, step = 2 * system.size, 2 * np.pi / steps
-    angles = ((np.arange(steps)[:, None] + _C) * step).ravel()
-    flow = canonical_form(system, speed, forcing=True).plain_generator(angles)[0]
-    mass = np.sqrt(np.diag(system.array("M", 0.0)[0]))
-    scale = np.concatenate([1.0 / mass, mass])
-    state, found = np.zeros(size), []
-    for parts in flow.reshape(steps, 3, size + 1, size + 1):
-        matrix = np.eye(3 * size)
-        for i in range(3):
-            for j in range(3):
-                part = parts[j, :size, :size] / scale[:, None] * scale
-                matrix[i * size : (i + 1) * size, j * size : (j + 1) * size] -= (
-                    step * _A[i, j] * part
-                )
-        loads = step * np.einsum("ij,jk->ik", _A, parts[:, :size, -1] / scale)
-        state = np.linalg.solve(matrix, np.ravel(state + loads))[-size:]
-        found.append((state * scale)[: system.size])
-    return np.array(found)
 
 
 def _error(elements, kind, steps, tension=True):
@@ -52,8 +31,9 @@ def _error(elements, kind, steps, tension=True):
         linkage, {"crank": crank, "rod": rods}, elements={"crank": 1, "rod": elements}, kind=kind
     )
     system = linear_system(structure, geometric_stiffness=tension)
-    every = steps // 8
-    moved = _march(system, rod.speed, steps)[every - 1 :: every]
+    moved = marched(METHODS["gauss_legendre"], system, rod.speed, steps, 1)[
+        steps // 8 :: steps // 8
+    ]
     angle = linkage.motion(np.arange(1, 9) * np.pi / 4).theta4
     x, y = (moved[:, structure.index(label)] for label in ("C.x", "C.y"))
     tip = (np.cos(angle) * y - np.sin(angle) * x) / rod.length

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
 import pytest
-from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, TwoSegmentBasis
 from rod_bases import (
     BASES,
     RODS,
     deflection_error,
     frequency_error,
-    made,
     order,
-    steady_tip,
     tongue,
-    transient_tip,
 )
 from write_rod_convergence import PLACES, TARGET, page
 
@@ -35,8 +30,7 @@ def test_orders_of_the_frozen_frequencies(place):
     assert found["free_free_linear"] == pytest.approx(3.0, abs=0.3)
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("mode", [1, 2, 3])
+@pytest.mark.parametrize(("place", "mode"), [(0.4, 1), (0.6, 2), (0.8, 3)])
 def test_two_segments_converge_spectrally(place, mode):
     """The order itself grows: faster than any power, until round-off."""
     counts = (8, 12, 16)
@@ -77,34 +71,6 @@ def test_combination_tongue_of_three_polynomial_modes_is_a_fifth_too_high():
     three = tongue(PolynomialBasis(3), 4320.0)
     assert three[0] > converged[1] * 1.1
     assert 0.2 < sum(three) / sum(converged) - 1 < 0.25
-
-
-def test_a_tongue_wants_a_speed_inside():
-    with pytest.raises(ValueError, match="no growth at 1000"):
-        tongue(PolynomialBasis(2), 1000.0, ratio=1e-4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("rod", RODS)
-def test_the_measures_own_solvers(rod):
-    """More angles and shorter steps change nothing that the page states."""
-    at, basis = RODS[rod](), TwoSegmentBasis(6)
-    coarse, fine = steady_tip(at, basis, 31 if rod == "flexible" else 61), steady_tip(at, basis, 93)
-    assert np.abs(fine).max() == pytest.approx(np.abs(coarse).max(), rel=5e-3)
-    start = fine[0]
-    assert coarse[0] == pytest.approx(start, rel=1e-9, abs=1e-11 * np.abs(fine).max())
-    short = transient_tip(at, basis, 1024)[::2]
-    assert np.abs(transient_tip(at, basis) - short).max() < 1e-5 * np.abs(short).max()
-
-
-def test_steady_motion_is_the_librarys():
-    """Fourier collocation against shooting, one overhang mode."""
-    rod = RODS["stiff"]()
-    ours = steady_tip(rod, OverhangBasis(1), 61)
-    found = steady_state(made(rod, OverhangBasis(1)), rod.speed, rtol=1e-7)
-    theirs = found.deflection(1.0) / rod.length
-    assert ours[0] == pytest.approx(theirs[0], rel=1e-5, abs=1e-6 * np.abs(theirs).max())
-    assert np.abs(ours).max() == pytest.approx(np.abs(theirs).max(), rel=5e-3)
 
 
 _NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]\d+)?")

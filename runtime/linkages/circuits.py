@@ -217,8 +217,8 @@ class Circuit:
 
     @property
     def _branch(self) -> float:
-        own = float(self.linkage.branch)
-        return own if self.number == 0 else -own
+        branch = float(self.linkage.branch)
+        return branch if self.number == 0 else -branch
 
     def _drive(self, s: Array, order: int) -> tuple[Taylor, Taylor, Taylor]:
         """Return cos(psi/2), sin(psi/2) and the signed root of (q - q1)(q2 - q)."""
@@ -271,17 +271,17 @@ class Circuit:
             crank = (cosine + 1j * sine) * (cosine + 1j * sine) * (-1j)
         zero = Taylor(np.zeros_like(crank.c))
         pin = size["crank"] * crank
-        found = {"crank": Placed(zero, crank)}
+        placed = {"crank": Placed(zero, crank)}
         if self.kind == "quick_return":
-            return found | self._rod(cosine, sine, pin)
+            return placed | self._rod(cosine, sine, pin)
         if self.kind == "slider_crank":
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
             along = 2.0 * c * root
             level = _real(pin) + along
-            found["coupler"] = Placed(pin, (along + 1j * raised) / m)
-            found["slider"] = Placed(level + 1j * e, zero + 1.0)
-            return found
+            placed["coupler"] = Placed(pin, (along + 1j * raised) / m)
+            placed["slider"] = Placed(level + 1j * e, zero + 1.0)
+            return placed
         f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
         near, far = f - c, f + c
         square = near**2 * (cosine * cosine) + far**2 * (sine * sine)
@@ -290,9 +290,9 @@ class Circuit:
         beside = 2.0 * f * c * root
         middle = 0.5 * (square + (m - n) * (m + n))
         opposite = 0.5 * (square - (m - n) * (m + n))
-        found["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
-        found["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
-        return found
+        placed["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
+        placed["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
+        return placed
 
     def _rod(self, cosine: Taylor, sine: Taylor, pin: Taylor) -> dict[str, Placed]:
         f, c = self.sizes["frame"], self.sizes["crank"]

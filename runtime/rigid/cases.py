@@ -163,8 +163,8 @@ def _quick_return(machine: Machine, case: Case, place: _Placing) -> dict[str, Co
 
 def _reciprocating(machine: Machine, place: _Placing, fraction: float) -> dict[str, Counterweight]:
     if tuple(machine.linkage.links)[-1] != "slider":
-        found = f"'reciprocating' for a {type(machine.linkage).__name__}"
-        raise bad("case", found, "a SliderCrank", "use case b, c or d")
+        given = f"'reciprocating' for a {type(machine.linkage).__name__}"
+        raise bad("case", given, "a SliderCrank", "use case b, c or d")
     lengths = machine.linkage.lengths
     at_c = _moment(machine, "coupler") / lengths["coupler"]
     rotating = _moment(machine, "crank") + (machine.mass("coupler").mass - at_c) * lengths["crank"]

@@ -46,9 +46,9 @@ class TorqueLine:
         given = {"stall": self.stall, "no_load_speed": self.no_load_speed}
         problems = not_finite("TorqueLine", given)
         if not problems and not self.stall * self.no_load_speed > 0:
-            found = f"stall {self.stall:g} N m, no-load speed {self.no_load_speed:g} rad/s"
+            pair = f"stall {self.stall:g} N m, no-load speed {self.no_load_speed:g} rad/s"
             fix = "correct a sign, or give a callable"
-            problems.append(Problem("TorqueLine", found, "two numbers of one sign, not zero", fix))
+            problems.append(Problem("TorqueLine", pair, "two numbers of one sign, not zero", fix))
         if problems:
             raise BadInput(*problems)
 
@@ -84,18 +84,18 @@ def _checked(law: TorqueLaw) -> TorqueLaw:
     """Return a torque law that refuses what is no finite number."""
 
     def torque(speed: float, angle: float, time: float) -> float:
-        found = law(speed, angle, time)
-        number = isinstance(found, Real) and not isinstance(found, bool)
-        if not number and isinstance(found, np.ndarray) and found.size == 1:
-            found, number = found.item(), found.dtype.kind in "fiu"
-        if not (number and np.isfinite(found)):
+        value = law(speed, angle, time)
+        number = isinstance(value, Real) and not isinstance(value, bool)
+        if not number and isinstance(value, np.ndarray) and value.size == 1:
+            value, number = value.item(), value.dtype.kind in "fiu"
+        if not (number and np.isfinite(value)):
             place = f"speed {speed:.6g} rad/s, angle {angle:.6g} rad, time {time:.6g} s"
             raise bad(
                 "torque",
-                f"{found!r}"[:60] + f" from the torque law at {place}",
+                f"{value!r}"[:60] + f" from the torque law at {place}",
                 "a finite number [N m]",
                 "correct the torque law",
             )
-        return float(found)
+        return float(value)
 
     return torque

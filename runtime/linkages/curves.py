@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -470,12 +470,6 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
     return checks
 
 
-@cache
-def _rule(nodes: int) -> tuple[Array, Array]:
-    places, weights = np.polynomial.legendre.leggauss(nodes)
-    return places, weights
-
-
 def _integrate_turn(
     f: Callable[[Array], Array], breaks: Array, relative: float = 4.0 * EPS
 ) -> tuple[Array, Array]:
@@ -526,7 +520,7 @@ def _panels(
     f: Callable[[Array], Array], low: Array, high: Array, nodes: int
 ) -> tuple[Array, Array]:
     """Return the integrals of f and of its size over each panel, shape (k, panels)."""
-    places, weights = _rule(nodes)
+    places, weights = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (high - low)
     s = 0.5 * (high + low)[:, None] + half[:, None] * places
     values = f(s.ravel())

@@ -52,10 +52,8 @@ class Counterweight:
         """Check the numbers."""
         where = "Counterweight"
         problems = not_finite(where, {"along": self.along, "across": self.across})
-        problems += not_finite(where, {"mass": self.mass, "radius": self.radius}, least=0.0)
-        problems += _cylinder_problems(where, self.density, self.thickness)
-        if not problems and self.radius and self.density is not None:
-            problems.append(_radius_twice(where))
+        problems += not_finite(where, {"mass": self.mass}, least=0.0)
+        problems += _body_problems(where, self)
         if problems:
             raise BadInput(*problems)
 
@@ -116,18 +114,14 @@ class Bounds:
     def __post_init__(self) -> None:
         """Check the numbers."""
         where = "Bounds"
-        problems = not_finite(
-            where, {"least_offset": self.least_offset, "radius": self.radius}, least=0.0
-        )
+        problems = not_finite(where, {"least_offset": self.least_offset}, least=0.0)
         problems += _not_positive(where, {"mass": self.mass, "offset": self.offset})
-        problems += _cylinder_problems(where, self.density, self.thickness)
+        problems += _body_problems(where, self)
         if not problems and self.offset is not None and self.least_offset > self.offset:
             expected = f"at most the greatest offset {self.offset:g}"
             problems.append(
                 Problem("Bounds.least_offset", f"{self.least_offset:g}", expected, "correct it")
             )
-        if not problems and self.radius and self.density is not None:
-            problems.append(_radius_twice(where))
         if problems:
             raise BadInput(*problems)
 
@@ -194,14 +188,15 @@ def _not_positive(where: str, values: Mapping[str, float | None]) -> list[Proble
     ]
 
 
-def _cylinder_problems(where: str, density: float | None, thickness: float | None) -> list[Problem]:
-    problems = _not_positive(where, {"density": density, "thickness": thickness})
-    if not problems and (density is None) != (thickness is None):
+def _body_problems(where: str, body: Counterweight | Bounds) -> list[Problem]:
+    """Return what is wrong with a disc of a radius, or a cylinder of density and thickness."""
+    cylinder = {"density": body.density, "thickness": body.thickness}
+    problems = not_finite(where, {"radius": body.radius}, least=0.0)
+    problems += _not_positive(where, cylinder)
+    if not problems and (body.density is None) != (body.thickness is None):
         expected = "both density and thickness, or none"
         problems.append(Problem(f"{where}.density", "one of the two", expected, "give both"))
+    elif not problems and body.radius and body.density is not None:
+        expected = "a radius, or density and thickness"
+        problems.append(Problem(f"{where}.radius", "all three", expected, "leave one out"))
     return problems
-
-
-def _radius_twice(where: str) -> Problem:
-    expected = "a radius, or density and thickness"
-    return Problem(f"{where}.radius", "all three", expected, "leave one out")

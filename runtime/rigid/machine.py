@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import are_finite
 from ..linkages import Linkage
-from .inputs import not_finite
 from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
 
@@ -69,7 +69,10 @@ class Machine:
             given = type(self.linkage).__name__
             raise bad("Machine.linkage", given, "a linkage", "give a FourBar, for example")
         problems = _mass_problems(self.masses, self.linkage.links)
-        problems += _gravity_problems(self.gravity)
+        if not are_finite(self.gravity, 2):
+            fix = "write it like (0.0, -9.81)"
+            given = repr(self.gravity)[:60]
+            problems.append(Problem("Machine.gravity", given, "two finite components", fix))
         for name, kinds in (("loads", (Load,)), ("springs", (Spring, TorsionSpring))):
             problems += _item_problems(name, getattr(self, name), kinds, self.linkage.links)
         if problems:
@@ -302,15 +305,6 @@ def _mass_problems(masses: object, links: tuple[str, ...]) -> list[Problem]:
             given, fix = type(mass).__name__, "build one with MassDistribution.uniform_bar"
             problems.append(Problem(where, given, "a MassDistribution", fix))
     return problems
-
-
-def _gravity_problems(gravity: object) -> list[Problem]:
-    if not (isinstance(gravity, (tuple, list, np.ndarray)) and len(gravity) == 2):
-        given = repr(gravity)[:60]
-        return [Problem("Machine.gravity", given, "two components", "write it like (0.0, -9.81)")]
-    return not_finite("Machine", {"gravity": gravity[0]}) or not_finite(
-        "Machine", {"gravity": gravity[1]}
-    )
 
 
 def _item_problems(

@@ -309,19 +309,13 @@ class Circuit:
 
     def joints(self, s: Array) -> dict[str, Complex]:
         """Return the places of the joints A, B, C, D (where there are such) in true lengths."""
-        size, links = self.sizes, self.links(s, 0)
-        places = {"A": 0 * s + 0j, "B": size["crank"] * links["crank"].direction.c[0]}
-        if self.kind == "four_bar":
-            coupler = links["coupler"]
-            places["C"] = (coupler.origin + size["coupler"] * coupler.direction).c[0]
-            places["D"] = 0 * s + 0j + size["frame"]
-        elif self.kind == "slider_crank":
-            places["C"] = links["slider"].origin.c[0]
-        else:
-            rod = links["rod"]
-            places["C"] = (rod.origin + size["rod"] * rod.direction).c[0]
-            places["D"] = 0 * s + 0j - size["frame"]
-        return {name: self.scale * place for name, place in places.items()}
+        links, places = self.links(s, 0), {}
+        for link, letters in self.linkage.bars.items():
+            at = links[link]
+            places[letters[0]] = at.origin.c[0]
+            if len(letters) == 2:
+                places[letters[1]] = (at.origin + self.sizes[link] * at.direction).c[0]
+        return {name: self.scale * place for name, place in sorted(places.items())}
 
 
 def _real(series: Taylor) -> Taylor:

@@ -17,7 +17,7 @@ from ..rigid import (
     rigid_forces,
     with_counterweights,
 )
-from ..rigid.cases import CASES, Case
+from ..rigid.counterweights import CASES, Case
 from .records import Drawn, Quoted, Table
 from .sketches import INK, LINK_COLOURS, Array, bar, canvas, four_bar, write
 from .smith_forces import INCH, TURN, example, example_forces, peak, polar_look

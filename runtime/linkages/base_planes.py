@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..core.inputs import require_whole
 from ..core.results import Result, provenance
-from .barker import number_of_signs
-from .classification import SYMBOLS, classify
+from .classification import SYMBOLS, classify, number_of_signs
 from .linkage import Array
 
 if TYPE_CHECKING:

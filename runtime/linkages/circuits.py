@@ -217,8 +217,8 @@ class Circuit:
 
     @property
     def _branch(self) -> float:
-        own = float(self.linkage.branch)
-        return own if self.number == 0 else -own
+        branch = float(self.linkage.branch)
+        return branch if self.number == 0 else -branch
 
     def _drive(self, s: Array, order: int) -> tuple[Taylor, Taylor, Taylor]:
         """Return cos(psi/2), sin(psi/2) and the signed root of (q - q1)(q2 - q)."""
@@ -271,17 +271,17 @@ class Circuit:
             crank = (cosine + 1j * sine) * (cosine + 1j * sine) * (-1j)
         zero = Taylor(np.zeros_like(crank.c))
         pin = size["crank"] * crank
-        found = {"crank": Placed(zero, crank)}
+        placed = {"crank": Placed(zero, crank)}
         if self.kind == "quick_return":
-            return found | self._rod(cosine, sine, pin)
+            return placed | self._rod(cosine, sine, pin)
         if self.kind == "slider_crank":
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
             along = 2.0 * c * root
             level = _real(pin) + along
-            found["coupler"] = Placed(pin, (along + 1j * raised) / m)
-            found["slider"] = Placed(level + 1j * e, zero + 1.0)
-            return found
+            placed["coupler"] = Placed(pin, (along + 1j * raised) / m)
+            placed["slider"] = Placed(level + 1j * e, zero + 1.0)
+            return placed
         f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
         near, far = f - c, f + c
         square = near**2 * (cosine * cosine) + far**2 * (sine * sine)
@@ -290,9 +290,9 @@ class Circuit:
         beside = 2.0 * f * c * root
         middle = 0.5 * (square + (m - n) * (m + n))
         opposite = 0.5 * (square - (m - n) * (m + n))
-        found["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
-        found["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
-        return found
+        placed["coupler"] = Placed(pin, to_pivot * (middle + 1j * beside) / (m * square))
+        placed["follower"] = Placed(zero + f, to_pivot * (1j * beside - opposite) / (n * square))
+        return placed
 
     def _rod(self, cosine: Taylor, sine: Taylor, pin: Taylor) -> dict[str, Placed]:
         f, c = self.sizes["frame"], self.sizes["crank"]
@@ -309,19 +309,13 @@ class Circuit:
 
     def joints(self, s: Array) -> dict[str, Complex]:
         """Return the places of the joints A, B, C, D (where there are such) in true lengths."""
-        size, links = self.sizes, self.links(s, 0)
-        places = {"A": 0 * s + 0j, "B": size["crank"] * links["crank"].direction.c[0]}
-        if self.kind == "four_bar":
-            coupler = links["coupler"]
-            places["C"] = (coupler.origin + size["coupler"] * coupler.direction).c[0]
-            places["D"] = 0 * s + 0j + size["frame"]
-        elif self.kind == "slider_crank":
-            places["C"] = links["slider"].origin.c[0]
-        else:
-            rod = links["rod"]
-            places["C"] = (rod.origin + size["rod"] * rod.direction).c[0]
-            places["D"] = 0 * s + 0j - size["frame"]
-        return {name: self.scale * place for name, place in places.items()}
+        links, places = self.links(s, 0), {}
+        for link, letters in self.linkage.bars.items():
+            at = links[link]
+            places[letters[0]] = at.origin.c[0]
+            if len(letters) == 2:
+                places[letters[1]] = (at.origin + self.sizes[link] * at.direction).c[0]
+        return {name: self.scale * place for name, place in sorted(places.items())}
 
 
 def _real(series: Taylor) -> Taylor:

@@ -422,10 +422,10 @@ def _missing(task: Task, sizes: Mapping[str, float], pin: Any, end: Array) -> Ar
         away = np.abs(((pin + sizes["frame"]) * np.exp(-1j * end)).imag)
         return np.asarray(away - (play + guide))
     if isinstance(task.linkage, FourBar):
-        own, other, span = sizes["follower"], sizes["coupler"], pin - sizes["frame"]
+        side, other, span = sizes["follower"], sizes["coupler"], pin - sizes["frame"]
         if task.link == "coupler":
-            own, other, span = other, own, -span
-        bridged = np.abs(own * np.exp(1j * end) - span)
+            side, other, span = other, side, -span
+        bridged = np.abs(side * np.exp(1j * end) - span)
         return _nearest(bridged - (other + play), bridged - (other - play))
     gap = sizes["offset"] - pin.imag
     if task.link == "coupler":

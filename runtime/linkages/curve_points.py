@@ -64,8 +64,8 @@ def slowest(path: Path, sharp: Array) -> Slow:
         middle = 0.5 * (low + high)
         rising = _squared_speed_rate(path(middle, 2)) >= 0
         low, high = np.where(rising, low, middle), np.where(rising, middle, high)
-    found = _polished(path, 0.5 * (low + high), low, high)
-    return Slow(found % TURN, np.abs(path(found, 1).derivative(1)), fastest)
+    least = _polished(path, 0.5 * (low + high), low, high)
+    return Slow(least % TURN, np.abs(path(least, 1).derivative(1)), fastest)
 
 
 def _polished(path: Path, s: Array, low: Array, high: Array) -> Array:

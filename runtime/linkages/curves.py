@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -222,7 +222,6 @@ def coupler_curve(
     doubles = trace.doubles(slow)
     s = _parameters(motion, int(points))
     at = trace.series(s, 2)
-    figure = trace.figure(s)
     return CouplerCurve(
         linkage=linkage,
         circuit=circuit,
@@ -237,7 +236,7 @@ def coupler_curve(
         slowest=float(np.min(slow.speed / slow.fastest, initial=1.0)),
         **trace.marked(slow.stops, doubles),
         method="Taylor series of the closed form; cusps and double points by Newton",
-        error=figure,
+        error=trace.error(s),
         error_norm="distance of each position [m] from that at the same parameter",
         checks=DeferredChecks(partial(_checks, trace, s, len(doubles.place))),
         provenance=provenance(linkage.provenance),
@@ -251,11 +250,11 @@ def _place(linkage: Linkage, link: str, along: float, across: float) -> complex:
     try:
         place = complex(float(along), float(across))
     except (TypeError, ValueError) as refusal:
-        found = f"{along!r}, {across!r}"[:60]
-        raise bad("along, across", found, "two lengths", "correct it") from refusal
+        given = f"{along!r}, {across!r}"[:60]
+        raise bad("along, across", given, "two lengths", "correct it") from refusal
     if not np.isfinite(place) or abs(place) > 1e6 * max(map(abs, linkage.lengths.values())):
-        found = f"{place.real:g}, {place.imag:g}"
-        raise bad("along, across", found, "lengths up to 1e6 of the linkage's", "correct it")
+        given = f"{place.real:g}, {place.imag:g}"
+        raise bad("along, across", given, "lengths up to 1e6 of the linkage's", "correct it")
     return place
 
 
@@ -392,7 +391,7 @@ class _Trace:
             "crossing_angle": np.arcsin(np.minimum(doubles.sine, 1.0)),
         }
 
-    def figure(self, s: Array) -> Array:
+    def error(self, s: Array) -> Array:
         """Return three times what a round-off of parameter and lengths does to the place."""
         at = self.series(s, 1)
         moved = np.abs(s) * np.abs(at.derivative(1))
@@ -416,9 +415,9 @@ class _Trace:
             return 3.0 + 2.0 * size["crank"] * root / size["coupler"]
         f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
         reach = np.sqrt((f - c) ** 2 + 4 * f * c * q)
-        own = n if self.link == "follower" else m
-        base = (f + c) / reach + (reach**2 + m**2 + n**2) / (reach * own)
-        return np.asarray(base + 2.0 * f * c * root / (reach * own))
+        length = n if self.link == "follower" else m
+        base = (f + c) / reach + (reach**2 + m**2 + n**2) / (reach * length)
+        return np.asarray(base + 2.0 * f * c * root / (reach * length))
 
 
 def _root_blur(q: Array, q1: float, q2: float, lower: bool, upper: bool) -> Array:
@@ -434,7 +433,7 @@ def _root_blur(q: Array, q1: float, q2: float, lower: bool, upper: bool) -> Arra
     return np.asarray(parts[0] + parts[1])
 
 
-def _own_motion(motion: Circuit, s: Array) -> Any:
+def _motion_of(motion: Circuit, s: Array) -> Any:
     """Return the mechanism's motion, or None where it has none to compare with."""
     if motion.number != 0 or not (motion.turns and motion.linkage.crank_turns):
         return None
@@ -448,13 +447,13 @@ def _own_motion(motion: Circuit, s: Array) -> Any:
 def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
     """Compare with the mechanism's own motion, and with the equation of the curve."""
     motion = trace.motion
-    found: dict[str, Check] = {}
+    checks: dict[str, Check] = {}
     at = trace.series(s, 1)
     place, scale = trace.place * motion.scale, motion.scale
-    own = _own_motion(motion, s)
-    if own is not None:
-        point = own.point(trace.link, place.real, place.imag)
-        blur = 2 * (trace.figure(s) / scale + 4 * EPS * trace.size * (1 + own.error / EPS))
+    mechanism = _motion_of(motion, s)
+    if mechanism is not None:
+        point = mechanism.point(trace.link, place.real, place.imag)
+        blur = 2 * (trace.error(s) / scale + 4 * EPS * trace.size * (1 + mechanism.error / EPS))
         for name, there, here in (
             ("places", point.position, at.c[0]),
             ("velocities", point.velocity, at.derivative(1)),
@@ -463,18 +462,12 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
             if name == "velocities":
                 blur = blur * (1 + np.abs(at.derivative(1)) / trace.size)
             worst = float(np.max(gap / blur))
-            found[f"{name} against the mechanism's motion, over their round-off"] = Check(worst, 1)
+            checks[f"{name} against the mechanism's motion, over their round-off"] = Check(worst, 1)
     if motion.kind == "four_bar" and trace.link == "coupler":
         residual = sextic_residual(motion.sizes, trace.place, at.c[0])
-        found["equation of sixth degree, over its terms"] = Check(float(np.max(residual)), 1e-12)
-        found["double points"] = Check(float(crossings), 3.0)
-    return found
-
-
-@cache
-def _rule(nodes: int) -> tuple[Array, Array]:
-    places, weights = np.polynomial.legendre.leggauss(nodes)
-    return places, weights
+        checks["equation of sixth degree, over its terms"] = Check(float(np.max(residual)), 1e-12)
+        checks["double points"] = Check(float(crossings), 3.0)
+    return checks
 
 
 def _integrate_turn(
@@ -495,7 +488,7 @@ def _integrate_turn(
     Returns
     -------
     integral, error : ndarray, shape (k,)
-        The error is the sum of the differences of the panels, a generous figure, and round-off.
+        The error is the sum of the differences of the panels, generous, and round-off.
     """
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
@@ -527,7 +520,7 @@ def _panels(
     f: Callable[[Array], Array], low: Array, high: Array, nodes: int
 ) -> tuple[Array, Array]:
     """Return the integrals of f and of its size over each panel, shape (k, panels)."""
-    places, weights = _rule(nodes)
+    places, weights = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (high - low)
     s = 0.5 * (high + low)[:, None] + half[:, None] * places
     values = f(s.ravel())
@@ -597,8 +590,8 @@ class Cognate:
 
     def placed(self, position: Array) -> Array:
         """Return places in the axes of the first linkage, shape (..., 2)."""
-        own = np.asarray(position)[..., 0] + 1j * np.asarray(position)[..., 1]
-        return np.asarray(self.pivot + planar(own * np.exp(1j * self.turn)))
+        place = np.asarray(position)[..., 0] + 1j * np.asarray(position)[..., 1]
+        return np.asarray(self.pivot + planar(place * np.exp(1j * self.turn)))
 
 
 def _cognates(motion: Circuit, place: complex) -> tuple[Cognate, Cognate]:
@@ -625,10 +618,10 @@ def _cognate(
     side = (to_pivot.conjugate() * coupler).imag
     lengths = (abs(frame), abs(crank), abs(coupler), abs(frame - crank - coupler))
     linkage = FourBar(*lengths, assembly="open" if side > 0 else "crossed")
-    own = Circuit(linkage)
+    motion = Circuit(linkage)
     upper = (crank / frame).imag > 0
     # Of two ranges of the crank the upper one comes first; a crank that turns has its assembly.
-    circuit = int(not upper) if all(own.swings) else 0
+    circuit = int(not upper) if all(motion.swings) else 0
     place = point * abs(coupler) / coupler
     return Cognate(
         linkage,

@@ -74,28 +74,10 @@ class FourBarMotion(Motion):
         "omega3": r"\omega_3",
     }
 
-    @property
-    def joints(self) -> Mapping[str, Array]:
-        """Places of the joints A, B, C, D, each of shape (..., 2)."""
-        return {
-            "A": self.link("crank").origin,
-            "B": self.link("coupler").origin,
-            "C": self.point("follower", self.linkage.lengths["follower"]).position,
-            "D": self.link("follower").origin,
-        }
-
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
             return self._at_crank_pin(self.theta3, self.omega3, self.alpha3)
         return self._about(self.linkage.lengths["frame"], self.theta4, self.omega4, self.alpha4)
-
-    def _at_far_joint(self, name: str) -> LinkMotion | None:
-        if name != "coupler":
-            return None
-        at = self.link("follower").point(self.linkage.lengths["follower"])
-        return LinkMotion(
-            at.position, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
-        )
 
 
 @dataclass(frozen=True)
@@ -131,6 +113,7 @@ class FourBar(Linkage):
         "coupler": ("B", "C"),
         "follower": ("D", "C"),
     }
+    met: ClassVar[Mapping[str, str]] = {"coupler": "follower"}
 
     def __post_init__(self) -> None:
         """Check the lengths."""

@@ -31,7 +31,7 @@ class Harmonics(Result):
     """Harmonics of a function of the crank angle.
 
     The function is ``secular theta + a[0] + sum_m (a[m] cos m theta + b[m] sin m theta)`` and what
-    lies beyond the order.  ``error`` is the figure of every coefficient, absolute.
+    lies beyond the order.  ``error`` is that of every coefficient, absolute.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ def harmonics(source: Source, *, order: int = 8, accuracy: float = 1e-12) -> Har
     -------
     Harmonics
         Its check "change on doubling" fails where the accuracy is out of reach with 131072
-        angles - a function that jumps, or noise - and the error figure says what was reached.
+        angles - a function that jumps, or noise - and ``error`` says what was reached.
 
     Raises
     ------
@@ -188,13 +188,13 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
     count = max(64, 4 * 2 ** int(np.ceil(np.log2(order + 1))))
     probes = np.asarray(TURN * ((_GOLDEN * np.arange(1, _PROBES + 1)) % 1.0), dtype=np.float64)
     at_probes = values_at(f, probes, name)
-    largest, asked = float(np.max(np.abs(at_probes))), _PROBES
+    largest, evaluations = float(np.max(np.abs(at_probes))), _PROBES
     before: np.ndarray[Any, Any] | None = None
     changes: list[float] = []
     while True:
         settled = False
         theta, values, full = _coefficients(f, count, name)
-        asked += count
+        evaluations += count
         largest = max(largest, float(np.max(np.abs(values))))
         # A pulse that one set has met and the next ones miss must not be forgotten.
         ends = [int(np.argmin(values)), int(np.argmax(values))]
@@ -223,7 +223,7 @@ def _doubled(f: Callable[[Array], Array], name: str, order: int, accuracy: float
         # A pulse between two samples, of this height or of 1: 2/turn times its area.
         error += 2.0 * max(largest, 1.0) / count
     remainder = max(2.0 * rest, min(dropped, 4.0 * rest)) + error
-    return _Sums(_series(low), max(changes[-2:]), error, largest, remainder, asked)
+    return _Sums(_series(low), max(changes[-2:]), error, largest, remainder, evaluations)
 
 
 def _series(coefficients: np.ndarray[Any, Any]) -> PeriodicFunction:

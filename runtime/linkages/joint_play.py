@@ -144,11 +144,11 @@ def _turned(
 def four_bar(sizes: Sizes, branch: float, link: str) -> Route:
     """Return the play of follower or coupler: an angle in the triangle BCD (Smith 3.1, 3.2)."""
     frame, crank = sizes["frame"], sizes["crank"]
-    own, other = sizes["follower"], sizes["coupler"]
+    side, other = sizes["follower"], sizes["coupler"]
     if link == "coupler":
-        own, other = other, own
+        side, other = other, side
     short, long = abs(frame - crank), frame + crank
-    triangle = partial(_triangle, own=own, other=other)
+    triangle = partial(_triangle, side=side, other=other)
 
     def at(theta: ArrayLike, radius: ArrayLike, guide: ArrayLike) -> Play:
         angle = np.asarray(theta, dtype=float)
@@ -173,15 +173,15 @@ def four_bar(sizes: Sizes, branch: float, link: str) -> Route:
     def candidates(radius: float, guide: float) -> tuple[float, ...]:
         longer, shorter = other + radius, other - radius
         # Equal angles opposite D's side, and right ones where one length makes both ends.
-        squares = (own**2 + longer * shorter, own**2 - longer**2, own**2 - shorter**2)
+        squares = (side**2 + longer * shorter, side**2 - longer**2, side**2 - shorter**2)
         still = [float(np.sqrt(square)) for square in squares if square > 0.0]
-        return (*still, own - shorter, own + shorter, longer - own)
+        return (*still, side - shorter, side + shorter, longer - side)
 
     def crank_at(diagonal: float) -> float:
         sine2 = (diagonal - short) * (diagonal + short)
         return _angle_of(sine2, (long - diagonal) * (long + diagonal))
 
-    ends = (max(short, abs(own - other)), min(long, own + other))
+    ends = (max(short, abs(side - other)), min(long, side + other))
     return Route(at, triangle, ends, candidates, crank_at)
 
 
@@ -190,23 +190,23 @@ def _together(*values: ArrayLike) -> tuple[Array, ...]:
 
 
 def _triangle(
-    diagonal: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, own: float, other: float
+    diagonal: ArrayLike, radius: ArrayLike, guide: ArrayLike, *, side: float, other: float
 ) -> Play:
     """Return the play of the angle at D between DB and DC; BC is ``other`` give or take."""
     d, r, _ = _together(diagonal, radius, guide)
-    scale = np.maximum(4.0 * d * own, _TINY)
+    scale = np.maximum(4.0 * d * side, _TINY)
     least, nominal, greatest = (
-        _opened(d, own, other, change, scale) for change in (-r, np.zeros_like(r), r)
+        _opened(d, side, other, change, scale) for change in (-r, np.zeros_like(r), r)
     )
     rises = r * (2.0 * other - r) / scale, r * (2.0 * other + r) / scale
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        small = (r / d) * (other / own) / (nominal.sine * nominal.cosine)
+        small = (r / d) * (other / side) / (nominal.sine * nominal.cosine)
     return _of_angles(
         (least, nominal, greatest),
         rises,
         small=np.where(r == 0.0, 0.0, small),
-        margin=np.minimum((other + own) - d, d - abs(other - own)),
-        blur=4.0 * EPS * (d + other + own),
+        margin=np.minimum((other + side) - d, d - abs(other - side)),
+        blur=4.0 * EPS * (d + other + side),
         place=d,
     )
 
@@ -229,9 +229,9 @@ def _of_angles(
     )
 
 
-def _opened(d: Array, own: float, other: float, change: Array, scale: Array) -> _Half:
+def _opened(d: Array, side: float, other: float, change: Array, scale: Array) -> _Half:
     """Return the angle between sides d and ``own`` opposite to a side ``other + change``."""
-    excess, around = (other - own) + change, (other + own) + change
+    excess, around = (other - side) + change, (other + side) + change
     near = EPS * (2.5 * d + 1.5 * np.abs(excess))
     far = EPS * (2.5 * d + 1.5 * np.abs(around))
     error = (

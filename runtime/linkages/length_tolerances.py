@@ -560,8 +560,8 @@ def _trial(
         greatest = np.maximum(greatest, np.max(deviation, axis=0, initial=-np.inf))
         kept, done = kept + int(np.count_nonzero(good)), done + count
     if kept < 2:
-        found = f"{kept} linkages that reach every angle"
-        raise bad("tolerances", found, "at least 2", "narrow the tolerances")
+        given = f"{kept} linkages that reach every angle"
+        raise bad("tolerances", given, "at least 2", "narrow the tolerances")
     mean = total / kept
     spread = unit * np.sqrt(np.maximum(squares - kept * np.square(mean), 0.0) / (kept - 1))
     shift = unit * mean

@@ -218,9 +218,14 @@ class Motion(Result, ABC):
         )
 
     @property
-    @abstractmethod
     def joints(self) -> Mapping[str, Array]:
-        """Places of the joints by letter, each of shape (..., 2)."""
+        """Places of the joints by letter (A, B, C, D), each of shape (..., 2)."""
+        places = {}
+        for link, letters in self.linkage.bars.items():
+            places[letters[0]] = self.link(link).origin
+            if len(letters) == 2:
+                places[letters[1]] = self.point(link, self.linkage.lengths[link]).position
+        return dict(sorted(places.items()))
 
     @property
     def relative(self) -> bool:
@@ -248,7 +253,12 @@ class Motion(Result, ABC):
 
     def _at_far_joint(self, name: str) -> LinkMotion | None:
         """Return the motion of a link with its origin at its second joint, where that moves too."""
-        return None
+        if name not in self.linkage.met:
+            return None
+        other, here = self.linkage.met[name], self.link(name)
+        at = self.link(other).point(self.linkage.lengths.get(other, 0.0))
+        turning = (here.angle, here.speed, here.angular_acceleration)
+        return LinkMotion(at.position, at.velocity, at.acceleration, *turning)
 
     def _about(self, pivot: Any, angle: Array, speed: Array, change: Array) -> LinkMotion:
         """Return the motion of a link that turns about a fixed point of the frame line."""
@@ -278,6 +288,8 @@ class Linkage(ABC):
         The moving links, in the order 2, 3, 4.
     bars : mapping of str to tuple of str
         The joints between which each moving link is drawn.
+    met : mapping of str to str
+        The moving link, if any, at whose far end the second joint of a link is.
     """
 
     mechanism: ClassVar[str]
@@ -286,6 +298,7 @@ class Linkage(ABC):
     names: ClassVar[tuple[str, ...]]
     links: ClassVar[tuple[str, str, str]]
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
+    met: ClassVar[Mapping[str, str]] = {}
 
     @property
     def lengths(self) -> Mapping[str, float]:

@@ -96,7 +96,8 @@ class Parametric:
     def _motion(self, theta: Any, numbers: Mapping[str, Any], moved: Mapping[str, Any]) -> Motion:
         """Return what :meth:`_moved` has computed as a motion, for points of the links."""
         lengths = {name: numbers[name] for name in self.linkage.names}
-        linkage: Any = SimpleNamespace(lengths=lengths, links=self.linkage.links)
+        one = self.linkage
+        linkage: Any = SimpleNamespace(lengths=lengths, links=one.links, met=one.met)
         drive: Any = {"omega2": self.speed, "alpha2": self.acceleration}
         return self.linkage.moves(
             linkage=linkage,

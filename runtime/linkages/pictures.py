@@ -193,18 +193,15 @@ def _trace(motion: Circuit, curve: CouplerCurve) -> Complex:
 
 
 def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
-    """Return the moving parts at one position as lines through complex places, by link."""
-    at = {name: complex(place[0]) for name, place in motion.joints(np.array([s])).items()}
-    unit = _unit(motion)
-    bars = {"crank": np.array([at["A"], at["B"]])}
-    if motion.kind == "quick_return":
-        rod = np.array([at["D"], at["C"]])
-        turned = np.exp(1j * np.angle(at["B"] - at["D"]))
-        return bars | {"rod": rod, "block": at["B"] + turned * _box(unit, 0.6 * unit)}
-    bars["coupler"] = np.array([at["B"], at["C"]])
-    if motion.kind == "four_bar":
-        return bars | {"follower": np.array([at["D"], at["C"]])}
-    return bars | {"slider": at["C"] + _box(unit, 0.6 * unit)}
+    """Return the moving parts at one position as lines through complex places, blocks last."""
+    here, unit = np.array([s]), _unit(motion)
+    joints, links = motion.joints(here), motion.links(here, 0)
+    bars = {}
+    for link, letters in sorted(motion.linkage.bars.items(), key=lambda bar: -len(bar[1])):
+        ends = np.array([complex(joints[name][0]) for name in letters])
+        turned = complex(links[link].direction.c[0, 0])
+        bars[link] = ends if len(ends) == 2 else ends[0] + turned * _box(unit, 0.6 * unit)
+    return bars
 
 
 def _pins(motion: Circuit, s: float) -> Complex:

@@ -72,16 +72,6 @@ class QuickReturnMotion(Motion):
         "alpha4": r"\alpha_4",
     }
 
-    @property
-    def joints(self) -> Mapping[str, Array]:
-        """Places of A, B, D and of the rod's tip C, each of shape (..., 2)."""
-        return {
-            "A": self.link("crank").origin,
-            "B": self.link("block").origin,
-            "C": self.point("rod", self.linkage.lengths["rod"]).position,
-            "D": self.link("rod").origin,
-        }
-
     def _other_link(self, name: str) -> LinkMotion:
         if name == "block":
             return self._at_crank_pin(self.theta4, self.omega4, self.alpha4)

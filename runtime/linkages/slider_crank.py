@@ -82,12 +82,6 @@ class SliderCrankMotion(Motion):
         "slider_acceleration": "acceleration",
     }
 
-    @property
-    def joints(self) -> Mapping[str, Array]:
-        """Places of the joints A, B, C, each of shape (..., 2)."""
-        firsts = {"A": "crank", "B": "coupler", "C": "slider"}
-        return {joint: self.link(link).origin for joint, link in firsts.items()}
-
     def _other_link(self, name: str) -> LinkMotion:
         if name == "coupler":
             return self._at_crank_pin(self.theta3, self.omega3, self.alpha3)
@@ -95,14 +89,6 @@ class SliderCrankMotion(Motion):
         pin = pair(self.position, self.linkage.lengths["offset"])
         velocity, change = pair(self.slider_velocity, 0.0), pair(self.slider_acceleration, 0.0)
         return LinkMotion(pin, velocity, change, still, still, still)
-
-    def _at_far_joint(self, name: str) -> LinkMotion | None:
-        if name != "coupler":
-            return None
-        at = self.link("slider")
-        return LinkMotion(
-            at.origin, at.velocity, at.acceleration, self.theta3, self.omega3, self.alpha3
-        )
 
 
 @dataclass(frozen=True)
@@ -139,6 +125,7 @@ class SliderCrank(Linkage):
         "coupler": ("B", "C"),
         "slider": ("C",),
     }
+    met: ClassVar[Mapping[str, str]] = {"coupler": "slider"}
 
     def __post_init__(self) -> None:
         """Check the lengths."""

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from .balancing import Balancing as Balancing
     from .balancing import balance as balance
     from .balancing import trade_off as trade_off
-    from .cases import case_counterweights as case_counterweights
     from .counterweights import Bounds as Bounds
     from .counterweights import Counterweight as Counterweight
+    from .counterweights import case_counterweights as case_counterweights
     from .counterweights import with_counterweights as with_counterweights
     from .flywheel import flywheel_inertia as flywheel_inertia
     from .flywheel import torque_fluctuation as torque_fluctuation
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from .machine import Machine as Machine
     from .masses import MassDistribution as MassDistribution
     from .motor_run import RunUp as RunUp
+    from .motor_run import TorqueLine as TorqueLine
     from .motor_run import run_up as run_up
-    from .motors import TorqueLine as TorqueLine
     from .peaks import ForcePeak as ForcePeak
     from .peaks import force_peaks as force_peaks
 
@@ -47,10 +47,10 @@ _PUBLIC = {
     "RigidForces": "forces",
     "RunUp": "motor_run",
     "Spring": "loads",
-    "TorqueLine": "motors",
+    "TorqueLine": "motor_run",
     "TorsionSpring": "loads",
     "balance": "balancing",
-    "case_counterweights": "cases",
+    "case_counterweights": "counterweights",
     "driving_torque": "forces",
     "flywheel_inertia": "flywheel",
     "force_peaks": "peaks",

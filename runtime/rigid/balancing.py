@@ -13,8 +13,16 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, Result, provenance
 from ..linkages.linkage import Array
-from .cases import CASES, Case, Offsets, case_counterweights
-from .counterweights import Bounds, Counterweight, bounds_by_link, with_counterweights
+from .counterweights import (
+    CASES,
+    Bounds,
+    Case,
+    Counterweight,
+    Offsets,
+    bounds_by_link,
+    case_counterweights,
+    with_counterweights,
+)
 from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
 from .masses import MassDistribution

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from numbers import Real
 
 from ..core.errors import Problem, bad
+from ..core.inputs import is_finite
 
 
 def not_finite(where: str, values: Mapping[str, object], least: float = -math.inf) -> list[Problem]:
@@ -15,10 +15,7 @@ def not_finite(where: str, values: Mapping[str, object], least: float = -math.in
     return [
         Problem(f"{where}.{name}", repr(value)[:60], wanted, "correct it")
         for name, value in values.items()
-        if isinstance(value, bool)
-        or not isinstance(value, Real)
-        or not math.isfinite(value)
-        or value < least
+        if not (is_finite(value) and value >= least)  # type: ignore[operator]
     ]
 
 

@@ -106,8 +106,8 @@ class Load:
             )
         for name, choices in (("axes", ("fixed", "link")), ("given", ("angle", "motion"))):
             if getattr(self, name) not in choices:
-                found = repr(getattr(self, name))[:60]
-                problems.append(Problem(f"Load.{name}", found, f"one of {choices}", "choose one"))
+                given = repr(getattr(self, name))[:60]
+                problems.append(Problem(f"Load.{name}", given, f"one of {choices}", "choose one"))
         if problems:
             raise BadInput(*problems)
 
@@ -194,8 +194,8 @@ class Spring:
         problems += not_finite("Spring", {name: getattr(self, name) for name in names}, least=0.0)
         problems += not_finite("Spring", {"preload": self.preload})
         if not problems and self.first[0] == self.second[0]:
-            found = f"both ends on {self.first[0]!r}"
-            problems.append(Problem("Spring", found, "two different links", "move an end"))
+            given = f"both ends on {self.first[0]!r}"
+            problems.append(Problem("Spring", given, "two different links", "move an end"))
         if problems:
             raise BadInput(*problems)
 
@@ -217,9 +217,9 @@ class Spring:
             pull = self.stiffness * span
         else:
             if not np.all(np.real(length) > 0):
-                found = "points that meet"
+                given = "points that meet"
                 fix = "move a point, or leave free length, preload and damping zero"
-                raise bad("Spring", found, "points that stay apart", fix)
+                raise bad("Spring", given, "points that stay apart", fix)
             unit = span / length[..., None]
             rate = np.sum(unit * (b.velocity - a.velocity), axis=-1)
             pull = self.stiffness * span + (constant + self.damping * rate)[..., None] * unit
@@ -287,8 +287,8 @@ class TorsionSpring:
         problems = not_finite(where, rates, least=0.0)
         problems += not_finite(where, {"free_angle": self.free_angle, "preload": self.preload})
         if self.first == self.second:
-            found = f"both ends on {self.first!r}"
-            problems.append(Problem(where, found, "two different links", "name another link"))
+            given = f"both ends on {self.first!r}"
+            problems.append(Problem(where, given, "two different links", "name another link"))
         if problems:
             raise BadInput(*problems)
 
@@ -360,22 +360,22 @@ def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...
     ``size`` 0 stands for numbers.
     """
     expected = f"{size or 'one'} number{'s' if size else ''} for each of the angles"
-    found = _called(law, given, where, expected) if callable(law) else law
-    if callable(law) and size and _may_be_turned(found, shape):
+    value = _called(law, given, where, expected) if callable(law) else law
+    if callable(law) and size and _may_be_turned(value, shape):
         # As many angles as components: at one angle more, the array shows its order.
         longer = (int(np.prod(shape)) + 1,)
         evaluated(law, _one_more(given, shape), size, where, longer)
     try:
-        if size and isinstance(found, Sequence) and len(found) == size:
-            found = np.stack(np.broadcast_arrays(*found), axis=-1)
-        values = np.asarray(found, dtype=float)
+        if size and isinstance(value, Sequence) and len(value) == size:
+            value = np.stack(np.broadcast_arrays(*value), axis=-1)
+        values = np.asarray(value, dtype=float)
         fits = not size or (values.ndim > 0 and values.shape[-1] == size)
-        own = values.shape[:-1] if size else values.shape
-        fits = fits and np.broadcast_shapes(own, shape) == shape
+        outer = values.shape[:-1] if size else values.shape
+        fits = fits and np.broadcast_shapes(outer, shape) == shape
     except (TypeError, ValueError):
         fits = False
     if not fits:
-        raise bad(where, f"{found!r}"[:60], expected, "correct what the callable returns")
+        raise bad(where, f"{value!r}"[:60], expected, "correct what the callable returns")
     if not np.all(np.isfinite(values)):
         raise bad(where, "a value that is not finite", expected, "correct the callable")
     return values
@@ -388,13 +388,13 @@ def _called(law: Callable[[Any], Any], given: Any, where: str, expected: str) ->
     except BadInput:
         raise
     except (TypeError, ValueError, IndexError) as refusal:
-        found = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
-        raise bad(where, found, expected, "correct the callable") from refusal
+        value = f"a callable that raises {type(refusal).__name__}: {refusal}"[:160]
+        raise bad(where, value, expected, "correct the callable") from refusal
 
 
-def _may_be_turned(found: Any, shape: tuple[int, ...]) -> bool:
+def _may_be_turned(value: Any, shape: tuple[int, ...]) -> bool:
     """Tell whether the components of an array may be along its first axis, or its last one."""
-    return isinstance(found, np.ndarray) and found.shape == (2,) * (len(shape) + 1) and bool(shape)
+    return isinstance(value, np.ndarray) and value.shape == (2,) * (len(shape) + 1) and bool(shape)
 
 
 def _one_more(given: Any, shape: tuple[int, ...]) -> Any:

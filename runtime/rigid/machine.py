@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import are_finite
 from ..linkages import Linkage
-from .inputs import not_finite
 from .loads import FRAME, Array, Load, Spring, TorsionSpring, Wrench
 from .masses import MassDistribution
 
@@ -66,10 +66,13 @@ class Machine:
     def __post_init__(self) -> None:
         """Check every part, and hold copies that do not change."""
         if not isinstance(self.linkage, Linkage):
-            found = type(self.linkage).__name__
-            raise bad("Machine.linkage", found, "a linkage", "give a FourBar, for example")
+            given = type(self.linkage).__name__
+            raise bad("Machine.linkage", given, "a linkage", "give a FourBar, for example")
         problems = _mass_problems(self.masses, self.linkage.links)
-        problems += _gravity_problems(self.gravity)
+        if not are_finite(self.gravity, 2):
+            fix = "write it like (0.0, -9.81)"
+            given = repr(self.gravity)[:60]
+            problems.append(Problem("Machine.gravity", given, "two finite components", fix))
         for name, kinds in (("loads", (Load,)), ("springs", (Spring, TorsionSpring))):
             problems += _item_problems(name, getattr(self, name), kinds, self.linkage.links)
         if problems:
@@ -291,34 +294,25 @@ def _sum(parts: Iterable[Array], motion: Any) -> Array:
 
 def _mass_problems(masses: object, links: tuple[str, ...]) -> list[Problem]:
     if not isinstance(masses, Mapping):
-        found = type(masses).__name__
-        return [Problem("Machine.masses", found, "a mapping from link to mass", "correct it")]
+        given = type(masses).__name__
+        return [Problem("Machine.masses", given, "a mapping from link to mass", "correct it")]
     problems = []
-    for link, own in masses.items():
+    for link, mass in masses.items():
         where = f"Machine.masses[{link!r}]"
         if link not in links:
             problems.append(Problem(where, repr(link), f"a link of {links}", "correct the name"))
-        if not isinstance(own, MassDistribution):
-            found, fix = type(own).__name__, "build one with MassDistribution.uniform_bar"
-            problems.append(Problem(where, found, "a MassDistribution", fix))
+        if not isinstance(mass, MassDistribution):
+            given, fix = type(mass).__name__, "build one with MassDistribution.uniform_bar"
+            problems.append(Problem(where, given, "a MassDistribution", fix))
     return problems
-
-
-def _gravity_problems(gravity: object) -> list[Problem]:
-    if not (isinstance(gravity, (tuple, list, np.ndarray)) and len(gravity) == 2):
-        found = repr(gravity)[:60]
-        return [Problem("Machine.gravity", found, "two components", "write it like (0.0, -9.81)")]
-    return not_finite("Machine", {"gravity": gravity[0]}) or not_finite(
-        "Machine", {"gravity": gravity[1]}
-    )
 
 
 def _item_problems(
     name: str, items: object, kinds: tuple[type, ...], links: tuple[str, ...]
 ) -> list[Problem]:
     if not isinstance(items, (tuple, list)):
-        found = type(items).__name__
-        return [Problem(f"Machine.{name}", found, "a sequence", "put it into brackets")]
+        given = type(items).__name__
+        return [Problem(f"Machine.{name}", given, "a sequence", "put it into brackets")]
     problems = []
     listed: list[Any] = list(items)
     for place, item in enumerate(listed):

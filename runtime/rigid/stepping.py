@@ -10,16 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from ..core.errors import BadInput, bad
 from ..linkages.linkage import EPS, TURN, Array
-from .motors import TorqueLaw
 from .one_freedom import OneFreedom
 
 Status = Literal["finished", "stalled", "fold", "step limit"]
+TorqueLaw: TypeAlias = Callable[[Any, Any, Any], Any]
 
 # No crank turns as fast: a centimetre of it would outrun half the light.
 _FASTEST = 1e9

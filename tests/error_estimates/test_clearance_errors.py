@@ -113,5 +113,5 @@ def random_cases(count, seed, kind):
 @pytest.mark.parametrize(
     "kind, seed", [("follower", 41), ("coupler", 42), ("slider", 43), ("rod", 44)]
 )
-def test_figure_covers_the_error_and_is_not_idle(kind, seed, scenes):
+def test_estimate_covers_the_error_and_is_not_idle(kind, seed, scenes):
     verdict(ratios(random_cases(scenes, seed, kind)), scenes)

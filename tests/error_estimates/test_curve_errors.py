@@ -1,4 +1,4 @@
-"""The figures of coupler curves and harmonics against many digits, over random linkages."""
+"""The estimates of coupler curves and harmonics against many digits, over random linkages."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The error figure of the forces against 60 digits, over random machines of every linkage."""
+"""The error estimate of the forces against 60 digits, over random machines of every linkage."""
 
 from __future__ import annotations
 
@@ -72,10 +72,10 @@ def test_the_estimate_covers_the_error_and_is_not_idle(kind, machines) -> None:
         speed = 10.0 ** random.uniform(-1, 3)
         acceleration = float(random.choice([0.0, 1.0])) * random.normal() * speed**2
         found = rigid_forces(machine, theta, speed, acceleration)
-        actual, figure = rigid_truth.errors(machine, found, outside=wrenches)
-        covered += list(actual <= figure)
-        ratios += list(figure / np.maximum(actual, np.finfo(float).tiny))
-        assert found.passed == bool(np.all(np.isfinite(figure)))
+        actual, estimate = rigid_truth.errors(machine, found, outside=wrenches)
+        covered += list(actual <= estimate)
+        ratios += list(estimate / np.maximum(actual, np.finfo(float).tiny))
+        assert found.passed == bool(np.all(np.isfinite(estimate)))
     assert np.mean(covered) >= 0.99
     assert np.median(ratios) <= 1e3
 
@@ -125,12 +125,12 @@ def test_the_estimate_covers_the_error_near_change_points_and_folds(kind, scenes
         machine = Machine(linkage, lumps(linkage))
         try:
             found = rigid_forces(machine, [theta], 10.0 ** random.uniform(-3, 2), random.normal())
-            actual, figure = rigid_truth.errors(machine, found)
+            actual, estimate = rigid_truth.errors(machine, found)
         except ValueError:  # refused, or in many digits the linkage does not reach the angle
             continue
-        assert found.passed == bool(np.isfinite(figure[0]))
-        known += bool(np.isfinite(figure[0]))
-        shares.append(float(actual[0] / figure[0]))
+        assert found.passed == bool(np.isfinite(estimate[0]))
+        known += bool(np.isfinite(estimate[0]))
+        shares.append(float(actual[0] / estimate[0]))
     assert known > 0.8 * len(shares)
     assert len(shares) > 0.8 * scenes
     assert max(shares) <= 1.0
@@ -164,11 +164,11 @@ def test_the_estimate_covers_the_error_near_change_points_and_folds(kind, scenes
         ),
     ],
 )
-def test_the_figure_covers_known_bad_cases(linkage, theta, speed, acceleration) -> None:
+def test_the_estimate_covers_known_bad_cases(linkage, theta, speed, acceleration) -> None:
     machine = Machine(linkage, lumps(linkage))
     found = rigid_forces(machine, [theta], speed, acceleration)
-    actual, figure = rigid_truth.errors(machine, found)
-    assert actual[0] <= figure[0] < np.inf
+    actual, estimate = rigid_truth.errors(machine, found)
+    assert actual[0] <= estimate[0] < np.inf
     assert found.passed
 
 

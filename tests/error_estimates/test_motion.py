@@ -1,4 +1,4 @@
-"""The figure of FourBar.motion against 80 digits, over random and nasty linkages."""
+"""The estimate of FourBar.motion against 80 digits, over random and nasty linkages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkage_truth import LENGTHS, angles, nasty_points, random_points
 
 
 def ratios(points):
-    """Return actual error over figure, of the worse angle, for each point."""
+    """Return actual error over estimate, of the worse angle, for each point."""
     found = []
     for point in points:
         lengths = [point.inputs[name] for name in LENGTHS]
@@ -37,7 +37,7 @@ def test_estimate_covers_the_error_and_is_not_idle(count):
     assert np.median(found) >= 1e-3
 
 
-def test_figure_covers_the_error_at_every_nasty_point():
+def test_estimate_covers_the_error_at_every_nasty_point():
     found = ratios(nasty_points())
     assert found.max() <= 1.0
     assert np.median(found) >= 1e-3
@@ -84,7 +84,7 @@ def test_estimate_covers_the_error_with_a_short_follower(count):
         ),
     ],
 )
-def test_figure_covers_the_round_off_of_the_diagonal(lengths, theta):
-    """Without it the figure was a ninth and a twentieth of the error."""
+def test_estimate_covers_the_round_off_of_the_diagonal(lengths, theta):
+    """Without it the estimate was a ninth and a twentieth of the error."""
     inputs = {**dict(zip(LENGTHS, lengths, strict=True)), "theta2": theta}
     assert ratios([Point("short follower", inputs, {"assembly": 1.0})])[0] <= 1.0

@@ -1,4 +1,4 @@
-"""The figures of SliderCrank.motion and QuickReturn.motion against 80 digits."""
+"""The estimates of SliderCrank.motion and QuickReturn.motion against 80 digits."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_estimates_cover_the_error_and_are_not_idle(count):
         assert np.median(found) >= 1e-3
 
 
-def test_figures_cover_the_error_at_every_nasty_point():
+def test_estimates_cover_the_error_at_every_nasty_point():
     for ratio, points in ((slider_ratio, nasty_sliders()), (rod_ratio, nasty_rods())):
         found = np.array([ratio(point) for point in points])
         assert found.max() <= 1.0

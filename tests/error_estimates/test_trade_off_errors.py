@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
 SOME = [pytest.param(4, id="some"), pytest.param(42, marks=pytest.mark.slow, id="all")]
-POINTS = 5  # of each curve: 210 figures in all
+POINTS = 5  # of each curve: 210 estimates in all
 
 
 def seen_from_crank(machine, theta, speed, acceleration):

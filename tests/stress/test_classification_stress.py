@@ -8,8 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.linkages.barker import LINKS
-from elastolink.runtime.linkages.classification import SYMBOLS, classify
+from elastolink.runtime.linkages.classification import LINKS, SYMBOLS, classify
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import QuickReturn, SliderCrank
-from elastolink.runtime.linkages.barker import CLASSES, LINKS
 from elastolink.runtime.linkages.base_planes import base_plane
-from elastolink.runtime.linkages.classification import SYMBOLS, classify
+from elastolink.runtime.linkages.classification import CLASSES, LINKS, SYMBOLS, classify
 
 
 def grashof_symbol(lengths):

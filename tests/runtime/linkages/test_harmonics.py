@@ -130,7 +130,7 @@ def test_refusals(source, options, word):
 
 @pytest.mark.parametrize("half", [5e-3, 5e-5])
 @pytest.mark.parametrize("place", [1.0, 2.1275])
-def test_a_pulse_between_samples_stays_within_the_figure(half, place):
+def test_a_pulse_between_samples_stays_within_its_error(half, place):
     found = harmonics(lambda t: (np.abs(np.mod(t, 2 * np.pi) - place) < half) * 1.0)
     m = np.arange(1, 9)
     size = np.append(half / np.pi, 2 * np.sin(m * half) / (m * np.pi))

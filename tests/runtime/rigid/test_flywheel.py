@@ -63,7 +63,7 @@ def test_the_energy_between_the_extremes_by_quadrature(linkage) -> None:
     assert found.energy_fluctuation == pytest.approx(np.ptp(whole), rel=1e-6)
 
 
-def test_a_jumping_load_has_an_honest_figure() -> None:
+def test_a_jumping_load_has_an_honest_error() -> None:
     load = Load("crank", couple=lambda t: -6.0 * (np.mod(t, TURN) < 1.0))
     found = torque_fluctuation(Machine(ROCKER, loads=(load,)), 8.0)
     # 6 N m over 1 rad of 2 pi: E rises by (6 - 3/pi) within that radian.
@@ -92,7 +92,7 @@ def test_a_flywheel_for_a_jump_passes_where_its_error_admits_it() -> None:
     exact = 1.0 - 1.0 / TURN - 0.001
     assert abs(found.inertia - exact) <= found.error <= 0.01 * exact
     assert found.passed
-    # What error does not admit still fails: the figure's share and no more is added.
+    # What error does not admit still fails: the estimate's share and no more is added.
     limit = found.checks["fluctuation by forward dynamics, relative"].limit
     assert limit == pytest.approx(1e-5 + found.error / (found.inertia + 0.001), rel=1e-9)
 

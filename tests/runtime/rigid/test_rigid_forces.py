@@ -89,10 +89,10 @@ def test_against_many_digits(linkage, steady) -> None:
     machine = Machine(linkage, masses_of(linkage), gravity=(0.5, -9.81))
     theta = np.array([-4.0, 0.3, 2.2, 9.1])
     acceleration = 0.0 if steady else np.array([30.0, -20.0, 0.0, 7.0])
-    actual, figure = rigid_truth.errors(machine, rigid_forces(machine, theta, 7.0, acceleration))
-    assert np.all(actual <= figure)
-    # All numbers here are of the order of 10 N: the figure stays near round-off.
-    assert np.max(figure) < 1e-11
+    actual, estimate = rigid_truth.errors(machine, rigid_forces(machine, theta, 7.0, acceleration))
+    assert np.all(actual <= estimate)
+    # All numbers here are of the order of 10 N: the estimate stays near round-off.
+    assert np.max(estimate) < 1e-11
 
 
 @EVERY

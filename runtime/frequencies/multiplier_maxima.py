@@ -17,7 +17,7 @@ from ..core.families import LinearPeriodic
 from ..core.results import Check
 from ..core.trigonometric import even_angles
 from ..hill import Meissner, discriminant
-from ..periodic import monodromy
+from ..periodic import Prepared, prepare
 from ..periodic.decoupled.exponents import SlowModes, SlowMultipliers
 from ..periodic.decoupled.frames import held_modes
 from ..periodic.first_order import canonical_form
@@ -79,7 +79,7 @@ def multiplier_maxima(
         )
     speed = 1.0 / np.linspace(1 / high, 1 / low, number)
     wanted = slow.wanted(count)
-    few = few_modes(slow.system, high, wanted)
+    few = few_modes(slow.system, (low, high), wanted)
     # At the highest speed the modes left out matter most.
     whole = slow.exponents(speed if few is None else speed[:1], wanted, rtol=_RTOL)
     values = whole.multipliers if few is None else few.multipliers(speed, wanted)
@@ -97,12 +97,13 @@ def multiplier_maxima(
     around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
     at, best, width = _refined(value, mode, brackets, around)
     noise = np.max(whole.error[row if few is None else np.zeros_like(row)], axis=-1)
+    noise = noise + (0.0 if few is None else few.ready.error)
     span = np.abs(brackets[2] - brackets[0])
     error = width + np.minimum(_blur(around, span, noise), span)
     method = "local maxima of the real parts of the multipliers"
     if few is not None:
         error = error + _slip(whole, values[0]) * at
-        method += f", on {few.system.size} natural modes"
+        method += f", on {few.ready.system.size} natural modes"
     return Maxima(at, mode + 1, best, error, method, whole.checks)
 
 
@@ -228,16 +229,15 @@ def _meissner_maxima(
 
 
 class FewModes(NamedTuple):
-    """The lowest natural modes of a stiff system, up to a highest speed [rad/s]."""
+    """The lowest natural modes of a stiff system, prepared for a range of speeds."""
 
-    system: LinearPeriodic
-    highest: float
+    ready: Prepared
 
     def multipliers(self, speed: Array, count: int) -> ComplexArray:
         """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
-        half = self.system.size
-        found = monodromy(self.system, speed, rtol=_RTOL)
-        values, vectors = np.linalg.eig(np.ldexp(found.scaled, found.exponent[:, None, None]))
+        half = self.ready.system.size
+        found = self.ready.monodromy(speed)
+        values, vectors = np.linalg.eig(found.scaled)
         # In velocities of time, not of angle, a state is the same at all speeds.
         size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
         level = self._level(vectors * size[:, :, None])
@@ -246,9 +246,9 @@ class FewModes(NamedTuple):
 
     def _level(self, states: ComplexArray) -> Array:
         """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-        form = canonical_form(self.system, np.array([self.highest]), {})
+        form = canonical_form(self.ready.system, np.array([self.ready.span[1]]), {})
         frequency, shapes, mass, _ = held_modes(form, np.zeros(1))
-        half = self.system.size
+        half = self.ready.system.size
         rest = np.abs(shapes[0].T @ mass[0] @ states[:, :half]) ** 2
         moved = np.abs(shapes[0].T @ states[:, half:]) ** 2
         rate = np.maximum(frequency[0], 1.0)[:, None]
@@ -256,11 +256,11 @@ class FewModes(NamedTuple):
         return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
 
 
-def few_modes(system: LinearPeriodic, highest: float, count: int) -> FewModes | None:
-    """Return the lowest modes up to a speed; None where no few modes stand apart from the rest."""
+def few_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -> FewModes | None:
+    """Return the lowest modes over speeds; None where no few modes stand apart from the rest."""
     from ..periodic.reduced import reduced_system
 
-    form = canonical_form(system, np.array([highest]), {})
+    form = canonical_form(system, np.array([span[1]]), {})
     frequency = held_modes(form, even_angles(system.period, 128))[0]
     top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
     for kept in range(count, system.size):
@@ -269,7 +269,7 @@ def few_modes(system: LinearPeriodic, highest: float, count: int) -> FewModes | 
             continue
         try:
             reduced = reduced_system(system, kept)
+            return FewModes(prepare(reduced, span, samples=1, forcing=False, rtol=0.1 * _RTOL))
         except BadInput:
             continue
-        return FewModes(reduced, highest)
     return None

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill import critical_damping
+from ..hill import critical_damping, perturbation_boundaries
 from ..hill.bloch import effective_operator
 from ..scenes import load_scene
 from .records import Drawn, Quoted, Table
@@ -106,9 +106,10 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
 
 
 def _diverges(estimate: Estimate, order: int) -> bool:
-    """Return True where the order's own error figure refuses it at the stable inertia."""
-    f = estimate.rig.function("reduced", estimate.stable * LBF_IN_S2)
-    return bool(critical_damping(f, 1.0, (estimate.region,), order=order).outside[0])
+    """Return True where the order does not visibly converge at the stable inertia."""
+    f, regions = estimate.rig.function("reduced", estimate.stable * LBF_IN_S2), (estimate.region,)
+    closing = critical_damping(f, 1.0, regions).damping[0]
+    return bool(perturbation_boundaries(f, 1.0, regions, order, closing).outside[0])
 
 
 def at_rest(estimate: Estimate) -> tuple[float, float]:

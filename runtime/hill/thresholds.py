@@ -2,7 +2,7 @@
 
 Smith (7.50), (7.51): damping closes a region below a least parameter, and at a given parameter
 above a critical damping.  Exactly, where the largest Floquet exponent of the undamped region is K
-(:mod:`.boundaries`), and to any order up to 8, where ``|B| = |Im A|`` of the effective operator.
+(:mod:`.boundaries`); of narrow regions, where ``|B| = |Im A|`` of the effective operator.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
 from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
 from .checks import arguments, axes_over, check_function, check_regions
-from .perturbation import CONTRACTION, Components, Sums, check_order
+from .perturbation import CONTRACTION, Components, Sums
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -42,29 +42,24 @@ _ZOOM = 8
 class Thresholds(Result):
     """Where regions close: the critical damping at given mu, or the least mu at given damping.
 
-    What was solved for has the regions as its first axis, and so have ``lam2``, ``error``,
-    ``absent`` and ``outside``; what was given has the shape of the argument.
+    What was solved for has the regions as its first axis, and so have ``lam2``, ``error`` and
+    ``absent``; what was given has the shape of the argument.
 
     Attributes
     ----------
     damping : ndarray
-        K above which the region is closed; 0 where the equation has no such region, NaN where the
-        entry is flagged.  Or as given.
+        K above which the region is closed; 0 where the equation has no such region.  Or as given.
     mu : ndarray
         As given.  Or the least positive mu at which the region is open; inf where there is none
-        up to ``searched`` (``absent``), NaN where the entry is flagged.
+        up to ``searched`` (``absent``).
     lam2 : ndarray
         Where the region closes.
     error : ndarray
         Estimate of the absolute error of what was solved for; 0 where that is infinite.
     absent : ndarray of bool
         True where the region does not open up to ``searched``.
-    outside : ndarray of bool
-        True where the orders do not visibly converge (never with ``order=None``).
     regions : tuple of int
         Numbers n.
-    order : int or None
-        Order of the perturbation; None for the exact value.
     searched : ndarray, shape (len(regions),)
         Largest mu that was looked at, for each region; empty where mu was given.
     """
@@ -73,13 +68,11 @@ class Thresholds(Result):
     mu: Array
     lam2: Array
     absent: Mask
-    outside: Mask
     regions: tuple[int, ...]
-    order: int | None
     searched: Array
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("damping", "mu", "lam2", "error", "absent", "outside"), BROADCAST),
+        **dict.fromkeys(("damping", "mu", "lam2", "error", "absent"), BROADCAST),
         **dict.fromkeys(("regions", "searched"), ("region",)),
     }
 
@@ -106,7 +99,6 @@ def critical_damping(
     f: PeriodicFunction,
     mu: ArrayLike | None = None,
     regions: Sequence[int] = (1, 2),
-    order: int | None = None,
     *,
     damping: ArrayLike | None = None,
 ) -> Thresholds:
@@ -122,15 +114,13 @@ def critical_damping(
         Any shape, any sign.
     regions : sequence of int
         Numbers n >= 1 (region 0 reaches to minus infinity and is never closed).
-    order : int, optional
-        1 to 8: total degree in mu and K that is kept.  By default the exact value.
     damping : array_like, optional
         K, at least zero, any shape.
 
     Returns
     -------
     Thresholds
-        The exact damping is ``arccosh(max |D|) / (2 pi)``, with D the undamped half trace: the
+        The damping is ``arccosh(max |D|) / (2 pi)``, with D the undamped half trace: the
         largest Floquet exponent in the undamped region.  Where a narrow region's ends do not
         resolve it so well, the value of order 8 takes its place, with its error.  The check
         looks whether ``hill_boundaries`` has the region open just below and closed just above.
@@ -145,66 +135,50 @@ def critical_damping(
     ------
     BadInput
         If both or neither of mu and damping are given, an argument is not finite, K is negative,
-        a region is not a whole number >= 1, the order is not 1 to 8, or mu f is too large for
-        ``hill_boundaries``.
+        a region is not a whole number >= 1, or mu f is too large for ``hill_boundaries``.
 
     Notes
     -----
-    Smith (7.50) and (7.51), ``mu = 2 K n / sqrt(an^2 + bn^2)``, are order 1.
+    Smith (7.50) and (7.51), ``mu = 2 K n / sqrt(an^2 + bn^2)``, are the first order in mu and K.
     """
     check_function(f)
     numbers = check_regions(regions, least=1)
-    if order is not None:
-        check_order(order)
     if (mu is None) == (damping is None):
         given = "neither" if mu is None else "both"
         raise bad("mu, damping", given, "one of them", "pass damping= to have the least mu")
-    method = "largest half trace" if order is None else f"perturbation, order {order}"
     if mu is not None:
-        return _critical(f, mu, numbers, order, method)
-    return _least(f, 0.0 if damping is None else damping, numbers, order, method)
+        return _critical(f, mu, numbers)
+    return _least(f, 0.0 if damping is None else damping, numbers)
 
 
 class Closing(NamedTuple):
-    """Where one region closes, at points ``(n,)``: K, lam2, the error of K, and flags."""
+    """Where one region closes, at points ``(n,)``: K, lam2 and the error of K."""
 
     damping: Array
     lam2: Array
     error: Array
-    outside: Mask
 
 
-Closings = Callable[[Array], Closing]
-
-
-def _closings(f: PeriodicFunction, n: int, order: int | None) -> Closings:
-    """Return the function from mu to the closing of region n."""
-    if order is None:
-        return partial(_exact, f, n)
-    operator = effective_operator((f,), n, int(order) + BEYOND, damped=True)
-    return partial(_to_order, operator, f)
-
-
-def _exact(f: PeriodicFunction, n: int, mu: Array) -> Closing:
-    """Return the exact closing, or that of order 8 where its error is smaller."""
+def _closing(f: PeriodicFunction, n: int, mu: Array) -> Closing:
+    """Return where region n closes, by perturbation where that has the smaller error."""
     bounds = hill_boundaries(f, mu, (n,))
     sharp = Ends(bounds.lower[0], bounds.upper[0], bounds.error[0], np.zeros(mu.shape, dtype=bool))
     k, place, error = largest_exponent(f, n, mu, sharp)
-    exact = Closing(k, place + k * k, error, np.zeros(mu.size, dtype=bool))
+    exact = Closing(k, place + k * k, error)
     coarse = np.flatnonzero(error > 1e-13 * k)
     # With more harmonics order 8 takes longer than the half trace.
     if coarse.size and f.harmonics <= 200:
-        high = _closings(f, n, HIGHEST)(mu[coarse])
+        high, outside = _to_order(f, n, mu[coarse])
         # An order that does not see a tongue is not wrong about its width: the errors decide.
-        better = ~high.outside & (high.error < error[coarse])
-        for mine, other in zip(exact[:3], high[:3], strict=True):
+        better = ~outside & (high.error < error[coarse])
+        for mine, other in zip(exact, high, strict=True):
             mine[coarse[better]] = other[better]
     return exact
 
 
-def _to_order(operator: EffectiveOperator, f: PeriodicFunction, mu: Array) -> Closing:
-    """Return the critical damping to the operator's order less two: ``|B| = |Im A|``."""
-    n = operator.n
+def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
+    """Return the critical damping to order 8, ``|B| = |Im A|``, and where that does not settle."""
+    operator = effective_operator((f,), n, HIGHEST + BEYOND, damped=True)
 
     def gap(k: Array) -> Array:
         sums = _sums(operator, f, mu, k)
@@ -231,7 +205,7 @@ def _to_order(operator: EffectiveOperator, f: PeriodicFunction, mu: Array) -> Cl
         left = sums.turned + sums.spread
         outside = ~(sums.ratio < CONTRACTION) | ~(left < 0.5 * max(n - 1, 1))
         settled = np.abs(sums.split - sums.drag) <= np.maximum(left, 1e-9 * sums.split)
-        return Closing(k, sums.centre, left / rate + 4.0 * EPS * k, outside | ~settled)
+        return Closing(k, sums.centre, left / rate + 4.0 * EPS * k), outside | ~settled
 
 
 def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: Array) -> Sums:
@@ -254,34 +228,25 @@ def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: 
 # ---------------------------------------------------------------- the critical damping
 
 
-def _critical(
-    f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...], order: int | None, method: str
-) -> Thresholds:
+def _critical(f: PeriodicFunction, mu: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
     (amp, _), shape = arguments(mu=mu, damping=0.0)
     flat = np.broadcast_to(amp, shape).ravel()
-    rows = [_closings(f, n, order)(flat) for n in regions]
-    size = (len(regions), flat.size)
-    k, lam2, error = (np.reshape([row[i] for row in rows], size) for i in range(3))
-    outside = np.reshape([row.outside for row in rows], size).astype(bool)
-    for item in (k, lam2, error):
-        item[outside] = np.nan
-    checks: Mapping[str, Check] = {}
-    if order is None:
-        checks = DeferredChecks(partial(_either_side, f, flat, regions, k, error))
+    rows = [_closing(f, n, flat) for n in regions]
+    k, lam2, error = (
+        np.reshape([row[i] for row in rows], (len(regions), flat.size)) for i in range(3)
+    )
     full = (len(regions), *shape)
     return Thresholds(
-        method=method,
+        method="largest half trace",
         error=error.reshape(full),
         error_norm="absolute, entrywise, of K",
-        checks=checks,
+        checks=DeferredChecks(partial(_either_side, f, flat, regions, k, error)),
         provenance=provenance(),
         damping=k.reshape(full),
         mu=flat.reshape(shape),
         lam2=lam2.reshape(full),
         absent=np.zeros(full, dtype=bool),
-        outside=outside.reshape(full),
         regions=regions,
-        order=None if order is None else int(order),
         searched=np.zeros(0),
     )
 
@@ -294,7 +259,7 @@ def _either_side(
     for i, n in enumerate(regions):
         k, slack = critical[i], np.maximum(1e-4 * critical[i], 100.0 * error[i])
         # Narrow regions open with a square root: Hill's matrix needs some width to see it.
-        sure = np.argwhere((k > 2.0 * slack) & (k > 1e-6) & np.isfinite(k))
+        sure = np.argwhere((k > 2.0 * slack) & (k > 1e-6))
         if not sure.size:
             continue
         (chosen,) = sample_of(sure)
@@ -308,13 +273,7 @@ def _either_side(
 # ---------------------------------------------------------------- the least parameter
 
 
-def _least(
-    f: PeriodicFunction,
-    damping: ArrayLike,
-    regions: tuple[int, ...],
-    order: int | None,
-    method: str,
-) -> Thresholds:
+def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) -> Thresholds:
     (k,), shape = arguments(damping=damping)
     flat = np.broadcast_to(k, shape).ravel()
     reach = float(f.amplitudes[1:].sum())
@@ -322,14 +281,14 @@ def _least(
     top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
     rows = []
     for n in regions:
-        row = _Opening(_closings(f, n, order), n, flat)
-        if flat.size and top and not _silent(f, n, order):
+        row = _Opening(partial(_closing, f, n), n, flat)
+        if flat.size and top:
             row.search(top)
         rows.append(row)
     full = (len(regions), *shape)
     gap = np.array([row.gap for row in rows])
     return Thresholds(
-        method=method,
+        method="largest half trace",
         error=np.reshape([row.error for row in rows], full),
         error_norm="absolute, entrywise, of mu",
         checks={
@@ -342,25 +301,15 @@ def _least(
         mu=np.reshape([row.least for row in rows], full),
         lam2=np.reshape([row.lam2 for row in rows], full),
         absent=np.reshape([row.absent for row in rows], full).astype(bool),
-        outside=np.reshape([row.outside for row in rows], full).astype(bool),
         regions=regions,
-        order=None if order is None else int(order),
         searched=np.array([row.searched for row in rows]),
     )
-
-
-def _silent(f: PeriodicFunction, n: int, order: int | None) -> bool:
-    """Return True where nothing up to the order couples the two resonant harmonics."""
-    if order is None:
-        return False
-    operator = effective_operator((f,), n, int(order) + BEYOND, damped=True)
-    return not any(np.any(row != 0.0) for row in operator.coupling[: int(order)])
 
 
 class _Opening:
     """The least mu at which one region opens, entry by entry of K; absent before the search."""
 
-    def __init__(self, closing: Closings, n: int, damping: Array) -> None:
+    def __init__(self, closing: Callable[[Array], Closing], n: int, damping: Array) -> None:
         self.closing, self.n, self.damping = closing, n, damping
         size = damping.size
         self.least, self.lam2, self.error = (
@@ -368,7 +317,7 @@ class _Opening:
             np.full(size, np.nan),
             np.zeros(size),
         )
-        self.absent, self.outside = np.ones(size, dtype=bool), np.zeros(size, dtype=bool)
+        self.absent = np.ones(size, dtype=bool)
         self.gap = np.full(size, np.nan)
         self.searched = 0.0
 
@@ -380,52 +329,45 @@ class _Opening:
         least = min(1.0, 0.125 * n * float(drag.min())) if drag.size else _SMALLEST
         bottom = least * top / _FARTHEST / max(n, float(damping.max())) ** 2
         count = int(np.ceil(_PER_DECADE * np.log10(top / bottom))) + 1
-        grid, highest, edge = self._climb(np.geomspace(bottom, top, count))
+        grid, highest = self._climb(np.geomspace(bottom, top, count))
         self.searched = float(grid[-1])
         # The first grid value above each K: the running maximum is in order.
         first = np.searchsorted(highest, damping, side="right")
-        self.outside[:] = np.minimum(first, grid.size - 1) >= edge
-        self.absent[:] = (first >= grid.size) & ~self.outside
-        self.least[self.outside] = np.nan
-        open_ = ~self.absent & ~self.outside
-        still = open_ & (damping == 0.0)
+        self.absent[:] = first >= grid.size
+        still = ~self.absent & (damping == 0.0)
         self.least[still], self.lam2[still] = 0.0, 0.25 * n * n
-        there = np.flatnonzero(open_ & (damping > 0.0))
+        there = np.flatnonzero(~self.absent & (damping > 0.0))
         if there.size:
             low = np.where(first[there] > 1, grid[np.maximum(first[there] - 2, 0)], 0.25 * bottom)
             self._refine(there, np.log(low), np.log(grid[first[there]]))
 
-    def _sure(self, mu: Array) -> tuple[Array, Mask]:
-        """Return the critical damping less its error, -inf where the orders do not converge."""
+    def _sure(self, mu: Array) -> Array:
+        """Return the critical damping less its error."""
         known = self.closing(mu)
-        return np.where(known.outside, -np.inf, known.damping - known.error), known.outside
+        return known.damping - known.error
 
-    def _climb(self, grid: Array) -> tuple[Array, Array, int]:
+    def _climb(self, grid: Array) -> tuple[Array, Array]:
         """Return the grid with the running maximum of the critical damping, as far as needed.
 
-        With the peaks between the values of the grid.  Also the place of the first value at which
-        the orders do not converge.  A decade at a time: small values of mu need small matrices.
+        With the peaks between the values of the grid.  A decade at a time: small values of mu need
+        small matrices.
         """
-        value, edge = np.zeros(0), -1
+        value = np.zeros(0)
         for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
             try:
-                more, outside = self._sure(part)
+                value = np.concatenate([value, self._sure(part)])
             except BadInput:
                 # Hill's matrix would be too large: the search ends here.
                 if not value.size:
                     raise
                 break
-            if outside.any():
-                edge = value.size + int(np.argmax(outside))
-            value = np.concatenate([value, more])
-            if edge >= 0 or value.max() > self.damping.max():
+            if value.max() > self.damping.max():
                 break
         grid = grid[: value.size]
-        last = value.size if edge < 0 else edge
-        peaks, tops = self._peaks(grid[:last], value[:last])
+        peaks, tops = self._peaks(grid, value)
         order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
         grid, value = (np.concatenate(pair)[order] for pair in ((grid, peaks), (value, tops)))
-        return grid, np.maximum.accumulate(value), grid.size if edge < 0 else last + peaks.size
+        return grid, np.maximum.accumulate(value)
 
     def _peaks(self, grid: Array, value: Array) -> tuple[Array, Array]:
         """Return the places of maxima near those on a grid, and the values there."""
@@ -436,7 +378,7 @@ class _Opening:
         each = np.arange(inner.size)
         for _ in range(3):
             x = np.linspace(low, high, _ZOOM + 1)
-            tops = self._sure(np.exp(x.ravel()))[0].reshape(x.shape)
+            tops = self._sure(np.exp(x.ravel())).reshape(x.shape)
             best, step = tops.argmax(axis=0), (high - low) / _ZOOM
             low, high = x[best, each] - step, x[best, each] + step
         return np.exp(x[best, each]), tops[best, each]
@@ -458,5 +400,3 @@ class _Opening:
         self.least[there], self.lam2[there] = np.exp(x), at.lam2
         self.error[there] = np.exp(x) * ((at.error + rounding) / (wanted * slope) + 4.0 * EPS)
         self.gap[there] = np.abs(at.damping - wanted) / (at.error + rounding)
-        lost = there[at.outside]
-        self.outside[lost], self.least[lost] = True, np.nan

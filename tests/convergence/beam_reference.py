@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mpmath
+import numpy as np
 
 
 def pinned(mode: int) -> float:
@@ -69,3 +70,17 @@ def timoshenko(mode: int, ratio: float, slimness: float) -> float:
         total = shear * n**2 * rotary + n**2 + shear
         root = mpmath.sqrt(total**2 - 4 * rotary * shear * n**4)
         return float(mpmath.sqrt(2 * shear * n**4 / (total + root)))
+
+
+def rigid_field(kind, start, end, turning):
+    """Return the local nodal values of a field that is linear along an element, ``(..., n)``.
+
+    From its components along and across at the two ends, and the matching turning.
+    """
+    first, last, angle = (np.asarray(item, dtype=float) for item in (start, end, turning))
+    values = [first[..., 0], first[..., 1], angle, last[..., 0], last[..., 1], angle]
+    if kind == "internal_node":
+        values += [(first[..., 1] + last[..., 1]) / 2.0, angle]
+    elif kind == "curvature":
+        values += [np.zeros_like(angle)] * 2
+    return np.stack(np.broadcast_arrays(*values), axis=-1)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import scipy.linalg
 import sympy as sp
+from beam_reference import rigid_field
 from elastolink import load_scene
 from elastolink.runtime.beams.assembly import AngleArrays
-from elastolink.runtime.beams.elements import element_arrays, rigid_field, shape_functions
+from elastolink.runtime.beams.elements import element_arrays, shape_functions
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import solve_ivp
 from seed_elements import L, arrays

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from beam_reference import rigid_field
 from elastolink.runtime.beams.elements import (
     KINDS,
     element_arrays,
-    rigid_field,
     section_rotation,
     shape_functions,
 )

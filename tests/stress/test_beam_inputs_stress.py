@@ -116,7 +116,6 @@ CALLS = (
     (beams.element_arrays, {"kind": "cubic", **MEMBER}),
     (beams.shape_functions, {"kind": "cubic", "xi": [0.1], "length": 1.0, "derivative": 0}),
     (beams.section_rotation, {"kind": "cubic", "xi": [0.1], "length": 1.0, "derivative": 0}),
-    (beams.rigid_field, {"kind": "cubic", "start": (0.0, 0.0), "end": (1.0, 0.0), "turning": 0.0}),
     (
         beams.sandwich_section,
         {"base": OUTER, "core": CORE, "cover": OUTER, "width": 0.02, "frequency": 100.0},
@@ -138,32 +137,26 @@ FINE = {
 }
 
 
-def cases():
-    for call, given in CALLS:
-        for argument in given:
-            for bad in BAD:
-                name = argument.rstrip("?")
-                optional = argument.endswith("?") and bad == "nothing"
-                standing = name == "motion" and bad == "nothing"
-                if not (optional or standing or (call.__name__, name, bad) in FINE):
-                    yield pytest.param(call, given, name, bad, id=f"{call.__name__} {name} {bad}")
-
-
 def made(value):
     """Return a value, or what a function of this module makes."""
     return value() if callable(value) else value
 
 
-@pytest.mark.parametrize(("call", "given", "name", "bad"), list(cases()))
-def test_unusable_arguments_are_refused_in_one_line(call, given, name, bad):
+@pytest.mark.parametrize(("call", "given"), CALLS, ids=lambda item: getattr(item, "__name__", ""))
+def test_unusable_arguments_are_refused_in_one_line(call, given):
     values = {key.rstrip("?"): made(value) for key, value in given.items()}
-    wrong = BAD[bad]
-    if bad == "structure or system":
-        wrong = system() if values[name] is structure() else structure()
-    with pytest.raises(BadInput) as refusal:
-        call(**{**values, name: wrong})
-    line = str(refusal.value)
-    assert "\n" not in line and len(line) <= _LONGEST, line
+    for argument in given:
+        name = argument.rstrip("?")
+        for bad, wrong in BAD.items():
+            fine = bad == "nothing" and (argument.endswith("?") or name == "motion")
+            if fine or (call.__name__, name, bad) in FINE:
+                continue
+            if bad == "structure or system":
+                wrong = system() if values[name] is structure() else structure()
+            with pytest.raises(BadInput) as refusal:
+                call(**{**values, name: wrong})
+            line = str(refusal.value)
+            assert "\n" not in line and len(line) <= _LONGEST, line
 
 
 @pytest.mark.parametrize("bad", ["what", np.nan, [0.5], structure])

@@ -53,11 +53,6 @@ def test_sections(name, value):
     refused(lambda: section(**{name: value}), name, "positive")
 
 
-@pytest.mark.parametrize("value", [-1e-6, np.nan])
-def test_retardation(value):
-    refused(lambda: section(retardation=value), "retardation")
-
-
 def test_every_problem_of_a_section_is_told_at_once():
     with pytest.raises(BadInput) as caught:
         section(area=-1.0, density=np.nan)
@@ -69,18 +64,12 @@ def test_every_problem_of_a_section_is_told_at_once():
     ("values", "told"),
     [
         ({"length": 0.0}, "length"),
-        ({"length": -0.1}, "length"),
-        ({"length": np.nan}, "length"),
         ({"end": "A"}, "both ends"),
         ({"kind": "quartic"}, "kind"),
         ({"kind": "timoshenko"}, "shear stiffness"),
         ({"elements": 0}, "elements"),
-        ({"elements": True}, "elements"),
-        ({"elements": "three"}, "elements"),
         ({"elements": 2.5}, "elements"),
-        ({"elements": ()}, "elements"),
         ({"elements": (0.5, 0.0, 0.5)}, "empty element"),
-        ({"elements": (0.5, np.nan)}, "elements"),
         ({"elements": (0.5, 0.6)}, "1.1"),
     ],
 )
@@ -93,17 +82,12 @@ def test_beams(values, told):
     ("values", "told"),
     [
         ({"mass": -0.1}, "mass"),
-        ({"mass": np.nan}, "mass"),
-        ({"inertia": -1e-4}, "inertia"),
         ({"damping": {"x": -1.0}}, "damping along x"),
         ({"stiffness": {"y": -1.0}}, "stiffness along y"),
         ({"stiffness": {"z": 1.0}}, "z"),
         ({"held": ("turn",)}, "turn"),
         ({"force": (1.0, np.inf)}, "force"),
-        ({"force": (1.0,)}, "force"),
-        ({"force": 1.0}, "force"),
         ({"stiffness": 1.0}, "stiffness"),
-        ({"mass": "heavy"}, "mass"),
     ],
 )
 def test_nodes(values, told):
@@ -202,31 +186,18 @@ def test_a_crank_on_a_shaft_that_nothing_turns():
     [
         ({"form": "exact"}, "form"),
         ({"rayleigh": (-1.0, 0.0)}, "rayleigh"),
-        ({"rayleigh": (1.0,)}, "rayleigh"),
-        ({"rayleigh": (0.0, np.nan)}, "rayleigh"),
         ({"gravity": (0.0, np.inf)}, "gravity"),
-        ({"gravity": -9.81}, "gravity"),
-        ({"rayleigh": 0.1}, "rayleigh"),
-        ({"gravity": (0.0, -9.81, 0.0)}, "gravity"),
     ],
 )
 def test_systems(options, told):
     refused(lambda: linkage_system(FOUR_BAR, BARS, elements=1, **options), told)
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("elasticity", 0.0), ("elasticity", -1.0), ("distributed_mass", np.nan), ("lumped", 1.0)],
-)
-def test_factors(name, value):
+@pytest.mark.parametrize(("name", "value"), [("elasticity", 0.0), ("lumped", 1.0)])
+def test_factors_and_lengths(name, value):
     system = linkage_system(FOUR_BAR, BARS, elements=1)
     refused(lambda: system.with_parameters(**{name: value}), name)
-
-
-@pytest.mark.parametrize(("name", "value"), [("frame", np.nan), ("frame", -1.0), ("width", 1.0)])
-def test_lengths(name, value):
-    system = linkage_system(FOUR_BAR, BARS, elements=1)
-    refused(lambda: system.with_geometry(**{name: value}), name)
+    refused(lambda: system.with_geometry(frame=-1.0), "frame")
 
 
 def test_unknown_names_of_a_structure():

@@ -277,9 +277,6 @@ def test_static_limits_are_the_cubic_element():
     [
         (lambda: wittrick_williams(dynamic_stiffness(portal())), "one of the two"),
         (lambda: wittrick_williams(dynamic_stiffness(portal()), upto=1.0, count=2), "both"),
-        (lambda: wittrick_williams(dynamic_stiffness(portal()), upto=-1.0), "positive"),
-        (lambda: wittrick_williams(dynamic_stiffness(portal()), count=0), "whole number"),
-        (lambda: dynamic_stiffness(portal(), np.nan), "theta"),
         (lambda: dynamic_stiffness(portal(), inextensible=("roof",)), "roof"),
         (
             lambda: dynamic_stiffness(bar((CLAMPED, ("y", "rotation"))), inextensible=True),
@@ -288,7 +285,6 @@ def test_static_limits_are_the_cubic_element():
         (lambda: member_matrices(1.0, 0.0, 1.0, 1.0, 1.0), "length"),
         (lambda: member_matrices(1.0, 1.0, -1.0, 1.0, 1.0), "bending_stiffness"),
         (lambda: hybrid_matrices(bar((FREE, FREE)), 0.0), "no stiffness"),
-        (lambda: hybrid_matrices(portal(), 0.0, rtol=2.0), "rtol"),
     ],
 )
 def test_refusals(call, words):

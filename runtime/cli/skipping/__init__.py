@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING
 from ...core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .emitted import EmittedCost, read_cost
     from .explanation import EmittedUse, Explanation, Stage
-    from .report import explain
+    from .report import EmittedCost, explain, read_cost
 
 _PUBLIC = {
-    "EmittedCost": "emitted",
+    "EmittedCost": "report",
     "EmittedUse": "explanation",
     "Explanation": "explanation",
     "Stage": "explanation",
     "explain": "report",
-    "read_cost": "emitted",
+    "read_cost": "report",
 }
 
 __all__ = [

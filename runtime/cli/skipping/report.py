@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import pickle
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from ....derive.spec import BEAM_FORMULATIONS, Entry, ModelSpec, read_manifest
 from ...core.errors import ElastolinkError, bad
-from ...core.families import LinearPeriodic
+from ...core.families import MATRICES, VECTORS, LinearPeriodic
 from ...core.modules import search_path
 from ...core.results import Check, provenance
+from ...periodic.equation import SPEED_POWER, equation_of
 from ...scenes import Scene, load_scene
-from .emitted import EmittedCost, read_cost
-from .evaluation import Evaluated, of_entries, of_linear
 from .explanation import EmittedUse, Explanation, Stage
 
 # What must not load, whatever is asked of a scene; reading units takes pint, which takes Jinja2.
@@ -96,8 +101,6 @@ def _speed(scene: Scene, system: Any) -> float:
         return float(ends[0] + ends[1]) / 2.0
     if scene.model["mechanism"] == "hill" or not isinstance(system, LinearPeriodic):
         return 1.0
-    import numpy as np
-
     mass, stiffness = system.array("M", 0.0)[0], system.array("K", 0.0)[0]
     lowest = float(np.min(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
     return lowest**0.5 if lowest > 0.0 else 1.0
@@ -280,4 +283,185 @@ def _use(
         functions=cost.operations,
         called=tuple(name for name in cost.operations if name in called),
         left_out=cost.left_out,
+    )
+
+
+# What an emitted module costs, read from its text: nothing of it is imported or run.
+_COUNT = re.compile(r"^ {4}(\w+): (\d+) operations?$", re.MULTILINE)
+_LEFT_OUT = re.compile(r"Left out of the energies: ([^.]*)\.")
+_TABLES = ("FAMILY", "TERMS", "ARRAYS")
+
+
+@dataclass(frozen=True)
+class EmittedCost:
+    """What one emitted module costs.
+
+    Attributes
+    ----------
+    module : str
+        Its name.
+    family : str
+        System family, empty where it names none.
+    size : int
+        Bytes of its text.
+    operations : mapping of str to int
+        Arithmetic operations per evaluation of each function, from its header.
+    terms : tuple of tuple
+        Rows of a linear-periodic module: array, power of the speed, scale, function of angle,
+        modal array.
+    entries : mapping of str to (int, int)
+        Of each array of explicit entries, by ``function.array``: entries that are evaluated, and
+        entries in all; the others are zero.
+    left_out : tuple of str
+        Terms that the formulation left out of the energies, from its header.
+    """
+
+    module: str
+    family: str
+    size: int
+    operations: Mapping[str, int]
+    terms: tuple[tuple[Any, ...], ...]
+    entries: Mapping[str, tuple[int, int]]
+    left_out: tuple[str, ...]
+
+    @property
+    def total(self) -> int:
+        """Operations of all functions together."""
+        return sum(self.operations.values())
+
+
+def read_cost(path: Path) -> EmittedCost:
+    """Read the cost of an emitted module from its header and tables.
+
+    Parameters
+    ----------
+    path : Path
+        Of the ``.py`` file.
+
+    Raises
+    ------
+    BadInput
+        If it is no emitted module.
+    """
+    text = path.read_text()
+    tree = ast.parse(text)
+    header = ast.get_docstring(tree, clean=False) or ""
+    counts = {name: int(count) for name, count in _COUNT.findall(header)}
+    if not counts:
+        raise bad(str(path), "no operation counts", "an emitted module", "choose another file")
+    left_out = _LEFT_OUT.search(header)
+    tables = _tables(tree)
+    return EmittedCost(
+        module=path.stem,
+        family=tables.get("FAMILY", ""),
+        size=len(text.encode()),
+        operations=MappingProxyType(counts),
+        terms=tuple(tables.get("TERMS", ())),
+        entries=MappingProxyType(_entries(tables.get("ARRAYS", {}))),
+        left_out=tuple(left_out.group(1).split(", ")) if left_out else (),
+    )
+
+
+def _tables(tree: ast.Module) -> dict[str, Any]:
+    """Return the literal tables of a module by name."""
+    found = {}
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            name = node.targets[0].id
+            if name in _TABLES:
+                found[name] = ast.literal_eval(node.value)
+    return found
+
+
+def _entries(arrays: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
+    return {
+        f"{function}.{name}": (len(filled), rows * columns)
+        for function, tables in arrays.items()
+        for name, ((rows, columns), filled) in tables.items()
+    }
+
+
+# Which arrays are never evaluated, and which all points of a sweep share.
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """What a system evaluates; fields as in :class:`.explanation.Explanation`."""
+
+    arrays: Mapping[str, str] = field(default_factory=dict)
+    powers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    samples: int = 0
+    angles: int = 0
+    harmonics: int = 0
+
+
+def of_linear(system: LinearPeriodic, speed: float) -> Evaluated:
+    """Tell the arrays of a linear-periodic system apart.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        At its own parameters: what they make zero counts as zero.
+    speed : float
+        Crank speed [rad/s] at which harmonics are judged.
+    """
+    alive = _alive(system)
+    arrays = {}
+    for array in MATRICES + VECTORS:
+        own = [row for row, term in enumerate(system.terms) if term.array == array]
+        acting = [system.terms[row] for row in own if row in alive]
+        if not own:
+            arrays[array] = "absent"
+        elif not acting:
+            arrays[array] = "zero"
+        else:
+            constant = all(term.constant for term in acting)
+            arrays[array] = "constant" if constant else "periodic"
+    steady = [row for row in alive if system.terms[row].array in SPEED_POWER]
+    moving = [row for row in steady if not system.terms[row].constant]
+    equation = equation_of(system, speed, forcing=True) if moving else None
+    return Evaluated(
+        arrays=arrays,
+        powers=_powers(system, alive),
+        samples=len(steady),
+        angles=len(equation.even_angles()) if equation else 0,
+        harmonics=equation.reach if equation else 0,
+    )
+
+
+def _alive(system: LinearPeriodic) -> list[int]:
+    """Return the rows of the terms that are not zero at the system's parameters."""
+    scales = system.scale_values()
+    return [
+        row
+        for row, (term, amplitude) in enumerate(zip(system.terms, system.spectra, strict=True))
+        if np.any(amplitude) and (term.scale is None or np.any(scales[term.scale]))
+    ]
+
+
+def _powers(system: LinearPeriodic, alive: list[int]) -> dict[str, tuple[str, ...]]:
+    """Return the monomials by the power of the speed in the equation of motion in time.
+
+    ``M qdd`` with ``qdd = w^2 q''`` counts as power 2; what acts only while the crank accelerates
+    stands apart.
+    """
+    found: dict[str, set[str]] = {}
+    for row in alive:
+        term = system.terms[row]
+        known = SPEED_POWER.get(term.array)
+        key = "acceleration" if known is None else str(known + 2 + term.power)
+        monomial = "1" if term.scale is None else term.scale
+        found.setdefault(key, set()).add(f"{term.array}: {monomial}")
+    return {key: tuple(sorted(names)) for key, names in sorted(found.items(), reverse=True)}
+
+
+def of_entries(costs: Mapping[str, EmittedCost]) -> Evaluated:
+    """Count the entries that constrained systems evaluate; the rest is zero."""
+    return Evaluated(
+        arrays={
+            array: f"{filled} of {entries}"
+            for cost in costs.values()
+            if cost.family == "constrained"
+            for array, (filled, entries) in cost.entries.items()
+        }
     )

@@ -42,30 +42,6 @@ def test_trade_off_lists_curve_and_cases(capsys):
     assert all(f"({case})" in text.out for case in "abcd")
 
 
-@pytest.mark.parametrize(
-    "more",
-    [
-        ("--weights", "torque"),
-        ("--weights", "torque=x"),
-        ("--weights", "noise=1"),
-        ("--links", "rod"),
-        ("--offset", "-1 in"),
-        ("--offset", "3 kg"),
-        ("--mass", "0 kg"),
-        ("--trade-off", "torque"),
-        ("--trade-off", "torque,torque"),
-        ("--trade-off", "shaking_force,torque", "--case", "b"),
-        ("--trade-off", "shaking_force,torque", "--points", "1"),
-        ("--limits", "shaking_force=0.000001", "--mass", "1 g"),
-    ],
-)
-def test_bad_input_is_one_line_with_status_2(capsys, more):
-    status, text = run(capsys, *more)
-    assert status == 2
-    assert text.out == ""
-    assert len(text.err.strip().splitlines()) == 1
-
-
 def test_marks_of_full_balance_stand_off_the_border():
     machine = load_scene(SMITH[1]).machine()
     ax = trade_off(machine, 10.0, points=2).plot()

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from elastolink.runtime.cli import main
+from command_runs import run
 from elastolink.runtime.linkages import classify, coupler_curve, harmonics
 from elastolink.runtime.rigid import balance
 from elastolink.runtime.scenes import load_scene
@@ -14,25 +14,6 @@ from elastolink.runtime.scenes import load_scene
 SMITH = "smith_1972_12_6_12_12"
 ENGINE = "slider_crank_example"
 SHAPER = "quick_return_example"
-
-
-def run(capsys, *arguments):
-    """Run the command here and return status, standard output and standard error."""
-    status = main([str(argument) for argument in arguments])
-    out, err = capsys.readouterr()
-    return status, out, err
-
-
-def refused(capsys, *arguments):
-    """Check that a command line is refused in one line, and return the complaint."""
-    try:
-        status = main([str(argument) for argument in arguments])
-    except SystemExit as left:
-        status = left.code
-    out, err = capsys.readouterr()
-    assert status == 2 and out == ""
-    assert len(err.splitlines()) == 1 and "Traceback" not in err
-    return err
 
 
 @pytest.mark.parametrize(
@@ -92,38 +73,6 @@ def test_the_best_counterweights_are_those_of_the_function(capsys):
     machine = load_scene(SMITH).machine()
     found = balance(machine, 10.0, weights={"torque": 1.0, "f23": 1.0})
     assert told["value"] == pytest.approx(found.value, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("classify", "--lengths", "12,6,12"), "4 lengths"),
-        (("classify", "--lengths", "100,6,12,12"), "cannot close"),
-        (("classify",), "--lengths"),
-        (("curve", SMITH, "--point", "0.5"), "--point"),
-        (("curve", SMITH, "--point", "a,b"), "--point"),
-        (("curve", SMITH, "--point", "0.5,0.3", "--link", "rod"), "link"),
-        (("harmonics", SMITH, "--of", "theta9"), "theta9"),
-        (("harmonics", SMITH, "--of", "theta4", "--order", "0"), "order"),
-        (("harmonics", "mathieu", "--of", "theta4"), "a linkage"),
-        (("balance", SMITH, "--weights", "torq=1"), "torq"),
-        (("balance", SMITH, "--links", "rod"), "rod"),
-        (("balance", "smith_1972_10_8_10_10", "--speed", "10"), "no mass"),
-        (("balance", SMITH, "--speed", "0"), "--speed"),
-        (("balance", SMITH, "--case", "b", "--weights", "torque=1"), "--weights"),
-        (("balance", SMITH, "--case", "b", "--mass", "1 kg"), "--mass"),
-        (("balance", SMITH, "--trade-off", "torque,f23", "--measure", "rms"), "--measure"),
-        (("balance", SMITH, "--points", "5"), "--points"),
-        (("balance", SMITH, "--limits", "torque=0.01"), "torque at least 1;"),
-        (("harmonics", SMITH, "--of", "theta4", "--stop", "every"), "--stop"),
-        (("harmonics", SMITH, "--of", "theta4", "--speed", "10"), "--speed"),
-        (("forces", SMITH, "--joint", "34"), "--joint"),
-        (("classify", SMITH, "--base-plane"), "--base-plane"),
-        (("classify", ENGINE, "--input", "follower"), "--input"),
-    ],
-)
-def test_refusals_take_one_line(capsys, arguments, said):
-    assert said in refused(capsys, *arguments)
 
 
 def test_balance_takes_the_acceleration_of_scene_and_option(capsys):

@@ -60,21 +60,3 @@ def test_beyond_the_linear_range_no_verdict_is_given(capsys):
     told = capsys.readouterr()
     assert "no verdict on the rod: the motion leaves the linear range" in told.out
     assert "linear range" in told.err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("stability", SCENE, *FREE, "--speed", "90:110:3"), "one speed"),
-        (("simulate", SCENE, *FREE, "--method", "rk4"), "projection"),
-        (("simulate", SCENE, *FREE, "--initial", "1,0"), "--initial"),
-        (("chart", SCENE, *FREE), "free_free_linear"),
-        (("steady-state", SCENE, "--at", "1.5"), "from 0 to 1"),
-        (("steady-state", SCENE, "--speed=-3:4:5"), "positive speeds"),
-    ],
-)
-def test_refusals_are_one_line(arguments, message, capsys):
-    assert main(list(arguments)) == 2
-    told = capsys.readouterr().err
-    assert message in told
-    assert told.count("\n") == 1

@@ -140,6 +140,7 @@ def test_the_rigs_with_a_flexible_coupler_are_machines_too():
     assert machine.masses["coupler"].mass > 0
 
 
+@pytest.mark.slow
 def test_every_scene_with_a_linkage_can_be_drawn():
     from elastolink.runtime.cli.scenes import draw_scene
     from elastolink.runtime.core.plotting import new_figure

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import importlib.util
 import itertools
-from functools import lru_cache
 
 import mpmath
 import numpy as np
 import pytest
+from derivations import lowered
 from elastolink.derive.emission import emit
 from elastolink.derive.models import coupler as model
 from elastolink.derive.models import four_bar
-from elastolink.derive.pipeline import equations_of_motion, lower
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import (
     four_bar_coupler_complete,
@@ -49,16 +48,6 @@ ARRAYS = (*MATRICES, "f", "g")
 
 def spec(formulation="complete", **changes):
     return ModelSpec("four_bar", formulation, flexible=("coupler",)).with_(**changes)
-
-
-@lru_cache(maxsize=16)
-def discretised(wanted):
-    return model.discretise(wanted, equations_of_motion(model.action(wanted)))
-
-
-@lru_cache(maxsize=16)
-def lowered(wanted):
-    return lower(wanted, discretised(wanted), model.MODEL.describe(wanted))
 
 
 def emitted(wanted, tmp_path):
@@ -151,9 +140,6 @@ def test_complete_arrays_against_quadrature_of_the_weak_form(name):
     assert not complete.has("A") and not complete.has("Kg")
 
 
-# ---------------------------------------------------------------- before separation
-
-
 def test_arrays_are_symmetric_and_modes_couple_only_through_what_varies_along_the_coupler():
     everywhere = {n: system(m, LINKAGES["drag link, open"], 6) for n, m in EMITTED.items()}
     for name, array in itertools.product(EMITTED, MATRICES):
@@ -226,7 +212,7 @@ def test_every_formulation_has_the_same_forcing():
 
 
 def test_a_stability_only_module_holds_no_forcing():
-    lean, whole = lowered(spec(outputs=("stability",))), lowered(spec())
+    lean, whole = (lowered(spec("reduced", outputs=o)) for o in (("stability",), ()))
     assert not {row[0] for row in rows(lean)} & {"f", "g", "h", "p"}
     names = {kernel.name for kernel in lean.kernels}
     assert names == {"scales", "angle_functions", "acceleration_functions", "modal_matrices"}
@@ -268,6 +254,3 @@ def model_inputs():
     lengths = (four_bar.frame, four_bar.crank, four_bar.coupler, four_bar.follower)
     inertias = (model.inertia3, model.moment3, model.inertia4)
     return (four_bar.theta2, *lengths, four_bar.assembly, *inertias)
-
-
-# ---------------------------------------------------------------- namespaces

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
+from elastolink.derive.arrays import CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import (
     NotRepresentable,
     euler_lagrange,
     quadratic_form,
     variational_equations,
 )
-from elastolink.derive.records import CrankMotion, DiscreteSystem, Lagrangian
+from elastolink.derive.records import Lagrangian
 
 t = sp.Symbol("t")
 m1, m2, l1, l2, g, k, w, c = sp.symbols("m1 m2 l1 l2 g k w c", positive=True)
@@ -235,4 +236,4 @@ def test_system_records_refuse_nonsense():
     with pytest.raises(ValueError, match="1 modes"):
         system.matrix("M", 2)
     with pytest.raises(ValueError, match="no derivative"):
-        CrankMotion(theta, td, tdd, {theta: k}, open=(w,)).derivative(w * theta)
+        CrankMotion(theta, td, tdd, {k: w}).derivative(w * theta)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
+from elastolink.derive.arrays import CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import NotRepresentable, euler_lagrange, quadratic_form
 from elastolink.derive.linear import linear_periodic
-from elastolink.derive.records import CrankMotion, DiscreteSystem, EquationsOfMotion, Lagrangian
+from elastolink.derive.records import EquationsOfMotion, Lagrangian
 
 t = sp.Symbol("t", real=True)
 theta, td, tdd = sp.symbols("theta td tdd", real=True)

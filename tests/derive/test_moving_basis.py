@@ -96,6 +96,7 @@ def test_frame_part_is_the_difference_of_two_works():
 # ---------------------------------------------------------------- projection
 
 
+@pytest.mark.slow
 def test_every_array_follows_from_the_chain_rule():
     """By hand: expand v = L (q1 e1 + q2 e2) in shapes of x and s, and differentiate in time."""
     base = undamped(SPEC)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 
 import mpmath
 import numpy as np
 import pytest
-from derivations import lowered
-from elastolink.derive.emission import emit
+from derivations import loaded, lowered, text_of
 from elastolink.derive.models import coupler as model
 from elastolink.derive.models import four_bar
 from elastolink.derive.spec import ModelSpec
@@ -48,16 +46,6 @@ ARRAYS = (*MATRICES, "f", "g")
 
 def spec(formulation="complete", **changes):
     return ModelSpec("four_bar", formulation, flexible=("coupler",)).with_(**changes)
-
-
-def emitted(wanted, tmp_path):
-    """Return a freshly derived module, loaded from a file."""
-    path = tmp_path / f"{wanted.name()}.py"
-    path.write_text(emit(lowered(wanted), "0" * 32))
-    loader = importlib.util.spec_from_file_location(wanted.name(), path)
-    module = importlib.util.module_from_spec(loader)
-    loader.loader.exec_module(module)
-    return module
 
 
 def system(module, linkage, modes=4, **changes):
@@ -167,7 +155,7 @@ def terms(wanted):
 
 
 @pytest.mark.slow
-def test_balancing_at_the_crank_pin_removes_the_first_moment(tmp_path):
+def test_balancing_at_the_crank_pin_removes_the_first_moment():
     whole, balanced = terms(spec()), terms(spec(balanced=("coupler",)))
     assert {scale for _, scale, _ in whole - balanced} == {
         "coupler_first_moment_over_mass_per_length"
@@ -175,26 +163,26 @@ def test_balancing_at_the_crank_pin_removes_the_first_moment(tmp_path):
     assert balanced < whole
     assert lowered(spec(balanced=("coupler",))).operations < lowered(spec()).operations
     linkage = LINKAGES["crank rocker, crossed"]
-    lean = system(emitted(spec(balanced=("coupler",)), tmp_path), linkage)
+    lean = system(loaded(text_of(spec(balanced=("coupler",)))), linkage)
     full = system(four_bar_coupler_complete, linkage, coupler_first_moment=0.0)
     for array in ARRAYS:
         close(lean.array(array, THETA), full.array(array, THETA), 1e-14)
 
 
 @pytest.mark.slow
-def test_dropping_the_axial_inertia_gives_the_printed_equation(tmp_path):
-    dropped = emitted(spec(drop=("axial_inertia",)), tmp_path)
+def test_dropping_the_axial_inertia_gives_the_printed_equation():
+    dropped = loaded(text_of(spec(drop=("axial_inertia",))))
     assert dropped.TERMS == four_bar_coupler_printed.TERMS
-    all_three = emitted(spec(drop=("axial_inertia", "spin", "coupler_end_load")), tmp_path)
+    all_three = loaded(text_of(spec(drop=("axial_inertia", "spin", "coupler_end_load"))))
     assert all_three.TERMS == four_bar_coupler_reduced.TERMS
 
 
 @pytest.mark.slow
-def test_dropping_the_spin_takes_omega3_squared_from_the_stiffness_and_nothing_else(tmp_path):
+def test_dropping_the_spin_takes_omega3_squared_from_the_stiffness_and_nothing_else():
     """The forcing keeps the rotation of the coupler: Smith (6.18) has that of (6.17)."""
     linkage = LINKAGES["drag link, open"]
     whole = system(four_bar_coupler_complete, linkage)
-    without = system(emitted(spec(drop=("spin",)), tmp_path), linkage)
+    without = system(loaded(text_of(spec(drop=("spin",)))), linkage)
     spin = np.array([float(pose(linkage, theta)[1]["omega3"]) ** 2 for theta in THETA])
     close(
         whole.array("B", THETA) - without.array("B", THETA), spin[:, None, None] * np.eye(4), 1e-12

@@ -74,9 +74,6 @@ def test_the_page_lists_every_module():
     assert set(page_bounds(PAGE.read_text())) == set(emitted_functions())
 
 
-# ---------------------------------------------------------------- the truth itself
-
-
 # ---------------------------------------------------------------- the machinery
 
 

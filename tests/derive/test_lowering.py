@@ -250,6 +250,3 @@ def test_operations_are_counted_by_what_is_evaluated():
     assert count_operations([sp.sin(x)]) == 1
     assert count_operations([sp.pi**2 * x / 3]) == 1
     assert count_operations([]) == 0
-
-
-# ---------------------------------------------------------------- determinism and layout

@@ -230,9 +230,6 @@ def test_gravity_adds_a_load_and_a_tension_by_weight():
     assert sp.simplify(sag + mu * g * sp.pi**2 * sp.sin(theta3) / 4) == 0
 
 
-# ---------------------------------------------------------------- interior support
-
-
 # ---------------------------------------------------------------- discrete systems
 
 

@@ -26,17 +26,12 @@ class CrankMotion:
     chain : mapping
         Symbol that depends on theta to its derivative with respect to theta; for example
         ``{theta3: omega3, omega3: alpha3}`` with omega3 and alpha3 per unit crank speed.
-    open : tuple of Symbol
-        Further symbols that follow the crank but whose derivative is not known.  A symbol that is
-        the whole derivative of another one, such as alpha3 above, counts as one without being
-        listed.
     """
 
     theta: sp.Symbol
     rate: sp.Symbol
     acceleration: sp.Symbol
     chain: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)
-    open: tuple[sp.Symbol, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the mapping."""
@@ -59,7 +54,7 @@ class CrankMotion:
     def chain_ends(self) -> tuple[sp.Symbol, ...]:
         """Return the symbols that follow the crank but whose derivative is not known."""
         slopes = {slope for slope in self.chain.values() if slope.is_Symbol}
-        unknown = (slopes | set(self.open)) - {self.theta, *self.chain}
+        unknown = slopes - {self.theta, *self.chain}
         return tuple(sorted(unknown, key=lambda s: s.name))
 
 

@@ -21,7 +21,7 @@ from .linear import linear_periodic
 from .pipeline import Model
 from .projection.assumed_modes import assumed_modes, assumed_shapes
 from .projection.bases import FiniteBasis, IndexedBasis, sine_basis
-from .projection.galerkin import mass_normalised, project, project_action
+from .projection.galerkin import mass_normalised, project
 from .projection.moving_basis import Moments, MovingShapes, project_moving
 from .records import (
     ActionDensity,
@@ -87,7 +87,6 @@ __all__ = [
     "linearise",
     "mass_normalised",
     "project",
-    "project_action",
     "project_moving",
     "quadratic_action",
     "quadratic_form",

@@ -34,7 +34,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 from .ir import UNBROKEN, Description, Kernel, ModuleSpec, Result, Statement, Table
 from .spec import ModelSpec
@@ -263,11 +263,6 @@ def _earlier(letter: Letter) -> Element | None:
     return wave_words(order) if kind == "O" else effective_words(order)
 
 
-def remainder(order: int) -> Element:
-    """Return what is left of the equation of an order with the words put in: it has to vanish."""
-    return equation(order).put(_earlier)
-
-
 def word_text(word: Word) -> str:
     """Return a word as text, repeated resolvents as a power: ``P V R^2 V P V P``."""
     parts: list[str] = []
@@ -414,41 +409,6 @@ def _name(letter: Letter) -> str:
     if not isinstance(letter, tuple):
         return "start"  # Omega_0, which is P
     return {"O": "omega", "h": "h"}[letter[0]] + str(letter[1])
-
-
-class Algebra(Protocol):
-    """What the recursion acts on; its columns can be added and subtracted."""
-
-    start: Any
-
-    def act(self, column: Any) -> Any:
-        """Return V applied to a column."""
-
-    def resolve(self, column: Any) -> Any:
-        """Return R applied to a column."""
-
-    def project(self, column: Any) -> Any:
-        """Return P of a column as an effective operator."""
-
-    def combine(self, column: Any, effective: Any) -> Any:
-        """Return a column times an effective operator."""
-
-
-def run(algebra: Algebra, order: int) -> dict[str, Any]:
-    """Carry out the assignments; return all values by name (``h1``, ``omega1``, ...)."""
-    values: dict[str, Any] = {"start": algebra.start}
-    for assignment in assignments(order):
-        total: Any = None
-        for term in assignment.terms:
-            item = values[term.names[0]]
-            if len(term.names) == 2:
-                item = algebra.combine(item, values[term.names[1]])
-            if total is None:
-                total = item if term.sign > 0 else -item
-            else:
-                total = total + item if term.sign > 0 else total - item
-        values[assignment.target] = getattr(algebra, assignment.call)(total)
-    return values
 
 
 def lower_recursion(spec: ModelSpec, recursion: Recursion, description: Description) -> ModuleSpec:

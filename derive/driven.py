@@ -82,7 +82,7 @@ def driven_motion(equations: EquationsOfMotion, angle: sp.Expr, crank: CrankMoti
     chain = dict(crank.chain) | dict(zip(equations.coordinates, speeds, strict=True))
     chain |= dict(zip(speeds, bends, strict=True))
     return DrivenMotion(
-        CrankMotion(crank.theta, rate, acceleration, chain, crank.open),
+        CrankMotion(crank.theta, rate, acceleration, chain),
         Steps((*zip(speeds, slopes, strict=True), *zip(bends, curvatures, strict=True))),
         tuple(forces),
     )

@@ -13,7 +13,7 @@ from typing import Literal
 
 import sympy as sp
 
-from .records import IndexedEntry, IndexedVector
+from .arrays import IndexedEntry, IndexedVector
 
 _Kind = Literal["cos", "sin"]
 _HALF = sp.Rational(1, 2)

@@ -8,15 +8,8 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .records import (
-    MATRICES,
-    VECTORS,
-    CrankMotion,
-    DiscreteSystem,
-    EquationsOfMotion,
-    Lagrangian,
-    VariationalEquations,
-)
+from .arrays import MATRICES, VECTORS, CrankMotion, DiscreteSystem
+from .records import EquationsOfMotion, Lagrangian, VariationalEquations
 
 
 class NotRepresentable(ValueError):  # noqa: N818 - reads as what it is

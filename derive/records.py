@@ -9,37 +9,6 @@ from types import MappingProxyType
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .arrays import (
-    MATRICES,
-    VECTORS,
-    ArrayEntry,
-    CrankMotion,
-    DiscreteSystem,
-    IndexedEntry,
-    IndexedVector,
-)
-
-__all__ = [
-    "MATRICES",
-    "VECTORS",
-    "ActionDensity",
-    "ArrayEntry",
-    "BoundaryCondition",
-    "CrankMotion",
-    "DiscreteSystem",
-    "EndForce",
-    "EquationsOfMotion",
-    "Essential",
-    "FieldEquations",
-    "IndexedEntry",
-    "IndexedVector",
-    "JumpCondition",
-    "Lagrangian",
-    "PointTerm",
-    "Support",
-    "VariationalEquations",
-]
-
 
 def _frozen_map(items: Mapping[sp.Expr, sp.Expr]) -> Mapping[sp.Expr, sp.Expr]:
     return MappingProxyType(dict(items))

@@ -11,16 +11,10 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import sympy as sp
 
+from .arrays import CrankMotion
 from .integrals import antiderivative
 from .jets import Flux, JetSpace, linearise, order_part
-from .records import (
-    ActionDensity,
-    BoundaryCondition,
-    CrankMotion,
-    FieldEquations,
-    JumpCondition,
-    PointTerm,
-)
+from .records import ActionDensity, BoundaryCondition, FieldEquations, JumpCondition, PointTerm
 
 __all__ = [
     "drag_by_order",

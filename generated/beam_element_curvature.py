@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 168 operations
-Content hash ccc2952cf34bc981e998aa2caa61b69b; derived with SymPy 1.14.0.
+Content hash 40f0fbfdd9772acdd853729e5e829b3d; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"curvature","mechanism":"beam_element","'
     'modes":null,"outputs":[]}'
 )
-CONTENT = "ccc2952cf34bc981e998aa2caa61b69b"
+CONTENT = "40f0fbfdd9772acdd853729e5e829b3d"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

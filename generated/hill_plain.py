@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash c485b68189ec9ecceecb18903020d6a5; derived with SymPy 1.14.0.
+Content hash 85e401d693af9096c5f19b22a8217694; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "c485b68189ec9ecceecb18903020d6a5"
+CONTENT = "85e401d693af9096c5f19b22a8217694"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 86 operations
     shaking_moment: 88 operations
     load_forces: 59 operations
-Content hash dfd4ee5483a712086d4020635a03e84c; derived with SymPy 1.14.0.
+Content hash d5a8ee939eb8f5b5f15a64b3a5e7c69c; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"quick_return","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "dfd4ee5483a712086d4020635a03e84c"
+CONTENT = "d5a8ee939eb8f5b5f15a64b3a5e7c69c"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -24,19 +24,13 @@ from functools import cache
 import sympy as sp
 from sympy.simplify.fu import TR8
 
+from ..arrays import VECTORS, CrankMotion
 from ..ir import Argument, Description
 from ..lagrange import euler_lagrange
 from ..pipeline import Model
-from ..projection.galerkin import project, sine_basis
-from ..records import (
-    VECTORS,
-    ActionDensity,
-    CrankMotion,
-    EndForce,
-    Essential,
-    FieldEquations,
-    Lagrangian,
-)
+from ..projection.bases import sine_basis
+from ..projection.galerkin import project
+from ..records import ActionDensity, EndForce, Essential, FieldEquations, Lagrangian
 from ..separation import StagedSystem
 from ..spec import ModelSpec
 from ..variational import hamilton, quadratic_action, undeflected_tension

@@ -23,19 +23,13 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ..arrays import CrankMotion, DiscreteSystem
 from ..integrals import definite
 from ..ir import Argument, Description
 from ..jets import JetSpace, linear_jets, quadratic_jets
 from ..pipeline import Model
 from ..projection.moving_basis import Moments, MovingShapes, project_moving
-from ..records import (
-    ActionDensity,
-    CrankMotion,
-    DiscreteSystem,
-    Essential,
-    FieldEquations,
-    Support,
-)
+from ..records import ActionDensity, Essential, FieldEquations, Support
 from ..separation import StagedSystem
 from ..spec import Choices, ModelSpec
 from ..variational import hamilton, quadratic_action, undeflected_tension

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import sympy as sp
 
+from ..arrays import CrankMotion
 from ..bloch import HIGHEST_ORDER, LISTED_ORDER, Recursion
 from ..ir import Argument, Description
 from ..linear import linear_periodic
 from ..pipeline import Model
-from ..records import CrankMotion, EquationsOfMotion, Lagrangian
+from ..records import EquationsOfMotion, Lagrangian
 from ..separation import StagedSystem
 from ..spec import ModelSpec
 from ..staged import Steps

@@ -7,8 +7,8 @@ from typing import Protocol
 
 import sympy as sp
 
+from ..arrays import ArrayEntry, IndexedEntry, IndexedVector
 from ..integrals import definite, mode_integral, mode_vector
-from ..records import ArrayEntry, IndexedEntry, IndexedVector
 
 
 class Basis(Protocol):

@@ -1,9 +1,4 @@
-"""Galerkin projection of linear continua on mode bases, closed in the mode indices where it can be.
-
-Two independent routes lead to the same arrays: the strong field equation with its natural
-conditions as residuals (:func:`project`), and the quadratic action itself
-(:func:`project_action`).
-"""
+"""Galerkin projection of linear continua on mode bases, closed in mode indices where it can be."""
 
 from __future__ import annotations
 
@@ -13,35 +8,19 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..arrays import BasisEntry
-from ..jets import linear_jets, quadratic_jets
-from ..lagrange import NotRepresentable
-from ..records import (
-    ActionDensity,
+from ..arrays import (
     ArrayEntry,
+    BasisEntry,
     CrankMotion,
     DiscreteSystem,
-    FieldEquations,
     IndexedEntry,
     IndexedVector,
 )
-from ..variational import drag_by_order
-from .bases import Basis, FiniteBasis, IndexedBasis, sine_basis
+from ..jets import linear_jets
+from ..lagrange import NotRepresentable
+from ..records import ActionDensity, FieldEquations
+from .bases import Basis
 from .sums import ArraySum, Powers, mapped, plus, transposed, vanishes
-
-__all__ = [
-    "Basis",
-    "FiniteBasis",
-    "IndexedBasis",
-    "antisymmetric_gauge",
-    "divided",
-    "mass_normalised",
-    "modal_terms",
-    "project",
-    "project_action",
-    "sine_basis",
-    "tidy",
-]
 
 
 def project(
@@ -160,96 +139,6 @@ def _quarter(expression: sp.Expr) -> sp.Expr:
     return sp.expand(expression / 4)
 
 
-def project_action(
-    action: ActionDensity,
-    item: sp.Expr,
-    basis: Basis,
-    crank: CrankMotion,
-    *,
-    followers: Mapping[sp.Expr, sp.Expr] | None = None,
-    geometric: Iterable[sp.Symbol] = (),
-) -> DiscreteSystem:
-    """Substitute the expansion into a quadratic action and read off the arrays.
-
-    Parameters
-    ----------
-    action : ActionDensity
-        At most quadratic in the field, whose first time derivative is the highest (see
-        :func:`.variational.quadratic_action`).
-    item, basis, crank, followers, geometric
-        As for :func:`project`.
-
-    Raises
-    ------
-    ValueError
-        If the action is not quadratic, or the basis violates an essential condition.
-    NotRepresentable
-        If a term has no place in the family.
-    """
-    _check_essential(action, item, basis)
-    arrays = ArraySum(crank, action.t, followers or {}, tuple(geometric))
-    momenta = ArraySum(crank, action.t, followers or {}, ())
-    _add_energy(arrays, momenta, basis, action.density, item, None)
-    for term in action.point_terms:
-        _add_energy(arrays, momenta, basis, term.expression, item, sp.sympify(term.position))
-    for name, entry in momenta.entries.items():
-        slope = mapped(entry, lambda e: sp.expand(-crank.derivative(e)))
-        arrays.add("f" if name == "td qd" else "h", slope)
-        if name == "td qd":
-            arrays.add("g", mapped(entry, lambda e: -e))
-    side = _ForceSide(arrays, basis, item)
-    if item in action.force_density:
-        side.add(action.force_density[item], 0, None)
-    for k, drag in drag_by_order(action, item):
-        side.add(drag, k, None)
-    for force in action.end_forces:
-        if force.field == item:
-            side.add(force.force, force.order, sp.sympify(force.position))
-    return side.system()
-
-
-def _add_energy(
-    arrays: ArraySum,
-    momenta: ArraySum,
-    basis: Basis,
-    energy: sp.Expr,
-    item: sp.Expr,
-    at: sp.Expr | None,
-) -> None:
-    """Add a part of the Lagrangian; momenta collects what is linear in the velocities."""
-    if at is not None and sp.diff(at, arrays.t) != 0:
-        raise NotRepresentable(f"a point term that moves along the link ({at}) is not projected")
-    quadratic, linear = quadratic_jets(energy, item)
-    for ((k, j), (k_2, j_2)), coefficient in sorted(quadratic.items()):
-        if max(j, j_2) > 1:
-            raise NotRepresentable(f"second time derivatives of {item} in the action")
-        if (j, j_2) == (0, 1):
-            continue
-        for powers, weight in arrays.by_powers(coefficient).items():
-            for name, value in _energy_targets(arrays, weight, (j, j_2), powers):
-                arrays.add(name, basis.bilinear(value, (k, k_2), at))
-    for (k, j), coefficient in sorted(linear.items()):
-        for powers, weight in arrays.by_powers(coefficient).items():
-            if j == 0:
-                arrays.add(arrays.forcing(powers, weight), basis.single(weight, k, at))
-            elif powers in ((0, 0), (1, 0)) and j == 1:
-                name = "td qd" if powers[0] else "qd"
-                momenta.add(name, basis.single(weight, k, at))
-            else:
-                raise NotRepresentable(f"momentum {weight} with rate powers {powers}")
-
-
-def _energy_targets(
-    arrays: ArraySum, weight: sp.Expr, rates: tuple[int, int], powers: Powers
-) -> list[tuple[str, sp.Expr]]:
-    if rates == (0, 0):
-        return arrays.stiffness(weight, powers)
-    name = {((1, 1), (0, 0)): "M", ((1, 0), (1, 0)): "A"}.get((rates, powers))
-    if name is None:
-        raise NotRepresentable(f"{weight}: time derivatives {rates} with rate powers {powers}")
-    return [(name, weight)]
-
-
 def _check_essential(action: ActionDensity, item: sp.Expr, basis: Basis) -> None:
     for position, order in action.held(item):
         values = basis.single(sp.S.One, order, sp.sympify(position))
@@ -309,33 +198,6 @@ def _by_shape(table: dict[sp.Expr, sp.Expr]) -> dict[sp.Expr, sp.Expr]:
     return grouped
 
 
-def modal_terms(entry: ArrayEntry) -> tuple[tuple[sp.Expr, ArrayEntry], ...]:
-    """Split indexed entries into (factor free of the indices) times (array of the indices alone).
-
-    ``entry``: an array of a projected system. Result: their products sum up to the entries; factors
-    that share an array are put together. Raises ``TypeError`` if the entry is an explicit matrix.
-    """
-    if isinstance(entry, IndexedVector):
-        vector = _by_shape(_by_cofactor(entry.entry, (entry.m,)))
-        return tuple((outer, IndexedVector(shape, entry.m)) for shape, outer in vector.items())
-    if not isinstance(entry, IndexedEntry):
-        raise TypeError("an explicit matrix has no mode indices")
-    indices = (entry.m, entry.n)
-    diagonal = _by_cofactor(entry.diagonal, indices)
-    other = _by_cofactor(entry.off_diagonal, indices)
-    grouped: dict[tuple[sp.Expr, sp.Expr], sp.Expr] = {}
-    for outer in dict.fromkeys([*diagonal, *other]):
-        on, off = diagonal.get(outer, sp.S.Zero), other.get(outer, sp.S.Zero)
-        number = (on if on != 0 else off).as_coeff_Mul()[0]
-        if number == 0:
-            continue
-        key = (on / number, off / number)
-        grouped[key] = grouped.get(key, sp.S.Zero) + number * outer
-    return tuple(
-        (outer, IndexedEntry(on, off, entry.m, entry.n)) for (on, off), outer in grouped.items()
-    )
-
-
 def divided(system: DiscreteSystem, divisor: sp.Expr) -> DiscreteSystem:
     """Return the system with every array divided by the same quantity."""
 
@@ -376,22 +238,3 @@ def mass_normalised(system: DiscreteSystem) -> DiscreteSystem:
     if not ok:
         raise ValueError(f"the mass matrix {mass} is not a multiple of the identity")
     return divided(system, value)
-
-
-def antisymmetric_gauge(system: DiscreteSystem) -> DiscreteSystem:
-    """Remove the symmetric part of A, which is a total time derivative up to B and S.
-
-    The Lagrangian changes by ``d/dt (td q^T P q / 2)`` with ``P = (A + A^T)/2``: A, B and S become
-    ``A - P``, ``B - P'`` and ``S - P``, and the equation of motion stays the same.
-    """
-    if not system.has("A"):
-        return system
-    crank, entries = system.crank, dict(system.arrays)
-    even = mapped(plus(entries["A"], transposed(entries["A"])), lambda e: sp.expand(e / 2))
-    if vanishes(even):
-        return system
-    slope = mapped(even, lambda e: sp.expand(crank.derivative(e)))
-    for name, part in (("A", even), ("B", slope), ("S", even)):
-        minus = mapped(part, lambda e: -e)
-        entries[name] = tidy(plus(entries[name], minus) if name in entries else minus)
-    return system.with_(arrays=entries)

@@ -8,9 +8,8 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from ..arrays import BasisEntry
+from ..arrays import ArrayEntry, BasisEntry, CrankMotion, IndexedEntry, IndexedVector
 from ..lagrange import NotRepresentable
-from ..records import ArrayEntry, CrankMotion, IndexedEntry, IndexedVector
 from ..variational import in_crank_angle
 
 Powers: TypeAlias = tuple[int, int]

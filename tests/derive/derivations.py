@@ -1,6 +1,7 @@
 """Derivations that several tests look at, each made once in a process."""
 
 from functools import cache
+from types import ModuleType
 
 from elastolink.derive.catalogue import CATALOGUE
 from elastolink.derive.emission import emit
@@ -50,9 +51,14 @@ def text_of(spec: ModelSpec) -> str:
     return emit(lowered(spec), CONTENT)
 
 
+def loaded(text: str) -> ModuleType:
+    """Return an emitted text as a module."""
+    module = ModuleType("emitted")
+    exec(compile(text, "emitted", "exec"), module.__dict__)
+    return module
+
+
 @cache
 def namespace_of(spec: ModelSpec) -> dict:
     """Return what the emitted text of a spec defines."""
-    space: dict = {}
-    exec(compile(text_of(spec), spec.name(), "exec"), space)
-    return space
+    return vars(loaded(text_of(spec)))

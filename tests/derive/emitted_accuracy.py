@@ -22,8 +22,6 @@ from frequency_truth import MODULE as FREQUENCY_FUNCTIONS
 from frequency_truth import exact_frequency_functions
 from judging import ALLOWED, Exact, Judgement, judge, worst
 from linkage_truth import exact_points
-from meissner_truth import exact_meissner
-from overhang_truth import exact_points as exact_overhang
 from sensitivity_truth import EXACT as SENSITIVITIES
 from sliding_truth import EXACT as SLIDING
 from unlowered import exact_unlowered, judged_unlowered
@@ -40,7 +38,7 @@ EXCEPTIONS: dict[tuple[str, str, str], str] = {
     for mechanism, output in (("four_bar", "y12"), ("four_bar", "y23"), ("quick_return", "y23"))
     for function in ("forces", "pin_forces")
 }
-COUNTS = (1, 2, 3)  # numbers of modes that a module for any number is judged with
+COUNTS = (1, 3)  # numbers of modes that a module for any number is judged with
 
 
 @dataclass(frozen=True)
@@ -80,14 +78,10 @@ def _exact(module: str, function: str) -> tuple[Exact, ...]:
         return exact_unlowered(module, function)
     if module == FREQUENCY_FUNCTIONS:
         return exact_frequency_functions(function)
-    if module == "quick_return_overhang_modes":
-        return exact_overhang(function)
     if module.endswith("_forces"):
         return exact_forces(module, function)
     if module == MODES_MODULE:
         return exact_modes(function)
-    if module == "hill_meissner":
-        return exact_meissner(function)
     motions = {**SENSITIVITIES, **SLIDING}
     return motions[module]() if module in motions else exact_points()
 

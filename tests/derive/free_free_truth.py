@@ -1,8 +1,7 @@
-"""Free-free modes and the rod in Buckens' frame by hand, in many digits.
+"""Free-free modes by hand in many digits, and the rod in Buckens' frame before its lowering.
 
 Modes are sums of four growing and decaying exponentials on roots refined to the last digit, their
-integrals those of polynomials times exponentials.  Energies and constraints of the rod are typed
-from a sketch, every derivative is a difference in hundreds of digits.
+integrals those of polynomials times exponentials.
 """
 
 from __future__ import annotations
@@ -16,13 +15,14 @@ from functools import lru_cache
 import mpmath
 import numpy as np
 from elastolink import generated
-from judging import Exact, Point
+from elastolink.derive.external import external_values
+from elastolink.derive.lagrange import euler_lagrange, variational_equations
+from elastolink.derive.models import free_free_rod as rod
+from judging import Exact, Point, reference_of
 
 MODES_MODULE = "beam_free_free_modes"
 ROD_MODULE = "quick_return_rod_free_free"
 DIGITS = 140
-ROD_DIGITS = 320  # third differences take 180 of them
-STEP = mpmath.mpf(10) ** -60
 NUMBERS = (*range(1, 13), 30, 59, 60)
 
 
@@ -188,133 +188,26 @@ def _pairs():
 # ---------------------------------------------------------------- the rod
 
 
-class Rod:
-    """The rod by hand at one point: energies and constraints of numbers."""
-
-    def __init__(self, numbers: dict, count: int) -> None:
-        self.n, self.count = numbers, count
-        every = range(1, count + 1)
-
-        def pairs(name: str) -> list[list]:
-            return [
-                [numbers["_".join([name, *map(str, sorted((i, j)))])] for j in every] for i in every
-            ]
-
-        # int (1/4 - s^2)/2 psi' psi', and the pin's approach (1/2) int (1/2 - s) psi' psi'
-        self.pull = [[-2 * value for value in row] for row in pairs("inward")]
-        self.approach = pairs("retreat")
-        self.left = [numbers[f"left_{i}"] for i in every]
-        self.stiffness = [numbers[f"stiffness_{i}"] for i in every]
-        self.home = self._place(numbers["gamma"], numbers["t"])
-
-    def _place(self, gamma, t):
-        n = self.n
-        turned = gamma - n["speed"] * t
-        return (n["crank"] * mpmath.cos(turned) + n["frame"] * mpmath.cos(gamma)) / n["length"]
-
-    def constraints(self, q, t):
-        """Return the loops: pin along and across, block across, the modes as Taylor's series."""
-        n, length = self.n, self.n["length"]
-        r1, r2, gamma, *f = q
-        cos, sin = mpmath.cos(gamma), mpmath.sin(gamma)
-        moved = self._place(gamma, t) - self.home
-        left = sum(value * a for value, a in zip(self.left, f, strict=True))
-        held = mpmath.mpf(0)
-        for i, a in enumerate(f, start=1):
-            terms = [n[f"psi_{i}" + (f"_d{k}" if k else "")] for k in range(4)]
-            shape = sum(c * moved**k / mpmath.factorial(k) for k, c in enumerate(terms))
-            held += a * shape
-        theta = n["speed"] * t
-        short = sum(self.approach[i][j] * a * b for i, a in enumerate(f) for j, b in enumerate(f))
-        pin = r1 * cos + r2 * sin - length / 2 + length * short
-        away = r2 * cos - r1 * sin
-        reach = n["crank"] * (mpmath.sin(theta) * cos - mpmath.cos(theta) * sin) - n["frame"] * sin
-        return [pin, away + length * left, away + length * held - reach]
-
-    def _bent(self, f):
-        pulled = [sum(row[j] * f[j] for j in range(self.count)) for row in self.pull]
-        return [a - b for a, b in zip(f, pulled, strict=True)]
-
-    def mass(self, q):
-        """Return the diagonal of the mass matrix."""
-        m, length = self.n["mass_per_length"], self.n["length"]
-        f = q[3:]
-        turning = mpmath.mpf(1) / 12 + sum(a * b for a, b in zip(f, self._bent(f), strict=True))
-        return [m * length] * 2 + [m * length**3 * turning] + [m * length**3] * self.count
-
-    def rest(self, q, qd):
-        """Return inertia at zero acceleration less elastic forces."""
-        m, length = self.n["mass_per_length"], self.n["length"]
-        f, fd, turning = q[3:], qd[3:], qd[2]
-        bent = self._bent(f)
-        coriolis = 2 * m * length**3 * turning * sum(a * b for a, b in zip(fd, bent, strict=True))
-        elastic = self.n["bending_stiffness"] / length
-        own = [
-            elastic * value * a - m * length**3 * turning**2 * b
-            for value, a, b in zip(self.stiffness, f, bent, strict=True)
-        ]
-        return [mpmath.mpf(0)] * 2 + [coriolis] + own
-
-    def jacobian(self, q, t):
-        """Return the columns of the Jacobian."""
-        return [self._slope(lambda x: self.constraints(x, t), q, i) for i in range(len(q))]
-
-    def _slope(self, function, q, i):
-        ends = [function([*q[:i], q[i] + sign * STEP, *q[i + 1 :]]) for sign in (1, -1)]
-        return [(a - b) / (2 * STEP) for a, b in zip(*ends, strict=True)]
-
-    def along(self, q, qd, qdd, t, order: int):
-        """Return the first or second time derivative of the constraints along a path."""
-
-        def at(s):
-            path = [a + s * b + s * s / 2 * c for a, b, c in zip(q, qd, qdd, strict=True)]
-            return self.constraints(path, t + s)
-
-        high, low = at(STEP), at(-STEP)
-        if order == 1:
-            return [(a - b) / (2 * STEP) for a, b in zip(high, low, strict=True)]
-        middle = at(mpmath.mpf(0))
-        return [(a - 2 * b + c) / STEP**2 for a, b, c in zip(high, middle, low, strict=True)]
-
-    def residual(self, q, qd, qdd, lam, t):
-        """Return what Lagrange's equations leave."""
-        columns = self.jacobian(q, t)
-        pulled = [sum(a * b for a, b in zip(column, lam, strict=True)) for column in columns]
-        terms = zip(self.mass(q), qdd, self.rest(q, qd), pulled, strict=True)
-        return [m * a + c - p for m, a, c, p in terms]
+@lru_cache(maxsize=4)
+def rod_reference(count: int):
+    """Return the equations of a number of modes, derived for just that number, in many digits."""
+    e = euler_lagrange(rod.lagrangian(count))
+    v = variational_equations(e)
+    arrays = {name: getattr(e, name) for name in _ARRAYS}
+    arrays |= {name: getattr(v, name) for name in _VARIED}
+    values = external_values(arrays.values())
+    outputs = [
+        (f"{name}_{i + 1}_{j + 1}", values.plain(matrix)[i, j])
+        for name, matrix in arrays.items()
+        for i in range(matrix.rows)
+        for j in range(matrix.cols)
+    ]
+    inputs = set().union(*(value.free_symbols for _, value in outputs))
+    return reference_of(sorted(inputs, key=str), outputs)
 
 
-def _entries(name: str, columns) -> dict:
-    return {
-        f"{name}_{i + 1}_{j + 1}": value
-        for j, column in enumerate(columns)
-        for i, value in enumerate(column)
-    }
-
-
-def rod_arrays(numbers: dict, count: int) -> dict:
-    """Return every array of the three emitted functions, entry by entry."""
-    rod = Rod(numbers, count)
-    names = ["R1", "R2", "gamma", *(f"f{i}" for i in range(1, count + 1))]
-    q, qd, qdd = ([numbers[f"{name}{end}"] for name in names] for end in ("", "_dot", "_ddot"))
-    lam, t = [numbers[f"lam_{k}"] for k in (1, 2, 3)], numbers["t"]
-    still = [mpmath.mpf(0)] * len(q)
-    every = range(len(q))
-    found = {f"mass_{i + 1}_{i + 1}": value for i, value in enumerate(rod.mass(q))}
-    found |= _entries("rest", [rod.rest(q, qd)])
-    found |= _entries("constraints", [rod.constraints(q, t)])
-    found |= _entries("jacobian", rod.jacobian(q, t))
-    found |= _entries("velocity_rhs", [[-v for v in rod.along(q, still, still, t, 1)]])
-    found |= _entries("gamma", [[-v for v in rod.along(q, qd, still, t, 2)]])
-    found |= _entries("damping", [rod._slope(lambda x: rod.rest(q, x), qd, i) for i in every])
-    slopes = [rod._slope(lambda x: rod.residual(x, qd, qdd, lam, t), q, i) for i in every]
-    found |= _entries("stiffness", slopes)
-    for name, order in (("jacobian_rate", 1), ("jacobian_acceleration", 2)):
-        columns = [
-            rod._slope(lambda x, order=order: rod.along(x, qd, qdd, t, order), q, i) for i in every
-        ]
-        found |= _entries(name, columns)
-    return found
+_ARRAYS = ("constraints", "jacobian", "mass", "rest", "velocity_rhs", "gamma")
+_VARIED = ("damping", "stiffness", "jacobian_rate", "jacobian_acceleration")
 
 
 class WithModes:
@@ -408,8 +301,8 @@ def _rod_points(count: int) -> tuple[tuple[Point, dict], ...]:
             inputs[name] = float(size if positive else random.choice((-1, 1)) * size)
         if k == 0:  # the rod undeformed and at rest in itself
             inputs |= {name: 0.0 for name in names if name.startswith("f") and name[1:2].isdigit()}
-        with mpmath.workdps(ROD_DIGITS):
-            exact = rod_arrays({n: mpmath.mpf(v) for n, v in inputs.items()}, count)
+        with mpmath.workdps(80):
+            exact = rod_reference(count)({n: mpmath.mpf(v) for n, v in inputs.items()})
         made.append((Point("undeformed" if k == 0 else f"random {k}", inputs), exact))
     return tuple(made)
 

@@ -1,16 +1,15 @@
-"""Meissner's matrices in many digits, by complex square roots and plain matrix products."""
+"""Points at which Meissner's matrices are judged, and an interval by complex square roots."""
 
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 import mpmath
 import numpy as np
-from judging import Exact, Point, exact_at
+from elastolink.generated import hill_meissner
+from judging import Point
 
 COUNTS = {"two_intervals": 2, "three_intervals": 3, "four_intervals": 4}
-_BEFORE = ("half_trace_before", "half_difference_before", "upper_before", "lower_before")
 
 
 def interval(numbers):
@@ -20,44 +19,6 @@ def interval(numbers):
         return {"cosine": mpmath.mpf(1), "sine": length}
     v = mpmath.sqrt(mpmath.mpc(level))
     return {"cosine": mpmath.cos(v * length).real, "sine": (mpmath.sin(v * length) / v).real}
-
-
-def _of_interval(numbers, i):
-    c, s, q = (numbers[f"{letter}{i}"] for letter in "csq")
-    return mpmath.matrix([[c, s], [-q * s, c]])
-
-
-def _parts(m):
-    return {
-        "half_trace": (m[0, 0] + m[1, 1]) / 2,
-        "half_difference": (m[0, 0] - m[1, 1]) / 2,
-        "upper": m[0, 1],
-        "lower": m[1, 0],
-    }
-
-
-def product(count):
-    """Return a function that multiplies the matrices of several intervals."""
-
-    def parts(numbers):
-        whole = mpmath.eye(2)
-        for i in range(1, count + 1):
-            whole = _of_interval(numbers, i) * whole
-        return _parts(whole)
-
-    return parts
-
-
-def one_more(numbers):
-    """Return the parts of a given matrix times that of one more interval."""
-    h, d, upper, lower = (numbers[name] for name in _BEFORE)
-    return _parts(_of_interval(numbers, 1) * mpmath.matrix([[h + d, upper], [lower, h - d]]))
-
-
-def half_turn(numbers):
-    """Return the entries of the matrix over two (half) intervals."""
-    m = _of_interval(numbers, 2) * _of_interval(numbers, 1)
-    return {"y1": m[0, 0], "y2": m[0, 1], "y1_slope": m[1, 0], "y2_slope": m[1, 1]}
 
 
 def _interval_points():
@@ -108,7 +69,8 @@ def _interval_states(count):
     yield "coexistence", _state(both, even)
 
 
-def _points(function):
+def meissner_points(function):
+    """Yield random and nasty points of one emitted function."""
     if function == "interval":
         yield from _interval_points()
         return
@@ -116,17 +78,8 @@ def _points(function):
     random = np.random.default_rng(77)
     for name, state in _interval_states(count):
         if function == "one_more_interval":
-            with mpmath.workdps(60):
-                numbers = _state(random.uniform(-1.0, 9.0, 3), [2.0, 2.0, 2.0])
-                before = product(3)({key: mpmath.mpf(x) for key, x in numbers.items()})
-            before = {f"{key}_before": float(value) for key, value in before.items()}
-            state = {**before, **state}
+            given = _state(random.uniform(-1.0, 9.0, 3), [2.0, 2.0, 2.0])
+            parts = hill_meissner.three_intervals(**given)
+            before = dict(zip(hill_meissner.RETURNS["three_intervals"], parts, strict=True))
+            state = {**{f"{key}_before": float(v) for key, v in before.items()}, **state}
         yield Point(name, state)
-
-
-@lru_cache(maxsize=8)
-def exact_meissner(function: str) -> tuple[Exact, ...]:
-    """Return the exact values of one emitted function at random and nasty points."""
-    plain = {"interval": interval, "one_more_interval": one_more, "half_turn": half_turn}
-    reference = plain.get(function) or product(COUNTS[function])
-    return tuple(exact_at(reference, point) for point in _points(function))

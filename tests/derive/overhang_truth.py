@@ -1,22 +1,20 @@
 """Modes of the beam with an overhang in many digits, by cosh and sinh as they stand.
 
 With 320 digits the textbook's shapes lose nothing; derivatives along the support's place are
-differences.  Integrals over end values, for which any values may be passed in, are judged by the
-derived expression before any lowering.
+differences.  And the points at which the emitted functions are judged.
 """
 
 from __future__ import annotations
 
 import inspect
 import math
+from collections.abc import Iterator
 from functools import lru_cache
 
 import mpmath
 import numpy as np
-from elastolink.derive.models import overhang_modes
-from elastolink.derive.spec import ModelSpec
 from elastolink.generated import quick_return_overhang_modes as emitted
-from judging import Exact, Point, exact_at, reference_of
+from judging import Point
 
 DIGITS = 320
 _STEP = mpmath.mpf(10) ** -60
@@ -85,99 +83,6 @@ def drift(xi, beta, eta, order, side):
     """Return a derivative by eta of the mode's derivative along xi, the root moving with it."""
     rate = root_rate(xi, beta)
     return slope_of(lambda h: shape(xi + h, beta * (1 + rate * h), eta, order, side), mpmath.mpf(0))
-
-
-def end_values(numbers):
-    """Return what the emitted ``end_values`` should."""
-    with mpmath.workdps(DIGITS):
-        xi, beta = numbers["place"], numbers["beta"]
-        left, right = amplitudes(xi, beta)
-        rate = root_rate(xi, beta)
-        growth = [
-            slope_of(lambda h, i=i: amplitudes(xi + h, beta * (1 + rate * h))[i], mpmath.mpf(0))
-            for i in (0, 1)
-        ]
-        pin, tip = mpmath.mpf(0), mpmath.mpf(1)
-        found = {
-            "left_amplitude": left,
-            "right_amplitude": right,
-            "left_growth": growth[0] / left,
-            "right_growth": growth[1] / right,
-            "rate": rate,
-            "span_rate": beta * (1 + xi * rate),
-            "hang_rate": beta * ((1 - xi) * rate - 1),
-        }
-        for name, function in (("", shape), ("_drift", drift)):
-            before = function(xi, beta, xi, 3, "before")
-            found |= {
-                f"root_slope{name}": function(xi, beta, pin, 1, "before"),
-                f"root_shear{name}": function(xi, beta, pin, 3, "before"),
-                f"slope{name}": function(xi, beta, xi, 1, "before"),
-                f"moment{name}": function(xi, beta, xi, 2, "before"),
-                f"shear{name}": before,
-                f"reaction{name}": function(xi, beta, xi, 3, "beyond") - before,
-                f"tip{name}": function(xi, beta, tip, 0, "beyond"),
-                f"tip_slope{name}": function(xi, beta, tip, 1, "beyond"),
-            }
-        return found
-
-
-def characteristic(numbers):
-    """Return what the emitted ``characteristic`` should."""
-    with mpmath.workdps(DIGITS):
-        xi, beta = numbers["place"], numbers["beta"]
-        # The factor exp(-a - b) is exp(-beta): its slope belongs to the value.
-        return {
-            "residual": determinant(xi, beta),
-            "residual_slope": slope_of(lambda at: determinant(xi, at), beta),
-        }
-
-
-def modes(side):
-    """Return what the emitted shapes of one side should, for a given amplitude."""
-    factor = "left_amplitude" if side == "before" else "right_amplitude"
-
-    def values(numbers):
-        with mpmath.workdps(DIGITS):
-            xi, beta, eta = (numbers[name] for name in ("place", "beta", "eta"))
-            found = {}
-            for order, name in enumerate(("value", "slope_along", "curvature", "third")):
-                if side == "before":
-                    part = beta**order * near(beta * xi, beta * eta, order)
-                else:
-                    part = (-beta) ** order * far(beta * (1 - xi), beta * (1 - eta), order)
-                found[name] = numbers[factor] * part
-            return found
-
-    return values
-
-
-def drifts(side):
-    """Return what the emitted drift of one side should, for given amplitude and rates."""
-
-    def values(numbers):
-        with mpmath.workdps(DIGITS):
-            xi, beta, eta, rate = (numbers[name] for name in ("place", "beta", "eta", "rate"))
-            before = side == "before"
-            factor = numbers["left_amplitude" if before else "right_amplitude"]
-            growth = numbers["left_growth" if before else "right_growth"]
-            phase = numbers["span_rate" if before else "hang_rate"]
-            found = {}
-            for order, name in enumerate(("drift", "drift_slope", "drift_curvature")):
-
-                def moved(h, order=order):
-                    root = beta * (1 + rate * h)
-                    if before:
-                        part = near(beta * xi + phase * h, root * eta, order)
-                    else:
-                        part = far(beta * (1 - xi) + phase * h, root * (1 - eta), order)
-                        part *= (-1) ** order
-                    return factor * (1 + growth * h) * root**order * part
-
-                found[name] = slope_of(moved, mpmath.mpf(0))
-            return found
-
-    return values
 
 
 # ---------------------------------------------------------------- places and points
@@ -269,25 +174,6 @@ def _integral_points(function):
         yield Point(name, {key: inputs[key] for key in wanted})
 
 
-@lru_cache(maxsize=1)
-def _forms():
-    spec = ModelSpec("quick_return", "overhang_modes")
-    return {kernel.name: kernel.form for kernel in overhang_modes.MODEL.energies(spec).kernels}
-
-
-@lru_cache(maxsize=8)
-def exact_points(function: str) -> tuple[Exact, ...]:
-    """Return the exact values of one emitted function at random and nasty points."""
-    if function.endswith("_integrals"):
-        form = _forms()[function]
-        reference = reference_of(form.inputs, form.outputs, form.steps)
-        return tuple(exact_at(reference, point) for point in _integral_points(function))
-    references = {
-        "characteristic": characteristic,
-        "end_values": end_values,
-        "modes_before": modes("before"),
-        "modes_beyond": modes("beyond"),
-        "drift_before": drifts("before"),
-        "drift_beyond": drifts("beyond"),
-    }
-    return tuple(exact_at(references[function], point) for point in _points(function))
+def overhang_points(function: str) -> Iterator[Point]:
+    """Yield random and nasty points of one emitted function."""
+    return _integral_points(function) if function.endswith("_integrals") else _points(function)

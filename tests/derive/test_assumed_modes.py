@@ -66,7 +66,8 @@ def test_one_field_agrees_with_the_projection():
         essential=(au.Essential(0, v, 0), au.Essential(0, v, 1)),
     )
     one = arrays(action, {v: shapes})
-    other = au.project_action(action, v, shapes, CRANK, followers={sp.Function("turn")(t): theta})
+    followers = {sp.Function("turn")(t): theta}
+    other = au.project(au.hamilton(action), v, shapes, CRANK, followers=followers)
     assert set(one.arrays) == set(other.arrays)
     for name in one.arrays:
         difference = one.matrix(name) - other.matrix(name)

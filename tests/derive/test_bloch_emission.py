@@ -112,23 +112,6 @@ def test_the_module_is_short_documented_and_needs_nothing():
     assert "order_4: 24 operations" in hill_recursion.__doc__
 
 
-def test_the_counts_of_the_header_are_the_calls_that_are_made():
-    for order in ORDERS:
-        calls = []
-
-        class Counted(float):
-            def __sub__(self, other, calls=calls):
-                calls.append("difference")
-                return Counted(float(self) - float(other))
-
-        def counted(*values, calls=calls, kind=Counted):
-            calls.append("call")
-            return kind(1.0)
-
-        run(order, Counted(1.0), counted, counted, counted, counted)
-        assert f"order_{order}: {len(calls)} operations" in hill_recursion.__doc__
-
-
 def test_a_single_order_stands_on_its_own():
     wanted = SPEC.with_(outputs=("order_4", "order_2"))
     text = module_text(wanted, MODEL, "0" * 32)

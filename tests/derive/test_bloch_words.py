@@ -14,8 +14,8 @@ ORDERS = range(1, 8)
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_words_solve_the_equation_of_their_order(order):
-    assert bloch.remainder(0) == bloch.ZERO
-    assert bloch.remainder(order) == bloch.ZERO
+    assert bloch.equation(0).put(bloch._earlier) == bloch.ZERO
+    assert bloch.equation(order).put(bloch._earlier) == bloch.ZERO
     assert P @ wave_words(order) == bloch.ZERO  # P Omega = P
     assert wave_words(order) @ P == wave_words(order)
 

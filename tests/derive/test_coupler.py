@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
-from functools import lru_cache
 
 import mpmath
 import numpy as np
 import pytest
-from elastolink.derive.emission import emit
+from derivations import loaded, lowered, text_of
 from elastolink.derive.models import coupler as model
 from elastolink.derive.models import four_bar
-from elastolink.derive.pipeline import equations_of_motion, lower
 from elastolink.derive.spec import ModelSpec
 from elastolink.generated import (
     four_bar_coupler_complete,
@@ -49,26 +46,6 @@ ARRAYS = (*MATRICES, "f", "g")
 
 def spec(formulation="complete", **changes):
     return ModelSpec("four_bar", formulation, flexible=("coupler",)).with_(**changes)
-
-
-@lru_cache(maxsize=16)
-def discretised(wanted):
-    return model.discretise(wanted, equations_of_motion(model.action(wanted)))
-
-
-@lru_cache(maxsize=16)
-def lowered(wanted):
-    return lower(wanted, discretised(wanted), model.MODEL.describe(wanted))
-
-
-def emitted(wanted, tmp_path):
-    """Return a freshly derived module, loaded from a file."""
-    path = tmp_path / f"{wanted.name()}.py"
-    path.write_text(emit(lowered(wanted), "0" * 32))
-    loader = importlib.util.spec_from_file_location(wanted.name(), path)
-    module = importlib.util.module_from_spec(loader)
-    loader.loader.exec_module(module)
-    return module
 
 
 def system(module, linkage, modes=4, **changes):
@@ -151,9 +128,6 @@ def test_complete_arrays_against_quadrature_of_the_weak_form(name):
     assert not complete.has("A") and not complete.has("Kg")
 
 
-# ---------------------------------------------------------------- before separation
-
-
 def test_arrays_are_symmetric_and_modes_couple_only_through_what_varies_along_the_coupler():
     everywhere = {n: system(m, LINKAGES["drag link, open"], 6) for n, m in EMITTED.items()}
     for name, array in itertools.product(EMITTED, MATRICES):
@@ -181,7 +155,7 @@ def terms(wanted):
 
 
 @pytest.mark.slow
-def test_balancing_at_the_crank_pin_removes_the_first_moment(tmp_path):
+def test_balancing_at_the_crank_pin_removes_the_first_moment():
     whole, balanced = terms(spec()), terms(spec(balanced=("coupler",)))
     assert {scale for _, scale, _ in whole - balanced} == {
         "coupler_first_moment_over_mass_per_length"
@@ -189,26 +163,26 @@ def test_balancing_at_the_crank_pin_removes_the_first_moment(tmp_path):
     assert balanced < whole
     assert lowered(spec(balanced=("coupler",))).operations < lowered(spec()).operations
     linkage = LINKAGES["crank rocker, crossed"]
-    lean = system(emitted(spec(balanced=("coupler",)), tmp_path), linkage)
+    lean = system(loaded(text_of(spec(balanced=("coupler",)))), linkage)
     full = system(four_bar_coupler_complete, linkage, coupler_first_moment=0.0)
     for array in ARRAYS:
         close(lean.array(array, THETA), full.array(array, THETA), 1e-14)
 
 
 @pytest.mark.slow
-def test_dropping_the_axial_inertia_gives_the_printed_equation(tmp_path):
-    dropped = emitted(spec(drop=("axial_inertia",)), tmp_path)
+def test_dropping_the_axial_inertia_gives_the_printed_equation():
+    dropped = loaded(text_of(spec(drop=("axial_inertia",))))
     assert dropped.TERMS == four_bar_coupler_printed.TERMS
-    all_three = emitted(spec(drop=("axial_inertia", "spin", "coupler_end_load")), tmp_path)
+    all_three = loaded(text_of(spec(drop=("axial_inertia", "spin", "coupler_end_load"))))
     assert all_three.TERMS == four_bar_coupler_reduced.TERMS
 
 
 @pytest.mark.slow
-def test_dropping_the_spin_takes_omega3_squared_from_the_stiffness_and_nothing_else(tmp_path):
+def test_dropping_the_spin_takes_omega3_squared_from_the_stiffness_and_nothing_else():
     """The forcing keeps the rotation of the coupler: Smith (6.18) has that of (6.17)."""
     linkage = LINKAGES["drag link, open"]
     whole = system(four_bar_coupler_complete, linkage)
-    without = system(emitted(spec(drop=("spin",)), tmp_path), linkage)
+    without = system(loaded(text_of(spec(drop=("spin",)))), linkage)
     spin = np.array([float(pose(linkage, theta)[1]["omega3"]) ** 2 for theta in THETA])
     close(
         whole.array("B", THETA) - without.array("B", THETA), spin[:, None, None] * np.eye(4), 1e-12
@@ -226,7 +200,7 @@ def test_every_formulation_has_the_same_forcing():
 
 
 def test_a_stability_only_module_holds_no_forcing():
-    lean, whole = lowered(spec(outputs=("stability",))), lowered(spec())
+    lean, whole = (lowered(spec("reduced", outputs=o)) for o in (("stability",), ()))
     assert not {row[0] for row in rows(lean)} & {"f", "g", "h", "p"}
     names = {kernel.name for kernel in lean.kernels}
     assert names == {"scales", "angle_functions", "acceleration_functions", "modal_matrices"}
@@ -268,6 +242,3 @@ def model_inputs():
     lengths = (four_bar.frame, four_bar.crank, four_bar.coupler, four_bar.follower)
     inertias = (model.inertia3, model.moment3, model.inertia4)
     return (four_bar.theta2, *lengths, four_bar.assembly, *inertias)
-
-
-# ---------------------------------------------------------------- namespaces

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from derivations import loaded
 from elastolink.derive import emission
 from elastolink.derive.emission import TemplateKeys, emit
 from elastolink.derive.ir import Argument, Kernel, ModuleSpec, Result, Statement, Table
@@ -67,16 +68,10 @@ def templates(tmp_path, monkeypatch):
     return copy
 
 
-def load(text):
-    space = {}
-    exec(compile(text, "emitted", "exec"), space)
-    return space
-
-
 @pytest.mark.parametrize("module", [LINEAR, CLOSED], ids=lambda m: m.family)
 def test_the_text_is_a_module_that_says_what_the_records_say(module):
     text = emit(module, CONTENT)
-    space = load(text)
+    space = vars(loaded(text))
     assert space["FAMILY"] == module.family
     assert json.loads(space["SPEC"]) == json.loads(module.spec.canonical())
     assert space["CONTENT"] == CONTENT
@@ -90,7 +85,7 @@ def test_the_text_is_a_module_that_says_what_the_records_say(module):
 
 
 def test_tables_and_meanings_stand_in_the_text():
-    space = load(emit(LINEAR, CONTENT))
+    space = vars(loaded(emit(LINEAR, CONTENT)))
     for table in LINEAR.tables:
         assert space[table.name] == table.value
     assert space["PARAMETERS"] == ("inertia",)
@@ -105,7 +100,7 @@ def test_a_name_with_two_meanings_is_refused():
 
 
 def test_the_function_computes_what_the_statements_say():
-    function = load(emit(LINEAR, CONTENT))["angle_functions"]
+    function = vars(loaded(emit(LINEAR, CONTENT)))["angle_functions"]
     theta, lengths = np.linspace(-1.0, 2.0, 5), np.arange(1.0, 13.0)
     first, second = function(theta, *lengths)
     powers = np.sin(theta)[:, None] ** np.arange(12)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import types
-
 import numpy as np
 import pytest
 import sympy as sp
+from derivations import loaded
 from elastolink.derive import authoring as au
 from elastolink.derive.emission import emit
 from elastolink.derive.entries import (
@@ -30,10 +29,8 @@ PARAMETERS = (au.scalar("m", "kg", "Mass"), au.scalar("k", "N/m", "Stiffness"))
 WORDS = au.Description(title="Some thing", references=("hand",), parameters=PARAMETERS)
 
 
-def loaded(module: ModuleSpec) -> types.ModuleType:
-    found = types.ModuleType("emitted")
-    exec(compile(emit(module, "0"), "emitted", "exec"), found.__dict__)
-    return found
+def emitted(spec: ModuleSpec):
+    return loaded(emit(spec, "0"))
 
 
 def motion(energy: sp.Expr, *coordinates: sp.Expr, constraints=(), forces=None):
@@ -64,14 +61,14 @@ def matrices(*arrays: tuple[str, sp.Matrix]) -> ModuleSpec:
 def test_equal_entries_are_returned_once_and_zeros_never():
     spec = matrices(("K", sp.Matrix([[a, -b, 0], [-b, a, 0]])), ("f", sp.Matrix([a])))
     assert len(spec.kernels[0].returns) == 2
-    function = array_function(loaded(spec), "element")
+    function = array_function(emitted(spec), "element")
     found = function(2.0, np.array([3.0, 4.0]))
     np.testing.assert_array_equal(found["K"][1], [[2, -4, 0], [-4, 2, 0]])
     np.testing.assert_array_equal(found["f"], [[[2.0]], [[2.0]]])
 
 
 def test_entries_without_arguments_take_the_batch():
-    function = array_function(loaded(matrices(("I", sp.eye(2)), ("O", sp.zeros(1, 3)))), "element")
+    function = array_function(emitted(matrices(("I", sp.eye(2)), ("O", sp.zeros(1, 3)))), "element")
     found = function(np.zeros((4, 1)), np.zeros(5))
     assert found["I"].shape == (4, 5, 2, 2)
     assert found["O"].shape == (4, 5, 1, 3)
@@ -81,7 +78,7 @@ def test_entries_without_arguments_take_the_batch():
 def test_a_function_of_zeros_is_not_emitted():
     spec = matrices(("O", sp.zeros(2, 2)))
     assert spec.kernels == ()
-    np.testing.assert_array_equal(array_function(loaded(spec), "element")(1.0, 2.0)["O"], 0.0)
+    np.testing.assert_array_equal(array_function(emitted(spec), "element")(1.0, 2.0)["O"], 0.0)
 
 
 def test_an_undeclared_symbol_is_refused():
@@ -95,7 +92,7 @@ def test_an_undeclared_symbol_is_refused():
 def test_oscillator_has_constant_arrays_and_no_constraint():
     x = coordinate("x")
     equations = motion(m / 2 * x.diff(t) ** 2 - k / 2 * x**2, x)
-    module = loaded(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
+    module = emitted(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
     assert module.COORDINATES == ("x",)
     assert module.MULTIPLIERS == ()
     assert module.EXTERNAL == ()
@@ -111,7 +108,7 @@ def test_open_functions_are_passed_in():
     x, lift = coordinate("x"), sp.Function("lift")(t)
     y = lift + sp.Function("shape")(x)
     equations = motion(m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) - k * y, x)
-    module = loaded(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
+    module = emitted(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
     assert module.EXTERNAL == ("lift_d1", "lift_d2", "shape_d1", "shape_d2")
     passed = {"lift_d1": 0.3, "lift_d2": -1.1, "shape_d1": 0.7, "shape_d2": 0.4}
     found = array_function(module, "dynamics")(0.2, 1.5, 0.0, **passed, m=2.0, k=5.0)
@@ -161,7 +158,7 @@ def test_fixed_fixed_string():
         sp.ImmutableDenseMatrix([[frequency * sp.cos(frequency) / sp.sin(frequency)]]),
         sp.floor(frequency / sp.pi),
     )
-    module = loaded(lower_transcendental(SPEC, system, WORDS))
+    module = emitted(lower_transcendental(SPEC, system, WORDS))
     assert module.SIZE == 1
     found = array_function(module, "dynamic_stiffness")(np.array([1.0, 4.0]), m=1.0, k=1.0)
     np.testing.assert_allclose(found["stiffness"][:, 0, 0], [1 / np.tan(1), 4 / np.tan(4)])

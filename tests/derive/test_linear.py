@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
+from elastolink.derive.arrays import CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import NotRepresentable, euler_lagrange, quadratic_form
 from elastolink.derive.linear import linear_periodic
-from elastolink.derive.records import CrankMotion, DiscreteSystem, EquationsOfMotion, Lagrangian
+from elastolink.derive.records import EquationsOfMotion, Lagrangian
 
 t = sp.Symbol("t", real=True)
 theta, td, tdd = sp.symbols("theta td tdd", real=True)
@@ -39,25 +40,28 @@ def second_order(system: DiscreteSystem) -> dict[str, sp.Matrix]:
     }
 
 
-def turning_mass() -> sp.Expr:
-    """A mass on springs in a frame that turns about a point beside its rest position."""
-    spin = turn.diff(t)
-    energy = m / 2 * ((x.diff(t) - spin * y) ** 2 + (y.diff(t) + spin * (x + p)) ** 2)
-    return energy - k / 2 * (x**2 + 3 * y**2) - load * sp.cos(turn) * x * y
+def energy(th: sp.Expr, rate: sp.Expr, acceleration: sp.Expr) -> sp.Expr:
+    """Every kind of term that the family has, its arrays varying with the angle."""
+    xd, yd = x.diff(t), y.diff(t)
+    kinetic = m / 2 * (2 + sp.cos(th)) * xd**2 + m * sp.sin(th) * xd * yd + 3 * m * yd**2
+    gyro = rate * (sp.cos(th) * xd * y + 2 * sp.sin(2 * th) * yd * y + xd * x)
+    frame = rate**2 * (sp.sin(th) * x**2 + x * y) + acceleration * sp.cos(th) * y**2
+    linear = rate * sp.sin(th) * xd + rate**2 * sp.cos(th) * y + acceleration * p * x
+    linear += sp.cos(3 * th) * yd + rate * load * y + p * sp.sin(th) * x
+    return kinetic + gyro + frame + linear - k / 2 * (x - sp.cos(th) * y) ** 2
 
 
-def test_agrees_with_the_quadratic_form_of_the_lagrangian():
-    """Two routes, with a mass matrix and a coupling that vary with the angle."""
-    energy = turning_mass()
-    energy += (
-        m / 4 * sp.cos(turn) * x.diff(t) ** 2 + m * sp.sin(turn) * turn.diff(t) * x.diff(t) * y
-    )
-    forces = {x: -c * (x.diff(t) - y.diff(t)), y: p * sp.sin(turn)}
-    one = second_order(linear_periodic(equations(energy, forces=forces), CRANK, followers=ANGLE))
-    plain_forces = {item: force.subs(PLAIN) for item, force in forces.items()}
-    other = second_order(quadratic_form(energy.subs(PLAIN), (x, y), CRANK, t, forces=plain_forces))
-    for name, matrix in one.items():
-        assert (matrix - other[name]).applyfunc(sp.expand) == sp.zeros(*matrix.shape), name
+def test_equations_and_the_quadratic_lagrangian_give_the_same_arrays():
+    """Two routes: read off the derived equations, and off the energy."""
+    rate = turn.diff(t)
+    forces = {x: -c * x.diff(t) + k * y * rate**2 + p, y: turn.diff(t, 2) * sp.sin(turn) * x}
+    derived = equations(energy(turn, rate, turn.diff(t, 2)), forces=forces)
+    one = second_order(linear_periodic(derived, CRANK, followers=ANGLE))
+    plain = {turn.diff(t, 2): tdd, **PLAIN}
+    plain_forces = {item: force.subs(plain) for item, force in forces.items()}
+    found = quadratic_form(energy(theta, td, tdd), (x, y), CRANK, t, forces=plain_forces)
+    for name, matrix in second_order(found).items():
+        assert (matrix - one[name]).applyfunc(sp.expand) == sp.zeros(*matrix.shape), name
 
 
 def test_constraints_are_refused():

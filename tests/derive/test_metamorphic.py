@@ -8,23 +8,11 @@ import mpmath
 import pytest
 import sympy as sp
 from coupler_action import zero
+from elastolink.derive.arrays import CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import euler_lagrange, quadratic_form
-from elastolink.derive.projection.galerkin import (
-    FiniteBasis,
-    mass_normalised,
-    project,
-    project_action,
-    sine_basis,
-)
-from elastolink.derive.records import (
-    ActionDensity,
-    CrankMotion,
-    DiscreteSystem,
-    EndForce,
-    Essential,
-    Lagrangian,
-    PointTerm,
-)
+from elastolink.derive.projection.bases import FiniteBasis, sine_basis
+from elastolink.derive.projection.galerkin import mass_normalised, project
+from elastolink.derive.records import ActionDensity, EndForce, Essential, Lagrangian, PointTerm
 from elastolink.derive.variational import (
     hamilton,
     order_part,
@@ -43,6 +31,7 @@ CRANK = CrankMotion(theta, td, tdd, {theta3: omega3, omega3: alpha3})
 FOLLOWERS = {th2: theta, th3: theta3, Fx: sp.Symbol("F")}
 CLAMPED = (Essential(0, y, 0), Essential(0, y, 1))
 PINNED = (Essential(0, y, 0), Essential(L, y, 0))
+TURNED = {**FOLLOWERS, Fx: 0, th3: theta}
 
 
 def beam(**changes: object) -> ActionDensity:
@@ -95,7 +84,7 @@ def test_tip_mass_changes_only_the_shear_condition_and_the_mass_matrix():
 
 def test_tip_mass_frequencies_against_the_transcendental_equation():
     """1 + cos b cosh b + b (cos b sinh b - sin b cosh b) = 0, from the textbooks."""
-    system = project_action(tip_massed(), y, clamped_polynomials(9), CRANK)
+    system = project(hamilton(tip_massed()), y, clamped_polynomials(9), CRANK)
     found = frequencies(system, {**UNIT, tip: 1})
 
     def characteristic(b):
@@ -119,13 +108,13 @@ def test_spring_at_an_interior_point():
     assert zero(shear.applied + k * y)
     basis = sine_basis(x, L, sp.S.One)
     before = project(hamilton(beam(essential=PINNED)), y, basis, CRANK)
-    for after in (project(equations, y, basis, CRANK), project_action(sprung, y, basis, CRANK)):
-        added = after.matrix("K", 3) - before.matrix("K", 3)
-        shape = sp.Matrix([sp.sin(i * sp.pi * a / L) for i in (1, 2, 3)])
-        assert sp.simplify(added - k * shape * shape.T).is_zero_matrix
-        assert after.matrix("M", 3) == before.matrix("M", 3)
-        odd = added.subs(a, L / 2)
-        assert (odd[0, 0], odd[0, 1], odd[0, 2]) == (k, 0, -k)
+    after = project(equations, y, basis, CRANK)
+    added = after.matrix("K", 3) - before.matrix("K", 3)
+    shape = sp.Matrix([sp.sin(i * sp.pi * a / L) for i in (1, 2, 3)])
+    assert sp.simplify(added - k * shape * shape.T).is_zero_matrix
+    assert after.matrix("M", 3) == before.matrix("M", 3)
+    odd = added.subs(a, L / 2)
+    assert (odd[0, 0], odd[0, 1], odd[0, 2]) == (k, 0, -k)
 
 
 # ---------------------------------------------------------------- varying mass per length
@@ -199,8 +188,8 @@ def test_without_foreshortening_only_the_spin_softening_is_left():
     _, full = rotating()
     _, none = rotating(foreshortening=False)
     basis = sine_basis(x, L)
-    kept = mass_normalised(project_action(none, y, basis, CRANK, followers=FOLLOWERS))
-    whole = mass_normalised(project_action(full, y, basis, CRANK, followers=FOLLOWERS))
+    kept = mass_normalised(project(hamilton(none), y, basis, CRANK, followers=FOLLOWERS))
+    whole = mass_normalised(project(hamilton(full), y, basis, CRANK, followers=FOLLOWERS))
     assert sp.simplify(kept.matrix("B", 3) - omega3**2 * sp.eye(3)).is_zero_matrix
     assert not kept.has("S")
     assert not kept.matrix("K", 3).has(sp.Symbol("F"))
@@ -217,16 +206,12 @@ def test_without_foreshortening_only_the_spin_softening_is_left():
 def test_rotating_cantilever_against_the_published_table(spin, first):
     """Flapping frequencies of Wright, Smith, Thresher and Wang (1982), given to 4 decimals."""
     _, action = rotating(crank=False, essential=CLAMPED, out_of_plane=True)
-    system = project_action(
-        action, y, clamped_polynomials(9), CRANK, followers={**FOLLOWERS, Fx: 0, th3: theta}
-    )
+    system = project(hamilton(action), y, clamped_polynomials(9), CRANK, followers=TURNED)
     flap = frequencies(system, UNIT, spin)[0]
     assert abs(flap - first) < 1e-4
     # in the plane of rotation the square is smaller by the square of the spin
     _, action = rotating(crank=False, essential=CLAMPED)
-    system = project_action(
-        action, y, clamped_polynomials(9), CRANK, followers={**FOLLOWERS, Fx: 0, th3: theta}
-    )
+    system = project(hamilton(action), y, clamped_polynomials(9), CRANK, followers=TURNED)
     lag = frequencies(system, UNIT, spin)[0]
     assert abs(lag**2 - (flap**2 - spin**2)) < 1e-12
 
@@ -243,9 +228,6 @@ def test_gravity_adds_a_load_and_a_tension_by_weight():
     assert sp.simplify(system.matrix("p", 1)[0] + 2 * mu * g * L * sp.cos(theta3) / sp.pi) == 0
     sag = system.matrix("Kg", 1)[0, 0]
     assert sp.simplify(sag + mu * g * sp.pi**2 * sp.sin(theta3) / 4) == 0
-
-
-# ---------------------------------------------------------------- interior support
 
 
 # ---------------------------------------------------------------- discrete systems

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import sympy as sp
+from derivations import loaded
 from elastolink.derive.arrays import BasisIntegral, BasisProduct, CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import NotRepresentable
 from elastolink.derive.models import flexible_rod as rod
@@ -96,6 +97,7 @@ def test_frame_part_is_the_difference_of_two_works():
 # ---------------------------------------------------------------- projection
 
 
+@pytest.mark.slow
 def test_every_array_follows_from_the_chain_rule():
     """By hand: expand v = L (q1 e1 + q2 e2) in shapes of x and s, and differentiate in time."""
     base = undamped(SPEC)
@@ -237,16 +239,6 @@ def test_unknown_terms_are_refused(drop):
 # ---------------------------------------------------------------- emitted numbers
 
 
-def emitted(model, spec, tmp_path):
-    """Return a module as the pipeline writes it, loaded."""
-    path = tmp_path / "emitted_rod.py"
-    path.write_text(module_text(spec, model, "0" * 32))
-    found = importlib.util.spec_from_file_location("emitted_rod", path)
-    module = importlib.util.module_from_spec(found)
-    found.loader.exec_module(module)
-    return module
-
-
 class Defined(PlainBasis):
     """The plain shapes, integrated as a module's own table says."""
 
@@ -285,7 +277,7 @@ def test_the_table_defines_the_names_of_the_protocol():
 
 
 @pytest.mark.slow
-def test_a_tip_mass_in_the_action_moves_the_emitted_numbers(tmp_path):
+def test_a_tip_mass_in_the_action_moves_the_emitted_numbers():
     """A third of the rod's mass at its tip: by Newton's law, its pull on the rod included."""
     share = sp.Rational(1, 3)
 
@@ -305,7 +297,7 @@ def test_a_tip_mass_in_the_action_moves_the_emitted_numbers(tmp_path):
         return replace(rod.discretise(spec, equations), dropped={})
 
     model = replace(rod.MODEL, energies=energies, discretise=discretise)
-    module = emitted(model, SPEC, tmp_path)
+    module = loaded(module_text(SPEC, model, "0" * 32))
     numbers = {
         "bending_stiffness": 40.0,
         "mass_per_length": 2.5,

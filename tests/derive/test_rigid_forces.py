@@ -31,13 +31,10 @@ from force_machines import (
     random_machine,
     state_of,
 )
-from forces_truth import LOADS, MECHANISMS, forces, loads
+from forces_truth import LOADS, MECHANISMS, MOMENTS, forces, loads
 
 STRAIGHT = ModelSpec("four_bar", "forces", drop=("across",))
 FULL = ModelSpec("four_bar", "forces")
-
-
-# ---------------------------------------------------------------- Smith's own equations
 
 
 # ---------------------------------------------------------------- four ways to the same numbers
@@ -131,7 +128,19 @@ def test_the_free_linkage_follows_its_torque(mechanism):
         assert abs(found[2] - numbers["acceleration"]) < 1e-9 * (200 + numbers["speed"] ** 2)
 
 
-# ---------------------------------------------------------------- momenta and power, differentiated
+@pytest.mark.parametrize("mechanism", MECHANISMS)
+def test_forces_are_linear_in_the_moments(mechanism):
+    """At unit values of one moment the function returns the derivatives by it."""
+    module = emitted(f"{mechanism}_forces")
+    numbers = random_machine(mechanism, np.random.default_rng(13))
+    whole = call(module, "forces", numbers)
+    total = dict.fromkeys(whole, 0.0)
+    for moment in MOMENTS:
+        unit = numbers | dict.fromkeys(MOMENTS, 0.0) | {moment: 1.0}
+        for name, value in call(module, "forces", unit).items():
+            total[name] += numbers[moment] * value
+    size = max(abs(value) for value in whole.values())
+    assert all(abs(total[name] - value) < 1e-11 * size for name, value in whole.items())
 
 
 # ---------------------------------------------------------------- derived means derived

@@ -9,9 +9,6 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from elastolink.derive.models.four_bar_sensitivities import MODEL
-from elastolink.derive.pipeline import module_text
-from elastolink.derive.spec import ModelSpec
 from elastolink.generated import four_bar_kinematics, four_bar_sensitivities
 from linkage_truth import LENGTHS, motion, random_points
 from sensitivity_truth import QUANTITIES
@@ -79,16 +76,3 @@ def test_growth_next_to_a_change_point(power, quantity):
         values = emitted(np.pi - 0.3 * gap**0.5, **lengths)
         found.append(abs(values[f"{quantity}4_by_coupler"]))
     assert found[1] / found[0] == pytest.approx(10.0**power, rel=0.01)
-
-
-def test_fewer_outputs_cost_less():
-    def operations(outputs):
-        text = module_text(ModelSpec("four_bar", "sensitivities", outputs=outputs), MODEL, "0" * 32)
-        line = next(line for line in text.splitlines() if line.endswith(" operations"))
-        return int(line.split()[-2])
-
-    angles = tuple(name for name in NAMES if name.startswith("theta"))
-    speeds = tuple(name for name in NAMES if not name.startswith("alpha"))
-    few, more, every = map(operations, (angles, speeds, ()))
-    assert few < 0.45 * every
-    assert few < more < 0.7 * every

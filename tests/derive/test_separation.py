@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
-import itertools
 from collections import namedtuple
 
 import numpy as np
 import pytest
 import sympy as sp
+from derivations import loaded
 from elastolink.derive.arrays import (
     MATRICES,
     CrankMotion,
@@ -34,7 +33,6 @@ PARAMETERS = (mass, stiff)
 VALUES = {mass: 1.7, stiff: 0.4, length: 2.5, gravity: 9.81}
 THETA = np.array([-0.3, 0.9, 4.0])
 SPEC = ModelSpec("test", "separation")
-COUNTER = itertools.count()
 
 
 Row = namedtuple("Row", "array power scale angle modal")
@@ -66,14 +64,9 @@ def lowered(arrays, **options):
     return lower_linear_periodic(SPEC, staged(arrays, **options), described())
 
 
-def assembled(module, tmp_path, modes=None, **options):
-    path = tmp_path / f"emitted_{next(COUNTER)}.py"
-    path.write_text(emit(module, "0" * 32))
-    loader = importlib.util.spec_from_file_location(path.stem, path)
-    loaded = importlib.util.module_from_spec(loader)
-    loader.loader.exec_module(loaded)
+def assembled(module, modes=None, **options):
     return assemble(
-        loaded,
+        loaded(emit(module, "0" * 32)),
         geometry={"length": VALUES[length], "gravity": VALUES[gravity]},
         parameters={"mass": VALUES[mass], "stiff": VALUES[stiff]},
         modes=modes,
@@ -104,14 +97,14 @@ TERM = st.tuples(
 
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(st.lists(TERM, min_size=1, max_size=5))
-def test_any_sum_of_products_is_reproduced(tmp_path_factory, terms):
+def test_any_sum_of_products_is_reproduced(terms):
     arrays = {"M": sp.eye(2)}
     for array, scale, angle, geometry, numbers in terms:
         shape = (2, 2) if array in MATRICES else (2, 1)
         added = sp.Matrix(*shape, numbers[: shape[0] * shape[1]]) * scale * angle * geometry
         arrays[array] = arrays.get(array, sp.zeros(*shape)) + added
     arrays = {k: sp.ImmutableDenseMatrix(v) for k, v in arrays.items() if any(v)}
-    found = assembled(lowered(arrays), tmp_path_factory.mktemp("emitted"))
+    found = assembled(lowered(arrays))
     for name, matrix in arrays.items():
         expected = by_sympy(matrix)
         expected = expected if name in MATRICES else expected[..., 0]
@@ -141,7 +134,7 @@ def test_terms_share_what_they_can():
 
 
 @pytest.mark.parametrize("number", [-1, 3, -sp.Rational(2, 3)])
-def test_a_constant_term_stays_constant_whatever_its_number(number, tmp_path):
+def test_a_constant_term_stays_constant_whatever_its_number(number):
     explicit = {
         "M": sp.ImmutableDenseMatrix(sp.eye(2)),
         "K": sp.ImmutableDenseMatrix(sp.eye(2) * (number * stiff + mass * sp.cos(theta))),
@@ -154,12 +147,12 @@ def test_a_constant_term_stays_constant_whatever_its_number(number, tmp_path):
         module = lowered(arrays)
         rows = {(r.scale, r.angle) for r in rows_of(module) if r.array == "K"}
         assert rows == {("stiff", None), ("mass", "angle_theta")}
-        found = assembled(module, tmp_path, modes=modes)
+        found = assembled(module, modes=modes)
         expected = float(number) * 0.4 + 1.7 * np.cos(THETA)
         np.testing.assert_allclose(found.array("K", THETA)[:, 0, 0], expected, rtol=1e-14)
 
 
-def test_what_is_constant_is_declared_so_and_zero_is_absent(tmp_path):
+def test_what_is_constant_is_declared_so_and_zero_is_absent():
     arrays = {
         "M": sp.ImmutableDenseMatrix(sp.eye(2) * mass),
         "K": sp.ImmutableDenseMatrix([[gravity / length, 0], [0, stiff]]),
@@ -170,14 +163,14 @@ def test_what_is_constant_is_declared_so_and_zero_is_absent(tmp_path):
     scales = next(k for k in module.kernels if k.name == "scales")
     assert {r.name for r in scales.results} == {"mass", "stiff", "gravity_over_length"}
     assert "angle_functions" not in {k.name for k in module.kernels}
-    found = assembled(module, tmp_path)
+    found = assembled(module)
     assert found.is_constant("M") and found.is_constant("K") and not found.is_constant("S")
     assert not found.has("C") and not found.has("f")
     expected = np.diag([9.81 / 2.5, 0.4])
     np.testing.assert_allclose(found.array("K", THETA)[1], expected, rtol=1e-15)
 
 
-def test_a_supplied_function_of_angle_is_named_and_not_emitted(tmp_path):
+def test_a_supplied_function_of_angle_is_named_and_not_emitted():
     arrays = {
         "M": sp.ImmutableDenseMatrix(sp.eye(2)),
         "Kg": sp.ImmutableDenseMatrix([[0, mass * external], [mass * external, 0]]),
@@ -185,7 +178,7 @@ def test_a_supplied_function_of_angle_is_named_and_not_emitted(tmp_path):
     module = lowered(arrays, external_symbols=(external,))
     assert [r.angle for r in rows_of(module) if r.array == "Kg"] == ["load"]
     assert {k.name for k in module.kernels} == {"scales"}
-    found = assembled(module, tmp_path, external={"load": np.cos})
+    found = assembled(module, external={"load": np.cos})
     np.testing.assert_allclose(found.array("Kg", THETA)[:, 0, 1], 1.7 * np.cos(THETA), rtol=1e-15)
 
 
@@ -219,11 +212,11 @@ def closed_arrays():
     }
 
 
-def test_closed_entries_serve_any_number_of_modes(tmp_path):
+def test_closed_entries_serve_any_number_of_modes():
     arrays = closed_arrays()
     module = lowered(arrays)
     for modes in (1, 2, 7):
-        found = assembled(module, tmp_path, modes=modes)
+        found = assembled(module, modes=modes)
         assert found.size == modes
         for name, entry in arrays.items():
             expected = by_sympy(entry.matrix(modes))

@@ -5,14 +5,8 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 from coupler_action import EI, Fx, N, coupler, l2, l3, mu, t, tension, th2, th3, u, x, y, zero
-from elastolink.derive.records import (
-    ActionDensity,
-    CrankMotion,
-    EndForce,
-    Essential,
-    PointTerm,
-    Support,
-)
+from elastolink.derive.arrays import CrankMotion
+from elastolink.derive.records import ActionDensity, EndForce, Essential, PointTerm, Support
 from elastolink.derive.variational import (
     hamilton,
     in_crank_angle,

@@ -21,13 +21,17 @@ from elastolink.derive import entries, lowering, separation
 from elastolink.derive.pipeline import lower
 from elastolink.derive.spec import ModelSpec
 from judging import Exact, Point, Reference, exact_at, reference_of
+from meissner_truth import meissner_points
+from overhang_truth import overhang_points
 from sliding_truth import nasty_rods, random_rods
 
 KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 SANDWICH, ROD_POLYNOMIALS = "beam_section_sandwich", "quick_return_rod_polynomials"
 MOVING_ROD = "quick_return_rod_moving_basis"
 MODES = (*range(1, 13), 30, 59, 60)
+OVERHANG, MEISSNER = "quick_return_overhang_modes", "hill_meissner"
 PREFIXES = ("beam_element_", "beam_shapes_", SANDWICH, ROD_POLYNOMIALS, MOVING_ROD)
+PREFIXES += (OVERHANG, MEISSNER)
 
 
 def judged_unlowered(module: str, function: str) -> bool:
@@ -76,6 +80,10 @@ def exact_unlowered(module: str, function: str) -> tuple[Exact, ...]:
 def _points(module: str, function: str) -> Iterator[Point]:
     emitted = getattr(importlib.import_module(f"{generated.__name__}.{module}"), function)
     names = emitted.__code__.co_varnames[: emitted.__code__.co_argcount]
+    if module == OVERHANG:
+        return overhang_points(function)
+    if module == MEISSNER:
+        return meissner_points(function)
     if module.startswith("beam_element_"):
         return _element_points(names)
     if module.startswith("beam_shapes_"):

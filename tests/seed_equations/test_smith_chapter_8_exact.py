@@ -7,8 +7,7 @@ from fractions import Fraction
 
 import mpmath
 import pytest
-from elastolink.derive import bloch
-from smith_chapter_8.exact import exact_operator, exact_series
+from smith_chapter_8.exact import exact_operator, exact_series, run
 from smith_chapter_8.strained import strained_boundaries
 from smith_chapter_8.surd import ExactHarmonics, combine
 from strained_truth import PUBLISHED, published, random_function
@@ -124,7 +123,7 @@ def test_both_columns_of_plain_matrices_give_a_b_and_their_conjugates(n):
     with mpmath.workdps(50):
         values = [rational(x) for x in direction]
         algebra = Matrices(parts, n, values[:2], values[2], 3 * order)
-        found = bloch.run(algebra, order)
+        found = run(algebra, order)
         for k in range(order):
             h = found[f"h{k + 1}"]
             own, across = (mpmath.mpc(*map(rational, row[k])) for row in (a, b))

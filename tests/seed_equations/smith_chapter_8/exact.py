@@ -23,7 +23,7 @@ from itertools import combinations_with_replacement
 from operator import add, mul, sub
 from typing import TypeAlias
 
-from elastolink.derive.bloch import run
+from elastolink.generated import hill_recursion
 
 from .surd import ExactHarmonics, Surd
 
@@ -82,6 +82,14 @@ class ExactSeries:
 
 def _monomial(values: Sequence[Fraction], exponents: Exponents) -> Fraction:
     return math.prod((v**e for v, e in zip(values, exponents, strict=True)), start=Fraction(1))
+
+
+def run(algebra, order):
+    """Return the values of the emitted recursion by name (``h1``, ``omega1``, ...)."""
+    calls = (algebra.act, algebra.resolve, algebra.project, algebra.combine)
+    found = getattr(hill_recursion, f"order_{order}")(algebra.start, *calls)
+    pairs = zip(("h", "omega"), found, strict=True)
+    return {f"{name}{k}": value for name, values in pairs for k, value in enumerate(values, 1)}
 
 
 def _weighted(row: Iterable[Gaussian], weights: Sequence[Fraction]) -> Gaussian:

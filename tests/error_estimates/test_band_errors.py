@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from elastolink.runtime.stability import resonances, tongue, tongue_curves, unstable_bands
-from elastolink.runtime.stability.edges.over_parameter import trace_tongue
-from elastolink.runtime.stability.edges.tracing import stability_edges
+from elastolink.runtime.periodic.decoupled import slow_system
+from elastolink.runtime.stability import resonances, stability_edges, tongue, tongue_curves
 from elastolink.runtime.stability.krein import krein_signatures
 from hill_pairs import HillPair
 from honesty import verdict
@@ -61,31 +60,12 @@ def test_bands_of_slow_modes(drag):
     ratios, count = [], 0
     while count < ENDS:
         scene = HillPair(rng, drag, stiff=True)
-        found = unstable_bands(scene.system, SPAN, modes=2)
+        slow = slow_system(scene.system, (SPAN[0] / 1.05, SPAN[1] * 1.05), 2)
+        found = stability_edges(slow, SPAN)
         assert found.passed, found.checks
         ratios.append(of_regions(scene, found))
         count += len(ratios[-1])
     verdict(ratios, ENDS)
-
-
-def test_one_region_over_a_parameter():
-    """Each value is a search of its own, as above: here that each end goes with its own figure."""
-    rng = np.random.default_rng(43)
-    ratios, count = [], 0
-    factors = np.array([0.5, 1.0, 1.5])
-    while count < 30:
-        scene = HillPair(rng)
-        first = scene.natural[0]
-        edges = stability_edges(scene.system, (1.8 * first, 2.2 * first))
-        labels = [i for i, label in enumerate(edges.labels) if label == "region 1 of mode 1"]
-        found = trace_tongue(scene.system, edges, labels[0], "pull", factors)
-        assert found.passed, found.checks
-        for factor, *ends, error in zip(
-            found.at, found.lower, found.upper, found.error, strict=True
-        ):
-            ratios.append(compared(scene, 0, 1, np.array(ends), error, factor))
-            count += len(ratios[-1])
-    verdict(ratios, 30)
 
 
 def test_curves_from_their_feet():

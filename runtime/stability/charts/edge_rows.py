@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...core.families import Array, LinearPeriodic
 from ...core.results import Check
-from ..edges.tracing import StabilityEdges, stability_edges
+from ..edges import StabilityEdges, stability_edges
 
 # Rows at which regions are traced: each takes a second or so.
 _ROWS = 9
@@ -30,7 +30,7 @@ class EdgeCurves:
     modes : ndarray of int, shape (k, 2)
         The two modes, from 1.
     harmonic : ndarray of int, shape (k,)
-        As in :class:`~.tracing.StabilityEdges`.
+        As in :class:`~.edges.StabilityEdges`.
     kind : tuple of str
         ``"principal"``, ``"sum"`` or ``"difference"``.
     check : Check

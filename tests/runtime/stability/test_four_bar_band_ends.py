@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.decoupled import slow_system
-from elastolink.runtime.stability import unstable_bands
+from elastolink.runtime.stability import stability_edges
 
 # Where to look for the widest band: spread over the range of speeds.
 PLACES = (
@@ -64,7 +64,7 @@ def decoupled():
 @pytest.mark.slow
 @pytest.mark.parametrize("span", PLACES)
 def test_all_nine_freedoms_leave_the_circle_at_the_ends(decoupled, span):
-    bands = unstable_bands(decoupled, span)
+    bands = stability_edges(decoupled, span)
     widest = int(np.nanargmax(bands.width))
     lower, upper = float(bands.lower[widest]), float(bands.upper[widest])
     width = upper - lower

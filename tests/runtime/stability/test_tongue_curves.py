@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.edges.over_geometry import tongue_curves
-from elastolink.runtime.stability.edges.tracing import stability_edges
+from elastolink.runtime.stability import stability_edges, tongue_curves
 
 SPEEDS = (500.0, 4000.0)
 # Six digits: roots of the pinned beam with an overhang, block at 0.59997 L.

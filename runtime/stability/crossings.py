@@ -8,17 +8,15 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import LinearPeriodic
-from ...periodic import monodromy
-from ...periodic.multipliers import conditions
-from .pair_roots import bracketed_roots, perturbation_size
-from .phase_events import phase_grid
+from ..periodic.multipliers import conditions
+from .over_speed import MatricesOverSpeed
+from .pairs import bracketed_roots, perturbation_size, phase_grid
 from .regions import Regions, joined
 
 Array = NDArray[np.float64]
@@ -87,12 +85,8 @@ class Crossings:
 
     Parameters
     ----------
-    system : LinearPeriodic
-        The system.
-    parameters : mapping
-        Parameter values that replace the system's own.
-    rtol : float
-        Of the monodromy matrices.
+    matrices : MatricesOverSpeed
+        Of the system.
     speed : ndarray
         Samples, rising [rad/s]; the first and the last are the ends of the range.
     sharp : bool
@@ -100,32 +94,22 @@ class Crossings:
         one is outside beyond its error.
     """
 
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        parameters: Mapping[str, float],
-        rtol: float,
-        speed: Array,
-        sharp: bool = False,
-    ) -> None:
-        self._system, self._parameters, self._rtol = system, parameters, rtol
-        self._sharp = sharp
+    def __init__(self, matrices: MatricesOverSpeed, speed: Array, sharp: bool = False) -> None:
+        self._matrices, self._sharp = matrices, sharp
         self._speed, self._levels = speed, self.levels(speed)
 
     def levels(self, speed: Array) -> Levels:
         """Return the log moduli at speeds of shape ``(k,)``."""
-        m = 2 * self._system.size
+        m = 2 * self._matrices.system.size
         none = np.zeros((0, m))
         parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
         for start in range(0, len(speed), _TOGETHER):
-            at = speed[start : start + _TOGETHER]
-            result = monodromy(self._system, at, rtol=self._rtol, **self._parameters)
-            matrices = np.ldexp(result.scaled, result.exponent[:, None, None])
+            matrices, error = self._matrices(speed[start : start + _TOGETHER])
             values, vectors = np.linalg.eig(matrices)
             values = values.astype(complex)
             size = np.maximum(np.abs(values), 1e-300)
             own = conditions(vectors.astype(complex))
-            shift = perturbation_size(matrices, result.error)
+            shift = perturbation_size(matrices, error)
             noise = own * shift[:, None] / size
             order = np.argsort(-size, axis=-1, kind="stable")
             columns = (np.log(size), np.minimum(noise, 1.0), values)
@@ -286,26 +270,11 @@ def _kinds(levels: Levels, row: int) -> list[complex]:
 
 
 def damped_regions(
-    system: LinearPeriodic,
-    undamped: Regions,
-    span: tuple[float, float],
-    rtol: float,
-    parameters: Mapping[str, float],
+    matrices: MatricesOverSpeed, undamped: Regions, span: tuple[float, float]
 ) -> Regions:
     """Return the unstable regions of a damped system.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        With damping.
-    undamped : Regions
-        Without: where narrow regions are looked for, and whence the labels are taken.
-    span : pair of float
-        The range [rad/s].
-    rtol : float
-        Of the monodromy matrices.
-    parameters : mapping
-        Parameter values that replace the system's own.
+    Narrow ones are looked for where the ``undamped`` ones are, which lend their labels.
     """
     begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
     undamped = undamped.take(np.flatnonzero(end - begin > 4 * undamped.error))
@@ -313,7 +282,7 @@ def damped_regions(
     phase = np.angle(undamped.multiplier)
 
     def growth(which: Index, speed: Array) -> tuple[Array, Array]:
-        return _growth(system, speed, phase[which], rtol, parameters)
+        return _growth(matrices, speed, phase[which])
 
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
     ends = np.unique(np.concatenate([span, begin, end]))
@@ -325,9 +294,9 @@ def damped_regions(
         ]
     )
     more = more[(more > span[0]) & (more < span[1])]
-    speed = phase_grid(system, span, parameters, more)
+    speed = phase_grid(matrices, span, more)
     speed[[0, -1]] = span
-    spans = Crossings(system, parameters, rtol, speed).spans()
+    spans = Crossings(matrices, speed).spans()
     return labelled([s for s in spans if not s.upper - s.lower <= 0.0], undamped)
 
 
@@ -392,19 +361,12 @@ def _highest(growth: _Growth, middle: Array, half: Array) -> Array:
     return found
 
 
-def _growth(
-    system: LinearPeriodic,
-    speed: Array,
-    phase: Array,
-    rtol: float,
-    parameters: Mapping[str, float],
-) -> tuple[Array, Array]:
+def _growth(matrices: MatricesOverSpeed, speed: Array, phase: Array) -> tuple[Array, Array]:
     """Return the largest log modulus of the multipliers near a phase, and its error."""
     if not len(speed):
         return np.zeros(0), np.zeros(0)
-    result = monodromy(system, speed, rtol=rtol, **parameters)
-    matrices = np.ldexp(result.scaled, result.exponent[:, None, None])
-    values, vectors = np.linalg.eig(matrices)
+    scaled, error = matrices(speed)
+    values, vectors = np.linalg.eig(scaled)
     away = np.abs(np.angle(values * np.exp(-1j * phase)[:, None]))
     with np.errstate(divide="ignore"):
         logarithm = np.log(np.abs(values))
@@ -414,7 +376,7 @@ def _growth(
     chosen = np.argmax(logarithm, axis=-1)
     rows = np.arange(len(speed))
     own = conditions(vectors.astype(complex))[rows, chosen]
-    noise = own * perturbation_size(matrices, result.error) / np.abs(values[rows, chosen])
+    noise = own * perturbation_size(scaled, error) / np.abs(values[rows, chosen])
     return logarithm[rows, chosen], np.minimum(noise, 1.0)
 
 
@@ -444,38 +406,34 @@ def _three(x: Array, g: Array, place: Array, value: Array) -> tuple[Array, Array
 
 
 def mended(
-    system: LinearPeriodic,
+    matrices: MatricesOverSpeed,
     regions: Regions,
     usable: NDArray[np.bool_],
-    where: tuple[tuple[float, float], Array],
-    rtol: float,
-    parameters: Mapping[str, float],
+    span: tuple[float, float],
+    near: Array,
 ) -> Regions:
     """Return combination regions that agree with the multipliers off the circle.
 
     Parameters
     ----------
-    system : LinearPeriodic
-        Conservative.
+    matrices : MatricesOverSpeed
+        Of a conservative system.
     regions : Regions
         As pairs of multipliers make them.
     usable : ndarray of bool, shape (k,)
         False where the pair meets at +-1: kept for its label only.
-    where : tuple
-        The range, and speeds of interest [rad/s].
-    rtol : float
-        Of the monodromy matrices.
-    parameters : mapping
-        Parameter values that replace the system's own.
+    span : pair of float
+        The range [rad/s].
+    near : ndarray
+        Speeds of interest [rad/s].
     """
-    span, near = where
     ends = np.unique(np.concatenate([span, near[np.isfinite(near)]]))
     ends = ends[(ends >= span[0]) & (ends <= span[1])]
-    speed = phase_grid(system, span, parameters, 0.5 * (ends[1:] + ends[:-1]))
+    speed = phase_grid(matrices, span, 0.5 * (ends[1:] + ends[:-1]))
     speed[[0, -1]] = span
     truth = [
         s
-        for s in Crossings(system, parameters, rtol, speed, sharp=True).spans()
+        for s in Crossings(matrices, speed, sharp=True).spans()
         if s.multiplier.imag != 0.0 and not s.upper - s.lower <= 4 * s.error
     ]
     kept, new = np.array(usable), list[Span]()

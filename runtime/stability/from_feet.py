@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.errors import bad
-from ...core.families import DAMPING, LinearPeriodic
-from ...core.inputs import numbers
-from ...core.results import Check, Result, provenance
-from .. import Resonance, resonances
-from .pair_roots import PairFunction, refined_edges
-from .phase_events import Events
+from ..core.errors import bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.inputs import numbers
+from ..core.results import Check, Result, provenance
+from .meetings import Resonance, resonances
+from .over_speed import MatricesOverSpeed
+from .pairs import Events, pairs_at, refined_edges
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +90,7 @@ class TongueCurves(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tongues, speeds in rpm to the right, each named where it ends."""
-        from ...core.plotting import axes_or_new
+        from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
         rpm = 30.0 / np.pi
@@ -170,17 +170,20 @@ def tongue_curves(
     -----
     Beale & Scott 1992, section 3.1: feet at ``2 w1/n``, ``(w1 + w2)/n``, ``2 w2/n``.
     """
-    at = checked_values(system, name, values)
+    at = _checked_values(system, name, values)
     sharp = system.without(*DAMPING)
     low, high = (float(v) for v in numbers("speed_range", speed_range))
     if not 0.0 < low < high < np.inf:
         raise bad("speed_range", speed_range, "(low, high), positive and rising", "correct it")
     span = (low / _BEYOND, high * _BEYOND)
-    feet = resonances(foot_of(sharp, name, at), span, highest=highest)
+    feet = resonances(_changed(sharp, name, _FOOT * float(at[0])), span, highest=highest)
     most = modes or system.size
     feet = [foot for foot in feet if foot.opens and max(foot.modes) <= most]
     feet.sort(key=lambda foot: foot.speed)
-    tracks = followed(sharp, name, at, feet, rtol)
+    tracks = _Tracks(feet, len(at))
+    for value in _path(at, _STEPS):
+        where = int(np.searchsorted(at, value)) if value in at else None
+        tracks.step(_changed(sharp, name, float(value)), float(value), where, rtol)
     with np.errstate(invalid="ignore"):
         seen = np.any((tracks.ends[1] >= low) & (tracks.ends[0] <= high), axis=1)
     kept = np.flatnonzero(seen)
@@ -207,28 +210,7 @@ def tongue_curves(
     )
 
 
-def followed(
-    system: LinearPeriodic,
-    name: str,
-    at: Array,
-    feet: list[Resonance],
-    rtol: float,
-    steps: int = _STEPS,
-) -> Tracks:
-    """Follow the tongues of a conservative system from given feet; see :func:`tongue_curves`."""
-    tracks = Tracks(feet, len(at))
-    for value in _path(at, steps):
-        where = int(np.searchsorted(at, value)) if value in at else None
-        tracks.step(_changed(system, name, float(value)), float(value), where, rtol)
-    return tracks
-
-
-def foot_of(system: LinearPeriodic, name: str, values: Array) -> LinearPeriodic:
-    """Return the system so close to the value 0 that nothing is periodic any more."""
-    return _changed(system, name, _FOOT * float(values[0]))
-
-
-def checked_values(system: LinearPeriodic, name: str, values: ArrayLike) -> Array:
+def _checked_values(system: LinearPeriodic, name: str, values: ArrayLike) -> Array:
     """Return the values of a geometry name or parameter; raise where they are none."""
     names = sorted({*system.parameters, *system.geometry})
     if name not in names:
@@ -259,7 +241,7 @@ def _path(at: Array, steps: int) -> Array:
 
 
 @dataclass
-class Tracks:
+class _Tracks:
     """What is known of each tongue so far, and the step to the next value.
 
     Attributes
@@ -300,20 +282,22 @@ class Tracks:
         index = np.flatnonzero(self.alive)
         if not len(index):
             return
-        function = PairFunction(system, {}, rtol)
         centre = np.array([_expected(self.middle[i], value) for i in index])
         last = np.array([self.middle[i][-1][1] for i in index])
         half = np.maximum(_WINDOW * centre, 0.75 * self.wide[index])
         half = np.clip(np.abs(centre - last), half, np.maximum(half, 0.05 * centre))
         half = np.minimum(half, _FARTHEST * centre)
-        events, good = self._bracketed(function, index, centre, half)
+        # A bracket that grows beyond this is solved for itself.
+        span = 0.9 * float(np.min(centre - half)), 1.1 * float(np.max(centre + half))
+        matrices = MatricesOverSpeed(system, span, {}, rtol)
+        events, good = self._bracketed(matrices, index, centre, half)
         lost = index[~good]
         self.alive[lost] = False
         index, centre = index[good], centre[good]
         if not len(index):
             return
-        edges = refined_edges(function, events)
-        growth = self._growth(function, system, index, edges.lower, edges.upper)
+        edges = refined_edges(matrices, events)
+        growth = self._growth(matrices, index, edges.lower, edges.upper)
         for place, i in enumerate(index):
             low, high = float(edges.lower[place]), float(edges.upper[place])
             if not np.isfinite(low + high) or self._jumped(int(i), low, high, float(centre[place])):
@@ -327,7 +311,7 @@ class Tracks:
                 self.ends[:, i, where] = low, high, error, least, growth[place]
 
     def _bracketed(
-        self, function: PairFunction, index: NDArray[np.intp], centre: Array, half: Array
+        self, matrices: MatricesOverSpeed, index: NDArray[np.intp], centre: Array, half: Array
     ) -> tuple[Events, NDArray[np.bool_]]:
         """Return speeds on either side of each tongue, and where such were found."""
         k = len(index)
@@ -344,7 +328,7 @@ class Tracks:
                 own = index[rows]
                 plus = self.phase[own] + 2 * np.pi * self.plus[own] * slip
                 minus = self.phase[own] + 2 * np.pi * self.minus[own] * slip
-                pair = function(rows, speed, plus, minus)
+                pair = pairs_at(matrices, speed, plus, minus)
                 fine[side, rows] = pair.gap > 4 * pair.noise
                 ahead[side, rows] = np.sign(pair.ahead)
                 angles[0, side, rows], angles[1, side, rows] = pair.plus, pair.minus
@@ -380,8 +364,7 @@ class Tracks:
 
     def _growth(
         self,
-        function: PairFunction,
-        system: LinearPeriodic,
+        matrices: MatricesOverSpeed,
         index: NDArray[np.intp],
         lower: Array,
         upper: Array,
@@ -394,9 +377,9 @@ class Tracks:
         speed = (lower[rows] + np.multiply.outer(_ACROSS, upper[rows] - lower[rows])).ravel()
         many = np.tile(rows, len(_ACROSS))
         phase = self.phase[index[many]]
-        pair = function(many, speed, phase, phase)
+        pair = pairs_at(matrices, speed, phase, phase)
         turn = 2.0 * np.arcsinh(0.5 * np.sqrt(np.maximum(-pair.gap, 0.0))) / 2.0
-        rate = (turn * speed / system.period).reshape(len(_ACROSS), -1)
+        rate = (turn * speed / matrices.system.period).reshape(len(_ACROSS), -1)
         out[rows] = np.max(rate, axis=0)
         self.wrong += int(np.sum(np.all(pair.gap.reshape(len(_ACROSS), -1) > 0, axis=0)))
         return out

@@ -10,8 +10,6 @@
     All regions from their feet over a parameter or a geometry.
 ``stability_chart``
     The stability over two parameters, with its boundaries.
-``krein_signatures``
-    Signatures of the multipliers on the unit circle.
 
 The names load on first use.
 """
@@ -29,21 +27,18 @@ if TYPE_CHECKING:
     from .charts.edge_rows import EdgeCurves
     from .edges import StabilityEdges, stability_edges
     from .from_feet import TongueCurves, tongue_curves
-    from .krein import KreinSignatures, krein_signatures
     from .meetings import Resonance, resonances
     from .tongues import Tongue, tongue
 
 _PUBLIC = {
     "BoundaryCurves": "charts.boundaries",
     "EdgeCurves": "charts.edge_rows",
-    "KreinSignatures": "krein",
     "Resonance": "meetings",
     "SpeedBoundaries": "boundary_speeds",
     "StabilityChart": "charts.chart",
     "StabilityEdges": "edges",
     "Tongue": "tongues",
     "TongueCurves": "from_feet",
-    "krein_signatures": "krein",
     "resonances": "meetings",
     "speed_boundaries": "boundary_speeds",
     "stability_chart": "charts.chart",
@@ -55,14 +50,12 @@ _PUBLIC = {
 __all__ = [
     "BoundaryCurves",
     "EdgeCurves",
-    "KreinSignatures",
     "Resonance",
     "SpeedBoundaries",
     "StabilityChart",
     "StabilityEdges",
     "Tongue",
     "TongueCurves",
-    "krein_signatures",
     "resonances",
     "speed_boundaries",
     "stability_chart",

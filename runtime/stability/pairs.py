@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from ..core.errors import bad
 from ..periodic.first_order import canonical_form
 from ..periodic.multipliers import conditions
-from ..periodic.signatures import form_matrix
-from .krein import krein_signatures
+from ..periodic.signatures import form_matrix, signatures_of
 from .over_speed import MatricesOverSpeed
 
 Array = NDArray[np.float64]
@@ -130,12 +129,21 @@ def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more:
                 "speeds of moderate growth",
                 "raise the lowest speed",
             )
-        found = krein_signatures(scaled, error)
-        for values, signs in zip(found.multipliers, found.signatures, strict=True):
+        for values, signs in zip(*_signed(scaled, error), strict=True):
             angle, undecided = _positive(np.angle(values), signs)
             phases.append(angle)
             flags.append(undecided)
     return Samples(speed, *_followed(np.array(phases), np.array(flags)))
+
+
+def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArray[np.int8]]:
+    """Return the multipliers of symplectic matrices and their Krein signatures, ``(nb, 2n)``."""
+    values, vectors = (part.astype(complex) for part in np.linalg.eig(scaled))
+    shift = perturbation_size(scaled, error)[:, None]
+    # Near a double multiplier the condition number explodes and the square root holds.
+    root = 2 * np.sqrt(np.linalg.norm(scaled, axis=(-2, -1))[:, None] * shift)
+    # signatures_of takes for one what lies within ten errors.
+    return values, signatures_of(vectors, values, 0.1 * np.fmin(conditions(vectors) * shift, root))
 
 
 def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:

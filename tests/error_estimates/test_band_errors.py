@@ -1,4 +1,4 @@
-"""Figures of ends of unstable regions, found five ways, against half traces of more digits.
+"""Errors of ends of unstable regions, by each way to them, against half traces of more digits.
 
 Two of Hill's equations are hidden in wavy coordinates; each end that is a simple root of a half
 trace is compared.  The half traces are Taylor series in extended precision.
@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from elastolink.runtime.periodic.decoupled import slow_system
 from elastolink.runtime.stability import resonances, stability_edges, tongue, tongue_curves
-from elastolink.runtime.stability.krein import krein_signatures
 from hill_pairs import HillPair
 from honesty import verdict
 
@@ -107,51 +106,3 @@ def test_series_of_tongues(drag):
                     ratios.append(compared(scene, mode, harmonic, ends, found.error[j], factor))
                     count += len(ratios[-1])
     verdict(ratios, ENDS)
-
-
-def _symplectic(rng, n):
-    """Return a random symplectic matrix and its inverse in extended precision."""
-    extended = np.longdouble
-    one, zero = np.eye(n, dtype=extended), np.zeros((n, n), dtype=extended)
-
-    def joined(a, b, c, d):
-        return np.block([[a, b], [c, d]])
-
-    parts = []
-    for _ in range(2):
-        up, down = (0.4 * rng.standard_normal((n, n)).astype(extended) for _ in range(2))
-        up, down = up + up.T, down + down.T
-        parts.append((joined(one, up, zero, one), joined(one, -up, zero, one)))
-        parts.append((joined(one, zero, down, one), joined(one, zero, -down, one)))
-    whole, back = np.eye(2 * n, dtype=extended), np.eye(2 * n, dtype=extended)
-    for part, undone in parts:
-        whole, back = whole @ part, undone @ back
-    return whole, back
-
-
-def test_forms_of_signatures():
-    """Rotations in random symplectic coordinates, and errors of the matrices of a given size.
-
-    The eigenvectors are columns of the basis.
-    """
-    rng, n = np.random.default_rng(46), 3
-    ratios = []
-    for _ in range(200):
-        basis, back = _symplectic(rng, n)
-        angle = np.sort(rng.uniform(0.3, 2.8, n)) * rng.choice([-1, 1], n)
-        turn = np.zeros((2 * n, 2 * n), dtype=np.longdouble)
-        for i, a in enumerate(angle.astype(np.longdouble)):
-            turn[np.ix_([i, n + i], [i, n + i])] = [[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]
-        matrix = (basis @ turn @ back).astype(float)
-        given = float(10.0 ** rng.uniform(-12, -7))
-        noise = rng.uniform(-1.0, 1.0, matrix.shape) * given * np.max(np.abs(matrix))
-        found = krein_signatures(matrix + noise, given)
-        for value, form, error in zip(found.multipliers, found.form, found.error, strict=True):
-            i = int(np.argmin(np.abs(np.cos(angle) - value.real)))
-            side = 1j if (np.exp(1j * angle[i]).imag > 0) == (value.imag > 0) else -1j
-            vector = basis[:, i] + side * basis[:, n + i]
-            flipped = np.concatenate([vector[n:], -vector[:n]])
-            size = float(np.sum(np.abs(vector) ** 2))
-            truth = complex(-1j * np.sum(np.conj(vector) * flipped)).real / size
-            ratios.append(np.array([error / max(abs(form - truth), 1e-18)]))
-    verdict(ratios, 200)

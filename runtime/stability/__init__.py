@@ -22,26 +22,25 @@ from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
     from .boundary_speeds import SpeedBoundaries, speed_boundaries
-    from .charts.boundaries import BoundaryCurves
-    from .charts.chart import StabilityChart, stability_chart
-    from .charts.edge_rows import EdgeCurves
+    from .chart import EdgeCurves, StabilityChart, stability_chart
+    from .chart_boundaries import BoundaryCurves
     from .edges import StabilityEdges, stability_edges
     from .from_feet import TongueCurves, tongue_curves
     from .meetings import Resonance, resonances
     from .tongues import Tongue, tongue
 
 _PUBLIC = {
-    "BoundaryCurves": "charts.boundaries",
-    "EdgeCurves": "charts.edge_rows",
+    "BoundaryCurves": "chart_boundaries",
+    "EdgeCurves": "chart",
     "Resonance": "meetings",
     "SpeedBoundaries": "boundary_speeds",
-    "StabilityChart": "charts.chart",
+    "StabilityChart": "chart",
     "StabilityEdges": "edges",
     "Tongue": "tongues",
     "TongueCurves": "from_feet",
     "resonances": "meetings",
     "speed_boundaries": "boundary_speeds",
-    "stability_chart": "charts.chart",
+    "stability_chart": "chart",
     "stability_edges": "edges",
     "tongue": "tongues",
     "tongue_curves": "from_feet",

@@ -8,9 +8,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import Array
-from ...hill import HillForm, discriminant
-from .hill_axes import leaves_function_alone
+from ..core.families import Array
+from ..hill import HillForm, discriminant
+from .chart_axes import leaves_function_alone
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)

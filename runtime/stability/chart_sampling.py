@@ -10,17 +10,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...core import chebyshev
-from ...core.errors import bad
-from ...core.families import Array, LinearPeriodic
-from ...core.progress import bar
-from ...core.workers import Workers, check_executor
-from ...hill import discriminant, hill_form
-from ...hill.form import is_hill
-from ...periodic.first_order import canonical_form
-from .hill_axes import leaves_function_alone, plain_axes
+from ..core import chebyshev
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
+from ..core.progress import bar
+from ..core.workers import Workers, check_executor
+from ..hill import discriminant, hill_form
+from ..hill.form import is_hill
+from ..periodic.first_order import canonical_form
+from .chart_axes import (
+    Axes,
+    Names,
+    at_speed,
+    is_damped,
+    is_symplectic,
+    leaves_function_alone,
+    plain_axes,
+)
 from .invariants import half_trace_rows, half_traces
-from .structure import Axes, Names, at_speed, is_damped, is_symplectic
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.families import Array, LinearPeriodic
-from ...core.periodic_function import PeriodicFunction
-from ...hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
-from ...hill.fourier_matrix import layout, stacked, truncation
-from .hill_axes import is_stiffness, leaves_function_alone
-from .structure import is_damped
+from ..core.families import Array, LinearPeriodic
+from ..core.periodic_function import PeriodicFunction
+from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
+from ..hill.fourier_matrix import layout, stacked, truncation
+from .chart_axes import is_damped, is_stiffness, leaves_function_alone
 
 _MOST_ROWS = 121
 _MOST_DAMPED_ROWS = 41

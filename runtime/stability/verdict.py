@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import Array, LinearPeriodic
-from ...core.results import Check
-from ...core.workers import Workers
-from ...periodic import floquet_multipliers
+from ..core.families import Array, LinearPeriodic
+from ..core.results import Check
+from ..core.workers import Workers
+from ..periodic import floquet_multipliers
+from .chart_axes import damping_rate, on_grid
+from .chart_sampling import Sampler, Series
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
-from .sampling import Sampler, Series
-from .structure import damping_rate, on_grid
 
 _SPOTS = 5
 # Points that are judged together.

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ...core import chebyshev
-from ...core.families import Array
-from ...core.progress import bar
-from ...periodic.equation import Equation, SampledSystem, equation_of, sampled
-from ...periodic.tables import Table, table_of
-from ...periodic.transition import levels_for, method, rung
+from ..core import chebyshev
+from ..core.families import Array
+from ..core.progress import bar
+from ..periodic.equation import Equation, SampledSystem, equation_of, sampled
+from ..periodic.tables import Table, table_of
+from ..periodic.transition import levels_for, method, rung
+from .chart_sampling import Sampler, Series, relative_error
 from .invariants import from_sum, sum_weights_back, weighed_characteristic
-from .sampling import Sampler, Series, relative_error
 
 # Another number of segments gives another solution; the difference, over-estimated, is the error.
 _OTHER, _MARGIN = 1.37, 4.0

@@ -26,15 +26,8 @@ Matrices = dict[int, Array]
 
 _EPS = float(np.finfo(float).eps)
 _MOST_ROWS = 4000
-# Relative change of a speed by a larger truncation that a fixed one may leave.
-_FAIR = 0.01
 # Relative distance up to which roots are told apart within their own span.
 _NEARLY_DOUBLE = 1e-6
-# Relative imaginary part up to which a root of the truncated problem counts as a double real one.
-_NEARLY_REAL = 1e-6
-_MOST_BOUNDARIES = 256
-# Most that a singular value, relative to the matrix, may be and still count as zero.
-_MOST_DEFECT = 0.01
 # Widest gaps between boundaries whose middles are test speeds.
 _GAPS = 14
 
@@ -167,7 +160,8 @@ def speed_boundaries(
         )
         for sign in wanted
     ]
-    limit = rtol if harmonics is None else _FAIR
+    # Relative change of a speed by a larger truncation that a fixed one may leave.
+    limit = rtol if harmonics is None else 0.01
     return _result(system, parts, (low, high), limit, parameters)
 
 
@@ -260,7 +254,8 @@ def _roots(problem: _Problem, harmonics: int) -> _Roots:
     symmetric = even and all(_symmetric(level) for level in levels)
     inverse, vectors = _inverse_roots(levels, symmetric)
     with np.errstate(divide="ignore", invalid="ignore"):
-        real = (np.abs(inverse.imag) <= _NEARLY_REAL * np.abs(inverse)) & (inverse.real > 0)
+        # A pair so close to the real axis is a double real root.
+        real = (np.abs(inverse.imag) <= 1e-6 * np.abs(inverse)) & (inverse.real > 0)
         speed = np.where(real, unit * np.abs(inverse) ** (-1 / stride), np.inf)
     near = (speed >= problem.low * (1 - 1e-3)) & (speed <= problem.high * (1 + 1e-3))
     index = np.flatnonzero(near)
@@ -477,7 +472,7 @@ def at_boundaries(
     """
     if not len(speed):
         return {}
-    pick = np.unique(np.linspace(0, len(speed) - 1, _MOST_BOUNDARIES).round().astype(int))
+    pick = np.unique(np.linspace(0, len(speed) - 1, 256).round().astype(int))
     speed, sign, error = speed[pick], sign[pick], error[pick]
     matrices = monodromy(system, speed, **parameters)
     value = _smallest(matrices, sign)
@@ -485,7 +480,8 @@ def at_boundaries(
     turning = 2 * form.rate * system.period
     width = matrices.matrix.shape[-1]
     limit = 8 * width * (matrices.error + (1 + turning) * error / speed)
-    limit = np.minimum(limit, _MOST_DEFECT)
+    # Most that a singular value, relative to the matrix, may be and still count as zero.
+    limit = np.minimum(limit, 0.01)
     worst = int(np.argmax(value / limit))
     return {"monodromy": Check(float(value[worst]), float(limit[worst]))}
 

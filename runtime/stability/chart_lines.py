@@ -17,14 +17,8 @@ from ..periodic.transition import levels_for, method, rung
 from .chart_sampling import Sampler, Series, relative_error
 from .invariants import from_sum, sum_weights_back, weighed_characteristic
 
-# Another number of segments gives another solution; the difference, over-estimated, is the error.
-_OTHER, _MARGIN = 1.37, 4.0
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
 _RTOL, _ALIKE = 1e-12, 1e-13
-# Places along a line at which the number of segments is judged.
-_JUDGED = 5
-# Stages among which the cheapest are taken.
-_STAGES = (4, 5, 6, 8, 10)
 # Chebyshev nodes of a line to begin with.
 _NODES = 20
 _EPS = float(np.finfo(float).eps)
@@ -32,12 +26,6 @@ _EPS = float(np.finfo(float).eps)
 _FIRST, _FEWEST_LINES = 32, 9
 # Share of the values along an axis from which each of them is taken instead of nodes.
 _NEARLY_ALL = 0.8
-# Round-off of samples, roughly, relative to the largest, below which no tail falls.
-_NOISE = 1e-12
-# Invariants beyond this are not interpolated: elsewhere in the chart others are about 1.
-_WIDE = 1e8
-# Tails beyond this are no round-off.
-_SMALL = 1e-8
 
 Tick = Callable[[int], None] | None
 # Value of the outer axis, ends and values of the variable of the inner one.
@@ -188,12 +176,13 @@ class Lines:
 
         One number per value; 0 where either overflows, infinite where either is NaN.
         """
-        again, weight = self._line(outer, low, high, values, _OTHER)(values)
+        # Another number of segments gives another solution; four times the difference is the error.
+        again, weight = self._line(outer, low, high, values, 1.37)(values)
         grown = np.isinf(again) | np.isinf(found)
         with np.errstate(invalid="ignore"):
             gap = np.where(grown, 0.0, np.abs(again - found) / weight)
         worst: Array = np.max(np.where(np.isnan(gap), np.inf, gap), axis=-1)
-        return _MARGIN * worst
+        return 4.0 * worst
 
     def _line(
         self, outer: float, low: float, high: float, values: Array | None, fineness: float
@@ -236,9 +225,13 @@ class Lines:
             speed = np.broadcast_to(point.pop("speed", 1.0), values.shape)
             return equation_of(known, speed, point)
 
-        judged = plain(np.linspace(low, high, _JUDGED if high > low else 1))
+        # Places along a line at which the number of segments is judged.
+        judged = plain(np.linspace(low, high, 5 if high > low else 1))
         unit = judged.scale[len(judged.scale) // 2]
-        ways = [method("radau" if judged.damped else "gauss", stages) for stages in _STAGES]
+        # Stages among which the cheapest are taken.
+        ways = [
+            method("radau" if judged.damped else "gauss", stages) for stages in (4, 5, 6, 8, 10)
+        ]
         counts = [rung(int(np.max(levels_for(judged, way, _RTOL)))) for way in ways]
         # Solving the stages of a segment: between the square and the cube of their number.
         work = [count * way.stages**2.5 for count, way in zip(counts, ways, strict=True)]
@@ -326,7 +319,8 @@ class _Surface:
 
     def limit(self, size: float) -> float:
         """Return how large a tail may be: no larger where only other parts of the chart grow."""
-        return max(self.sampler.rtol, _NOISE * size)
+        # Round-off of samples, roughly, relative to the largest, below which no tail falls.
+        return max(self.sampler.rtol, 1e-12 * size)
 
     def line(self, outer: float) -> Line:
         """Return a line of the chart."""
@@ -363,7 +357,8 @@ class _Surface:
     @staticmethod
     def too_wide(values: Array) -> bool:
         """Return whether invariants grow so much that a series would lose the others."""
-        return not float(np.max(np.abs(values))) <= _WIDE
+        # Invariants beyond this are not interpolated: elsewhere in the chart others are about 1.
+        return not float(np.max(np.abs(values))) <= 1e8
 
     def set_count(self, count: int) -> None:
         """Take so many nodes, or every value of the chart where those are hardly more."""
@@ -442,7 +437,8 @@ class _Surface:
 
     def _settled(self, tail: float, before: float, size: float) -> bool:
         """Return whether a tail is small, or no more than round-off, which more nodes keep."""
-        return tail <= self.limit(size) or 0.5 * before < tail <= _SMALL * size
+        # Tails beyond this are no round-off.
+        return tail <= self.limit(size) or 0.5 * before < tail <= 1e-8 * size
 
     def series(self, found: _Found) -> Series:
         """Return the chart from the samples."""

@@ -25,16 +25,9 @@ Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
 _TOGETHER = 256
-_ROUNDS = 6
 _Growth = Callable[[Index, Array], tuple[Array, Array]]
 # Places at which growth is looked for, in half widths from the middle of the undamped region.
 _PLACES = np.linspace(-1.5, 1.5, 13)
-_PARABOLAS = 4
-# Arguments [rad] that count as that of the pair in any case.
-_NEAR = 0.1
-# Cost of a label: of another kind of multiplier, in half widths, and the most that is taken.
-_OTHER_KIND, _FAR = 100.0, 20.0
-_LIKE_WIDTH, _LOWER = 0.2, 0.05
 
 
 @dataclass(frozen=True)
@@ -120,7 +113,7 @@ class Crossings:
     def spans(self) -> list[Span]:
         """Return what is outside the circle, kind by kind, with the speeds between which."""
         found = self._crossings()
-        for _ in range(_ROUNDS):
+        for _ in range(6):
             # Between crossings the number outside must be what they make it.
             ends = np.unique([self._speed[0], *(c.speed for c in found), self._speed[-1]])
             fresh = np.setdiff1d(0.5 * (ends[1:] + ends[:-1]), self._speed)
@@ -311,13 +304,14 @@ def labelled(spans: list[Span], undamped: Regions) -> Regions:
     size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
     cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
     cost = cost + 2 * np.abs(np.angle(turn[:, None] / _upper(undamped.multiplier)))
-    # Of two that lie alike the one of like width, then that of the lower, stronger harmonic.
+    # Of two that lie alike the one of like width, then that of the lower, stronger harmonic; never
+    # one of another kind of multiplier.
     ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
-    cost = cost + _LIKE_WIDTH * np.abs(ratio) + _LOWER * undamped.harmonic
+    cost = cost + 0.2 * np.abs(ratio) + 0.05 * undamped.harmonic
     real = np.array([s.multiplier.imag == 0.0 for s in spans], dtype=bool)
     principal = np.array([kind == "principal" for kind in undamped.kind], dtype=bool)
-    cost = cost + _OTHER_KIND * (real[:, None] != principal)
-    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < _FAR]
+    cost = cost + 100.0 * (real[:, None] != principal)
+    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < 20.0]
     modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
     detuning = np.full(k, np.nan)
     kind = ["principal" if flag else "sum" for flag in real]
@@ -353,7 +347,7 @@ def _highest(growth: _Growth, middle: Array, half: Array) -> Array:
     best = np.clip(np.argmax(value, axis=1), 1, places - 2) if k else rows
     x = np.stack([speed[rows, best + s] for s in (-1, 0, 1)])
     g = np.stack([value[rows, best + s] for s in (-1, 0, 1)])
-    for _ in range(_PARABOLAS):
+    for _ in range(4):
         place = _vertex(x, g)
         new, _ = growth(rows, place)
         x, g = _three(x, g, place, new)
@@ -372,7 +366,8 @@ def _growth(matrices: MatricesOverSpeed, speed: Array, phase: Array) -> tuple[Ar
         logarithm = np.log(np.abs(values))
     # Those that the undamped pair has become, whatever else grows at another argument.
     second = np.sort(away, axis=-1)[:, 1:2]
-    logarithm = np.where(away <= np.maximum(second, _NEAR), logarithm, -np.inf)
+    # Arguments [rad] that count as that of the pair in any case.
+    logarithm = np.where(away <= np.maximum(second, 0.1), logarithm, -np.inf)
     chosen = np.argmax(logarithm, axis=-1)
     rows = np.arange(len(speed))
     own = conditions(vectors.astype(complex))[rows, chosen]

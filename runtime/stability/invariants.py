@@ -14,20 +14,11 @@ from .chart_axes import leaves_function_alone
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)
-# Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
-_REAL = 1e-6
-# Sums rho + 1/rho beyond which they are rho itself to round-off.
-_FAR = 1e8
-# Most modes whose reduced polynomial has a slope with roots in closed form.
-_CLOSED = 4
 # Values of the outer axis whose half traces are worked out together.
 _TOGETHER = 8
 
 Moduli = tuple[Array, NDArray[np.bool_], Array]
 _EPS = float(np.finfo(float).eps)
-# Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues do
-# better.
-_LOST = 1e-11
 
 
 def largest_modulus(
@@ -100,7 +91,8 @@ def _moduli(coefficients: Array, known: Array, reduced: bool) -> Moduli:
     # On the unit circle a coefficient enters by 2 cos, the middle one by 1.
     n = known.shape[-1]
     even = (2.0 * np.sum(known, axis=-1) - known[..., -1]) / (2 * n - 1)
-    if n <= _CLOSED:
+    # Most modes whose reduced polynomial has a slope with roots in closed form.
+    if n <= 4:
         stable, z = surely_stable(polynomial, even), None
     else:
         z = _roots(polynomial)
@@ -125,7 +117,8 @@ def _by_sums(z: NDArray[np.complex128], known: Array) -> Moduli:
     off = root_uncertainty(z, known)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         # Beyond 1e8 the square of z may overflow, and 4 is lost beside it.
-        far = np.abs(z) > _FAR
+        # Sums rho + 1/rho beyond which they are rho itself to round-off.
+        far = np.abs(z) > 1e8
         root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
         # Of the pair rho, 1/rho the one without cancellation.
         modulus = np.maximum(np.maximum(np.abs(z / 2 + root), np.abs(z / 2 - root)), 1.0)
@@ -179,7 +172,8 @@ def instability_kind(
     else:
         rho = _roots(chosen)
     top = np.take_along_axis(rho, np.argmax(np.abs(rho), axis=-1)[..., None], axis=-1)[..., 0]
-    real = np.abs(top.imag) <= _REAL * np.abs(top)
+    # Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
+    real = np.abs(top.imag) <= 1e-6 * np.abs(top)
     out[~stable] = np.where(real, np.where(top.real > 0, 1, -1), 2)
     return out
 
@@ -423,7 +417,9 @@ def weighed_characteristic(
             power = product + coefficient[..., None, None] * np.eye(m)
         coefficients = np.stack(found, axis=-1)
         top = np.maximum(np.max(np.abs(coefficients), axis=-1), 1.0)
-        lost = (worst > _LOST * top) & np.all(np.isfinite(coefficients), axis=-1)
+        # Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues
+        # do better.
+        lost = (worst > 1e-11 * top) & np.all(np.isfinite(coefficients), axis=-1)
     if np.any(lost):
         coefficients[lost] = _from_eigenvalues(matrices[lost], wanted)
     return coefficients, np.stack(weight, axis=-1)

@@ -31,10 +31,6 @@ _FORBIDDEN = 1e6
 # Relative distance beside a boundary at which growth is looked for, and of boundaries that are
 # the ends of a region too narrow to show it.
 _BESIDE = 1e-8
-# Angles and speeds at which frequencies with the crank held are computed; they change little.
-_ANGLES, _SPEEDS = 64, 65
-# Log modulus from which a multiplier has left the circle, not by the noise of a double one.
-_OFF = 1e-5
 # What it costs, in turns, that none of the motion at the ends of a region is of a mode.
 _LACK = 4.0
 
@@ -445,8 +441,9 @@ def held_modes(system: LinearPeriodic, speed: Array) -> Modes:
     n = system.size
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
-    some = np.linspace(np.min(speed), np.max(speed), _SPEEDS)
-    turns, _, _ = _held(system, some, even_angles(system.period, _ANGLES))
+    # Angles and speeds at which frequencies with the crank held are computed; they change little.
+    some = np.linspace(np.min(speed), np.max(speed), 65)
+    turns, _, _ = _held(system, some, even_angles(system.period, 64))
     mean = np.mean(turns, axis=1) * some[:, None]
     frequency = np.stack([np.interp(speed, some, mean[:, j]) for j in range(n)], axis=1)
     _, shapes, mass = _held(system, speed, np.zeros(1))
@@ -509,7 +506,8 @@ def _chosen(values: ComplexArray, met: ComplexArray) -> NDArray[np.intp]:
     """Return the numbers of the two multipliers of each pair, shape ``(k, 2)``."""
     size = np.abs(np.log(np.abs(values)))
     away = np.abs(np.angle(values / met[:, None]))
-    off = size > _OFF
+    # Log modulus from which a multiplier has left the circle, not by the noise of a double one.
+    off = size > 1e-5
     nearest = np.argsort(np.abs(values - met[:, None]), axis=1)[:, :2]
     # Off the circle: the one of nearest argument, of like ones the largest, and its inverse.
     first = np.argmin(np.where(off, np.round(away, 6) - 1e-9 * size, np.inf), axis=1)

@@ -16,10 +16,6 @@ from ..periodic.tables import Table
 
 Array = NDArray[np.float64]
 
-# Ratio of the speeds of one table, and its first number of Chebyshev nodes: of a range as narrow
-# as 1.05 a table of eight modes wants no more than 12.
-_RATIO, _NARROW, _FEW = 1.5, 1.05, 12
-
 
 class MatricesOverSpeed:
     """Scaled monodromy matrices of one system over the speed; tables are made where first needed.
@@ -45,7 +41,8 @@ class MatricesOverSpeed:
     ) -> None:
         low, high = span
         self.system, self.parameters, self.rtol = system, parameters, rtol
-        count = max(1, ceil(log(high / low) / log(_RATIO) - 1e-9))
+        # A table spans a ratio of at most 1.5, which up to 72 Chebyshev nodes resolve.
+        count = max(1, ceil(log(high / low) / log(1.5) - 1e-9))
         self._edges = low * (high / low) ** (np.arange(count + 1) / count)
         self._edges[[0, -1]] = low, high
         known = sampled(system, forcing=False)
@@ -87,7 +84,8 @@ class MatricesOverSpeed:
     def _table(self, number: int) -> tuple[Table, float]:
         if number not in self._tables:
             low, high = self._edges[number], self._edges[number + 1]
-            nodes = _FEW if high <= _NARROW * low else None
+            # In a range as narrow as 1.05 twelve nodes are enough for eight modes.
+            nodes = 12 if high <= 1.05 * low else None
             table, error, _, _ = self._maker.table(
                 float(1.0 / high), float(1.0 / low), 1, self.rtol, nodes
             )

@@ -28,14 +28,11 @@ Flags = NDArray[np.bool_]
 Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
-# Turn of the fastest mode from one sample to the next [rad].
-_TURN = 0.3
 _MOST_SAMPLES = 40_000
 _TOGETHER = 256
 # How far a sum of phases may lie from a whole turn where the multipliers are taken for locked.
 _LOCKED = 1e-4
 _TURN_ROUND = 2.0 * np.pi
-_ROUNDS = 40
 # Sign of the form, over the unit vector, from which it tells the two multipliers apart.
 _TELLING = 1e-5
 
@@ -95,8 +92,9 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
     low, high = span
     system = matrices.system
     ends = canonical_form(system, np.array([low, high]), matrices.parameters)
+    # From one sample to the next the fastest mode turns by 0.3 rad.
     fastest = float(np.max(ends.rate * ends.speed))
-    count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / _TURN)) + 2
+    count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / 0.3)) + 2
     if count > _MOST_SAMPLES:
         raise bad(
             "speed_range",
@@ -401,7 +399,7 @@ class _Search:
         begun = np.flatnonzero(np.isfinite(self.bottom))
         self._try(begun, self.bottom[begun])
         active = np.flatnonzero(~self.found & np.all(np.isfinite(self.x), axis=0))
-        for _ in range(_ROUNDS):
+        for _ in range(40):
             if not len(active):
                 break
             ended = self._try(active, self._next(active))

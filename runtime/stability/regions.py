@@ -14,7 +14,6 @@ from ..periodic import FloquetMultipliers, floquet_multipliers
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 64
 # Growth, over its error, from which a verdict tells, and the part of it that must be found.
 _TELLING, _PART = 20.0, 0.1
 # Share of the way to the next end at which an end is looked at.
@@ -106,7 +105,7 @@ def contradictions(
     """Return the speeds that :func:`edge_checks` counts: of even samples, and of verdicts."""
     begin, end = np.maximum(regions.begin, span[0]), np.minimum(regions.end, span[1])
     regions = replace(regions, begin=begin, end=end)
-    speeds = np.linspace(*span, _SAMPLES)
+    speeds = np.linspace(*span, 64)
     found = floquet_multipliers(system, speeds, **parameters)
     missed = speeds[~_covered(regions, speeds) & _grows(found)]
     # Deep inside a region something grows.

@@ -452,24 +452,7 @@ def at_boundaries(
     error: Array,
     parameters: Mapping[str, float],
 ) -> dict[str, Check]:
-    """Compare with monodromy matrices, at the worst boundary against what its error allows.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    speed, error : ndarray
-        Boundary speeds and their errors [rad/s], shape ``(k,)``.
-    sign : ndarray of int
-        +1 or -1, shape ``(k,)``.
-    parameters : mapping
-        Parameter values that replace the system's own.
-
-    Returns
-    -------
-    dict
-        Empty where there is no boundary.
-    """
+    """Compare with monodromy matrices, at the worst boundary against what its error allows."""
     if not len(speed):
         return {}
     pick = np.unique(np.linspace(0, len(speed) - 1, 256).round().astype(int))
@@ -496,17 +479,6 @@ def parity(
 
     The determinant changes sign with every boundary, a double one counted twice.  It is taken at
     the ends of the range and in the widest gaps between boundaries.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    found : sequence of (int, ndarray)
-        Multiplier, and all its boundary speeds in the range [rad/s].
-    span : pair of float
-        The range [rad/s].
-    parameters : mapping
-        Parameter values that replace the system's own.
     """
     wrong = 0
     for sign, boundaries in found:

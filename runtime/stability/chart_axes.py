@@ -34,15 +34,6 @@ def on_grid(names: Names, axes: Axes) -> tuple[Array, dict[str, Array]]:
 def at_speed(system: LinearPeriodic, names: Names, speed: float | None) -> LinearPeriodic:
     """Return the system of a chart: as it is, or such that a speed of 1 does what ``speed`` did.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    names : tuple of str
-        The axes.
-    speed : float, optional
-        Crank speed [rad/s], where that is no axis.
-
     Raises
     ------
     BadInput
@@ -164,22 +155,7 @@ def _at_rest(system: LinearPeriodic, changes: dict[str, float]) -> float:
 
 
 def plain_axes(form: HillForm, names: tuple[str, str]) -> PlainAxes | None:
-    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0``, where they do.
-
-    Parameters
-    ----------
-    form : HillForm
-        Without damping.
-    names : tuple of str
-        ``"speed"`` or parameters.
-
-    Returns
-    -------
-    tuple or None
-        Which axis carries lam2 (0 or 1), the function f, and the maps from the values of that
-        axis to lam2 and from the values of the other one to mu; None where f is not simply
-        proportional to the other parameter, or lam2 not the speed's or a parameter of its own.
-    """
+    """Return how two axes amount to ``y'' + (lam2 + mu f) y = 0``, where they do."""
     for which in (0, 1):
         along, other = names[which], names[1 - which]
         if other == "speed" or (along == "speed" and form.elastic):

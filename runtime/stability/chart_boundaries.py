@@ -53,17 +53,6 @@ def boundary_curves(
     """Return exact and perturbation boundaries within a chart, or None where no axis suits.
 
     An axis suits where it is the speed, or a parameter that is the constant stiffness itself.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        One mode, see :func:`~.form.hill_form`.
-    names : tuple of str
-        Names of the axes x and y.
-    axes : tuple of ndarray
-        Their values.
-    order : int
-        Of the perturbation.
     """
     form = hill_form(system)
     which = next((i for i in (0, 1) if _suits(form, names[i])), None)
@@ -232,27 +221,7 @@ def _drawn_in(local: float, half: float, sharp_half: float) -> float:
 def overlay_ends(
     form: HillForm, along: str, other: str, rows: Array, regions: tuple[int, ...], order: int
 ) -> Array:
-    """Return lower ends, upper ends and errors in the units of the axis.
-
-    Parameters
-    ----------
-    form : HillForm
-        One mode.
-    along, other : str
-        The axis that the ends lie on, and the other one.
-    rows : ndarray, shape (n,)
-        Values of the other axis.
-    regions : tuple of int
-        Numbers from 0, along the speed from 1.
-    order : int
-        1 to 8.
-
-    Returns
-    -------
-    ndarray, shape (3, len(regions), n)
-        NaN where damping closes a region, where the orders do not converge, and at the end of one
-        that reaches on to infinite speed.
-    """
+    """Return lower ends, upper ends and errors in the units of the axis."""
     points = [{} if other == "speed" else {other: float(v)} for v in rows]
     speed = rows if other == "speed" else np.ones_like(rows)
     stiffness = np.array([form.stiffness(**p) for p in points])

@@ -88,16 +88,6 @@ def mirrored_sums(halves: Array) -> Array:
 
     With F = [[a, b], [c, d]] over half a period and R = diag(1, -1), ``X = R F^-1 R F``; F is
     symplectic, so that the upper left block of X is ``1 + 2 b^T c``, and X^-1 = R X R.
-
-    Parameters
-    ----------
-    halves : ndarray
-        F, shape ``(..., 2n, 2n)``.
-
-    Returns
-    -------
-    ndarray, shape (..., n, n)
-        Its eigenvalues are those of ``(rho + 1/rho) / 2``, each once.
     """
     n = halves.shape[-1] // 2
     cross = np.swapaxes(halves[..., :n, n:], -1, -2) @ halves[..., n:, :n]
@@ -158,17 +148,7 @@ class Lines:
         return self.names[self.inner] in self.system.geometry
 
     def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Line:
-        """Return the line at a value of the outer axis.
-
-        Parameters
-        ----------
-        outer : float
-            Value of the outer axis.
-        low, high : float
-            Ends of the variable of the inner axis.
-        values : ndarray, optional
-            Where both axes are geometry: the values at which the line will be wanted.
-        """
+        """Return the line at a value of the outer axis; of two geometries at given values alone."""
         return self._line(outer, low, high, values, 1.0)
 
     def error(self, outer: float, low: float, high: float, values: Array, found: Array) -> Array:
@@ -251,18 +231,6 @@ class Lines:
 
 def series_by_lines(sampler: Sampler, *, progress: bool) -> Series:
     """Return the invariants of a chart of several modes.
-
-    Parameters
-    ----------
-    sampler : Sampler
-        The chart.
-    progress : bool
-        Whether to show a progress bar.
-
-    Returns
-    -------
-    Series
-        ``nodes`` is 0 along an axis all of whose values were taken.
 
     Raises
     ------

@@ -84,21 +84,7 @@ class Sampler:
         rtol: float,
         executor: Executor | None = None,
     ) -> Sampler:
-        """Return the sampler of a chart at a fixed speed, or with the speed as an axis.
-
-        Parameters
-        ----------
-        system : LinearPeriodic
-            As it was given.
-        names, axes : tuple
-            The axes.
-        speed : float, optional
-            Crank speed [rad/s] of all points.
-        rtol : float
-            Wanted error of the invariants.
-        executor : concurrent.futures.Executor, optional
-            Does independent pieces.
-        """
+        """Return the sampler of a chart at a fixed speed [rad/s], or with the speed as an axis."""
         check_executor(executor)
         made = cls(at_speed(system, names, speed), names, axes, rtol)
         made._executor, made._asked = executor, (system, speed)

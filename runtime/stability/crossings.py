@@ -409,18 +409,7 @@ def mended(
 ) -> Regions:
     """Return combination regions that agree with the multipliers off the circle.
 
-    Parameters
-    ----------
-    matrices : MatricesOverSpeed
-        Of a conservative system.
-    regions : Regions
-        As pairs of multipliers make them.
-    usable : ndarray of bool, shape (k,)
-        False where the pair meets at +-1: kept for its label only.
-    span : pair of float
-        The range [rad/s].
-    near : ndarray
-        Speeds of interest [rad/s].
+    Where not ``usable`` a pair meets at +-1: its region is kept for its label only.
     """
     ends = np.unique(np.concatenate([span, near[np.isfinite(near)]]))
     ends = ends[(ends >= span[0]) & (ends <= span[1])]

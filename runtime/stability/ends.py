@@ -63,16 +63,6 @@ def two_exponents(matrices: Complex, centre: float, lossless: bool | None) -> En
     With y = -i s the exponents are ``m +- sqrt(D)``.  Undamped, m and D are real and D < 0 is
     unstable; else the condition of Routh and Hurwitz, ``4 m2^2 (m2^2 + D1) - D2^2 < 0`` with
     m2 = Im m, D = D1 + i D2.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (order + 1, 2, 2)
-        Coefficients of the powers of the detuning.
-    centre : float
-        Where the middle of the range is expected.
-    lossless : bool, optional
-        Whether m and D are real but for round-off; None where the system is undamped but not
-        conservative: they are looked at.
     """
     ends = _two_ends(matrices, centre, lossless)
     if max(abs(ends.low), abs(ends.high)) > MOST_DETUNING:
@@ -201,13 +191,7 @@ class Several:
     noise: float
 
     def ends(self, centre: float, half: float) -> Ends:
-        """Return the ends of the unstable range of the resonance's modes nearest to a centre.
-
-        Parameters
-        ----------
-        centre, half : float
-            Centre and half-width of the range to first order.
-        """
+        """Return the unstable range of the resonance's modes that is nearest to a centre."""
         y = -1j * self.matrices
         slope = abs(complex(y[1, 0, 0] - y[1, 1, 1]))
         if slope == 0.0:

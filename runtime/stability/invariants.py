@@ -60,15 +60,7 @@ def largest_modulus(
 
 
 def known_to(coefficients: Array, error: Array) -> Array:
-    """Return the absolute error of each coefficient with round-off, ``(..., k)``.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., k)
-        As :func:`characteristic` returns them.
-    error : ndarray, shape (...) or (..., k)
-        Absolute error of all of them, or of each.
-    """
+    """Return the error of each coefficient with round-off, given for all of them or for each."""
     with np.errstate(over="ignore", invalid="ignore"):
         size = np.abs(coefficients)
         rough = np.max(size, axis=-1, initial=1.0, keepdims=True)
@@ -135,24 +127,9 @@ def _judged(modulus: Array, allowance: Array) -> Moduli:
 def instability_kind(
     coefficients: Array, stable: NDArray[np.bool_], *, hill: bool, reduced: bool
 ) -> NDArray[np.int8]:
-    """Return how unstable points are so, by the largest multiplier.
+    """Return 1 or -1 where the largest multiplier is real, 2 where complex, 0 where stable.
 
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., k)
-        As :func:`characteristic` returns them, or the half trace.
-    stable : ndarray of bool, shape (...)
-        Where not to look.
-    hill : bool
-        Whether they are half traces.
-    reduced : bool
-        Whether they are the first half of a palindromic polynomial.
-
-    Returns
-    -------
-    ndarray of int8, shape (...)
-        1 or -1 where the largest multiplier is real, 2 where it is complex, 0 where stable; where
-        it overflowed, by the sign of the sum of the multipliers; 0 where nothing is known.
+    Where it overflowed, by the sign of the sum of the multipliers; 0 where nothing is known.
     """
     out = np.zeros(stable.shape, dtype=np.int8)
     grown = ~np.all(np.isfinite(coefficients), axis=-1)
@@ -179,20 +156,10 @@ def instability_kind(
 
 
 def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
-    """Return how far each root of a monic polynomial moves with an error of the coefficients.
+    """Return how far each root of a monic polynomial moves with its coefficients' errors.
 
-    Parameters
-    ----------
-    roots : ndarray, shape (..., k)
-        The roots.
-    error : ndarray, shape (..., k)
-        Absolute error of each coefficient, the highest power first.
-
-    Returns
-    -------
-    ndarray, shape (..., k)
-        For a root alone the error of the polynomial over its slope; within a cluster of r roots
-        the r-th root of the error over the distances to the others; the smallest figure, doubled.
+    Of a root alone the error of the polynomial over its slope; within a cluster of r roots the r-th
+    root of the error over the distances to the others; the smallest, doubled.
     """
     k = roots.shape[-1]
     with np.errstate(over="ignore", invalid="ignore"):
@@ -209,18 +176,7 @@ def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
 
 
 def in_sum(coefficients: Array) -> Array:
-    """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., n)
-        ``c_1 ... c_n``, as :func:`characteristic` returns them for symplectic matrices.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-        ``a_1 ... a_n`` of ``z^n + a_1 z^(n-1) + ...``, z = rho + 1/rho.
-    """
+    """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``."""
     weights = _sum_weights(coefficients.shape[-1])
     polynomial: Array = coefficients @ weights[1:] + weights[0]
     return polynomial
@@ -279,20 +235,7 @@ def half_traces(
     tick: Callable[[int], None] | None,
     run: Callable[[Iterable[tuple[int, Array, Array]]], Iterable[tuple[int, tuple[Array, Array]]]],
 ) -> tuple[Array, Array]:
-    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny).
-
-    Parameters
-    ----------
-    outer : int
-        Which axis is the outer loop.
-    x, y : ndarray, shapes (nx,), (ny,)
-        Values along the axes.
-    tick : callable or None
-        Told how many points are done.
-    run : callable
-        From groups of values of the outer axis, as :func:`half_trace_rows` takes them, to the
-        number of a group and what that returns, in any order.
-    """
+    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny)."""
     axes = (x, y)
     starts = range(0, len(axes[outer]), _TOGETHER)
     values = np.empty((len(axes[outer]), len(axes[1 - outer])))
@@ -318,21 +261,6 @@ def half_trace_rows(
 
     A row shares one function f where the inner axis is the speed or acts on the constant stiffness
     alone.
-
-    Parameters
-    ----------
-    form : HillForm
-        The mode.
-    names : tuple of str
-        The axes.
-    outer : int
-        Which of them ``fixed`` belongs to.
-    fixed, along : ndarray, shapes (no,), (ni,)
-        Values along both.
-
-    Returns
-    -------
-    values, errors : ndarray, shape (no, ni)
     """
     inner = 1 - outer
     rows = []
@@ -382,22 +310,6 @@ def weighed_characteristic(
     Faddeev and LeVerrier: ``B_k = X B_(k-1) + c_k``, ``c_k = -tr(X B_(k-1)) / k``.  Its round-off
     grows like powers of X, and where too much of a coefficient would be lost the polynomial is
     made from the eigenvalues instead.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (..., m, m)
-        The matrices X.
-    wanted : int
-        How many coefficients.
-    change : ndarray, shape (...), optional
-        Size of a change of X, by default that of X itself.
-
-    Returns
-    -------
-    coefficients : ndarray, shape (..., wanted)
-        ``c_1, c_2, ...``
-    weight : ndarray, shape (..., wanted)
-        How far such a change moves each, at first order: ``dc_k = -tr(B_(k-1) dX)``; at least 1.
     """
     m = matrices.shape[-1]
     found, weight = [], []
@@ -452,19 +364,6 @@ def surely_stable(
     A polynomial of degree n that changes sign n times between -2 and 2 has n roots there.  It is
     tried at the ends and at places between its roots; how well those are chosen is of no matter
     to the proof.
-
-    Parameters
-    ----------
-    polynomial : ndarray, shape (..., n)
-        ``a_1 ... a_n`` of ``z^n + a_1 z^(n-1) + ...``, z = rho + 1/rho.
-    error : ndarray, shape (...)
-        Absolute error of each coefficient of the characteristic polynomial in rho.
-    between : ndarray, shape (..., n - 1), optional
-        Places to try, rising; by default those where the slope vanishes, which needs n <= 4.
-
-    Returns
-    -------
-    ndarray of bool, shape (...)
     """
     n = polynomial.shape[-1]
     if between is None and n > 4:

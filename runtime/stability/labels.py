@@ -95,15 +95,6 @@ def meeting_labels(
 
     The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
     those that meet; no two meetings get the same label.  0 where there is none.
-
-    Parameters
-    ----------
-    modes : Modes
-        At the meetings.
-    plus, minus : ndarray, shape (k,)
-        Arguments of the multipliers of positive and negative signature [rad].
-    shares : ndarray, shape (k, n), optional
-        How much of the motion each mode has; what a label's two modes lack of it counts too.
     """
     k, n = modes.turns.shape
     options: dict[tuple[int, int, int], dict[int, float]] = {}
@@ -135,17 +126,7 @@ def meeting_labels(
 def principal_labels(
     modes: Modes, real: Array, shares: Array | None = None
 ) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number and how far off, of meetings of a mode with itself.
-
-    Parameters
-    ----------
-    modes : Modes
-        At the meetings.
-    real : ndarray, shape (k,)
-        The multiplier there, +1 or -1.
-    shares : ndarray, shape (k, n), optional
-        How much of the motion each mode has; what a label's mode lacks of it counts too.
-    """
+    """Return mode from 1, number and how far off, of meetings of a mode with itself."""
     k, n = modes.turns.shape
     options: dict[tuple[int, int, int], dict[int, float]] = {}
     for row in range(k):
@@ -180,17 +161,6 @@ def boundary_units(
     Boundaries between which a real multiplier stays off the circle make a group.  A group of two
     is a region; in a larger one, where regions lie within each other, those belong together whose
     motion is mostly of one mode.  Boundaries that coincide within a region are one of their own.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Conservative.
-    modes : Modes
-        At the boundaries.
-    found : SpeedBoundaries
-        All boundaries in a range.
-    parameters : mapping
-        Parameter values that replace the system's own.
     """
     owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
     units: list[Unit] = []
@@ -360,15 +330,7 @@ def unit_labels(
 
 
 def whole_range_labels(modes: Modes, turn: Whole) -> tuple[Whole, Whole, Array]:
-    """Return mode, number and how far off, of principal regions without boundaries in the range.
-
-    Parameters
-    ----------
-    modes : Modes
-        At one speed.
-    turn : ndarray of int, shape (k,)
-        +1 or -1.
-    """
+    """Return mode, number and how far off, of principal regions without boundaries in the range."""
     k = len(turn)
     mode, number = np.zeros((2, k), dtype=np.int64)
     off = np.full(k, np.nan)
@@ -429,15 +391,7 @@ def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[i
 
 
 def held_modes(system: LinearPeriodic, speed: Array) -> Modes:
-    """Return the modes with the crank held: mean frequencies in turns, shapes at angle 0.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Conservative.
-    speed : ndarray, shape (k,)
-        Speeds [rad/s].
-    """
+    """Return the modes with the crank held: mean frequencies in turns, shapes at angle 0."""
     n = system.size
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
@@ -473,21 +427,6 @@ def pair_shares(
     """Return the shares of the modes in the action of pairs of motions, each row of sum 1.
 
     The action, energy over frequency, does not favour the high modes that a motion drags along.
-
-    Parameters
-    ----------
-    matrices : MatricesOverSpeed
-        Of a conservative system.
-    modes : Modes
-        From :func:`held_modes`, at the speeds.
-    speed : ndarray, shape (k,)
-        Speeds within the bands [rad/s].
-    met : ndarray of complex, shape (k,)
-        Where on the unit circle the two multipliers of each band meet, in one half plane.
-
-    Returns
-    -------
-    ndarray, shape (k, n)
     """
     k, n = modes.turns.shape
     shares = np.zeros((k, n))

@@ -327,19 +327,6 @@ def resonant_operator(
 ) -> ResonantOperator:
     """Return the effective operator of a resonance, to a total degree.
 
-    Parameters
-    ----------
-    point : Point
-        The expansion point; the two exponents meet there.
-    resonance : Resonance
-        Which exponents.
-    order : int
-        Total degree.
-    merge : float
-        Distance of exponents, in harmonics of the period, up to which more of them are taken in.
-    conservative : bool
-        Whether the undamped system has a symplectic flow.
-
     Raises
     ------
     BadInput

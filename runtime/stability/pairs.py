@@ -495,20 +495,9 @@ def bracketed_roots(
 ) -> tuple[Array, Array, Array]:
     """Return the zeros of many functions between brackets, by Chandrupatla's rule.
 
-    Parameters
-    ----------
-    function : callable
-        Takes numbers of functions and places, returns values and their errors.
-    first, second : ndarray, shape (k,)
-        Brackets; the values have opposite signs.
-    f_first, f_second : ndarray, shape (k,)
-        Values there.
-
-    Returns
-    -------
-    root, width, slope : ndarray, shape (k,)
-        The zero, the width of the last bracket where the value was beyond its error, else 0, and
-        the slope between the last bracket's ends.
+    With them the width of the last bracket, 0 where the value is all error, and the slope between
+    its ends, each ``(k,)``.  ``function`` takes numbers of functions and places, and returns values
+    and their errors.
     """
     a, fa, b, fb = np.array(second), np.array(f_second), np.array(first), np.array(f_first)
     c, fc = np.array(b), np.array(fb)

@@ -76,19 +76,7 @@ def edge_checks(
     span: tuple[float, float],
     parameters: Mapping[str, float],
 ) -> dict[str, Check]:
-    """Return ``verdicts`` and ``samples``, each a number of contradictions.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system, damped or not.
-    regions : Regions
-        By rising speed.
-    span : pair of float
-        The range [rad/s].
-    parameters : mapping
-        Parameter values that replace the system's own.
-    """
+    """Return ``verdicts`` and ``samples``, each a number of contradictions."""
     samples, verdicts = contradictions(system, regions, span, parameters)
     return {
         "samples": Check(float(len(samples)), 0.0),

@@ -37,19 +37,6 @@ def request_of(
 ) -> dict[str, Any]:
     """Return what a manifest says of a request: names, counts and digests, ready for JSON.
 
-    Parameters
-    ----------
-    task : str
-        Name of what is done at the points.
-    subject : object
-        What it is done with.
-    grid : Grid
-        The points and their pieces.
-    options : mapping
-        Further arguments.
-    outputs : tuple of str or None
-        Which arrays are kept.
-
     Raises
     ------
     BadInput

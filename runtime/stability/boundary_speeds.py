@@ -98,7 +98,6 @@ def speed_boundaries(
     multiplier: int | Sequence[int] = (1, -1),
     *,
     speed_range: tuple[float, float],
-    harmonics: int | None = None,
     rtol: float = 1e-11,
     **parameters: float,
 ) -> SpeedBoundaries:
@@ -121,8 +120,6 @@ def speed_boundaries(
         +1, -1 or both.
     speed_range : pair of float
         Lowest and highest speed [rad/s], the lowest positive: boundaries accumulate at zero.
-    harmonics : int, optional
-        Highest harmonic, fixed.  By default raised until converged.
     rtol : float
         Relative change of a speed at which the truncation is enough.
     **parameters : float
@@ -131,9 +128,8 @@ def speed_boundaries(
     Returns
     -------
     SpeedBoundaries
-        Its checks: ``truncation``, how far a larger truncation moves a speed, relatively, plus
-        the number of boundaries that it adds or removes, for the worse multiplier; ``parity``,
-        the number of test speeds at which integration contradicts the count of boundaries;
+        Its checks: ``truncation``, how far a larger truncation moves a speed, relatively;
+        ``parity``, the number of test speeds at which integration contradicts the count of boundaries;
         ``monodromy``, the smallest singular value of (monodromy matrix - multiplier), relative to
         the matrix, from integration, at up to 256 of the boundaries.
 
@@ -144,8 +140,6 @@ def speed_boundaries(
     """
     wanted = _wanted(multiplier)
     low, high = speed_span(speed_range)
-    if harmonics is not None and (harmonics != int(harmonics) or harmonics < 1):
-        raise bad("harmonics", harmonics, "a whole number of at least 1", "leave it out")
     if not 1e-14 <= rtol < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-11")
     form = canonical_form(system, low, parameters)
@@ -154,15 +148,9 @@ def speed_boundaries(
     usual = ceil(float(form.rate[0]) * system.period / (2 * np.pi)) + reach + 6
     parts = [
         _converged(_Problem(found, system.size, system.period, sign, low, high), usual, rtol)
-        if harmonics is None
-        else _truncated(
-            _Problem(found, system.size, system.period, sign, low, high), harmonics, usual, rtol
-        )
         for sign in wanted
     ]
-    # Relative change of a speed by a larger truncation that a fixed one may leave.
-    limit = rtol if harmonics is None else 0.01
-    return _result(system, parts, (low, high), limit, parameters)
+    return _result(system, parts, (low, high), rtol, parameters)
 
 
 @dataclass(frozen=True)
@@ -191,8 +179,7 @@ class _Problem:
 class _Roots:
     """Roots of one truncation, with their vectors in the real basis, ``(k, m)``.
 
-    ``truncation`` is the largest relative change by a larger truncation, plus the change of the
-    number of roots.
+    ``truncation`` is the largest relative change by a larger truncation.
     """
 
     multiplier: int
@@ -209,36 +196,12 @@ def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
     while True:
         harmonics = harmonics + max(6, harmonics // 4)
         fine = _roots(problem, harmonics)
-        change = _movement(fine.speed, coarse.speed)
-        if len(fine.speed) == len(coarse.speed) and np.all(change <= rtol * fine.speed):
-            moved = _truncation(fine.speed, coarse.speed, change)
-            return replace(fine, error=fine.error + change, truncation=moved)
+        if len(fine.speed) == len(coarse.speed):
+            change = np.abs(fine.speed - coarse.speed)
+            if np.all(change <= rtol * fine.speed):
+                moved = float(np.max(change / fine.speed, initial=0.0))
+                return replace(fine, error=fine.error + change, truncation=moved)
         coarse = fine
-
-
-def _truncated(problem: _Problem, harmonics: int, usual: int, rtol: float) -> _Roots:
-    """Return the roots at a wanted truncation; the error is what a converged one changes."""
-    roots = _roots(problem, harmonics)
-    larger = _converged(problem, max(usual, harmonics), rtol)
-    change = _movement(roots.speed, larger.speed)
-    moved = _truncation(roots.speed, larger.speed, change)
-    return replace(roots, error=roots.error + change, truncation=moved)
-
-
-def _truncation(speed: Array, other: Array, change: Array) -> float:
-    """Return the largest relative change plus the change of the number of roots."""
-    lost = abs(len(speed) - len(other))
-    return lost + float(np.max(np.minimum(change / speed, 1.0), initial=0.0))
-
-
-def _movement(speed: Array, other: Array) -> Array:
-    """Return the distance of each speed to the one of like rank, or else to the nearest."""
-    if len(speed) == len(other):
-        return np.abs(speed - other)
-    if len(other) == 0:
-        return np.full(len(speed), np.inf)
-    distance: Array = np.min(np.abs(speed[:, None] - other), axis=1)
-    return distance
 
 
 def _roots(problem: _Problem, harmonics: int) -> _Roots:

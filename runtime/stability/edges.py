@@ -28,7 +28,6 @@ from .labels import (
     pair_shares,
     principal_labels,
     unit_labels,
-    whole_range_labels,
 )
 from .over_speed import MatricesOverSpeed
 from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
@@ -210,7 +209,7 @@ def stability_edges(
     matrices = MatricesOverSpeed(sharp, span, parameters, rtol)
     checks: dict[str, Check] = {}
     if slow is None:
-        ends = speed_boundaries(sharp, (1, -1), speed_range=span, harmonics=None, **parameters)
+        ends = speed_boundaries(sharp, (1, -1), speed_range=span, **parameters)
         checks.update(ends.checks)
         regions, least = _undamped(matrices, _bounded(matrices, ends, span), span, whole=not damped)
     else:
@@ -375,7 +374,8 @@ def _met(matrices: MatricesOverSpeed, events: Events, edges: Edges) -> Regions:
     middle, begin, end = (values[kept] for values in _reached(edges, events.reach))
     real = np.where(np.cos(edges.phase[kept]) > 0, 1.0, -1.0)
     modes, shares = _described(matrices, middle, real.astype(complex), held=True)
-    mode, number, off = principal_labels(modes, real, shares)
+    lack = np.zeros_like(modes.turns) if shares is None else 1.0 - shares
+    mode, number, off = principal_labels(modes.turns, real, lack)
     return Regions(
         edges.lower[kept],
         edges.upper[kept],
@@ -450,8 +450,9 @@ def _endless(
         beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
         count[sign] = 0 if np.any(boundaries.multiplier == sign) else int(np.sum(real & beyond))
     turn = np.repeat(np.array([1, -1]), [count[1], count[-1]])
-    mode, number, off = whole_range_labels(averaged_modes(system, middle, parameters), turn)
     k = len(turn)
+    turns = np.repeat(averaged_modes(system, middle, parameters).turns, k, axis=0)
+    mode, number, off = principal_labels(turns, turn, np.zeros_like(turns))
     return Regions(
         np.full(k, np.nan),
         np.full(k, np.nan),

@@ -170,14 +170,14 @@ def tongue_curves(
     most = modes or system.size
     feet = [foot for foot in feet if foot.opens and max(foot.modes) <= most]
     feet.sort(key=lambda foot: foot.speed)
-    row = {(foot.kind, *sorted(foot.modes), foot.harmonic): k for k, foot in enumerate(feet)}
+    row = {(str(foot.kind), *sorted(foot.modes), foot.harmonic): k for k, foot in enumerate(feet)}
     ends, failed = np.full((4, len(feet), len(at)), np.nan), 0
     for column, value in enumerate(at.tolist()):
         here = _changed(sharp, name, value)
         edges = stability_edges(here, (low, high), rtol=rtol, margin=_BEYOND)
         failed += sum(not check.passed for check in edges.checks.values())
         growth = _growth(here, edges)
-        places = [row.get(label) for label in _labels(edges)]
+        places = [row.get((kind, *label)) for kind, *label in _labels(edges)]
         if column:
             places = _carried_on(feet, ends[:2, :, column - 1], edges, places)
         for i, place in enumerate(places):

@@ -24,6 +24,7 @@ from .over_speed import MatricesOverSpeed
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
+Label = tuple[int, int, int]
 
 # How far from its whole number a label may be [turns in a period].
 _REACH = 2
@@ -123,27 +124,32 @@ def meeting_labels(
     return found, chosen, off
 
 
-def principal_labels(
-    modes: Modes, real: Array, shares: Array | None = None
-) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number and how far off, of meetings of a mode with itself."""
-    k, n = modes.turns.shape
-    options: dict[tuple[int, int, int], dict[int, float]] = {}
+def principal_labels(turns: Array, real: Array, lack: Array) -> tuple[Whole, Whole, Array]:
+    """Return mode from 1, number and how far off, of regions in which a mode meets itself.
+
+    Region n of mode j has 2 Omega_j = n, below zero for negative energy.  No two regions get the
+    same label; 0 where none is left, or the averaged equation has no modes.  Given are the turns
+    ``(k, n)``, the multiplier +1 or -1, and what the motion lacks of being of each mode ``(k, n)``.
+    """
+    k, n = turns.shape
+    options: dict[Label, dict[int, float]] = {}
     for row in range(k):
         parity = 0 if real[row] > 0 else 1
-        for i in range(n):
-            total = 2 * float(modes.turns[row, i])
-            if np.isfinite(total):
-                lack = 0.0 if shares is None else 1.0 - float(shares[row, i])
-                middle = 2 * round((total - parity) / 2) + parity
-                for number in range(middle - 4, middle + 5, 2):
-                    cost = abs(total - number) + _LACK * lack
-                    options.setdefault((i + 1, number, parity), {})[row] = cost
+        for j in range(n):
+            total = 2 * float(turns[row, j])
+            if not np.isfinite(total):
+                continue
+            nearest = 2 * round((total - parity) / 2) + parity
+            for number in range(nearest - 6, nearest + 7, 2):
+                gap = abs(total - number)
+                # Beyond one turn rather another mode than another number.
+                cost = gap + _LACK * (float(lack[row, j]) + max(0.0, gap - 1.0))
+                options.setdefault((j + 1, number, parity), {})[row] = cost
     mode, chosen = np.zeros((2, k), dtype=np.int64)
     off = np.full(k, np.nan)
-    for row, (i, number, _) in _assigned(k, options).items():
-        mode[row], chosen[row] = i, abs(number)
-        off[row] = abs(2 * float(modes.turns[row, i - 1]) - number)
+    for row, (j, number, _) in _assigned(k, options).items():
+        mode[row], chosen[row] = j, abs(number)
+        off[row] = abs(2 * float(turns[row, j - 1]) - number)
     return mode, chosen, off
 
 
@@ -292,59 +298,20 @@ def _units(
 def unit_labels(
     modes: Modes, found: SpeedBoundaries, units: list[Unit]
 ) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number of the region and how far off, of each principal region.
-
-    Region n of mode j has 2 Omega_j = n, below zero for negative energy, and a motion at its ends
-    that is mostly of that mode.  No two regions get the same label; 0 where none is left, or the
-    averaged equation has no modes.
-    """
-    k = len(units)
-    mode, number = np.zeros((2, k), dtype=np.int64)
-    off = np.full(k, np.nan)
-    if not k:
-        return mode, number, off
-    shares = _shares(modes, found)
+    """Return mode, number and how far off, of regions between pairs of boundaries."""
+    n = modes.turns.shape[1]
+    turns, lack = np.full((2, len(units), n), np.nan)
+    real = np.zeros(len(units))
+    shares = _shares(modes, found) if units else np.zeros((0, n))
     shares = shares / np.maximum(np.sum(shares, axis=-1, keepdims=True), 1e-300)
-    options: dict[tuple[int, int, int], dict[int, float]] = {}
-    turns = np.full((k, modes.turns.shape[1]), np.nan)
     for row, unit in enumerate(units):
         known = [end for end in unit if end >= 0]
         # A missing end is about where the outermost boundaries are, or beyond.
         ends = [unit[0] if unit[0] >= 0 else 0, unit[1] if unit[1] >= 0 else -1]
-        turns[row] = 2 * np.mean(modes.turns[ends], axis=0)
-        parity = 0 if found.multiplier[known[0]] == 1 else 1
-        for j, value in enumerate(turns[row]):
-            if not np.isfinite(value):
-                continue
-            lack = 1.0 - float(np.mean(shares[known, j]))
-            nearest = 2 * round((float(value) - parity) / 2) + parity
-            for n in range(nearest - 6, nearest + 7, 2):
-                gap = abs(float(value) - n)
-                # Beyond one turn rather another mode than another number.
-                cost = gap + _LACK * (lack + max(0.0, gap - 1.0))
-                options.setdefault((j + 1, n, parity), {})[row] = cost
-    for row, (j, n, _) in _assigned(k, options).items():
-        mode[row], number[row] = j, abs(n)
-        off[row] = abs(turns[row, j - 1] - n)
-    return mode, number, off
-
-
-def whole_range_labels(modes: Modes, turn: Whole) -> tuple[Whole, Whole, Array]:
-    """Return mode, number and how far off, of principal regions without boundaries in the range."""
-    k = len(turn)
-    mode, number = np.zeros((2, k), dtype=np.int64)
-    off = np.full(k, np.nan)
-    options: dict[Label, dict[int, float]] = {}
-    for row, sign in enumerate(turn.tolist()):
-        parity = 0 if sign == 1 else 1
-        for j, turns in enumerate(modes.turns[0].tolist()):
-            if np.isfinite(turns):
-                n = 2 * round((2 * turns - parity) / 2) + parity
-                options.setdefault((j + 1, n, parity), {})[row] = abs(2 * turns - n)
-    for row, (j, n, parity) in _assigned(k, options).items():
-        mode[row], number[row] = j, abs(n)
-        off[row] = options[j, n, parity][row]
-    return mode, number, off
+        turns[row] = np.mean(modes.turns[ends], axis=0)
+        lack[row] = 1.0 - np.mean(shares[known], axis=0)
+        real[row] = found.multiplier[known[0]]
+    return principal_labels(turns, real, lack)
 
 
 def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
@@ -367,9 +334,6 @@ def _apart(turns: float, phase: float) -> float:
     """Return the distance of two phases in turns."""
     gap = turns - phase / (2 * np.pi)
     return float(abs(gap - np.round(gap)))
-
-
-Label = tuple[int, int, int]
 
 
 def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[int, Label]:

@@ -215,7 +215,7 @@ def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, .
         ("regions", "order", "form", "certified"),
         "one undamped mode, and no range of speeds",
     )
-    from ..stability.edges.tracing import stability_edges
+    from ..stability import stability_edges
 
     low, high = _speeds(options, scene)
     edges = stability_edges(system, (low, high))

@@ -14,7 +14,7 @@ from .linkages import speed_of
 if TYPE_CHECKING:
     from ..periodic import FloquetMultipliers
     from ..scenes import Scene
-    from ..stability.charts.chart import StabilityChart
+    from ..stability import StabilityChart
 
 _POINTS = 201
 
@@ -140,7 +140,7 @@ def _chart(options: argparse.Namespace) -> int:
     speed = _fixed_speed(options, scene, (x[0], y[0]))
     if options.store is not None:
         return stored_chart.run(options, system, x, y, speed)
-    from ..stability.charts.chart import stability_chart
+    from ..stability import stability_chart
 
     name = "coupler frequency" if tuple(scene.get("model.flexible", ())) == ("coupler",) else None
     with stored_chart.workers(options) as pool:

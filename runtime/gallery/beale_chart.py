@@ -12,7 +12,7 @@ import numpy as np
 from ..core.families import Array
 from ..frequencies import natural_frequencies
 from ..periodic import floquet_multipliers
-from ..stability.charts.chart import StabilityChart, stability_chart
+from ..stability import StabilityChart, stability_chart
 from .beale_tip import FLEXIBLE, rod
 from .records import Drawn, Quoted, Table
 from .style import legend_below, panel_title

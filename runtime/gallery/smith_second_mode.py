@@ -17,7 +17,7 @@ import numpy as np
 from ..hill import hill_boundaries
 from ..periodic import floquet_multipliers
 from ..scenes import load_scene
-from ..stability.edges.tracing import StabilityEdges, stability_edges
+from ..stability import StabilityEdges, stability_edges
 from .records import Drawn, Quoted, Table
 from .smith_linkages import LBF_IN_S2, RIG, RPM, Array, Rig
 from .style import COLOURS, panel_title

@@ -3,15 +3,13 @@
 ``resonances``, ``tongue``
     Speeds at which exponents of the mean system meet; the unstable range that starts at one of
     them, as a series to an order.
-``speed_boundaries``, ``stability_edges``, ``unstable_bands``
+``speed_boundaries``, ``stability_edges``
     Speeds with a periodic or antiperiodic motion; all regions of instability in a range of speeds,
-    each with its ends; those of the slow modes of a stiff system.
-``trace_tongue``, ``tongue_curves``
-    One region over a parameter; all of them from their feet over a parameter or a geometry.
+    each with its ends.
+``tongue_curves``
+    All regions from their feet over a parameter or a geometry.
 ``stability_chart``
     The stability over two parameters, with its boundaries.
-``krein_signatures``
-    Signatures of the multipliers on the unit circle.
 
 The names load on first use.
 """
@@ -23,60 +21,46 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .bands import unstable_bands
     from .boundary_speeds import SpeedBoundaries, speed_boundaries
-    from .charts.boundaries import BoundaryCurves
-    from .charts.chart import StabilityChart, stability_chart
-    from .charts.edge_rows import EdgeCurves
-    from .edges.over_geometry import TongueCurves, tongue_curves
-    from .edges.over_parameter import TongueTrace, trace_tongue
-    from .edges.tracing import StabilityEdges, stability_edges
-    from .krein import KreinSignatures, krein_signatures
+    from .chart import EdgeCurves, StabilityChart, stability_chart
+    from .chart_boundaries import BoundaryCurves
+    from .edges import StabilityEdges, stability_edges
+    from .from_feet import TongueCurves, tongue_curves
     from .meetings import Resonance, resonances
     from .tongues import Tongue, tongue
 
 _PUBLIC = {
-    "BoundaryCurves": "charts.boundaries",
-    "EdgeCurves": "charts.edge_rows",
-    "KreinSignatures": "krein",
+    "BoundaryCurves": "chart_boundaries",
+    "EdgeCurves": "chart",
     "Resonance": "meetings",
     "SpeedBoundaries": "boundary_speeds",
-    "StabilityChart": "charts.chart",
-    "StabilityEdges": "edges.tracing",
+    "StabilityChart": "chart",
+    "StabilityEdges": "edges",
     "Tongue": "tongues",
-    "TongueCurves": "edges.over_geometry",
-    "TongueTrace": "edges.over_parameter",
-    "krein_signatures": "krein",
+    "TongueCurves": "from_feet",
     "resonances": "meetings",
     "speed_boundaries": "boundary_speeds",
-    "stability_chart": "charts.chart",
-    "stability_edges": "edges.tracing",
+    "stability_chart": "chart",
+    "stability_edges": "edges",
     "tongue": "tongues",
-    "tongue_curves": "edges.over_geometry",
-    "trace_tongue": "edges.over_parameter",
-    "unstable_bands": "bands",
+    "tongue_curves": "from_feet",
 }
 
 __all__ = [
     "BoundaryCurves",
     "EdgeCurves",
-    "KreinSignatures",
     "Resonance",
     "SpeedBoundaries",
     "StabilityChart",
     "StabilityEdges",
     "Tongue",
     "TongueCurves",
-    "TongueTrace",
-    "krein_signatures",
     "resonances",
     "speed_boundaries",
     "stability_chart",
     "stability_edges",
     "tongue",
     "tongue_curves",
-    "trace_tongue",
-    "unstable_bands",
 ]
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -26,15 +26,8 @@ Matrices = dict[int, Array]
 
 _EPS = float(np.finfo(float).eps)
 _MOST_ROWS = 4000
-# Relative change of a speed by a larger truncation that a fixed one may leave.
-_FAIR = 0.01
 # Relative distance up to which roots are told apart within their own span.
 _NEARLY_DOUBLE = 1e-6
-# Relative imaginary part up to which a root of the truncated problem counts as a double real one.
-_NEARLY_REAL = 1e-6
-_MOST_BOUNDARIES = 256
-# Most that a singular value, relative to the matrix, may be and still count as zero.
-_MOST_DEFECT = 0.01
 # Widest gaps between boundaries whose middles are test speeds.
 _GAPS = 14
 
@@ -105,7 +98,6 @@ def speed_boundaries(
     multiplier: int | Sequence[int] = (1, -1),
     *,
     speed_range: tuple[float, float],
-    harmonics: int | None = None,
     rtol: float = 1e-11,
     **parameters: float,
 ) -> SpeedBoundaries:
@@ -128,8 +120,6 @@ def speed_boundaries(
         +1, -1 or both.
     speed_range : pair of float
         Lowest and highest speed [rad/s], the lowest positive: boundaries accumulate at zero.
-    harmonics : int, optional
-        Highest harmonic, fixed.  By default raised until converged.
     rtol : float
         Relative change of a speed at which the truncation is enough.
     **parameters : float
@@ -138,9 +128,8 @@ def speed_boundaries(
     Returns
     -------
     SpeedBoundaries
-        Its checks: ``truncation``, how far a larger truncation moves a speed, relatively, plus
-        the number of boundaries that it adds or removes, for the worse multiplier; ``parity``,
-        the number of test speeds at which integration contradicts the count of boundaries;
+        Its checks: ``truncation``, how far a larger truncation moves a speed, relatively;
+        ``parity``, the number of test speeds at which integration contradicts the count of boundaries;
         ``monodromy``, the smallest singular value of (monodromy matrix - multiplier), relative to
         the matrix, from integration, at up to 256 of the boundaries.
 
@@ -151,8 +140,6 @@ def speed_boundaries(
     """
     wanted = _wanted(multiplier)
     low, high = speed_span(speed_range)
-    if harmonics is not None and (harmonics != int(harmonics) or harmonics < 1):
-        raise bad("harmonics", harmonics, "a whole number of at least 1", "leave it out")
     if not 1e-14 <= rtol < 1:
         raise bad("rtol", rtol, "a number from 1e-14 to 1", "choose 1e-11")
     form = canonical_form(system, low, parameters)
@@ -161,14 +148,9 @@ def speed_boundaries(
     usual = ceil(float(form.rate[0]) * system.period / (2 * np.pi)) + reach + 6
     parts = [
         _converged(_Problem(found, system.size, system.period, sign, low, high), usual, rtol)
-        if harmonics is None
-        else _truncated(
-            _Problem(found, system.size, system.period, sign, low, high), harmonics, usual, rtol
-        )
         for sign in wanted
     ]
-    limit = rtol if harmonics is None else _FAIR
-    return _result(system, parts, (low, high), limit, parameters)
+    return _result(system, parts, (low, high), rtol, parameters)
 
 
 @dataclass(frozen=True)
@@ -197,8 +179,7 @@ class _Problem:
 class _Roots:
     """Roots of one truncation, with their vectors in the real basis, ``(k, m)``.
 
-    ``truncation`` is the largest relative change by a larger truncation, plus the change of the
-    number of roots.
+    ``truncation`` is the largest relative change by a larger truncation.
     """
 
     multiplier: int
@@ -215,36 +196,12 @@ def _converged(problem: _Problem, harmonics: int, rtol: float) -> _Roots:
     while True:
         harmonics = harmonics + max(6, harmonics // 4)
         fine = _roots(problem, harmonics)
-        change = _movement(fine.speed, coarse.speed)
-        if len(fine.speed) == len(coarse.speed) and np.all(change <= rtol * fine.speed):
-            moved = _truncation(fine.speed, coarse.speed, change)
-            return replace(fine, error=fine.error + change, truncation=moved)
+        if len(fine.speed) == len(coarse.speed):
+            change = np.abs(fine.speed - coarse.speed)
+            if np.all(change <= rtol * fine.speed):
+                moved = float(np.max(change / fine.speed, initial=0.0))
+                return replace(fine, error=fine.error + change, truncation=moved)
         coarse = fine
-
-
-def _truncated(problem: _Problem, harmonics: int, usual: int, rtol: float) -> _Roots:
-    """Return the roots at a wanted truncation; the error is what a converged one changes."""
-    roots = _roots(problem, harmonics)
-    larger = _converged(problem, max(usual, harmonics), rtol)
-    change = _movement(roots.speed, larger.speed)
-    moved = _truncation(roots.speed, larger.speed, change)
-    return replace(roots, error=roots.error + change, truncation=moved)
-
-
-def _truncation(speed: Array, other: Array, change: Array) -> float:
-    """Return the largest relative change plus the change of the number of roots."""
-    lost = abs(len(speed) - len(other))
-    return lost + float(np.max(np.minimum(change / speed, 1.0), initial=0.0))
-
-
-def _movement(speed: Array, other: Array) -> Array:
-    """Return the distance of each speed to the one of like rank, or else to the nearest."""
-    if len(speed) == len(other):
-        return np.abs(speed - other)
-    if len(other) == 0:
-        return np.full(len(speed), np.inf)
-    distance: Array = np.min(np.abs(speed[:, None] - other), axis=1)
-    return distance
 
 
 def _roots(problem: _Problem, harmonics: int) -> _Roots:
@@ -260,7 +217,8 @@ def _roots(problem: _Problem, harmonics: int) -> _Roots:
     symmetric = even and all(_symmetric(level) for level in levels)
     inverse, vectors = _inverse_roots(levels, symmetric)
     with np.errstate(divide="ignore", invalid="ignore"):
-        real = (np.abs(inverse.imag) <= _NEARLY_REAL * np.abs(inverse)) & (inverse.real > 0)
+        # A pair so close to the real axis is a double real root.
+        real = (np.abs(inverse.imag) <= 1e-6 * np.abs(inverse)) & (inverse.real > 0)
         speed = np.where(real, unit * np.abs(inverse) ** (-1 / stride), np.inf)
     near = (speed >= problem.low * (1 - 1e-3)) & (speed <= problem.high * (1 + 1e-3))
     index = np.flatnonzero(near)
@@ -457,27 +415,10 @@ def at_boundaries(
     error: Array,
     parameters: Mapping[str, float],
 ) -> dict[str, Check]:
-    """Compare with monodromy matrices, at the worst boundary against what its error allows.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    speed, error : ndarray
-        Boundary speeds and their errors [rad/s], shape ``(k,)``.
-    sign : ndarray of int
-        +1 or -1, shape ``(k,)``.
-    parameters : mapping
-        Parameter values that replace the system's own.
-
-    Returns
-    -------
-    dict
-        Empty where there is no boundary.
-    """
+    """Compare with monodromy matrices, at the worst boundary against what its error allows."""
     if not len(speed):
         return {}
-    pick = np.unique(np.linspace(0, len(speed) - 1, _MOST_BOUNDARIES).round().astype(int))
+    pick = np.unique(np.linspace(0, len(speed) - 1, 256).round().astype(int))
     speed, sign, error = speed[pick], sign[pick], error[pick]
     matrices = monodromy(system, speed, **parameters)
     value = _smallest(matrices, sign)
@@ -485,7 +426,8 @@ def at_boundaries(
     turning = 2 * form.rate * system.period
     width = matrices.matrix.shape[-1]
     limit = 8 * width * (matrices.error + (1 + turning) * error / speed)
-    limit = np.minimum(limit, _MOST_DEFECT)
+    # Most that a singular value, relative to the matrix, may be and still count as zero.
+    limit = np.minimum(limit, 0.01)
     worst = int(np.argmax(value / limit))
     return {"monodromy": Check(float(value[worst]), float(limit[worst]))}
 
@@ -500,17 +442,6 @@ def parity(
 
     The determinant changes sign with every boundary, a double one counted twice.  It is taken at
     the ends of the range and in the widest gaps between boundaries.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    found : sequence of (int, ndarray)
-        Multiplier, and all its boundary speeds in the range [rad/s].
-    span : pair of float
-        The range [rad/s].
-    parameters : mapping
-        Parameter values that replace the system's own.
     """
     wrong = 0
     for sign, boundaries in found:

@@ -21,12 +21,6 @@ MOST_DETUNING = 0.4
 _ROUND, _NO_COUPLING = 1e-11, 1e-14
 # Share of a growing motion from which it is that of one mode.
 _PRINCIPAL = 0.75
-# Points of a search, and how often it closes in on a low or high between them.
-_POINTS, _ZOOMS = 401, 12
-_SAME = 1e-12
-# How far from the expected centre an end can lie, over what the quadratic part shows; powers that
-# round-off hides there.
-_FAR, _HIDDEN, _LEAST = 8.0, 1e-17, 1e-14
 
 
 class Ends(NamedTuple):
@@ -69,16 +63,6 @@ def two_exponents(matrices: Complex, centre: float, lossless: bool | None) -> En
     With y = -i s the exponents are ``m +- sqrt(D)``.  Undamped, m and D are real and D < 0 is
     unstable; else the condition of Routh and Hurwitz, ``4 m2^2 (m2^2 + D1) - D2^2 < 0`` with
     m2 = Im m, D = D1 + i D2.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (order + 1, 2, 2)
-        Coefficients of the powers of the detuning.
-    centre : float
-        Where the middle of the range is expected.
-    lossless : bool, optional
-        Whether m and D are real but for round-off; None where the system is undamped but not
-        conservative: they are looked at.
     """
     ends = _two_ends(matrices, centre, lossless)
     if max(abs(ends.low), abs(ends.high)) > MOST_DETUNING:
@@ -142,11 +126,12 @@ def _near_roots(condition: Array, centre: float) -> Ends:
     if len(condition) < 3 or condition[2] == 0.0:
         return CLOSED
     # The quadratic part shows how far the ends are from the centre.
-    scale = max(float(np.max(np.abs(polynomial.polyroots(condition[:3])))), _LEAST)
+    scale = max(float(np.max(np.abs(polynomial.polyroots(condition[:3])))), 1e-14)
     scaled = condition * scale ** np.arange(len(condition))
-    # Powers that round-off hides where the ends can lie would only blur the others' roots.
-    weight = np.abs(scaled) * _FAR ** np.arange(len(scaled))
-    last = max(2, int(np.flatnonzero(weight > _HIDDEN * np.max(np.abs(scaled)))[-1]))
+    # Powers that round-off hides where the ends can lie, up to eight times as far as the quadratic
+    # part shows, would only blur the others' roots.
+    weight = np.abs(scaled) * 8.0 ** np.arange(len(scaled))
+    last = max(2, int(np.flatnonzero(weight > 1e-17 * np.max(np.abs(scaled)))[-1]))
     roots = polynomial.polyroots(scaled[: last + 1]).astype(complex)
     near = _polished(scaled, roots[np.argsort(np.abs(roots), kind="stable")[:2]])
     low, high = sorted((complex(root) for root in near), key=lambda root: (root.real, root.imag))
@@ -206,13 +191,7 @@ class Several:
     noise: float
 
     def ends(self, centre: float, half: float) -> Ends:
-        """Return the ends of the unstable range of the resonance's modes nearest to a centre.
-
-        Parameters
-        ----------
-        centre, half : float
-            Centre and half-width of the range to first order.
-        """
+        """Return the unstable range of the resonance's modes that is nearest to a centre."""
         y = -1j * self.matrices
         slope = abs(complex(y[1, 0, 0] - y[1, 1, 1]))
         if slope == 0.0:
@@ -288,7 +267,7 @@ class Several:
     def _search_points(self, centre: float, half: float, reach: float) -> Array:
         """Return points all over, dense about the centre and where exponents nearly meet."""
         fine = max(half, 1e-3 * reach) / 8
-        spread = np.linspace(-1.0, 1.0, _POINTS)
+        spread = np.linspace(-1.0, 1.0, 401)
         dense = fine * np.sinh(spread * np.arcsinh(reach / fine))
         sigma = np.unique(centre + np.concatenate([dense, reach * spread]))
         parts = [sigma]
@@ -305,7 +284,7 @@ class Several:
             gap = distance[:, column]
             for low in _lows(gap):
                 # Exponents that coincide all along differ by round-off alone.
-                if gap[low] > _SAME * np.max(gap):
+                if gap[low] > 1e-12 * np.max(gap):
                     parts += self._zoomed(sigma, low, partial(self._distance, column))
         return np.unique(np.concatenate(parts))
 
@@ -316,7 +295,7 @@ class Several:
         """Return points that close in on a low of a function, until the growth there is seen."""
         left, right = float(sigma[place - 1]), float(sigma[place + 1])
         parts = []
-        for _ in range(_ZOOMS):
+        for _ in range(12):
             inner = np.linspace(left, right, 17)
             parts.append(inner)
             best = int(np.argmin(function(inner)))

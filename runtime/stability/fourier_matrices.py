@@ -53,22 +53,7 @@ class Wave:
     def placed(
         self, rate: Array
     ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], ComplexArray, Array, Array]]:
-        """Yield where each harmonic stands among those of a motion.
-
-        Parameters
-        ----------
-        rate : ndarray, shape (K,)
-            Rate of each harmonic of the motion, rising by one harmonic each.
-
-        Yields
-        ------
-        rows, columns : ndarray
-            Harmonics of the motion that it leads to and from.
-        block : ndarray of complex, shape (n, n)
-            Its coefficients.
-        left, right : ndarray, shape (len(rows), 1, 1)
-            Rates of the rows and of the columns.
-        """
+        """Yield rows and columns among a motion's harmonics, the block, and the rates of both."""
         count = len(rate)
         for shift, block in enumerate(self.coefficients, start=-self.reach):
             # Row k, column l = k - shift.
@@ -154,24 +139,6 @@ def real_matrices(
 
     The basis is, per coordinate, ``1`` (periodic motions only), then ``sqrt(2) cos`` and
     ``sqrt(2) sin`` of each harmonic, ordered by harmonic and, within it, by coordinate.
-
-    Parameters
-    ----------
-    found : tuple of Wave
-        From :func:`waves`.
-    size : int
-        Number n of coordinates.
-    period : float
-        Period T [rad].
-    harmonics : int
-        Highest harmonic H: kappa from -H to H, or from -(H - 1/2) to H - 1/2.
-    multiplier : int
-        +1 or -1.
-
-    Returns
-    -------
-    dict
-        Power of the speed to a matrix of shape ``(m, m)``, m = n (2H + 1) or n 2H.
     """
     highest = harmonics if multiplier == 1 else harmonics - 0.5
     kappa = np.arange(-highest, highest + 0.25, dtype=np.float64)

@@ -24,8 +24,6 @@ _GRID = 400
 _ARRAYS = ("M", "A", "B", "K", "Kg")
 # Real part, over the modulus, up to which an exponent of the mean system counts as imaginary.
 IMAGINARY = 1e-7
-# Distance at a meeting; where a mode ends, at a divergence, the numbers of the others jump.
-_MEETING = 1e-7
 
 
 @dataclass(frozen=True)
@@ -161,7 +159,8 @@ class MeanSystem:
             above = np.sign(distance(middle)) == sign
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         places: Array = (low + high) / 2
-        return places[np.abs(distance(places)) < _MEETING]
+        # Distance at a meeting; where a mode ends, at a divergence, the numbers of the others jump.
+        return places[np.abs(distance(places)) < 1e-7]
 
     def described(
         self, kind: Kind, modes: tuple[int, int], harmonic: int, at: float, conservative: bool

@@ -43,10 +43,6 @@ _ARRAYS = ("M", "A", "B", *DAMPING, "K", "Kg")
 # that are round-off of the samples; the last one where no polynomial follows.
 _NODES, _DETUNING = 24, 0.5
 _NOISE, _MOST_TAIL = 1e-14, 1e-10
-# Harmonics below this, over the largest, are round-off; the most of them, and of the samples.
-_SEEN, _MOST_HARMONICS, _MOST_SAMPLES = 4e-16, 128, 4096
-# Condition of the eigenvectors of the constant system beyond which an exponent counts as defective.
-_DEFECTIVE = 1e8
 
 
 @dataclass(frozen=True)
@@ -176,11 +172,12 @@ def _arrays(point: Point, order: int) -> dict[str, Series]:
     for row, term in enumerate(system.terms):
         if term.array in SPEED_POWER and not term.constant:
             amplitude = system.spectrum(row)
-            seen = np.flatnonzero(amplitude > _SEEN * np.max(amplitude, initial=0.0))
+            # Harmonics below this, over the largest, are round-off.
+            seen = np.flatnonzero(amplitude > 4e-16 * np.max(amplitude, initial=0.0))
             reach = max(reach, int(seen[-1]) if len(seen) else 0)
     # So many angles tell all harmonics of a product of ``order`` factors apart.
-    wanted = 2 * (order * min(reach, _MOST_HARMONICS) + 40)
-    count = min(2 ** int(np.ceil(np.log2(wanted))), _MOST_SAMPLES)
+    wanted = 2 * (order * min(reach, 128) + 40)
+    count = min(2 ** int(np.ceil(np.log2(wanted))), 4096)
     theta = even_angles(system.period, count)
     scales = _scale_series(point, order)
     out: dict[str, Series] = {name: {} for name in ("M", "A", "B", *DAMPING, "K")}
@@ -330,19 +327,6 @@ def resonant_operator(
 ) -> ResonantOperator:
     """Return the effective operator of a resonance, to a total degree.
 
-    Parameters
-    ----------
-    point : Point
-        The expansion point; the two exponents meet there.
-    resonance : Resonance
-        Which exponents.
-    order : int
-        Total degree.
-    merge : float
-        Distance of exponents, in harmonics of the period, up to which more of them are taken in.
-    conservative : bool
-        Whether the undamped system has a symplectic flow.
-
     Raises
     ------
     BadInput
@@ -383,7 +367,8 @@ def _basis(start: Array, resonance: Resonance, turning: float, merge: float) -> 
     """Return the eigenvectors, normed in the symplectic form, and the members of the resonance."""
     values, vectors = (item.astype(complex) for item in np.linalg.eig(start))
     fix = "choose other parameter values"
-    if np.linalg.cond(vectors) > _DEFECTIVE:
+    # Beyond this condition of the eigenvectors an exponent counts as defective.
+    if np.linalg.cond(vectors) > 1e8:
         reason = "a multiple exponent of the mean system"
         raise bad(resonance.label, reason, "a mean system away from divergence", fix)
     size = IMAGINARY * float(np.max(np.abs(values)))

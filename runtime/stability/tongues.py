@@ -30,19 +30,8 @@ Complex = NDArray[np.complex128]
 _EPS = float(np.finfo(float).eps)
 # Factor on either side of a resonance within which its like at other parameter values is sought.
 _NEAR = 3.0
-# The next two orders show the size of what is left out, not its exact amount.  Order 1 does not see
-# how neighbouring tongues that touch bend each other: there the error was up to 2.6 times that.
-_SAFETY, _SAFETY_FIRST = 2.0, 3.0
 # Distance of exponents that meet exactly, but for round-off.
 _EXACT = 1e-10
-# Growth without damping, over the size of the operator, that round-off makes.
-_NOISE = 1e-11
-# Values of the parameter at which the multipliers are looked at, and places at which the series is
-# asked whether a range is closed.
-_TESTED, _LOOKED = 3, 101
-# Distance of such a look from the ends, over the width, at the least, and the growth there over
-# that in the middle that an unstable range has at the least.
-_MARGIN, _GROWTH = 0.05, 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -363,7 +352,10 @@ class _Problem:
         places = [np.array([self._turned(e.high, at), self._turned(e.low, at)]) for e in ends]
         moved = max(float(np.max(np.abs(other - places[0]))) for other in places[1:])
         moved = moved if np.isfinite(moved) else np.inf
-        error = (_SAFETY_FIRST if self.order == 1 else _SAFETY) * moved + 64 * _EPS * abs(at)
+        # The next two orders show the size of what is left out, not its exact amount.  Order 1 does
+        # not see how neighbouring tongues that touch bend each other: there the error was up to 2.6
+        # times that.
+        error = (3.0 if self.order == 1 else 2.0) * moved + 64 * _EPS * abs(at)
         touching = first.low == first.high and first.low.imag == 0.0
         if not (first.open or touching):
             return np.nan, np.nan, False, np.nan
@@ -385,12 +377,13 @@ class _Problem:
                 centre = middle if np.isfinite(middle) else centre
                 out.append(ends)
             elif order >= self.order:
+                # Growth without damping, over the size of the operator, that round-off makes.
                 several = Several(
                     matrices,
                     operator.modes,
                     None if together else self.resonance.modes,
                     bool(lossless),
-                    0.0 if damped else _NOISE,
+                    0.0 if damped else 1e-11,
                 )
                 out.append(several.ends(centre, half))
         return out[-1 - BEYOND :]
@@ -466,7 +459,7 @@ class TongueChecks:
             speed = self.tongue.resonance.detuning == "speed"
             low, high = np.sort(at / (1 + sigma) if speed else at * (1 + sigma)).tolist()
             error = 0.0
-        within = np.linspace(low - error, high + error, _LOOKED)
+        within = np.linspace(low - error, high + error, 101)
         return np.concatenate([[(low + high) / 2], within])
 
     def _contradictions(self, place: int) -> tuple[int, int]:
@@ -475,14 +468,16 @@ class TongueChecks:
             float(item.ravel()[place])
             for item in (self.tongue.lower, self.tongue.upper, self.tongue.error)
         )
-        margin = max(3 * error, _MARGIN * (high - low))
+        # Looked at is a twentieth of the width from the ends, where the growth is at least a
+        # fiftieth of that in the middle.
+        margin = max(3 * error, 0.05 * (high - low))
         inner = np.array([low + margin, high - margin])
         modulus, doubt = self._modulus(place, np.array([low - margin, high + margin]))
         beyond = int(np.sum(modulus > 1 + doubt))
         if inner[0] > inner[1]:
             return 0, beyond
         top = np.abs(self._multipliers(place, np.array([(low + high) / 2]))).max()
-        middle = (top - 1) * _GROWTH
+        middle = (top - 1) * 0.02
         modulus, doubt = self._modulus(place, inner)
         return int(np.sum((modulus - 1 <= middle) & (doubt <= middle))), beyond
 
@@ -517,7 +512,7 @@ class TongueChecks:
 
 def _some(places: NDArray[np.intp]) -> list[int]:
     """Return an even sample of places."""
-    chosen = np.unique(np.linspace(0, len(places) - 1, _TESTED).round().astype(int))
+    chosen = np.unique(np.linspace(0, len(places) - 1, 3).round().astype(int))
     return [int(place) for place in places[chosen]]
 
 

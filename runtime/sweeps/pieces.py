@@ -77,15 +77,6 @@ class Grid:
 def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) -> Grid:
     """Return the grid of a sweep, cut into pieces of about ``chunk`` points.
 
-    Parameters
-    ----------
-    values : mapping
-        Values along each axis by name, the last one running fastest.
-    chunk : int
-        Wanted number of points of a piece.
-    rows : bool
-        Whether a piece keeps the last axis whole and at least two values of the one before it.
-
     Raises
     ------
     BadInput

@@ -22,8 +22,6 @@ FORMAT = 1
 # Angles by the golden section, at which functions of the angle are told apart.
 _ANGLES = 16
 _GOLDEN = 0.6180339887498949
-# Digits to which they are compared: of what another machine computes the last may differ.
-_DIGITS = 9
 
 
 class _Hash(Protocol):
@@ -38,19 +36,6 @@ def request_of(
     outputs: tuple[str, ...] | None,
 ) -> dict[str, Any]:
     """Return what a manifest says of a request: names, counts and digests, ready for JSON.
-
-    Parameters
-    ----------
-    task : str
-        Name of what is done at the points.
-    subject : object
-        What it is done with.
-    grid : Grid
-        The points and their pieces.
-    options : mapping
-        Further arguments.
-    outputs : tuple of str or None
-        Which arrays are kept.
 
     Raises
     ------
@@ -167,7 +152,8 @@ def _rounded(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
         return np.asarray(values, dtype=float)
     # A power of two: dividing by it loses nothing.
     unit = 2.0 ** np.ceil(np.log2(size))
-    return np.asarray(np.round(values / unit, _DIGITS) + 0.0)
+    # Digits to which they are compared: of what another machine computes the last may differ.
+    return np.asarray(np.round(values / unit, 9) + 0.0)
 
 
 def _feed_callable(found: _Hash, value: Callable[..., Any], inner: tuple[int, ...]) -> None:

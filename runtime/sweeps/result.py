@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 AnyArray = NDArray[Any]
-# Most points along an axis of a picture; of more, evenly chosen ones are drawn.
-_MOST_DRAWN = 1200
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +116,8 @@ class Sweep(Result):
             raise bad("Sweep.plot", f"{len(self.axes)} axes", "one or two", "use the outputs")
         name = self._drawn() if output is None else output
         ax = axes_or_new(ax)
-        thin = [slice(None, None, -(-len(v) // _MOST_DRAWN)) for v in self.axes.values()]
+        # Most points along an axis of a picture; of more, evenly chosen ones are drawn.
+        thin = [slice(None, None, -(-len(v) // 1200)) for v in self.axes.values()]
         values = [axis[part] for axis, part in zip(self.axes.values(), thin, strict=True)]
         shown = np.asarray(self[name][tuple(thin)])
         labels = list(self.axes)

@@ -201,13 +201,6 @@ class Store:
     def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Any) -> Joined:
         """Join the pieces, one by one through memory, and remove them.
 
-        Parameters
-        ----------
-        shapes : mapping
-            Of each array: what follows the axes of the grid, and the type.
-        found : Summary
-            What the manifest tells of error, checks and method.
-
         Raises
         ------
         BadInput

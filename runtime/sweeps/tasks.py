@@ -145,7 +145,7 @@ def _chart(
     options: Mapping[str, Any],
     outputs: Outputs,
 ) -> Piece:
-    from ..stability.charts.chart import stability_chart
+    from ..stability import stability_chart
 
     (y, along_y), (x, along_x) = axes.items()
     told = {"boundaries": False, **options}

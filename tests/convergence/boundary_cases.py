@@ -126,3 +126,13 @@ def slow(cases):
 def closes(name, n, share):
     """Drag closes the region at once where f has no such harmonic."""
     return n > 0 and SHARES[share] > 0.0 and not any(function(name).harmonic(n))
+
+
+def rest(names, regions, shares, without):
+    """Return every fifth of all cases: each function, region and damping with most others."""
+    cases = [case for case in whole(names, regions, shares) if not closes(*case)]
+    return [case for case in cases[::5] if case not in without]
+
+
+def slow1(names):
+    return [pytest.param(name, marks=pytest.mark.slow) for name in names]

@@ -17,12 +17,12 @@ from boundary_cases import (
     REGIONS,
     SHARES,
     SYMMETRIC,
-    closes,
     curve,
     doubles,
     function,
+    rest,
     slow,
-    whole,
+    slow1,
 )
 from boundary_truth import MP
 from elastolink.runtime.core.errors import BadInput
@@ -113,20 +113,13 @@ def all_orders(problem):
 
 
 FAST = [
-    *whole(("mixed",), (1, 2), SHARES),
-    *whole(("odd", "cosine"), (1, 3), ("undamped",)),
     ("mixed", 0, "undamped"),
-    ("(5,1,5,2)", 1, "undamped"),
+    ("mixed", 1, "damped"),
+    ("mixed", 2, "near critical"),
+    ("odd", 3, "undamped"),
+    ("cosine", 1, "undamped"),
 ]
-REST = [
-    case
-    for case in (
-        *whole(MIXED, (0, 1, 2, 3, 5), SHARES),
-        *whole(SYMMETRIC, (1, 2, 3), ("undamped", "near critical")),
-        *whole(LINKAGES, (1, 2), ("undamped", "damped")),
-    )
-    if case not in FAST and not closes(*case)
-]
+REST = rest((*MIXED, *SYMMETRIC, *LINKAGES), (0, 1, 2, 3, 5), SHARES, FAST)
 
 
 @pytest.mark.parametrize(("name", "n", "share"), [*FAST, *slow(REST)])
@@ -134,10 +127,12 @@ def test_one_parameter(name, n, share):
     all_orders(curve((function(name),), n, SHARES[share]))
 
 
-@pytest.mark.parametrize("share", ["undamped", "damped"])
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.slow if name == "three" else ()) for name in PARTS],
+    ("name", "share"),
+    [
+        ("even and odd", "undamped"),
+        *slow([("two mixed", "damped"), ("one harmonic each", "damped"), ("three", "undamped")]),
+    ],
 )
 def test_several_parameters(name, share):
     n = 1
@@ -145,7 +140,7 @@ def test_several_parameters(name, share):
         all_orders(curve(PARTS[name], n, SHARES[share], weights[: len(PARTS[name])], highest=6))
 
 
-@pytest.mark.parametrize("name", [*MIXED, *SYMMETRIC, *LINKAGES])
+@pytest.mark.parametrize("name", ["mixed", "odd", *slow1(("even", "sine", *LINKAGES))])
 def test_the_coefficients_of_the_series(name):
     """alpha_1 ... alpha_8 of both ends, within their own figures."""
     for n, share in product((0, *REGIONS), SHARES.values()):
@@ -165,8 +160,10 @@ def test_the_coefficients_of_the_series(name):
             assert np.all(gap <= figure)
 
 
-@pytest.mark.parametrize("name", PARTS)
-@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize(
+    ("name", "damped"),
+    [("even and odd", True), *slow([("two mixed", False), ("three", True)])],
+)
 def test_the_operator_coefficient_by_coefficient(name, damped):
     """A and B of degree 1 to 8 beside the exact ones, relative to the largest of their degree."""
     for n in (0, 1, 2, 5):

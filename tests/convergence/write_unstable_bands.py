@@ -10,7 +10,7 @@ import sys
 import elastolink as el
 import numpy as np
 from elastolink.runtime.periodic.decoupled import slow_system
-from elastolink.runtime.stability import StabilityEdges, unstable_bands
+from elastolink.runtime.stability import StabilityEdges, stability_edges
 
 WIDTHS = (1e-7, 1e-5, 1e-3)
 WIDEST = 10
@@ -24,7 +24,7 @@ def bands(elements: int, geometric_stiffness: bool, low: float, high: float) -> 
     system = el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
     slow = slow_system(system, (low / 1.05, high * 1.05))
     sys.stdout.write(f"{slow.modes} slow modes, known to {slow.error:.1e}\n")
-    return unstable_bands(slow, (low, high))
+    return stability_edges(slow, (low, high))
 
 
 def lines(found: StabilityEdges) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.stability.charts.invariants import characteristic
+from elastolink.runtime.stability.invariants import characteristic
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 from honesty import verdict
 

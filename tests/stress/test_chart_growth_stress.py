@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.charts.invariants import weighed_characteristic
+from elastolink.runtime.stability.invariants import weighed_characteristic
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 
 

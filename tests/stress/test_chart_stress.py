@@ -6,7 +6,8 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.charts import sampling, verdict
+from elastolink.runtime.stability import chart_sampling as sampling
+from elastolink.runtime.stability import verdict
 
 ONE, TWO = np.eye(1), np.eye(2)
 RIG = "smith_1972_5152_sixteenth_inch"

@@ -11,8 +11,8 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.hill.form import hill_form
 from elastolink.runtime.hill.perturbation import perturbation_boundaries
-from elastolink.runtime.stability.charts.edge_rows import edge_curves
-from elastolink.runtime.stability.charts.invariants import characteristic, instability_kind
+from elastolink.runtime.stability.chart import _edge_curves as edge_curves
+from elastolink.runtime.stability.invariants import characteristic, instability_kind
 
 RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = ("speed", np.linspace(40.0, 99.0, 31))
@@ -241,7 +241,7 @@ def test_rows_of_a_long_axis_are_nine(monkeypatch):
         seen.append(parameters["b"])
         raise el.BadInput("enough")
 
-    monkeypatch.setattr("elastolink.runtime.stability.charts.edge_rows.stability_edges", fake)
+    monkeypatch.setattr("elastolink.runtime.stability.edges.stability_edges", fake)
     with pytest.raises(el.BadInput, match="enough"):
         edge_curves(None, ("speed", "b"), (np.array([1.0, 2.0]), np.linspace(0.0, 1.0, 500)))
     assert seen == [0.0]

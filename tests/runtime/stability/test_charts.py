@@ -5,7 +5,7 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.stability.charts.invariants import characteristic, largest_modulus
+from elastolink.runtime.stability.invariants import characteristic, largest_modulus
 
 RIG = "smith_1972_5152_sixteenth_inch"
 SPEEDS = np.linspace(40.0, 99.0, 61)

@@ -9,19 +9,10 @@ import numpy as np
 import pytest
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.decoupled import slow_system
-from elastolink.runtime.stability import unstable_bands
+from elastolink.runtime.stability import stability_edges
 
 # Where to look for the widest band: spread over the range of speeds.
-PLACES = (
-    (23.5, 26.0),
-    (30.0, 32.0),
-    (36.0, 38.0),
-    (44.0, 45.0),
-    (52.2, 52.5),
-    (66.3, 66.5),
-    (72.3, 72.8),
-    (78.2, 78.3),
-)
+PLACES = ((24.4, 24.6), (44.0, 45.0), (66.3, 66.5), (78.2, 78.3))
 # Distance from the end, in widths of the band, at which the multipliers are looked at.
 BESIDE = 1e-2
 
@@ -56,15 +47,11 @@ def ends_by_all_modes(system, lower, upper, rtol):
     return np.array(ends), largest, np.array(gaps)
 
 
-@pytest.fixture(scope="module")
-def decoupled():
-    return slow_system(four_bar(False), (20.0 / 1.05, 80.0 * 1.05), 5)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("span", PLACES)
-def test_all_nine_freedoms_leave_the_circle_at_the_ends(decoupled, span):
-    bands = unstable_bands(decoupled, span)
+def test_all_nine_freedoms_leave_the_circle_at_the_ends(span):
+    slow = slow_system(four_bar(False), (span[0] / 1.02, span[1] * 1.02), 5)
+    bands = stability_edges(slow, span, margin=1.02)
     widest = int(np.nanargmax(bands.width))
     lower, upper = float(bands.lower[widest]), float(bands.upper[widest])
     width = upper - lower

@@ -6,7 +6,7 @@ import pytest
 from elastolink.runtime.frequencies.multiplier_maxima import multiplier_maxima
 from elastolink.runtime.periodic import floquet_multipliers, monodromy, reduced_system
 from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
-from elastolink.runtime.stability import unstable_bands
+from elastolink.runtime.stability import stability_edges
 
 SPAN = (71.0, 74.0)
 # The widest band below 75 rad/s: the first mode with itself.
@@ -29,7 +29,7 @@ def slow():
 
 @pytest.fixture(scope="module")
 def bands(slow):
-    return unstable_bands(slow, SPAN)
+    return stability_edges(slow, SPAN)
 
 
 def test_multipliers_are_on_the_circle_outside_the_bands(slow, bands):

@@ -6,7 +6,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
-from elastolink.runtime.stability.charts.invariants import from_sum, largest_modulus, surely_stable
+from elastolink.runtime.stability.invariants import from_sum, largest_modulus, surely_stable
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
 
 SPEEDS = np.linspace(500.0, 4000.0, 160)

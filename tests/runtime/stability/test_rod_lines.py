@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.periodic.equation import equation_of
-from elastolink.runtime.stability.charts.invariants import characteristic, from_sum, in_sum
-from elastolink.runtime.stability.charts.lines import Lines, is_mirrored
-from elastolink.runtime.stability.charts.sampling import Sampler
+from elastolink.runtime.stability.chart_lines import Lines, is_mirrored
+from elastolink.runtime.stability.chart_sampling import Sampler
+from elastolink.runtime.stability.invariants import characteristic, from_sum, in_sum
 from elastolink.runtime.systems.rod import (
     FreeFreeBasis,
     OverhangBasis,

@@ -34,7 +34,7 @@ def relative_widths(system, name, value, orders, frequency):
     """Return the measured widths over speed of ``2 w1 = n w``; NaN below what doubles resolve."""
     span = (2.0 * frequency / (orders[-1] + 0.5), 2.0 * frequency / (orders[0] - 0.5))
     found = tongue_curves(system, name, [value], span, highest=orders[-1], modes=1)
-    width, least = found.upper - found.lower, np.maximum(found.error, found.least)
+    width, least = found.upper - found.lower, found.error
     fine = np.where(width > 50.0 * least, 2.0 * width / (found.lower + found.upper), np.nan)
     rows = dict(zip(found.harmonic.tolist(), fine[:, 0], strict=True))
     return np.array([rows.get(n, np.nan) for n in orders])

@@ -11,9 +11,7 @@ from edge_truth import discriminant, region_of
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.stability.boundary_speeds import speed_boundaries
-from elastolink.runtime.stability.edges.over_parameter import trace_tongue
-from elastolink.runtime.stability.edges.tracing import stability_edges
+from elastolink.runtime.stability import speed_boundaries, stability_edges
 
 RIG = "smith_1972_5152_sixteenth_inch"
 LOW, HIGH = 1.0, 2.3
@@ -326,30 +324,6 @@ def test_one_mode_gives_its_principal_regions():
     np.testing.assert_allclose(np.sort(inside), ends, rtol=1e-12)
 
 
-def test_a_region_is_traced_over_a_parameter():
-    system = _pair(0.3)
-    found = stability_edges(system, (3.1, 3.5))
-    pulls = np.array([0.05, 0.1, 0.2, 0.4])
-    traced = trace_tongue(system, found, region_of(found, "sum", 1), "pull", pulls)
-    assert traced.passed, traced.checks
-    for k, pull in enumerate(pulls):
-        alone = stability_edges(_pair(pull), (3.1, 3.5))
-        at = region_of(alone, "sum", 1)
-        assert abs(traced.lower[k] - alone.lower[at]) < 1e-10
-        assert abs(traced.upper[k] - alone.upper[at]) < 1e-10
-    assert traced.label == "sum of 1 and 2, n = 1"
-    assert traced.plot().get_xlabel() == "crank speed [rpm]"
-
-
-def test_a_region_that_ends_is_a_gap_and_fails_its_check():
-    system = _pair(0.02, damping=(0.004, 0.004))
-    found = stability_edges(system, (3.2, 3.4))
-    traced = trace_tongue(system, found, region_of(found, "sum", 1), "c1", [0.004, 0.008, 0.3])
-    assert np.isfinite(traced.lower).tolist() == [True, True, False]
-    assert not traced.passed
-    assert traced.checks["found"].value == 1
-
-
 def test_result_draws_and_saves(tmp_path):
     found = stability_edges(_pair(0.3), (2.0, 5.0))
     assert found.plot().get_xlabel() == "crank speed [rpm]"
@@ -380,18 +354,3 @@ def test_bad_input_is_one_clear_line(arguments, word):
     with pytest.raises(BadInput, match=word) as caught:
         stability_edges(_pair(), **{"speed_range": (3.0, 4.0), **arguments})
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("index", "name", "values", "word"),
-    [
-        (99, "pull", [0.1], "index"),
-        (0, "nothing", [0.1], "name"),
-        (0, "pull", [0.2, 0.1], "values"),
-    ],
-)
-def test_bad_traces_are_refused(index, name, values, word):
-    system = _pair(0.3)
-    found = stability_edges(system, (3.1, 3.5))
-    with pytest.raises(BadInput, match=word):
-        trace_tongue(system, found, index, name, values)

@@ -9,8 +9,8 @@ import scipy.integrate
 import scipy.optimize
 from edge_truth import discriminant, region_of
 from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.stability import stability_edges
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
-from elastolink.runtime.stability.edges.tracing import stability_edges
 
 RIG = "smith_1972_5152_sixteenth_inch"
 

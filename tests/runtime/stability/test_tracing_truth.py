@@ -8,7 +8,7 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
-from elastolink.runtime.stability.edges.tracing import stability_edges
+from elastolink.runtime.stability import stability_edges
 
 SWAP = np.array([[0.0, 1.0], [1.0, 0.0]])
 NONE = np.zeros((2, 2))

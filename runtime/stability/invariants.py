@@ -8,26 +8,17 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import Array
-from ...hill import HillForm, discriminant
-from .hill_axes import leaves_function_alone
+from ..core.families import Array
+from ..hill import HillForm, discriminant
+from .chart_axes import leaves_function_alone
 
 # Round-off of coefficients and roots, relative to the largest coefficient.
 _ROUNDING = 32.0 * float(np.finfo(float).eps)
-# Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
-_REAL = 1e-6
-# Sums rho + 1/rho beyond which they are rho itself to round-off.
-_FAR = 1e8
-# Most modes whose reduced polynomial has a slope with roots in closed form.
-_CLOSED = 4
 # Values of the outer axis whose half traces are worked out together.
 _TOGETHER = 8
 
 Moduli = tuple[Array, NDArray[np.bool_], Array]
 _EPS = float(np.finfo(float).eps)
-# Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues do
-# better.
-_LOST = 1e-11
 
 
 def largest_modulus(
@@ -69,15 +60,7 @@ def largest_modulus(
 
 
 def known_to(coefficients: Array, error: Array) -> Array:
-    """Return the absolute error of each coefficient with round-off, ``(..., k)``.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., k)
-        As :func:`characteristic` returns them.
-    error : ndarray, shape (...) or (..., k)
-        Absolute error of all of them, or of each.
-    """
+    """Return the error of each coefficient with round-off, given for all of them or for each."""
     with np.errstate(over="ignore", invalid="ignore"):
         size = np.abs(coefficients)
         rough = np.max(size, axis=-1, initial=1.0, keepdims=True)
@@ -100,7 +83,8 @@ def _moduli(coefficients: Array, known: Array, reduced: bool) -> Moduli:
     # On the unit circle a coefficient enters by 2 cos, the middle one by 1.
     n = known.shape[-1]
     even = (2.0 * np.sum(known, axis=-1) - known[..., -1]) / (2 * n - 1)
-    if n <= _CLOSED:
+    # Most modes whose reduced polynomial has a slope with roots in closed form.
+    if n <= 4:
         stable, z = surely_stable(polynomial, even), None
     else:
         z = _roots(polynomial)
@@ -125,7 +109,8 @@ def _by_sums(z: NDArray[np.complex128], known: Array) -> Moduli:
     off = root_uncertainty(z, known)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         # Beyond 1e8 the square of z may overflow, and 4 is lost beside it.
-        far = np.abs(z) > _FAR
+        # Sums rho + 1/rho beyond which they are rho itself to round-off.
+        far = np.abs(z) > 1e8
         root = np.where(far, z / 2, np.sqrt(np.where(far, 0.0, z) ** 2 / 4 - 1 + 0j))
         # Of the pair rho, 1/rho the one without cancellation.
         modulus = np.maximum(np.maximum(np.abs(z / 2 + root), np.abs(z / 2 - root)), 1.0)
@@ -142,24 +127,9 @@ def _judged(modulus: Array, allowance: Array) -> Moduli:
 def instability_kind(
     coefficients: Array, stable: NDArray[np.bool_], *, hill: bool, reduced: bool
 ) -> NDArray[np.int8]:
-    """Return how unstable points are so, by the largest multiplier.
+    """Return 1 or -1 where the largest multiplier is real, 2 where complex, 0 where stable.
 
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., k)
-        As :func:`characteristic` returns them, or the half trace.
-    stable : ndarray of bool, shape (...)
-        Where not to look.
-    hill : bool
-        Whether they are half traces.
-    reduced : bool
-        Whether they are the first half of a palindromic polynomial.
-
-    Returns
-    -------
-    ndarray of int8, shape (...)
-        1 or -1 where the largest multiplier is real, 2 where it is complex, 0 where stable; where
-        it overflowed, by the sign of the sum of the multipliers; 0 where nothing is known.
+    Where it overflowed, by the sign of the sum of the multipliers; 0 where nothing is known.
     """
     out = np.zeros(stable.shape, dtype=np.int8)
     grown = ~np.all(np.isfinite(coefficients), axis=-1)
@@ -179,26 +149,17 @@ def instability_kind(
     else:
         rho = _roots(chosen)
     top = np.take_along_axis(rho, np.argmax(np.abs(rho), axis=-1)[..., None], axis=-1)[..., 0]
-    real = np.abs(top.imag) <= _REAL * np.abs(top)
+    # Relative imaginary part up to which a multiplier counts as real: round-off at a double one.
+    real = np.abs(top.imag) <= 1e-6 * np.abs(top)
     out[~stable] = np.where(real, np.where(top.real > 0, 1, -1), 2)
     return out
 
 
 def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
-    """Return how far each root of a monic polynomial moves with an error of the coefficients.
+    """Return how far each root of a monic polynomial moves with its coefficients' errors.
 
-    Parameters
-    ----------
-    roots : ndarray, shape (..., k)
-        The roots.
-    error : ndarray, shape (..., k)
-        Absolute error of each coefficient, the highest power first.
-
-    Returns
-    -------
-    ndarray, shape (..., k)
-        For a root alone the error of the polynomial over its slope; within a cluster of r roots
-        the r-th root of the error over the distances to the others; the smallest figure, doubled.
+    Of a root alone the error of the polynomial over its slope; within a cluster of r roots the r-th
+    root of the error over the distances to the others; the smallest, doubled.
     """
     k = roots.shape[-1]
     with np.errstate(over="ignore", invalid="ignore"):
@@ -215,18 +176,7 @@ def root_uncertainty(roots: NDArray[np.complex128], error: Array) -> Array:
 
 
 def in_sum(coefficients: Array) -> Array:
-    """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (..., n)
-        ``c_1 ... c_n``, as :func:`characteristic` returns them for symplectic matrices.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-        ``a_1 ... a_n`` of ``z^n + a_1 z^(n-1) + ...``, z = rho + 1/rho.
-    """
+    """Turn ``1, c_1 ... c_n ... c_1, 1`` in rho into a monic polynomial in ``rho + 1/rho``."""
     weights = _sum_weights(coefficients.shape[-1])
     polynomial: Array = coefficients @ weights[1:] + weights[0]
     return polynomial
@@ -285,20 +235,7 @@ def half_traces(
     tick: Callable[[int], None] | None,
     run: Callable[[Iterable[tuple[int, Array, Array]]], Iterable[tuple[int, tuple[Array, Array]]]],
 ) -> tuple[Array, Array]:
-    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny).
-
-    Parameters
-    ----------
-    outer : int
-        Which axis is the outer loop.
-    x, y : ndarray, shapes (nx,), (ny,)
-        Values along the axes.
-    tick : callable or None
-        Told how many points are done.
-    run : callable
-        From groups of values of the outer axis, as :func:`half_trace_rows` takes them, to the
-        number of a group and what that returns, in any order.
-    """
+    """Return the half traces of one mode on a grid, shape ``(1, nx, ny)``, and errors (nx, ny)."""
     axes = (x, y)
     starts = range(0, len(axes[outer]), _TOGETHER)
     values = np.empty((len(axes[outer]), len(axes[1 - outer])))
@@ -324,21 +261,6 @@ def half_trace_rows(
 
     A row shares one function f where the inner axis is the speed or acts on the constant stiffness
     alone.
-
-    Parameters
-    ----------
-    form : HillForm
-        The mode.
-    names : tuple of str
-        The axes.
-    outer : int
-        Which of them ``fixed`` belongs to.
-    fixed, along : ndarray, shapes (no,), (ni,)
-        Values along both.
-
-    Returns
-    -------
-    values, errors : ndarray, shape (no, ni)
     """
     inner = 1 - outer
     rows = []
@@ -388,22 +310,6 @@ def weighed_characteristic(
     Faddeev and LeVerrier: ``B_k = X B_(k-1) + c_k``, ``c_k = -tr(X B_(k-1)) / k``.  Its round-off
     grows like powers of X, and where too much of a coefficient would be lost the polynomial is
     made from the eigenvalues instead.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (..., m, m)
-        The matrices X.
-    wanted : int
-        How many coefficients.
-    change : ndarray, shape (...), optional
-        Size of a change of X, by default that of X itself.
-
-    Returns
-    -------
-    coefficients : ndarray, shape (..., wanted)
-        ``c_1, c_2, ...``
-    weight : ndarray, shape (..., wanted)
-        How far such a change moves each, at first order: ``dc_k = -tr(B_(k-1) dX)``; at least 1.
     """
     m = matrices.shape[-1]
     found, weight = [], []
@@ -423,7 +329,9 @@ def weighed_characteristic(
             power = product + coefficient[..., None, None] * np.eye(m)
         coefficients = np.stack(found, axis=-1)
         top = np.maximum(np.max(np.abs(coefficients), axis=-1), 1.0)
-        lost = (worst > _LOST * top) & np.all(np.isfinite(coefficients), axis=-1)
+        # Round-off of the recursion, over the coefficients where beyond 1, from which eigenvalues
+        # do better.
+        lost = (worst > 1e-11 * top) & np.all(np.isfinite(coefficients), axis=-1)
     if np.any(lost):
         coefficients[lost] = _from_eigenvalues(matrices[lost], wanted)
     return coefficients, np.stack(weight, axis=-1)
@@ -456,19 +364,6 @@ def surely_stable(
     A polynomial of degree n that changes sign n times between -2 and 2 has n roots there.  It is
     tried at the ends and at places between its roots; how well those are chosen is of no matter
     to the proof.
-
-    Parameters
-    ----------
-    polynomial : ndarray, shape (..., n)
-        ``a_1 ... a_n`` of ``z^n + a_1 z^(n-1) + ...``, z = rho + 1/rho.
-    error : ndarray, shape (...)
-        Absolute error of each coefficient of the characteristic polynomial in rho.
-    between : ndarray, shape (..., n - 1), optional
-        Places to try, rising; by default those where the slope vanishes, which needs n <= 4.
-
-    Returns
-    -------
-    ndarray of bool, shape (...)
     """
     n = polynomial.shape[-1]
     if between is None and n > 4:

@@ -1,25 +1,73 @@
-"""Checks of unstable regions against Floquet multipliers inside, between and beside them."""
+"""Unstable regions along the speed, and their checks against Floquet multipliers."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import LinearPeriodic
-from ...core.results import Check
-from ...periodic import FloquetMultipliers, floquet_multipliers
-from .regions import Regions
+from ..core.families import LinearPeriodic
+from ..core.results import Check
+from ..periodic import FloquetMultipliers, floquet_multipliers
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 64
 # Growth, over its error, from which a verdict tells, and the part of it that must be found.
 _TELLING, _PART = 20.0, 0.1
 # Share of the way to the next end at which an end is looked at.
 _BESIDE = 0.01
+
+
+@dataclass(frozen=True)
+class Regions:
+    """Regions with their ends and labels, see :class:`~.edges.StabilityEdges`.
+
+    ``begin`` and ``end`` are as far as the region is known to reach: its ends where it has them,
+    else the last speed at which it was seen.
+    """
+
+    lower: Array
+    upper: Array
+    error: Array
+    multiplier: NDArray[np.complex128]
+    modes: NDArray[np.int64]
+    harmonic: NDArray[np.int64]
+    detuning: Array
+    begin: Array
+    end: Array
+    kind: tuple[str, ...]
+
+    @property
+    def middle(self) -> Array:
+        """Middle of each, or the one end that there is, or of where it was seen."""
+        low = np.where(np.isfinite(self.lower), self.lower, self.upper)
+        high = np.where(np.isfinite(self.upper), self.upper, self.lower)
+        seen = 0.5 * (self.begin + self.end)
+        value: Array = np.where(np.isfinite(low + high), 0.5 * (low + high), seen)
+        return value
+
+    def take(self, index: NDArray[np.intp]) -> Regions:
+        """Return some of the regions, in the order given."""
+        values = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "kind"}
+        kind = tuple(self.kind[i] for i in index)
+        return Regions(**{name: value[index] for name, value in values.items()}, kind=kind)
+
+    def overlapping(self, low: float, high: float) -> Regions:
+        """Return those that reach into a range, by rising speed."""
+        kept = np.flatnonzero((self.end >= low) & (self.begin <= high))
+        return self.take(kept[np.argsort(self.middle[kept], kind="stable")])
+
+
+def joined(first: Regions, second: Regions) -> Regions:
+    """Return the regions of both."""
+    names = [f.name for f in fields(Regions) if f.name != "kind"]
+    both = {n: np.concatenate([getattr(first, n), getattr(second, n)]) for n in names}
+    return Regions(**both, kind=first.kind + second.kind)
+
+
+# ---------------------------------------------------------------- checks
 
 
 def edge_checks(
@@ -28,19 +76,7 @@ def edge_checks(
     span: tuple[float, float],
     parameters: Mapping[str, float],
 ) -> dict[str, Check]:
-    """Return ``verdicts`` and ``samples``, each a number of contradictions.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system, damped or not.
-    regions : Regions
-        By rising speed.
-    span : pair of float
-        The range [rad/s].
-    parameters : mapping
-        Parameter values that replace the system's own.
-    """
+    """Return ``verdicts`` and ``samples``, each a number of contradictions."""
     samples, verdicts = contradictions(system, regions, span, parameters)
     return {
         "samples": Check(float(len(samples)), 0.0),
@@ -57,7 +93,7 @@ def contradictions(
     """Return the speeds that :func:`edge_checks` counts: of even samples, and of verdicts."""
     begin, end = np.maximum(regions.begin, span[0]), np.minimum(regions.end, span[1])
     regions = replace(regions, begin=begin, end=end)
-    speeds = np.linspace(*span, _SAMPLES)
+    speeds = np.linspace(*span, 64)
     found = floquet_multipliers(system, speeds, **parameters)
     missed = speeds[~_covered(regions, speeds) & _grows(found)]
     # Deep inside a region something grows.

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core.families import Array
-from ...core.plotting import axes_or_new
+from ..core.families import Array
+from ..core.plotting import axes_or_new
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .boundaries import BoundaryCurves
-    from .chart import StabilityChart
-    from .edge_rows import EdgeCurves
+    from .chart import EdgeCurves, StabilityChart
+    from .chart_boundaries import BoundaryCurves
 
 _RPM = 60.0 / (2.0 * np.pi)
 _LABELS = {

@@ -2,34 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.errors import bad
-from ...core.families import DAMPING, LinearPeriodic
-from ...core.inputs import numbers, speed_span
-from ...core.results import Result, provenance
-from ...periodic import floquet_multipliers
-from ...periodic.equation import at_geometry
-from ...periodic.first_order import canonical_form
-from ..boundary_speeds import SpeedBoundaries, speed_boundaries
-from .checks import edge_checks
+from ..core.errors import bad
+from ..core.families import DAMPING, LinearPeriodic
+from ..core.inputs import numbers, speed_span
+from ..core.results import Check, Result, provenance
+from ..periodic import floquet_multipliers
+from ..periodic.decoupled.reduced import SlowSystem
+from ..periodic.equation import at_geometry
+from ..periodic.first_order import canonical_form
+from .boundary_speeds import SpeedBoundaries, speed_boundaries
 from .crossings import damped_regions, mended
-from .mode_labels import (
+from .labels import (
     Modes,
     averaged_modes,
     boundary_units,
+    held_modes,
     meeting_labels,
+    pair_shares,
+    principal_labels,
     unit_labels,
-    whole_range_labels,
 )
-from .pair_roots import Edges, PairFunction, refined_edges
-from .phase_events import Events, meetings, sampled_phases
-from .regions import Regions, joined
+from .over_speed import MatricesOverSpeed
+from .pairs import Edges, Events, Samples, meetings, refined_edges, sampled_phases
+from .regions import Regions, edge_checks, joined
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,12 +39,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
-Described = Callable[[Array, ComplexArray], tuple[Modes, Array]]
 
 # Relative width from which a tongue gets samples of its own on either side.
 _WIDE = 1e-6
 # Sine of the argument up to which two multipliers meet at +-1.
-REAL = 1e-4
+_REAL = 1e-4
+_GAP = "multiplier +-1, and gap of multipliers of opposite Krein signature"
 _RPM = 30.0 / np.pi
 _CLOSED = "closed: too narrow to be told from none"
 _COLOURS = {"principal": "#c05a1f", "sum": "#6b3d8f", "difference": "#2b7a78"}
@@ -121,11 +123,11 @@ class StabilityEdges(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the regions as bars over the speed, one row for each pair of modes."""
-        return draw_edges(self, ax)
+        return _draw(self, ax)
 
 
 def stability_edges(
-    system: LinearPeriodic,
+    system: LinearPeriodic | SlowSystem,
     speed_range: tuple[float, float],
     *,
     rtol: float = 1e-11,
@@ -144,8 +146,12 @@ def stability_edges(
 
     Parameters
     ----------
-    system : LinearPeriodic
-        Conservative but for damping.
+    system : LinearPeriodic or SlowSystem
+        Conservative but for damping.  Of a stiff system the slow modes alone, see
+        :func:`~elastolink.runtime.periodic.decoupled.slow_system`: principal regions are found from
+        the multipliers too then, labels from the modes with the crank held.  Regions in which a
+        mode that was left out takes part are not looked for: their harmonics are the gap over the
+        speed and more.
     speed_range : pair of float
         Lowest and highest speed [rad/s], the lowest positive.
     rtol : float
@@ -166,7 +172,8 @@ def stability_edges(
         regions do not grow as their width promises, and at how many places beside and between ends
         not as many multipliers grow as regions cover them; ``samples``, how
         many of 64 speeds are unstable outside all regions or stable well inside one; those of
-        :func:`speed_boundaries` are of the undamped system.
+        :func:`speed_boundaries` are of the undamped system; ``decoupled`` is the relative error of
+        the exponents of slow modes, which the errors contain.
 
     Raises
     ------
@@ -178,9 +185,17 @@ def stability_edges(
     rtol, margin = (_number(name, value) for name, value in (("rtol", rtol), ("margin", margin)))
     if not 1e-13 <= rtol <= 1e-6:
         raise bad("rtol", rtol, "a number from 1e-13 to 1e-6", "choose 1e-11")
-    system, values = at_geometry(system, parameters)
-    parameters = {name: float(numbers(name, value)) for name, value in values.items()}
-    form = canonical_form(system, low, parameters)
+    if not 1.0 < margin <= 10.0:
+        raise bad("margin", margin, "a factor between 1 and 10", "leave it out")
+    span = (low / margin, high * margin)
+    slow = None
+    if isinstance(system, SlowSystem):
+        slow, system = system, system.system
+        span = _within(slow, (low, high), span, parameters)
+    else:
+        system, values = at_geometry(system, parameters)
+        parameters = {name: float(numbers(name, value)) for name, value in values.items()}
+    damped = canonical_form(system, low, parameters).damped
     sharp = system.without(*DAMPING)
     if not canonical_form(sharp, low, parameters).conservative:
         raise bad(
@@ -189,23 +204,26 @@ def stability_edges(
             "a system conservative but for damping",
             "use floquet_multipliers or stability_chart",
         )
-    if form.damped:
+    if damped:
         _check_damping(system, parameters)
-    if not 1.0 < margin <= 10.0:
-        raise bad("margin", margin, "a factor between 1 and 10", "leave it out")
-    span = (low / margin, high * margin)
-    ends = speed_boundaries(sharp, (1, -1), speed_range=span, harmonics=None, **parameters)
-    regions, least = _undamped(sharp, ends, span, rtol, parameters, whole=not form.damped)
-    checks = dict(ends.checks)
-    if form.damped:
-        regions = damped_regions(system, regions, span, rtol, parameters)
+    matrices = MatricesOverSpeed(sharp, span, parameters, rtol)
+    checks: dict[str, Check] = {}
+    if slow is None:
+        ends = speed_boundaries(sharp, (1, -1), speed_range=span, **parameters)
+        checks.update(ends.checks)
+        regions, least = _undamped(matrices, _bounded(matrices, ends, span), span, whole=not damped)
+    else:
+        regions, least = _undamped(matrices, None, span, whole=not damped)
+        checks["decoupled"] = Check(slow.error, 1e-3)
+    if damped:
+        matrices = MatricesOverSpeed(system, span, parameters, rtol)
+        regions = damped_regions(matrices, regions, span)
     regions = regions.overlapping(low, high)
     checks.update(edge_checks(system, regions, (low, high), parameters))
     return StabilityEdges(
-        method="modulus 1 of a multiplier"
-        if form.damped
-        else "multiplier +-1, and gap of multipliers of opposite Krein signature",
-        error=regions.error,
+        method=("modulus 1 of a multiplier" if damped else _GAP)
+        + (" of the slow modes" if slow is not None else ""),
+        error=regions.error + (0.0 if slow is None else slow.error * regions.end),
         error_norm="absolute, of either end [rad/s]",
         checks=checks,
         provenance=provenance(system.changed_provenance(**parameters)),
@@ -219,6 +237,27 @@ def stability_edges(
         least_width=least,
         speed_range=(low, high),
     )
+
+
+def _within(
+    slow: SlowSystem,
+    wanted: tuple[float, float],
+    span: tuple[float, float],
+    parameters: Mapping[str, float],
+) -> tuple[float, float]:
+    """Return the part of a range that slow modes hold for."""
+    if parameters:
+        fix = "give them to slow_system"
+        raise bad("parameters", sorted(parameters), "none beside a SlowSystem", fix)
+    low, high = slow.speed_range
+    if wanted[0] < low or wanted[1] > high:
+        raise bad(
+            "speed_range",
+            f"{wanted[0]:.4g} to {wanted[1]:.4g} rad/s",
+            f"speeds within {low:.4g} to {high:.4g} rad/s",
+            "make the slow system for a wider range",
+        )
+    return max(span[0], low), min(span[1], high)
 
 
 def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> None:
@@ -236,108 +275,154 @@ def _check_damping(system: LinearPeriodic, parameters: Mapping[str, float]) -> N
 
 
 def _number(name: str, value: object) -> float:
-    found = numbers(name, value)
-    if found.ndim:
+    number = numbers(name, value)
+    if number.ndim:
         raise bad(name, value, "one number", "leave it out")
-    return float(found)
+    return float(number)
 
 
 def _undamped(
-    system: LinearPeriodic,
-    ends: SpeedBoundaries,
-    span: tuple[float, float],
-    rtol: float,
-    parameters: Mapping[str, float],
-    *,
-    whole: bool,
+    matrices: MatricesOverSpeed, bounded: Regions | None, span: tuple[float, float], *, whole: bool
 ) -> tuple[Regions, float]:
     """Return the regions of a conservative system and the width they were searched down to.
 
+    ``bounded`` are the principal regions; without them they too are found from pairs that meet.
     Where not ``whole``, as places and labels of damped ones, those of single pairs are enough.
     """
-    principal = _principal(system, ends, span, parameters)
-    if system.size == 1:
-        return principal, float(np.max(principal.error, initial=0.0))
+    least = np.zeros(0)
+    if bounded is None:
+        samples = sampled_phases(matrices, span, np.zeros(0))
+        events = meetings(samples, principal=True)
+        edges = refined_edges(matrices, events)
+        principal, least = _met(matrices, events, edges), edges.least
+    elif matrices.system.size == 1:
+        return bounded, float(np.max(bounded.error, initial=0.0))
+    else:
+        principal, samples = bounded, _samples_beside(matrices, bounded, span)
+    events = meetings(samples)
+    edges = refined_edges(matrices, events)
+    combined = _combined(matrices, events, edges, held=bounded is None)
+    # A pair that leaves the circle at +-1 belongs to a principal region.
+    usable = np.abs(np.sin(edges.phase)) > _REAL
+    if whole:
+        near = [principal.lower, principal.upper, edges.lower, edges.upper, events.inside]
+        combined = mended(matrices, combined, usable, span, np.concatenate(near))
+    else:
+        combined = combined.take(np.flatnonzero(usable))
+    least = np.concatenate([least, edges.least[usable]])
+    return joined(principal, combined), float(np.max(least, initial=0.0))
+
+
+def _samples_beside(
+    matrices: MatricesOverSpeed, principal: Regions, span: tuple[float, float]
+) -> Samples:
+    """Return the phases over a range, sampled too on either side of principal regions."""
     with np.errstate(invalid="ignore"):
         wide = ~(principal.upper - principal.lower <= _WIDE * principal.middle)
     beside = np.concatenate(
         [principal.lower[wide] * (1 - 0.1 * _WIDE), principal.upper[wide] * (1 + 0.1 * _WIDE)]
     )
     # A missing end is NaN, which is in no range.
-    beside = beside[(beside > span[0]) & (beside < span[1])]
-    events = meetings(sampled_phases(system, span, parameters, rtol, beside))
-    edges = refined_edges(PairFunction(system, parameters, rtol), events)
-    combined = combined_regions(system, events, edges, parameters)
-    near = np.concatenate(
-        [principal.lower, principal.upper, edges.lower, edges.upper, events.inside]
+    return sampled_phases(matrices, span, beside[(beside > span[0]) & (beside < span[1])])
+
+
+def _reached(edges: Edges, reach: Array) -> tuple[Array, Array, Array]:
+    """Return the middle of each region, and how far it is known to reach."""
+    lower, upper = edges.lower, edges.upper
+    inner = np.mean(reach, axis=1)
+    return (
+        np.where(np.isfinite(lower + upper), 0.5 * (lower + upper), inner),
+        np.where(np.isfinite(lower), lower, reach[:, 0]),
+        np.where(np.isfinite(upper), upper, reach[:, 1]),
     )
-    # A pair that leaves the circle at +-1 belongs to a principal region.
-    usable = np.abs(np.sin(edges.phase)) > REAL
-    if whole:
-        combined = mended(system, combined, usable, (span, near), rtol, parameters)
-    else:
-        combined = combined.take(np.flatnonzero(usable))
-    return joined(principal, combined), float(np.max(edges.least[usable], initial=0.0))
 
 
-def combined_regions(
-    system: LinearPeriodic,
-    events: Events,
-    edges: Edges,
-    parameters: Mapping[str, float],
-    described: Described | None = None,
-) -> Regions:
+def _combined(matrices: MatricesOverSpeed, events: Events, edges: Edges, *, held: bool) -> Regions:
     """Return the combination regions in which pairs meet, with labels.
 
-    ``described`` takes speeds and multipliers, and returns modes and how much of the motion each
-    has; without it, frequencies and phases of the averaged equation alone decide.
+    With ``held`` from modes with the crank held and how much of the motion each has; else from
+    frequencies and phases of the averaged equation alone.
     """
-    lower, upper, phase = edges.lower, edges.upper, edges.phase
-    inner = np.mean(events.reach, axis=1)
-    middle = np.where(np.isfinite(lower + upper), 0.5 * (lower + upper), inner)
-    shares: Array | None = None
-    if described is None:
-        modes = averaged_modes(system, middle, parameters)
-    else:
-        modes, shares = described(middle, np.exp(1j * phase))
+    middle, begin, end = _reached(edges, events.reach)
+    phase = edges.phase
+    modes, shares = _described(matrices, middle, np.exp(1j * phase), held=held)
     pair, harmonic, off = meeting_labels(modes, phase, phase, shares)
     rows = np.arange(len(middle))
     signs = [np.sign(modes.turns[rows, pair[:, c] - 1]) for c in (0, 1)] if len(middle) else [rows]
     kind = tuple(
         "sum" if a == b else "difference" for a, b in zip(signs[0], signs[-1], strict=True)
     )
+    turn = np.exp(1j * np.abs(phase))
     return Regions(
-        lower,
-        upper,
-        edges.error,
-        np.exp(1j * np.abs(phase)),
-        pair,
-        np.abs(harmonic),
-        off,
-        np.where(np.isfinite(lower), lower, events.reach[:, 0]),
-        np.where(np.isfinite(upper), upper, events.reach[:, 1]),
-        kind,
+        edges.lower, edges.upper, edges.error, turn, pair, np.abs(harmonic), off, begin, end, kind
     )
 
 
-def _principal(
-    system: LinearPeriodic,
-    found: SpeedBoundaries,
-    span: tuple[float, float],
-    parameters: Mapping[str, float],
+def _described(
+    matrices: MatricesOverSpeed, speed: Array, met: ComplexArray, *, held: bool
+) -> tuple[Modes, Array | None]:
+    """Return modes at speeds, and how much of the motion at multipliers each has."""
+    if not held:
+        return averaged_modes(matrices.system, speed, matrices.parameters), None
+    modes = held_modes(matrices.system, speed)
+    return modes, pair_shares(matrices, modes, speed, met)
+
+
+def _met(matrices: MatricesOverSpeed, events: Events, edges: Edges) -> Regions:
+    """Return the principal regions, in which a mode's own two multipliers meet, with labels."""
+    kept = _single(edges, np.flatnonzero(np.abs(np.sin(edges.phase)) <= np.sqrt(_REAL)))
+    middle, begin, end = (values[kept] for values in _reached(edges, events.reach))
+    real = np.where(np.cos(edges.phase[kept]) > 0, 1.0, -1.0)
+    modes, shares = _described(matrices, middle, real.astype(complex), held=True)
+    lack = np.zeros_like(modes.turns) if shares is None else 1.0 - shares
+    mode, number, off = principal_labels(modes.turns, real, lack)
+    return Regions(
+        edges.lower[kept],
+        edges.upper[kept],
+        edges.error[kept],
+        real.astype(complex),
+        np.stack([mode, mode], axis=1),
+        number,
+        off,
+        begin,
+        end,
+        ("principal",) * len(kept),
+    )
+
+
+def _single(edges: Edges, index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the numbers of regions without those open ones that another event has led to too."""
+    kept: list[int] = []
+    for row in index.tolist():
+        ends = edges.lower[row], edges.upper[row]
+        slack = 4 * (edges.error[row] + np.finfo(float).eps * edges.upper[row])
+        same = [
+            i
+            for i in kept
+            if abs(edges.lower[i] - ends[0]) <= slack and abs(edges.upper[i] - ends[1]) <= slack
+        ]
+        if not same or not ends[1] - ends[0] > 2 * slack:
+            kept.append(row)
+    return np.array(kept, dtype=np.intp)
+
+
+def _bounded(
+    matrices: MatricesOverSpeed, boundaries: SpeedBoundaries, span: tuple[float, float]
 ) -> Regions:
     """Return the regions between pairs of boundaries with multiplier +-1."""
-    modes = averaged_modes(system, found.speed, parameters)
-    units = boundary_units(system, modes, found, parameters)
-    mode, number, off = unit_labels(modes, found, units)
+    system, parameters = matrices.system, matrices.parameters
+    modes = averaged_modes(system, boundaries.speed, parameters)
+    units = boundary_units(system, modes, boundaries, parameters)
+    mode, number, off = unit_labels(modes, boundaries, units)
     ends, error = np.full((2, len(units)), np.nan), np.zeros(len(units))
     multiplier = np.zeros(len(units), dtype=complex)
     for column, unit in enumerate(units):
         for side, row in enumerate(unit):
             if row >= 0:
-                ends[side, column], multiplier[column] = found.speed[row], found.multiplier[row]
-                error[column] = max(error[column], found.error[row])
-    bounded = Regions(
+                ends[side, column] = boundaries.speed[row]
+                multiplier[column] = boundaries.multiplier[row]
+                error[column] = max(error[column], boundaries.error[row])
+    regions = Regions(
         ends[0],
         ends[1],
         error,
@@ -349,27 +434,25 @@ def _principal(
         np.where(np.isfinite(ends[1]), ends[1], span[1]),
         ("principal",) * len(units),
     )
-    return joined(bounded, _endless(system, found, span, parameters))
+    return joined(regions, _endless(matrices, boundaries, span))
 
 
 def _endless(
-    system: LinearPeriodic,
-    found: SpeedBoundaries,
-    span: tuple[float, float],
-    parameters: Mapping[str, float],
+    matrices: MatricesOverSpeed, boundaries: SpeedBoundaries, span: tuple[float, float]
 ) -> Regions:
     """Return principal regions in which all of the range lies, for multipliers without boundary."""
+    system, parameters = matrices.system, matrices.parameters
     middle = np.array([0.5 * (span[0] + span[1])])
     values = floquet_multipliers(system, middle, **parameters)
     real = np.abs(values.multipliers.imag) <= 4 * values.error
     count = {}
     for sign in (1, -1):
         beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
-        own = 0 if np.any(found.multiplier == sign) else int(np.sum(real & beyond))
-        count[sign] = own
+        count[sign] = 0 if np.any(boundaries.multiplier == sign) else int(np.sum(real & beyond))
     turn = np.repeat(np.array([1, -1]), [count[1], count[-1]])
-    mode, number, off = whole_range_labels(averaged_modes(system, middle, parameters), turn)
     k = len(turn)
+    turns = np.repeat(averaged_modes(system, middle, parameters).turns, k, axis=0)
+    mode, number, off = principal_labels(turns, turn, np.zeros_like(turns))
     return Regions(
         np.full(k, np.nan),
         np.full(k, np.nan),
@@ -384,9 +467,9 @@ def _endless(
     )
 
 
-def draw_edges(found: StabilityEdges, ax: Axes | None) -> Axes:
+def _draw(found: StabilityEdges, ax: Axes | None) -> Axes:
     """Draw each region as a bar, closed ones as a grey dot, one row for each pair of modes."""
-    from ...core.plotting import axes_or_new
+    from ..core.plotting import axes_or_new
 
     ax = axes_or_new(ax)
     low, high = (speed * _RPM for speed in found.speed_range)

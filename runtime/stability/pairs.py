@@ -1,6 +1,7 @@
-"""Edges of one tongue each, many at once: the gap of two multipliers, smooth through the edge.
+"""Meetings of two multipliers on the unit circle, and the edges of the regions that they open.
 
-For two multipliers r and s that meet on the unit circle,
+Multipliers are sampled over the speed and told apart by their Krein signatures; where two of
+opposite signature meet, r and s,
 
     g = 2 - r/s - s/r = -(r - s)^2 / (r s)
 
@@ -10,27 +11,235 @@ speed, while their moduli start with a square root.  Near a narrow tongue it is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import LinearPeriodic
-from ...periodic import monodromy
-from ...periodic.multipliers import conditions
-from ...periodic.signatures import form_matrix
-from .phase_events import Events
+from ..core.errors import bad
+from ..periodic.first_order import canonical_form
+from ..periodic.multipliers import conditions
+from ..periodic.signatures import form_matrix, signatures_of
+from .over_speed import MatricesOverSpeed
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
+Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
+_MOST_SAMPLES = 40_000
 _TOGETHER = 256
-_ROUNDS = 40
+# How far a sum of phases may lie from a whole turn where the multipliers are taken for locked.
+_LOCKED = 1e-4
+_TURN_ROUND = 2.0 * np.pi
 # Sign of the form, over the unit vector, from which it tells the two multipliers apart.
 _TELLING = 1e-5
+
+
+@dataclass(frozen=True)
+class Events:
+    """Meetings of multipliers, each between two sampled speeds; arrays of shape ``(k,)``.
+
+    Attributes
+    ----------
+    low, high : ndarray
+        Speeds on either side, where the pair is apart; NaN where the range ends first, or where
+        one of the two is then at +-1 and off the circle.
+    inside : ndarray
+        A sampled speed where the pair was found off the circle or not told apart; NaN where none.
+    reach : ndarray, shape (k, 2)
+        First and last sampled speed inside, or low and high where there is none.
+    plus, minus : ndarray, shape (k, 2)
+        Arguments of the multipliers of positive and of negative signature at low and high.
+    """
+
+    low: Array
+    high: Array
+    inside: Array
+    reach: Array
+    plus: Array
+    minus: Array
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Lifted arguments of the multipliers of positive signature over the speed.
+
+    Attributes
+    ----------
+    speed : ndarray, shape (ns,)
+        Rising.
+    phase : ndarray, shape (ns, n)
+        Followed from sample to sample; up to a whole number of turns.
+    open : ndarray of bool, shape (ns, n)
+        True where the multiplier is off the circle or its signature open.
+    """
+
+    speed: Array
+    phase: Array
+    open: Flags
+
+
+def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Array:
+    """Return speeds from one to the next of which no mode turns far, and further ones, rising.
+
+    Raises
+    ------
+    BadInput
+        If the range needs more than 40 000 of them.
+    """
+    low, high = span
+    system = matrices.system
+    ends = canonical_form(system, np.array([low, high]), matrices.parameters)
+    # From one sample to the next the fastest mode turns by 0.3 rad.
+    fastest = float(np.max(ends.rate * ends.speed))
+    count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / 0.3)) + 2
+    if count > _MOST_SAMPLES:
+        raise bad(
+            "speed_range",
+            f"a lowest speed of {low:.4g} rad/s, which needs {count} samples",
+            f"at most {_MOST_SAMPLES}",
+            "raise the lowest speed or leave out the highest modes",
+        )
+    # Phases grow with the inverse speed.
+    even = 1.0 / np.linspace(1 / low, 1 / high, max(count, 8))
+    speed: Array = np.unique(np.concatenate([even, more]))
+    return speed
+
+
+def sampled_phases(matrices: MatricesOverSpeed, span: tuple[float, float], more: Array) -> Samples:
+    """Return the phases of a conservative system over a range of speeds, and at ``more`` of them.
+
+    Raises
+    ------
+    BadInput
+        If the range needs more than 40 000 samples, or the growth in a turn overflows.
+    """
+    speed = phase_grid(matrices, span, more)
+    phases, flags = [], []
+    for start in range(0, len(speed), _TOGETHER):
+        scaled, error = matrices(speed[start : start + _TOGETHER])
+        if not np.all(np.isfinite(scaled)):
+            raise bad(
+                "speed_range",
+                "growth beyond double precision within a turn",
+                "speeds of moderate growth",
+                "raise the lowest speed",
+            )
+        for values, signs in zip(*_signed(scaled, error), strict=True):
+            angle, undecided = _positive(np.angle(values), signs)
+            phases.append(angle)
+            flags.append(undecided)
+    return Samples(speed, *_followed(np.array(phases), np.array(flags)))
+
+
+def _signed(scaled: Array, error: Array) -> tuple[NDArray[np.complex128], NDArray[np.int8]]:
+    """Return the multipliers of symplectic matrices and their Krein signatures, ``(nb, 2n)``."""
+    values, vectors = (part.astype(complex) for part in np.linalg.eig(scaled))
+    shift = perturbation_size(scaled, error)[:, None]
+    # Near a double multiplier the condition number explodes and the square root holds.
+    root = 2 * np.sqrt(np.linalg.norm(scaled, axis=(-2, -1))[:, None] * shift)
+    # signatures_of takes for one what lies within ten errors.
+    return values, signatures_of(vectors, values, 0.1 * np.fmin(conditions(vectors) * shift, root))
+
+
+def _positive(angle: Array, signs: NDArray[np.int8]) -> tuple[Array, Flags]:
+    """Return the n arguments of positive signature, rising, and which of them are open.
+
+    Multipliers whose signature is open come in groups of like argument, half of them positive.
+    """
+    decided = angle[signs == 1]
+    rest = np.sort(np.mod(angle[signs == 0], _TURN_ROUND))[::2]
+    both = np.mod(np.concatenate([decided, rest]), _TURN_ROUND)
+    undecided = np.concatenate([np.zeros(len(decided), bool), np.ones(len(rest), bool)])
+    order = np.argsort(both, kind="stable")
+    return both[order], undecided[order]
+
+
+def _followed(phases: Array, flags: Flags) -> tuple[Array, Flags]:
+    """Order the phases so that each follows its own, which keeps the order round the circle."""
+    n = phases.shape[1]
+    lifted, ordered = np.array(phases), np.array(flags)
+    place = np.arange(n)
+    for t in range(1, len(phases)):
+        best: tuple[float, Array, Index] | None = None
+        for shift in range(n):
+            target = np.roll(place, -shift)
+            step = phases[t][target] - lifted[t - 1]
+            step = step - _TURN_ROUND * np.round(step / _TURN_ROUND)
+            cost = float(np.sum(np.abs(step)))
+            if best is None or cost < best[0]:
+                best = cost, step, target
+        if best is not None:
+            lifted[t] = lifted[t - 1] + best[1]
+            ordered[t] = flags[t][best[2]]
+            # Positions on the circle rotate with what was matched.
+            phases[t] = phases[t][best[2]]
+    return lifted, ordered
+
+
+def meetings(samples: Samples, principal: bool = False) -> Events:
+    """Return where sums of the phases of two modes pass a whole number of turns.
+
+    With ``principal`` a mode meets itself instead: its two multipliers, at +1 or -1.
+
+    A multiplier of positive signature at phase a meets one of negative signature at -b, the
+    conjugate of b, where a + b is a whole number of turns.  Meetings while one of the two is off
+    the circle at +-1 are none: it is not there to be met.
+    """
+    n = samples.phase.shape[1]
+    rows: list[tuple[float, float, float, Array, Array, Array]] = []
+    real = samples.open & (_off_turn(2 * samples.phase) < _LOCKED)
+    for k in range(n):
+        for other in (k,) if principal else range(k + 1, n):
+            total = samples.phase[:, k] + samples.phase[:, other]
+            locked = samples.open[:, k] & samples.open[:, other] & (_off_turn(total) < _LOCKED)
+            hidden = np.zeros_like(locked) if principal else real[:, k] | real[:, other]
+            for first, last, run in _passages(total / _TURN_ROUND, locked & ~hidden, hidden):
+                inside = run[len(run) // 2] if run else None
+                low, high, middle = (_at(samples.speed, i) for i in (first, last, inside))
+                reach = samples.speed[[run[0], run[-1]]] if run else np.array([low, high])
+                kept = [i for i in (first, last) if i is not None] or [inside or 0]
+                at = [kept[0], kept[-1]]
+                plus, minus = samples.phase[at, k], -samples.phase[at, other]
+                rows.append((low, high, middle, reach, plus, minus))
+    columns = list(zip(*rows, strict=True)) if rows else [()] * 6
+    ends = [np.array(column, dtype=float) for column in columns[:3]]
+    angles = [np.array(column, dtype=float).reshape(-1, 2) for column in columns[3:]]
+    return Events(*ends, *angles)
+
+
+def _at(values: Array, index: int | None) -> float:
+    return float("nan") if index is None else float(values[index])
+
+
+def _off_turn(phase: Array) -> Array:
+    turns = phase / _TURN_ROUND
+    distance: Array = np.abs(turns - np.round(turns)) * _TURN_ROUND
+    return distance
+
+
+Passage = tuple[int | None, int | None, list[int]]
+
+
+def _passages(turns: Array, locked: Flags, hidden: Flags) -> list[Passage]:
+    """Return samples before, after and those inside each passage of a whole number of turns."""
+    found: list[Passage] = []
+    before: int | None = None
+    run: list[int] = []
+    for t in range(len(turns)):
+        if locked[t]:
+            run.append(t)
+            continue
+        if run:
+            found.append((before, None if hidden[t] else t, run))
+        elif before is not None and not hidden[t] and np.floor(turns[t]) != np.floor(turns[before]):
+            found.append((before, t, []))
+        before, run = None if hidden[t] else t, []
+    if run:
+        found.append((before, None, run))
+    return found
 
 
 @dataclass(frozen=True)
@@ -59,44 +268,13 @@ class Pair:
     blur: Array
 
 
-class PairFunction:
-    """The gap of given pairs of multipliers at given speeds.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Conservative.
-    parameters : mapping
-        Parameter values; numbers, or arrays of shape ``(k,)``, one value for each pair.
-    rtol : float
-        Of the monodromy matrices.
-    """
-
-    def __init__(
-        self, system: LinearPeriodic, parameters: Mapping[str, float | Array], rtol: float
-    ) -> None:
-        self._system, self._parameters, self._rtol = system, parameters, rtol
-
-    def __call__(self, which: NDArray[np.intp], speed: Array, plus: Array, minus: Array) -> Pair:
-        """Return the pairs numbered ``which``, found by where they are expected."""
-        parts: list[tuple[Array, ...]] = [(np.zeros(0),) * 6]
-        for start in range(0, len(speed), _TOGETHER):
-            part = slice(start, start + _TOGETHER)
-            values = {
-                name: np.asarray(value)[which[part]] if np.ndim(value) else value
-                for name, value in self._parameters.items()
-            }
-            result = monodromy(self._system, speed[part], rtol=self._rtol, **values)
-            with np.errstate(over="ignore"):
-                scaled = np.ldexp(result.scaled, result.exponent[:, None, None])
-            parts.append(_pairs(scaled, result.error, plus[part], minus[part]))
-        columns = zip(*parts, strict=True)
-        return Pair(*(np.concatenate(column) for column in columns))
-
-
-def _pairs(matrices: Array, error: Array, plus: Array, minus: Array) -> tuple[Array, ...]:
-    m = matrices.shape[-1]
-    values, vectors = np.linalg.eig(matrices)
+def pairs_at(matrices: MatricesOverSpeed, speed: Array, plus: Array, minus: Array) -> Pair:
+    """Return the pairs of multipliers nearest to expected arguments, one at each speed."""
+    if not len(speed):
+        return Pair(*(np.zeros(0),) * 6)
+    scaled, error = matrices(speed)
+    m = scaled.shape[-1]
+    values, vectors = np.linalg.eig(scaled)
     values, vectors = values.astype(complex), vectors.astype(complex)
     form = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
     angle = np.angle(values)
@@ -111,16 +289,16 @@ def _pairs(matrices: Array, error: Array, plus: Array, minus: Array) -> tuple[Ar
     i, j = best // m, best % m
     r, s = values[rows, i], values[rows, j]
     gap = np.real(-((r - s) ** 2) / (r * s))
-    shift = perturbation_size(matrices, error)
+    shift = perturbation_size(scaled, error)
     with np.errstate(invalid="ignore", over="ignore"):
         own = conditions(vectors)
         both = own[rows, i] + own[rows, j]
         sway = np.abs(r - s) * both
-    size = np.linalg.norm(matrices, axis=(-2, -1))
+    size = np.linalg.norm(scaled, axis=(-2, -1))
     sway = np.where(np.isfinite(sway), np.minimum(sway, 4 * size), 4 * size)
     ahead = np.where(gap > 0.0, _wrapped(np.angle(r) - np.angle(s)), 0.0)
     noise = 2 * shift * sway + 4 * shift**2
-    return gap, noise, ahead, np.angle(r), np.angle(s), shift * both
+    return Pair(gap, noise, ahead, np.angle(r), np.angle(s), shift * both)
 
 
 def perturbation_size(matrices: Array, error: Array) -> Array:
@@ -163,13 +341,13 @@ class Edges:
     phase: Array
 
 
-def refined_edges(function: PairFunction, events: Events) -> Edges:
+def refined_edges(matrices: MatricesOverSpeed, events: Events) -> Edges:
     """Return the edges of the tongues in which pairs meet.
 
     A parabola through three values of g leads to its least value; where that is negative beyond
     its error, both zeros are bracketed and solved for.
     """
-    search = _Search(function, events)
+    search = _Search(matrices, events)
     search.run()
     k = len(events.low)
     ends, errors = np.full((2, k), np.nan), np.zeros((2, k))
@@ -189,8 +367,8 @@ def refined_edges(function: PairFunction, events: Events) -> Edges:
 class _Search:
     """The state of a search for the least gap of each pair."""
 
-    def __init__(self, function: PairFunction, events: Events) -> None:
-        self.function, self.events = function, events
+    def __init__(self, matrices: MatricesOverSpeed, events: Events) -> None:
+        self.matrices = matrices
         k = len(events.low)
         self.x = np.stack([events.low, events.high])
         self.angles = np.stack([events.plus.T, events.minus.T])
@@ -221,28 +399,28 @@ class _Search:
         begun = np.flatnonzero(np.isfinite(self.bottom))
         self._try(begun, self.bottom[begun])
         active = np.flatnonzero(~self.found & np.all(np.isfinite(self.x), axis=0))
-        for _ in range(_ROUNDS):
+        for _ in range(40):
             if not len(active):
                 break
             ended = self._try(active, self._next(active))
             active = active[~ended]
 
-    def _at(self, index: NDArray[np.intp], speed: Array) -> Pair:
+    def _at(self, index: Index, speed: Array) -> Pair:
         """Evaluate pairs where interpolation between the brackets expects them."""
         low, high = self.x[:, index]
         both = np.isfinite(low) & np.isfinite(high) & (high > low)
         with np.errstate(invalid="ignore", divide="ignore"):
             part = np.where(both, (speed - low) / (high - low), np.where(np.isfinite(low), 0, 1))
         plus, minus = ((1 - part) * a[0, index] + part * a[1, index] for a in self.angles)
-        return self.function(index, speed, plus, minus)
+        return pairs_at(self.matrices, speed, plus, minus)
 
-    def _keep(self, side: int, index: NDArray[np.intp], pair: Pair) -> None:
+    def _keep(self, side: int, index: Index, pair: Pair) -> None:
         """Remember the arguments at a bracket's end, on the turn of the expected ones."""
         for which, found in enumerate((pair.plus, pair.minus)):
             usual = self.angles[which, side, index]
             self.angles[which, side, index] = usual + _wrapped(found - usual)
 
-    def _next(self, index: NDArray[np.intp]) -> Array:
+    def _next(self, index: Index) -> Array:
         """Return where a parabola has its least value, or else where the phases should cross."""
         (low, high), (g_low, g_high) = self.x[:, index], self.g[:, index]
         x3, g3 = self.old[:, index]
@@ -260,7 +438,7 @@ class _Search:
         value: Array = np.clip(place, low + margin, high - margin)
         return value
 
-    def _try(self, index: NDArray[np.intp], speed: Array) -> Flags:
+    def _try(self, index: Index, speed: Array) -> Flags:
         """Evaluate new places, move the brackets, and tell which pairs need no more."""
         pair = self._at(index, speed)
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -286,12 +464,12 @@ class _Search:
         ended: Flags = off | closed
         return ended
 
-    def edge(self, index: NDArray[np.intp], side: int) -> tuple[Array, Array, Array]:
+    def edge(self, index: Index, side: int) -> tuple[Array, Array, Array]:
         """Return one edge of open tongues, its error, and the argument there."""
         outer, inner = self.x[side, index], self.bottom[index]
         record: list[Pair] = []
 
-        def gap(rows: NDArray[np.intp], speed: Array) -> tuple[Array, Array]:
+        def gap(rows: Index, speed: Array) -> tuple[Array, Array]:
             pair = self._at(index[rows], speed)
             record.append(pair)
             return pair.gap, pair.noise
@@ -309,7 +487,7 @@ class _Search:
         return roots, error + width + 16 * _EPS * roots, np.angle(turn)
 
 
-Gap = Callable[[NDArray[np.intp], Array], tuple[Array, Array]]
+Gap = Callable[[Index, Array], tuple[Array, Array]]
 
 
 def bracketed_roots(
@@ -317,20 +495,9 @@ def bracketed_roots(
 ) -> tuple[Array, Array, Array]:
     """Return the zeros of many functions between brackets, by Chandrupatla's rule.
 
-    Parameters
-    ----------
-    function : callable
-        Takes numbers of functions and places, returns values and their errors.
-    first, second : ndarray, shape (k,)
-        Brackets; the values have opposite signs.
-    f_first, f_second : ndarray, shape (k,)
-        Values there.
-
-    Returns
-    -------
-    root, width, slope : ndarray, shape (k,)
-        The zero, the width of the last bracket where the value was beyond its error, else 0, and
-        the slope between the last bracket's ends.
+    With them the width of the last bracket, 0 where the value is all error, and the slope between
+    its ends, each ``(k,)``.  ``function`` takes numbers of functions and places, and returns values
+    and their errors.
     """
     a, fa, b, fb = np.array(second), np.array(f_second), np.array(first), np.array(f_first)
     c, fc = np.array(b), np.array(fb)
@@ -364,7 +531,7 @@ def bracketed_roots(
 
 
 def _chandrupatla(
-    a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, index: NDArray[np.intp]
+    a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, index: Index
 ) -> Array:
     """Return the part of the bracket to go next: inverse quadratic where safe, else one half."""
     xa, xb, xc, ya, yb, yc = (v[index] for v in (a, b, c, fa, fb, fc))

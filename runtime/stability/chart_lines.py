@@ -8,23 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from ...core import chebyshev
-from ...core.families import Array
-from ...core.progress import bar
-from ...periodic.equation import Equation, SampledSystem, equation_of, sampled
-from ...periodic.tables import Table, table_of
-from ...periodic.transition import levels_for, method, rung
+from ..core import chebyshev
+from ..core.families import Array
+from ..core.progress import bar
+from ..periodic.equation import Equation, SampledSystem, equation_of, sampled
+from ..periodic.tables import Table, table_of
+from ..periodic.transition import levels_for, method, rung
+from .chart_sampling import Sampler, Series, relative_error
 from .invariants import from_sum, sum_weights_back, weighed_characteristic
-from .sampling import Sampler, Series, relative_error
 
-# Another number of segments gives another solution; the difference, over-estimated, is the error.
-_OTHER, _MARGIN = 1.37, 4.0
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
 _RTOL, _ALIKE = 1e-12, 1e-13
-# Places along a line at which the number of segments is judged.
-_JUDGED = 5
-# Stages among which the cheapest are taken.
-_STAGES = (4, 5, 6, 8, 10)
 # Chebyshev nodes of a line to begin with.
 _NODES = 20
 _EPS = float(np.finfo(float).eps)
@@ -32,12 +26,6 @@ _EPS = float(np.finfo(float).eps)
 _FIRST, _FEWEST_LINES = 32, 9
 # Share of the values along an axis from which each of them is taken instead of nodes.
 _NEARLY_ALL = 0.8
-# Round-off of samples, roughly, relative to the largest, below which no tail falls.
-_NOISE = 1e-12
-# Invariants beyond this are not interpolated: elsewhere in the chart others are about 1.
-_WIDE = 1e8
-# Tails beyond this are no round-off.
-_SMALL = 1e-8
 
 Tick = Callable[[int], None] | None
 # Value of the outer axis, ends and values of the variable of the inner one.
@@ -100,16 +88,6 @@ def mirrored_sums(halves: Array) -> Array:
 
     With F = [[a, b], [c, d]] over half a period and R = diag(1, -1), ``X = R F^-1 R F``; F is
     symplectic, so that the upper left block of X is ``1 + 2 b^T c``, and X^-1 = R X R.
-
-    Parameters
-    ----------
-    halves : ndarray
-        F, shape ``(..., 2n, 2n)``.
-
-    Returns
-    -------
-    ndarray, shape (..., n, n)
-        Its eigenvalues are those of ``(rho + 1/rho) / 2``, each once.
     """
     n = halves.shape[-1] // 2
     cross = np.swapaxes(halves[..., :n, n:], -1, -2) @ halves[..., n:, :n]
@@ -170,17 +148,7 @@ class Lines:
         return self.names[self.inner] in self.system.geometry
 
     def line(self, outer: float, low: float, high: float, values: Array | None = None) -> Line:
-        """Return the line at a value of the outer axis.
-
-        Parameters
-        ----------
-        outer : float
-            Value of the outer axis.
-        low, high : float
-            Ends of the variable of the inner axis.
-        values : ndarray, optional
-            Where both axes are geometry: the values at which the line will be wanted.
-        """
+        """Return the line at a value of the outer axis; of two geometries at given values alone."""
         return self._line(outer, low, high, values, 1.0)
 
     def error(self, outer: float, low: float, high: float, values: Array, found: Array) -> Array:
@@ -188,12 +156,13 @@ class Lines:
 
         One number per value; 0 where either overflows, infinite where either is NaN.
         """
-        again, weight = self._line(outer, low, high, values, _OTHER)(values)
+        # Another number of segments gives another solution; four times the difference is the error.
+        again, weight = self._line(outer, low, high, values, 1.37)(values)
         grown = np.isinf(again) | np.isinf(found)
         with np.errstate(invalid="ignore"):
             gap = np.where(grown, 0.0, np.abs(again - found) / weight)
         worst: Array = np.max(np.where(np.isnan(gap), np.inf, gap), axis=-1)
-        return _MARGIN * worst
+        return 4.0 * worst
 
     def _line(
         self, outer: float, low: float, high: float, values: Array | None, fineness: float
@@ -236,9 +205,13 @@ class Lines:
             speed = np.broadcast_to(point.pop("speed", 1.0), values.shape)
             return equation_of(known, speed, point)
 
-        judged = plain(np.linspace(low, high, _JUDGED if high > low else 1))
+        # Places along a line at which the number of segments is judged.
+        judged = plain(np.linspace(low, high, 5 if high > low else 1))
         unit = judged.scale[len(judged.scale) // 2]
-        ways = [method("radau" if judged.damped else "gauss", stages) for stages in _STAGES]
+        # Stages among which the cheapest are taken.
+        ways = [
+            method("radau" if judged.damped else "gauss", stages) for stages in (4, 5, 6, 8, 10)
+        ]
         counts = [rung(int(np.max(levels_for(judged, way, _RTOL)))) for way in ways]
         # Solving the stages of a segment: between the square and the cube of their number.
         work = [count * way.stages**2.5 for count, way in zip(counts, ways, strict=True)]
@@ -258,18 +231,6 @@ class Lines:
 
 def series_by_lines(sampler: Sampler, *, progress: bool) -> Series:
     """Return the invariants of a chart of several modes.
-
-    Parameters
-    ----------
-    sampler : Sampler
-        The chart.
-    progress : bool
-        Whether to show a progress bar.
-
-    Returns
-    -------
-    Series
-        ``nodes`` is 0 along an axis all of whose values were taken.
 
     Raises
     ------
@@ -326,7 +287,8 @@ class _Surface:
 
     def limit(self, size: float) -> float:
         """Return how large a tail may be: no larger where only other parts of the chart grow."""
-        return max(self.sampler.rtol, _NOISE * size)
+        # Round-off of samples, roughly, relative to the largest, below which no tail falls.
+        return max(self.sampler.rtol, 1e-12 * size)
 
     def line(self, outer: float) -> Line:
         """Return a line of the chart."""
@@ -363,7 +325,8 @@ class _Surface:
     @staticmethod
     def too_wide(values: Array) -> bool:
         """Return whether invariants grow so much that a series would lose the others."""
-        return not float(np.max(np.abs(values))) <= _WIDE
+        # Invariants beyond this are not interpolated: elsewhere in the chart others are about 1.
+        return not float(np.max(np.abs(values))) <= 1e8
 
     def set_count(self, count: int) -> None:
         """Take so many nodes, or every value of the chart where those are hardly more."""
@@ -442,7 +405,8 @@ class _Surface:
 
     def _settled(self, tail: float, before: float, size: float) -> bool:
         """Return whether a tail is small, or no more than round-off, which more nodes keep."""
-        return tail <= self.limit(size) or 0.5 * before < tail <= _SMALL * size
+        # Tails beyond this are no round-off.
+        return tail <= self.limit(size) or 0.5 * before < tail <= 1e-8 * size
 
     def series(self, found: _Found) -> Series:
         """Return the chart from the samples."""

@@ -8,17 +8,15 @@ the kind: at +1, at -1, or with its conjugate elsewhere.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import LinearPeriodic
-from ...periodic import monodromy
-from ...periodic.multipliers import conditions
-from .pair_roots import bracketed_roots, perturbation_size
-from .phase_events import phase_grid
+from ..periodic.multipliers import conditions
+from .over_speed import MatricesOverSpeed
+from .pairs import bracketed_roots, perturbation_size, phase_grid
 from .regions import Regions, joined
 
 Array = NDArray[np.float64]
@@ -27,16 +25,9 @@ Index = NDArray[np.intp]
 
 _EPS = float(np.finfo(float).eps)
 _TOGETHER = 256
-_ROUNDS = 6
 _Growth = Callable[[Index, Array], tuple[Array, Array]]
 # Places at which growth is looked for, in half widths from the middle of the undamped region.
 _PLACES = np.linspace(-1.5, 1.5, 13)
-_PARABOLAS = 4
-# Arguments [rad] that count as that of the pair in any case.
-_NEAR = 0.1
-# Cost of a label: of another kind of multiplier, in half widths, and the most that is taken.
-_OTHER_KIND, _FAR = 100.0, 20.0
-_LIKE_WIDTH, _LOWER = 0.2, 0.05
 
 
 @dataclass(frozen=True)
@@ -87,12 +78,8 @@ class Crossings:
 
     Parameters
     ----------
-    system : LinearPeriodic
-        The system.
-    parameters : mapping
-        Parameter values that replace the system's own.
-    rtol : float
-        Of the monodromy matrices.
+    matrices : MatricesOverSpeed
+        Of the system.
     speed : ndarray
         Samples, rising [rad/s]; the first and the last are the ends of the range.
     sharp : bool
@@ -100,32 +87,22 @@ class Crossings:
         one is outside beyond its error.
     """
 
-    def __init__(
-        self,
-        system: LinearPeriodic,
-        parameters: Mapping[str, float],
-        rtol: float,
-        speed: Array,
-        sharp: bool = False,
-    ) -> None:
-        self._system, self._parameters, self._rtol = system, parameters, rtol
-        self._sharp = sharp
+    def __init__(self, matrices: MatricesOverSpeed, speed: Array, sharp: bool = False) -> None:
+        self._matrices, self._sharp = matrices, sharp
         self._speed, self._levels = speed, self.levels(speed)
 
     def levels(self, speed: Array) -> Levels:
         """Return the log moduli at speeds of shape ``(k,)``."""
-        m = 2 * self._system.size
+        m = 2 * self._matrices.system.size
         none = np.zeros((0, m))
         parts: list[tuple[Array, ...]] = [(none, none, none.astype(complex), np.zeros(0))]
         for start in range(0, len(speed), _TOGETHER):
-            at = speed[start : start + _TOGETHER]
-            result = monodromy(self._system, at, rtol=self._rtol, **self._parameters)
-            matrices = np.ldexp(result.scaled, result.exponent[:, None, None])
+            matrices, error = self._matrices(speed[start : start + _TOGETHER])
             values, vectors = np.linalg.eig(matrices)
             values = values.astype(complex)
             size = np.maximum(np.abs(values), 1e-300)
             own = conditions(vectors.astype(complex))
-            shift = perturbation_size(matrices, result.error)
+            shift = perturbation_size(matrices, error)
             noise = own * shift[:, None] / size
             order = np.argsort(-size, axis=-1, kind="stable")
             columns = (np.log(size), np.minimum(noise, 1.0), values)
@@ -136,7 +113,7 @@ class Crossings:
     def spans(self) -> list[Span]:
         """Return what is outside the circle, kind by kind, with the speeds between which."""
         found = self._crossings()
-        for _ in range(_ROUNDS):
+        for _ in range(6):
             # Between crossings the number outside must be what they make it.
             ends = np.unique([self._speed[0], *(c.speed for c in found), self._speed[-1]])
             fresh = np.setdiff1d(0.5 * (ends[1:] + ends[:-1]), self._speed)
@@ -286,26 +263,11 @@ def _kinds(levels: Levels, row: int) -> list[complex]:
 
 
 def damped_regions(
-    system: LinearPeriodic,
-    undamped: Regions,
-    span: tuple[float, float],
-    rtol: float,
-    parameters: Mapping[str, float],
+    matrices: MatricesOverSpeed, undamped: Regions, span: tuple[float, float]
 ) -> Regions:
     """Return the unstable regions of a damped system.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        With damping.
-    undamped : Regions
-        Without: where narrow regions are looked for, and whence the labels are taken.
-    span : pair of float
-        The range [rad/s].
-    rtol : float
-        Of the monodromy matrices.
-    parameters : mapping
-        Parameter values that replace the system's own.
+    Narrow ones are looked for where the ``undamped`` ones are, which lend their labels.
     """
     begin, end = np.maximum(undamped.begin, span[0]), np.minimum(undamped.end, span[1])
     undamped = undamped.take(np.flatnonzero(end - begin > 4 * undamped.error))
@@ -313,7 +275,7 @@ def damped_regions(
     phase = np.angle(undamped.multiplier)
 
     def growth(which: Index, speed: Array) -> tuple[Array, Array]:
-        return _growth(system, speed, phase[which], rtol, parameters)
+        return _growth(matrices, speed, phase[which])
 
     middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
     ends = np.unique(np.concatenate([span, begin, end]))
@@ -325,9 +287,9 @@ def damped_regions(
         ]
     )
     more = more[(more > span[0]) & (more < span[1])]
-    speed = phase_grid(system, span, parameters, more)
+    speed = phase_grid(matrices, span, more)
     speed[[0, -1]] = span
-    spans = Crossings(system, parameters, rtol, speed).spans()
+    spans = Crossings(matrices, speed).spans()
     return labelled([s for s in spans if not s.upper - s.lower <= 0.0], undamped)
 
 
@@ -342,13 +304,14 @@ def labelled(spans: list[Span], undamped: Regions) -> Regions:
     size = (end - begin)[:, None] + (highs - lows) + 1e-12 * end[:, None]
     cost = np.abs((end + begin)[:, None] - (highs + lows)) / size
     cost = cost + 2 * np.abs(np.angle(turn[:, None] / _upper(undamped.multiplier)))
-    # Of two that lie alike the one of like width, then that of the lower, stronger harmonic.
+    # Of two that lie alike the one of like width, then that of the lower, stronger harmonic; never
+    # one of another kind of multiplier.
     ratio = np.log((end - begin + 1e-15 * end)[:, None] / (highs - lows + 1e-15 * highs))
-    cost = cost + _LIKE_WIDTH * np.abs(ratio) + _LOWER * undamped.harmonic
+    cost = cost + 0.2 * np.abs(ratio) + 0.05 * undamped.harmonic
     real = np.array([s.multiplier.imag == 0.0 for s in spans], dtype=bool)
     principal = np.array([kind == "principal" for kind in undamped.kind], dtype=bool)
-    cost = cost + _OTHER_KIND * (real[:, None] != principal)
-    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < _FAR]
+    cost = cost + 100.0 * (real[:, None] != principal)
+    pairs = [(r, c) for r, c in zip(*linear_sum_assignment(cost), strict=True) if cost[r, c] < 20.0]
     modes, harmonic = np.zeros((k, 2), dtype=np.int64), np.zeros(k, dtype=np.int64)
     detuning = np.full(k, np.nan)
     kind = ["principal" if flag else "sum" for flag in real]
@@ -384,7 +347,7 @@ def _highest(growth: _Growth, middle: Array, half: Array) -> Array:
     best = np.clip(np.argmax(value, axis=1), 1, places - 2) if k else rows
     x = np.stack([speed[rows, best + s] for s in (-1, 0, 1)])
     g = np.stack([value[rows, best + s] for s in (-1, 0, 1)])
-    for _ in range(_PARABOLAS):
+    for _ in range(4):
         place = _vertex(x, g)
         new, _ = growth(rows, place)
         x, g = _three(x, g, place, new)
@@ -392,29 +355,23 @@ def _highest(growth: _Growth, middle: Array, half: Array) -> Array:
     return found
 
 
-def _growth(
-    system: LinearPeriodic,
-    speed: Array,
-    phase: Array,
-    rtol: float,
-    parameters: Mapping[str, float],
-) -> tuple[Array, Array]:
+def _growth(matrices: MatricesOverSpeed, speed: Array, phase: Array) -> tuple[Array, Array]:
     """Return the largest log modulus of the multipliers near a phase, and its error."""
     if not len(speed):
         return np.zeros(0), np.zeros(0)
-    result = monodromy(system, speed, rtol=rtol, **parameters)
-    matrices = np.ldexp(result.scaled, result.exponent[:, None, None])
-    values, vectors = np.linalg.eig(matrices)
+    scaled, error = matrices(speed)
+    values, vectors = np.linalg.eig(scaled)
     away = np.abs(np.angle(values * np.exp(-1j * phase)[:, None]))
     with np.errstate(divide="ignore"):
         logarithm = np.log(np.abs(values))
     # Those that the undamped pair has become, whatever else grows at another argument.
     second = np.sort(away, axis=-1)[:, 1:2]
-    logarithm = np.where(away <= np.maximum(second, _NEAR), logarithm, -np.inf)
+    # Arguments [rad] that count as that of the pair in any case.
+    logarithm = np.where(away <= np.maximum(second, 0.1), logarithm, -np.inf)
     chosen = np.argmax(logarithm, axis=-1)
     rows = np.arange(len(speed))
     own = conditions(vectors.astype(complex))[rows, chosen]
-    noise = own * perturbation_size(matrices, result.error) / np.abs(values[rows, chosen])
+    noise = own * perturbation_size(scaled, error) / np.abs(values[rows, chosen])
     return logarithm[rows, chosen], np.minimum(noise, 1.0)
 
 
@@ -444,38 +401,23 @@ def _three(x: Array, g: Array, place: Array, value: Array) -> tuple[Array, Array
 
 
 def mended(
-    system: LinearPeriodic,
+    matrices: MatricesOverSpeed,
     regions: Regions,
     usable: NDArray[np.bool_],
-    where: tuple[tuple[float, float], Array],
-    rtol: float,
-    parameters: Mapping[str, float],
+    span: tuple[float, float],
+    near: Array,
 ) -> Regions:
     """Return combination regions that agree with the multipliers off the circle.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Conservative.
-    regions : Regions
-        As pairs of multipliers make them.
-    usable : ndarray of bool, shape (k,)
-        False where the pair meets at +-1: kept for its label only.
-    where : tuple
-        The range, and speeds of interest [rad/s].
-    rtol : float
-        Of the monodromy matrices.
-    parameters : mapping
-        Parameter values that replace the system's own.
+    Where not ``usable`` a pair meets at +-1: its region is kept for its label only.
     """
-    span, near = where
     ends = np.unique(np.concatenate([span, near[np.isfinite(near)]]))
     ends = ends[(ends >= span[0]) & (ends <= span[1])]
-    speed = phase_grid(system, span, parameters, 0.5 * (ends[1:] + ends[:-1]))
+    speed = phase_grid(matrices, span, 0.5 * (ends[1:] + ends[:-1]))
     speed[[0, -1]] = span
     truth = [
         s
-        for s in Crossings(system, parameters, rtol, speed, sharp=True).spans()
+        for s in Crossings(matrices, speed, sharp=True).spans()
         if s.multiplier.imag != 0.0 and not s.upper - s.lower <= 4 * s.error
     ]
     kept, new = np.array(usable), list[Span]()

@@ -13,15 +13,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import LinearPeriodic
-from ...periodic import floquet_multipliers
-from ...periodic.first_order import canonical_form
-from ...periodic.signatures import form_matrix
-from ..boundary_speeds import SpeedBoundaries
+from ..core.families import LinearPeriodic
+from ..core.trigonometric import even_angles
+from ..periodic import floquet_multipliers
+from ..periodic.first_order import canonical_form
+from ..periodic.signatures import form_matrix
+from .boundary_speeds import SpeedBoundaries
+from .over_speed import MatricesOverSpeed
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
+Label = tuple[int, int, int]
 
 # How far from its whole number a label may be [turns in a period].
 _REACH = 2
@@ -93,15 +96,6 @@ def meeting_labels(
 
     The sum of the turns of the two is nearest to the harmonic, and their phases are nearest to
     those that meet; no two meetings get the same label.  0 where there is none.
-
-    Parameters
-    ----------
-    modes : Modes
-        At the meetings.
-    plus, minus : ndarray, shape (k,)
-        Arguments of the multipliers of positive and negative signature [rad].
-    shares : ndarray, shape (k, n), optional
-        How much of the motion each mode has; what a label's two modes lack of it counts too.
     """
     k, n = modes.turns.shape
     options: dict[tuple[int, int, int], dict[int, float]] = {}
@@ -130,37 +124,32 @@ def meeting_labels(
     return found, chosen, off
 
 
-def principal_labels(
-    modes: Modes, real: Array, shares: Array | None = None
-) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number and how far off, of meetings of a mode with itself.
+def principal_labels(turns: Array, real: Array, lack: Array) -> tuple[Whole, Whole, Array]:
+    """Return mode from 1, number and how far off, of regions in which a mode meets itself.
 
-    Parameters
-    ----------
-    modes : Modes
-        At the meetings.
-    real : ndarray, shape (k,)
-        The multiplier there, +1 or -1.
-    shares : ndarray, shape (k, n), optional
-        How much of the motion each mode has; what a label's mode lacks of it counts too.
+    Region n of mode j has 2 Omega_j = n, below zero for negative energy.  No two regions get the
+    same label; 0 where none is left, or the averaged equation has no modes.  Given are the turns
+    ``(k, n)``, the multiplier +1 or -1, and what the motion lacks of being of each mode ``(k, n)``.
     """
-    k, n = modes.turns.shape
-    options: dict[tuple[int, int, int], dict[int, float]] = {}
+    k, n = turns.shape
+    options: dict[Label, dict[int, float]] = {}
     for row in range(k):
         parity = 0 if real[row] > 0 else 1
-        for i in range(n):
-            total = 2 * float(modes.turns[row, i])
-            if np.isfinite(total):
-                lack = 0.0 if shares is None else 1.0 - float(shares[row, i])
-                middle = 2 * round((total - parity) / 2) + parity
-                for number in range(middle - 4, middle + 5, 2):
-                    cost = abs(total - number) + _LACK * lack
-                    options.setdefault((i + 1, number, parity), {})[row] = cost
+        for j in range(n):
+            total = 2 * float(turns[row, j])
+            if not np.isfinite(total):
+                continue
+            nearest = 2 * round((total - parity) / 2) + parity
+            for number in range(nearest - 6, nearest + 7, 2):
+                gap = abs(total - number)
+                # Beyond one turn rather another mode than another number.
+                cost = gap + _LACK * (float(lack[row, j]) + max(0.0, gap - 1.0))
+                options.setdefault((j + 1, number, parity), {})[row] = cost
     mode, chosen = np.zeros((2, k), dtype=np.int64)
     off = np.full(k, np.nan)
-    for row, (i, number, _) in _assigned(k, options).items():
-        mode[row], chosen[row] = i, abs(number)
-        off[row] = abs(2 * float(modes.turns[row, i - 1]) - number)
+    for row, (j, number, _) in _assigned(k, options).items():
+        mode[row], chosen[row] = j, abs(number)
+        off[row] = abs(2 * float(turns[row, j - 1]) - number)
     return mode, chosen, off
 
 
@@ -178,17 +167,6 @@ def boundary_units(
     Boundaries between which a real multiplier stays off the circle make a group.  A group of two
     is a region; in a larger one, where regions lie within each other, those belong together whose
     motion is mostly of one mode.  Boundaries that coincide within a region are one of their own.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Conservative.
-    modes : Modes
-        At the boundaries.
-    found : SpeedBoundaries
-        All boundaries in a range.
-    parameters : mapping
-        Parameter values that replace the system's own.
     """
     owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
     units: list[Unit] = []
@@ -320,67 +298,20 @@ def _units(
 def unit_labels(
     modes: Modes, found: SpeedBoundaries, units: list[Unit]
 ) -> tuple[Whole, Whole, Array]:
-    """Return mode from 1, number of the region and how far off, of each principal region.
-
-    Region n of mode j has 2 Omega_j = n, below zero for negative energy, and a motion at its ends
-    that is mostly of that mode.  No two regions get the same label; 0 where none is left, or the
-    averaged equation has no modes.
-    """
-    k = len(units)
-    mode, number = np.zeros((2, k), dtype=np.int64)
-    off = np.full(k, np.nan)
-    if not k:
-        return mode, number, off
-    shares = _shares(modes, found)
+    """Return mode, number and how far off, of regions between pairs of boundaries."""
+    n = modes.turns.shape[1]
+    turns, lack = np.full((2, len(units), n), np.nan)
+    real = np.zeros(len(units))
+    shares = _shares(modes, found) if units else np.zeros((0, n))
     shares = shares / np.maximum(np.sum(shares, axis=-1, keepdims=True), 1e-300)
-    options: dict[tuple[int, int, int], dict[int, float]] = {}
-    turns = np.full((k, modes.turns.shape[1]), np.nan)
     for row, unit in enumerate(units):
         known = [end for end in unit if end >= 0]
         # A missing end is about where the outermost boundaries are, or beyond.
         ends = [unit[0] if unit[0] >= 0 else 0, unit[1] if unit[1] >= 0 else -1]
-        turns[row] = 2 * np.mean(modes.turns[ends], axis=0)
-        parity = 0 if found.multiplier[known[0]] == 1 else 1
-        for j, value in enumerate(turns[row]):
-            if not np.isfinite(value):
-                continue
-            lack = 1.0 - float(np.mean(shares[known, j]))
-            nearest = 2 * round((float(value) - parity) / 2) + parity
-            for n in range(nearest - 6, nearest + 7, 2):
-                gap = abs(float(value) - n)
-                # Beyond one turn rather another mode than another number.
-                cost = gap + _LACK * (lack + max(0.0, gap - 1.0))
-                options.setdefault((j + 1, n, parity), {})[row] = cost
-    for row, (j, n, _) in _assigned(k, options).items():
-        mode[row], number[row] = j, abs(n)
-        off[row] = abs(turns[row, j - 1] - n)
-    return mode, number, off
-
-
-def whole_range_labels(modes: Modes, turn: Whole) -> tuple[Whole, Whole, Array]:
-    """Return mode, number and how far off, of principal regions without boundaries in the range.
-
-    Parameters
-    ----------
-    modes : Modes
-        At one speed.
-    turn : ndarray of int, shape (k,)
-        +1 or -1.
-    """
-    k = len(turn)
-    mode, number = np.zeros((2, k), dtype=np.int64)
-    off = np.full(k, np.nan)
-    options: dict[Label, dict[int, float]] = {}
-    for row, sign in enumerate(turn.tolist()):
-        parity = 0 if sign == 1 else 1
-        for j, turns in enumerate(modes.turns[0].tolist()):
-            if np.isfinite(turns):
-                n = 2 * round((2 * turns - parity) / 2) + parity
-                options.setdefault((j + 1, n, parity), {})[row] = abs(2 * turns - n)
-    for row, (j, n, parity) in _assigned(k, options).items():
-        mode[row], number[row] = j, abs(n)
-        off[row] = options[j, n, parity][row]
-    return mode, number, off
+        turns[row] = np.mean(modes.turns[ends], axis=0)
+        lack[row] = 1.0 - np.mean(shares[known], axis=0)
+        real[row] = found.multiplier[known[0]]
+    return principal_labels(turns, real, lack)
 
 
 def _shares(modes: Modes, found: SpeedBoundaries) -> Array:
@@ -405,9 +336,6 @@ def _apart(turns: float, phase: float) -> float:
     return float(abs(gap - np.round(gap)))
 
 
-Label = tuple[int, int, int]
-
-
 def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[int, Label]:
     """Give each row a label of its own at the least cost."""
     from scipy.optimize import linear_sum_assignment
@@ -421,3 +349,73 @@ def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[i
             cost[row, column] = value
     chosen = zip(*linear_sum_assignment(cost), strict=True)
     return {int(r): labels[c] for r, c in chosen if cost[r, c] < _FORBIDDEN}
+
+
+# ---------------------------------------------------------------- modes with the crank held
+
+
+def held_modes(system: LinearPeriodic, speed: Array) -> Modes:
+    """Return the modes with the crank held: mean frequencies in turns, shapes at angle 0."""
+    n = system.size
+    if not len(speed):
+        return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
+    # Angles and speeds at which frequencies with the crank held are computed; they change little.
+    some = np.linspace(np.min(speed), np.max(speed), 65)
+    turns, _, _ = _held(system, some, even_angles(system.period, 64))
+    mean = np.mean(turns, axis=1) * some[:, None]
+    frequency = np.stack([np.interp(speed, some, mean[:, j]) for j in range(n)], axis=1)
+    _, shapes, mass = _held(system, speed, np.zeros(1))
+    rows = np.swapaxes(shapes[:, 0], -1, -2).astype(complex)
+    whole = system.period / (2 * np.pi)
+    return Modes(frequency / speed[:, None] * whole, rows, mass[:, 0])
+
+
+def _held(system: LinearPeriodic, speed: Array, theta: Array) -> tuple[Array, Array, Array]:
+    """Return frequencies over the speed ``(k, nt, n)``, modes in columns, and the mass."""
+    form = canonical_form(system, speed, {})
+    shape = (len(speed), len(theta), system.size, system.size)
+    mass = np.broadcast_to(form.require_mass(form.assemble("M", theta)), shape)
+    held = np.zeros(shape)
+    for names, sign in ((("K", "Kg"), 1.0), ("B", -1.0)):
+        part = form.assemble(names, theta)
+        held = held if part is None else held + sign * part
+    inverse = np.linalg.inv(np.linalg.cholesky(mass))
+    moved = inverse @ held @ np.swapaxes(inverse, -1, -2)
+    square, vectors = np.linalg.eigh(0.5 * (moved + np.swapaxes(moved, -1, -2)))
+    return np.sqrt(np.maximum(square, 0.0)), np.swapaxes(inverse, -1, -2) @ vectors, mass
+
+
+def pair_shares(
+    matrices: MatricesOverSpeed, modes: Modes, speed: Array, met: ComplexArray
+) -> Array:
+    """Return the shares of the modes in the action of pairs of motions, each row of sum 1.
+
+    The action, energy over frequency, does not favour the high modes that a motion drags along.
+    """
+    k, n = modes.turns.shape
+    shares = np.zeros((k, n))
+    values, vectors = np.linalg.eig(matrices(speed)[0])
+    values, rows = values.astype(complex), np.arange(k)
+    for column in _chosen(values, met).T:
+        motion = (vectors[rows, :, column] * matrices.scale)[:, :n]
+        along = np.einsum("kjn,knh,kh->kj", modes.shapes.conj(), modes.mass, motion)
+        action = np.abs(along) ** 2 * modes.turns
+        total = np.sum(action, axis=1, keepdims=True)
+        shares += 0.5 * action / np.where(total > 0.0, total, 1.0)
+    return shares
+
+
+def _chosen(values: ComplexArray, met: ComplexArray) -> NDArray[np.intp]:
+    """Return the numbers of the two multipliers of each pair, shape ``(k, 2)``."""
+    size = np.abs(np.log(np.abs(values)))
+    away = np.abs(np.angle(values / met[:, None]))
+    # Log modulus from which a multiplier has left the circle, not by the noise of a double one.
+    off = size > 1e-5
+    nearest = np.argsort(np.abs(values - met[:, None]), axis=1)[:, :2]
+    # Off the circle: the one of nearest argument, of like ones the largest, and its inverse.
+    first = np.argmin(np.where(off, np.round(away, 6) - 1e-9 * size, np.inf), axis=1)
+    own = values[np.arange(len(values)), first]
+    second = np.argmin(np.abs(values - (1.0 / own.conj())[:, None]), axis=1)
+    gone = np.any(off, axis=1) & (away[np.arange(len(values)), first] < 0.5)
+    pairs: NDArray[np.intp] = np.where(gone[:, None], np.stack([first, second], axis=1), nearest)
+    return pairs

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.errors import bad
-from ...core.families import Array, LinearPeriodic
-from ...core.inputs import numbers
-from ...core.results import Check, Result
-from ...hill.form import is_hill
-from ...hill.perturbation import check_order
-from .boundaries import BoundaryCurves, boundary_curves
-from .edge_rows import EdgeCurves, edge_curves
-from .lines import series_by_lines
-from .sampling import Sampler, invariants, relative_error
-from .structure import natural_frequency
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
+from ..core.inputs import numbers
+from ..core.results import Check, Result
+from ..hill.form import is_hill
+from ..hill.perturbation import check_order
+from .chart_axes import natural_frequency
+from .chart_boundaries import BoundaryCurves, boundary_curves
+from .chart_lines import series_by_lines
+from .chart_sampling import Sampler, invariants, relative_error
 from .verdict import judged, spot_check
 
 if TYPE_CHECKING:
@@ -27,7 +26,44 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from .edges import StabilityEdges
+
 Axis = tuple[str, ArrayLike]
+
+# Rows at which regions are traced: each takes a second or so.
+_ROWS = 9
+
+
+@dataclass(frozen=True)
+class EdgeCurves:
+    """Ends of unstable regions along the speed, at some values of the other axis.
+
+    Attributes
+    ----------
+    at : ndarray, shape (m,)
+        Values of the other axis.
+    lower, upper : ndarray, shape (k, m)
+        Speeds [rad/s]; NaN where the region is outside the chart or has no such end.
+    error : ndarray, shape (k, m)
+        Absolute error of either end [rad/s].
+    modes : ndarray of int, shape (k, 2)
+        The two modes, from 1.
+    harmonic : ndarray of int, shape (k,)
+        As in :class:`~.edges.StabilityEdges`.
+    kind : tuple of str
+        ``"principal"``, ``"sum"`` or ``"difference"``.
+    check : Check
+        Failed self-checks of all rows.
+    """
+
+    at: Array
+    lower: Array
+    upper: Array
+    error: Array
+    modes: NDArray[np.int64]
+    harmonic: NDArray[np.int64]
+    kind: tuple[str, ...]
+    check: Check
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,7 +153,7 @@ class StabilityChart(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the unstable regions by kind and draw the boundaries; speeds in rpm."""
-        from .picture import draw_chart
+        from .chart_picture import draw_chart
 
         return draw_chart(self, ax)
 
@@ -238,7 +274,7 @@ def _chart(
         "spot check": spot_check(sampler, series, (found.largest, found.stable, found.slack)),
     }
     if options.edges:
-        rows = edge_curves(system, names, axes)
+        rows = _edge_curves(system, names, axes)
         checks["edges"] = rows.check
     return StabilityChart(
         method=series.method,
@@ -288,3 +324,38 @@ def _axes(system: LinearPeriodic, x: Axis, y: Axis) -> tuple[tuple[str, str], tu
     if x[0] == y[0]:
         raise bad("axis y", repr(y[0]), "another parameter than along x", "choose another")
     return (x[0], y[0]), (found[0], found[1])
+
+
+def _edge_curves(
+    system: LinearPeriodic, names: tuple[str, str], axes: tuple[Array, Array]
+) -> EdgeCurves:
+    """Return the regions at up to nine rows across a chart whose one axis is the speed."""
+    from .edges import stability_edges
+
+    which = names.index("speed")
+    values, speeds = axes[1 - which], axes[which]
+    if len(values) > _ROWS:
+        values = np.linspace(values[0], values[-1], _ROWS)
+    span = float(speeds[0]), float(speeds[-1])
+    rows = [stability_edges(system, span, **{names[1 - which]: float(v)}) for v in values]
+    keys = sorted({key for row in rows for key in _keys(row)})
+    ends = np.full((3, len(keys), len(rows)), np.nan)
+    for column, row in enumerate(rows):
+        for i, key in enumerate(_keys(row)):
+            ends[:, keys.index(key), column] = row.lower[i], row.upper[i], row.error[i]
+    failed = sum(not check.passed for row in rows for check in row.checks.values())
+    return EdgeCurves(
+        values,
+        ends[0],
+        ends[1],
+        ends[2],
+        np.array([key[1:3] for key in keys], dtype=np.int64).reshape(-1, 2),
+        np.array([key[3] for key in keys], dtype=np.int64),
+        tuple(key[0] for key in keys),
+        Check(float(failed), 0.0),
+    )
+
+
+def _keys(row: StabilityEdges) -> list[tuple[str, int, int, int]]:
+    found = zip(row.kind, row.modes.tolist(), row.harmonic.tolist(), strict=True)
+    return [(kind, i, j, n) for kind, (i, j), n in found]

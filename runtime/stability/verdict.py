@@ -8,17 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.families import Array, LinearPeriodic
-from ...core.results import Check
-from ...core.workers import Workers
-from ...periodic import floquet_multipliers
+from ..core.families import Array, LinearPeriodic
+from ..core.results import Check
+from ..core.workers import Workers
+from ..periodic import floquet_multipliers
+from .chart_axes import damping_rate, on_grid
+from .chart_sampling import Sampler, Series
 from .invariants import instability_kind, known_to, largest_modulus, root_uncertainty
-from .sampling import Sampler, Series
-from .structure import damping_rate, on_grid
 
 _SPOTS = 5
-# Points that are judged together.
-_BLOCK = 250_000
 Verdict = tuple[Array, NDArray[np.bool_], Array]
 
 
@@ -50,7 +48,8 @@ class Judged:
 def judged(sampler: Sampler, series: Series) -> Judged:
     """Return what is told of each point, some rows at a time, which bounds the memory."""
     rows, points = series.values.shape[:2]
-    together = max(1, _BLOCK // max(1, points))
+    # Points that are judged together.
+    together = max(1, 250_000 // max(1, points))
     parts = [slice(start, start + together) for start in range(0, rows, together)]
     shape = (rows, points)
     found = Judged(

@@ -7,21 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.families import Array, LinearPeriodic
-from ...core.periodic_function import PeriodicFunction
-from ...hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
-from ...hill.fourier_matrix import layout, stacked, truncation
-from .hill_axes import is_stiffness, leaves_function_alone
-from .structure import is_damped
+from ..core.families import Array, LinearPeriodic
+from ..core.periodic_function import PeriodicFunction
+from ..hill import HillForm, hill_boundaries, hill_form, perturbation_boundaries
+from ..hill.fourier_matrix import layout, stacked, truncation
+from .chart_axes import is_damped, is_stiffness, leaves_function_alone
 
-_MOST_ROWS = 121
-_MOST_DAMPED_ROWS = 41
-_MOST_REGIONS = 24
 _EPS = float(np.finfo(float).eps)
-# More functions than this cost more together than row by row.
-_MOST_FUNCTIONS = 2
-# Steps towards the K that belongs to the lam2 of an end, and the change that ends them.
-_STEPS, _SETTLED = 60, 1e-13
 Ends = tuple[Array, Array, Array]
 Solve = Callable[[int, Array], Ends]
 
@@ -61,17 +53,6 @@ def boundary_curves(
     """Return exact and perturbation boundaries within a chart, or None where no axis suits.
 
     An axis suits where it is the speed, or a parameter that is the constant stiffness itself.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        One mode, see :func:`~.form.hill_form`.
-    names : tuple of str
-        Names of the axes x and y.
-    axes : tuple of ndarray
-        Their values.
-    order : int
-        Of the perturbation.
     """
     form = hill_form(system)
     which = next((i for i in (0, 1) if _suits(form, names[i])), None)
@@ -80,7 +61,8 @@ def boundary_curves(
     along, other = names[which], names[1 - which]
     rows = axes[1 - which]
     sharp = not is_damped(system, names, axes)
-    most = _MOST_ROWS if sharp else _MOST_DAMPED_ROWS
+    # Rows between which a curve is drawn straight; a damped one takes some ten times as long.
+    most = 121 if sharp else 41
     if len(rows) > most:
         rows = np.linspace(rows[0], rows[-1], most)
     points = [_Point.of(form, along, other, float(value)) for value in rows]
@@ -149,7 +131,7 @@ def _regions(ends: Array, along: str, points: list[_Point]) -> tuple[tuple[int, 
     # At positive stiffness region 0, of divergence, has no speed of its own.
     first = max(first, 1 if along == "speed" else 0)
     last = max(first, int(np.ceil(2 * np.sqrt(max(max(highs) + reach, 0.25)))))
-    most = min(last, max(first, 1) + _MOST_REGIONS - 1)
+    most = min(last, max(first, 1) + 23)
     return tuple(range(first, most + 1)), last - most
 
 
@@ -239,27 +221,7 @@ def _drawn_in(local: float, half: float, sharp_half: float) -> float:
 def overlay_ends(
     form: HillForm, along: str, other: str, rows: Array, regions: tuple[int, ...], order: int
 ) -> Array:
-    """Return lower ends, upper ends and errors in the units of the axis.
-
-    Parameters
-    ----------
-    form : HillForm
-        One mode.
-    along, other : str
-        The axis that the ends lie on, and the other one.
-    rows : ndarray, shape (n,)
-        Values of the other axis.
-    regions : tuple of int
-        Numbers from 0, along the speed from 1.
-    order : int
-        1 to 8.
-
-    Returns
-    -------
-    ndarray, shape (3, len(regions), n)
-        NaN where damping closes a region, where the orders do not converge, and at the end of one
-        that reaches on to infinite speed.
-    """
+    """Return lower ends, upper ends and errors in the units of the axis."""
     points = [{} if other == "speed" else {other: float(v)} for v in rows]
     speed = rows if other == "speed" else np.ones_like(rows)
     stiffness = np.array([form.stiffness(**p) for p in points])
@@ -301,7 +263,8 @@ def _settled(solve: Solve, n: int, ratio: Array, start: Array, side: int) -> End
     """Return lam2, its error and the rate of the steps; NaN where they do not settle."""
     lam2, change, slow = start, np.full_like(start, np.inf), np.zeros_like(start)
     error = np.full_like(start, np.nan)
-    for _ in range(_STEPS):
+    # Steps towards the K that belongs to the lam2 of an end, and the change that ends them.
+    for _ in range(60):
         with np.errstate(invalid="ignore"):
             found = solve(n, np.where(lam2 > 0.0, ratio * np.sqrt(np.maximum(lam2, 0.0)), 0.0))
             new, error = np.where(lam2 > 0.0, found[side], np.nan), found[2]
@@ -309,7 +272,7 @@ def _settled(solve: Solve, n: int, ratio: Array, start: Array, side: int) -> End
             rate = np.where(before > 0, change / before, 0.0)
             slow = np.where(np.isfinite(rate) & (change > 1e-11), rate, slow)
             lam2 = new
-            if not np.any(change > _SETTLED * np.abs(lam2)):
+            if not np.any(change > 1e-13 * np.abs(lam2)):
                 break
     with np.errstate(invalid="ignore"):
         settled = (change <= 1e-9 * np.abs(lam2)) & (slow < 0.9)
@@ -319,7 +282,8 @@ def _settled(solve: Solve, n: int, ratio: Array, start: Array, side: int) -> End
 def _solver(form: HillForm, other: str, rows: Array, order: int) -> Solve:
     """Return lower and upper ends in lam2 and their error, of all rows for one region and K."""
     functions, factors = _functions(form, other, rows)
-    if len(functions) <= _MOST_FUNCTIONS:
+    # More functions than this cost more together than row by row.
+    if len(functions) <= 2:
 
         def together(n: int, damping: Array) -> Ends:
             found = perturbation_boundaries(functions, factors, (n,), order, damping)

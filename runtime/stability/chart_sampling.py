@@ -10,17 +10,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...core import chebyshev
-from ...core.errors import bad
-from ...core.families import Array, LinearPeriodic
-from ...core.progress import bar
-from ...core.workers import Workers, check_executor
-from ...hill import discriminant, hill_form
-from ...hill.form import is_hill
-from ...periodic.first_order import canonical_form
-from .hill_axes import leaves_function_alone, plain_axes
+from ..core import chebyshev
+from ..core.errors import bad
+from ..core.families import Array, LinearPeriodic
+from ..core.progress import bar
+from ..core.workers import Workers, check_executor
+from ..hill import discriminant, hill_form
+from ..hill.form import is_hill
+from ..periodic.first_order import canonical_form
+from .chart_axes import (
+    Axes,
+    Names,
+    at_speed,
+    is_damped,
+    is_symplectic,
+    leaves_function_alone,
+    plain_axes,
+)
 from .invariants import half_trace_rows, half_traces
-from .structure import Axes, Names, at_speed, is_damped, is_symplectic
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -28,10 +35,6 @@ if TYPE_CHECKING:
 _FIRST, _MOST = 16, 512
 # Flops, roughly, that one chart may cost: an hour or so.
 _MOST_WORK = 1e13
-# Phase of a segment of the period, and what the series of one cost, in products of matrices.
-_PHASE, _PER_LINE = 4.0, 3000
-# The same of a point alone, and the flops that its system costs where it is made anew.
-_PER_POINT, _MAKING = 300, 1.4e8
 
 Tick = Callable[[int], None] | None
 
@@ -81,21 +84,7 @@ class Sampler:
         rtol: float,
         executor: Executor | None = None,
     ) -> Sampler:
-        """Return the sampler of a chart at a fixed speed, or with the speed as an axis.
-
-        Parameters
-        ----------
-        system : LinearPeriodic
-            As it was given.
-        names, axes : tuple
-            The axes.
-        speed : float, optional
-            Crank speed [rad/s] of all points.
-        rtol : float
-            Wanted error of the invariants.
-        executor : concurrent.futures.Executor, optional
-            Does independent pieces.
-        """
+        """Return the sampler of a chart at a fixed speed [rad/s], or with the speed as an axis."""
         check_executor(executor)
         made = cls(at_speed(system, names, speed), names, axes, rtol)
         made._executor, made._asked = executor, (system, speed)
@@ -156,11 +145,13 @@ class Sampler:
         }
         speed = corner.pop("speed", np.ones(4))
         rate = float(np.max(canonical_form(self.system, speed, corner).rate))
-        segments = max(8.0, rate * self.system.period / _PHASE)
+        # A segment has a phase of 4 rad; its series cost as much as 3000 products of matrices.
+        segments = max(8.0, rate * self.system.period / 4.0)
         product = 2.0 * (2 * self.system.size) ** 3
-        work = lines * (nodes + _PER_LINE) * segments * product
+        work = lines * (nodes + 3000) * segments * product
         if all(name in self.system.geometry for name in self.names):
-            work = lines * nodes * (_PER_POINT * segments * product + _MAKING)
+            # A point alone costs 300 products, and its system, made anew, 1.4e8 flops.
+            work = lines * nodes * (300 * segments * product + 1.4e8)
         if work > _MOST_WORK:
             raise bad(
                 "stability_chart",

@@ -1,1 +1,0 @@
-"""Stability charts over two parameters."""

@@ -1,0 +1,93 @@
+"""Monodromy matrices at many speeds of a range, from tables of segments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import ceil, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.families import LinearPeriodic
+from ..periodic import monodromy
+from ..periodic.equation import sampled
+from ..periodic.prepared import TableMaker
+from ..periodic.tables import Table
+
+Array = NDArray[np.float64]
+
+
+class MatricesOverSpeed:
+    """Scaled monodromy matrices of one system over the speed; tables are made where first needed.
+
+    Parameters
+    ----------
+    system : LinearPeriodic
+        The system.
+    span : pair of float
+        Speeds [rad/s] of the tables; beyond them each matrix is solved for itself.
+    parameters : mapping
+        Parameter values that replace the system's own; no geometry.
+    rtol : float
+        Wanted error of the matrices.
+    """
+
+    def __init__(
+        self,
+        system: LinearPeriodic,
+        span: tuple[float, float],
+        parameters: Mapping[str, float],
+        rtol: float,
+    ) -> None:
+        low, high = span
+        self.system, self.parameters, self.rtol = system, parameters, rtol
+        # A table spans a ratio of at most 1.5, which up to 72 Chebyshev nodes resolve.
+        count = max(1, ceil(log(high / low) / log(1.5) - 1e-9))
+        self._edges = low * (high / low) ** (np.arange(count + 1) / count)
+        self._edges[[0, -1]] = low, high
+        known = sampled(system, forcing=False)
+        self._maker = TableMaker(known, (low * high) ** 0.5, parameters)
+        self._tables: dict[int, tuple[Table, float]] = {}
+
+    @property
+    def scale(self) -> Array:
+        """Units of the scaled variables, ``(2n,)``."""
+        return self._maker.scale
+
+    def __call__(self, speed: Array) -> tuple[Array, Array]:
+        """Return matrices ``(nb, 2n, 2n)`` and their errors over the largest entries ``(nb,)``.
+
+        The variables are canonical, (q, p), in scales that make the entries alike.
+        """
+        m = 2 * self.system.size
+        matrices, error = np.empty((len(speed), m, m)), np.empty(len(speed))
+        inner = len(self._edges) - 1
+        place = np.searchsorted(self._edges, speed, side="right") - 1
+        place[speed == self._edges[-1]] = inner - 1
+        for number in np.unique(place).tolist():
+            rows = np.flatnonzero(place == number)
+            if 0 <= number < inner:
+                table, size = self._table(number)
+                plain, power = table.products(1.0 / speed[rows])
+                with np.errstate(over="ignore"):
+                    matrices[rows] = np.ldexp(plain, power[:, None, None])
+                # What decays keeps the error of what it came from.
+                top = np.max(np.abs(matrices[rows]), axis=(-2, -1))
+                error[rows] = size * np.maximum(1.0, 1.0 / top)
+                continue
+            single = monodromy(self.system, speed[rows], rtol=self.rtol, **self.parameters)
+            with np.errstate(over="ignore"):
+                matrices[rows] = np.ldexp(single.scaled, single.exponent[:, None, None])
+            error[rows] = single.error
+        return matrices, error
+
+    def _table(self, number: int) -> tuple[Table, float]:
+        if number not in self._tables:
+            low, high = self._edges[number], self._edges[number + 1]
+            # In a range as narrow as 1.05 twelve nodes are enough for eight modes.
+            nodes = 12 if high <= 1.05 * low else None
+            table, error, _, _ = self._maker.table(
+                float(1.0 / high), float(1.0 / low), 1, self.rtol, nodes
+            )
+            self._tables[number] = table, error
+        return self._tables[number]

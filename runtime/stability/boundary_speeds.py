@@ -130,8 +130,8 @@ def speed_boundaries(
     SpeedBoundaries
         Its checks: ``truncation``, how far a larger truncation moves a speed, relatively;
         ``parity``, the number of test speeds at which integration contradicts the count of
-        boundaries; ``monodromy``, the smallest singular value of (monodromy matrix - multiplier), relative to
-        the matrix, from integration, at up to 256 of the boundaries.
+        boundaries; ``monodromy``, the smallest singular value of (monodromy matrix - multiplier),
+        relative to the matrix, from integration, at up to 256 of the boundaries.
 
     Raises
     ------

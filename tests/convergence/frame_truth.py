@@ -64,6 +64,19 @@ def random_frame(rng, elements=1, kind="cubic"):
     )
 
 
+def portal(elements=1, kind="cubic"):
+    """Return the frame of Aannaque's Table 5.1: sqrt(EI / (rho A)) = 1 m^2/s, bars of 1 m."""
+    bar = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)
+    return frame(
+        {"A": (0, 0), "B": (0, 1), "C": (1, 1), "D": (1, 0)},
+        {"left": ("A", "B"), "beam": ("B", "C"), "right": ("D", "C")},
+        bar,
+        supports={"A": CLAMPED, "D": CLAMPED},
+        elements=elements,
+        kind=kind,
+    )
+
+
 def exact_stiffness(problem, omega):
     """Return D of a structure of one element for each member as an mpmath matrix."""
     assembly, structure_freedoms = problem.assembly, problem.structure.freedoms

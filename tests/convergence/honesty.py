@@ -7,6 +7,8 @@ import pytest
 
 # How many random scenes: a few in the first stage of the tests, many in the second.
 SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
+# The same where a scene takes a good part of a second.
+FEWER_SCENES = pytest.mark.parametrize("scenes", [10, pytest.param(100, marks=pytest.mark.slow)])
 
 
 def verdict(ratios, least=1):

@@ -24,14 +24,3 @@ def cartesian(place, angle, speed, turning, rod=ROD):
     q = np.stack([place, place + rod * sin, -rod * cos], axis=-1)
     qd = np.stack([speed, speed + rod * turning * cos, rod * turning * sin], axis=-1)
     return q, qd
-
-
-def energy_of(q, qd):
-    """Return the energy of block, bob and spring."""
-    m = NUMBERS
-    return (
-        m["block"] / 2 * qd[:, 0] ** 2
-        + m["bob"] / 2 * (qd[:, 1] ** 2 + qd[:, 2] ** 2)
-        + m["spring"] / 2 * q[:, 0] ** 2
-        + m["bob"] * m["gravity"] * q[:, 2]
-    )

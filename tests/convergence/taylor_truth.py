@@ -167,32 +167,3 @@ def _advance(coefficients: Reals, state: Reals) -> Reals:
         terms[k] = np.sum(coefficients[:k] @ terms[k - 1 :: -1], axis=0) / k
     value: Reals = np.sum(terms[::-1], axis=0)
     return value
-
-
-def motion(equation: Equation, start: Array, turns: int, each: int) -> Reals:
-    """Return the states ``(turns * each + 1, m)`` of a motion at even angles."""
-    one = flows(equation, 1.0, each)
-    state = start.astype(np.longdouble)
-    found = [state[None]]
-    for _ in range(turns):
-        found.append(one[1:] @ state)
-        state = found[-1][-1]
-    return np.concatenate(found)
-
-
-def periodic(equation: Equation, each: int) -> Reals:
-    """Return the states ``(each, m)`` of the periodic motion at even angles of a period."""
-    one = flows(equation, 1.0, each)
-    m = equation.states - 1
-    gap = np.eye(m, dtype=np.longdouble) - one[-1, :m, :m]
-    start = _solved(gap, one[-1, :m, m])
-    return np.asarray(one[:-1] @ np.append(start, np.longdouble(1.0)))
-
-
-def _solved(matrix: Reals, right: Reals) -> Reals:
-    """Solve by doubles, and refine in extended precision."""
-    inverse = np.linalg.inv(matrix.astype(float)).astype(np.longdouble)
-    value = inverse @ right
-    for _ in range(6):
-        value = value + inverse @ (right - matrix @ value)
-    return np.asarray(value)

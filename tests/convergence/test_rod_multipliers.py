@@ -16,7 +16,6 @@ COUNTS = (("overhang", 4, 6), ("two_segment", 8, 10), ("free_free_linear", 8, 12
 # In the principal region of the first mode, with centrifugal tension and as printed.
 POINTS = (
     (0.05, 1680.0, ()),
-    pytest.param(0.1, 1560.0, (), marks=pytest.mark.slow),
     pytest.param(0.1, 1560.0, ("as_printed",), marks=pytest.mark.slow),
 )
 

@@ -29,7 +29,7 @@ from elastolink.runtime.recovery.finer_mesh import intervals_for, solved
 from elastolink.runtime.recovery.stresses import fibre_factors, largest_difference, stresses
 from elastolink.runtime.systems import with_modal_damping
 
-BARS, SLIDER_CRANKS, FOUR_BARS = 185, 12, 3
+BARS, SLIDER_CRANKS, FOUR_BARS = 92, 6, 2
 COUNT, PLACES = 32, 7
 # Cubics per link of the mesh that is taken for the limit: an h^4 of the mesh of one, two or three
 # elements is less there by a factor of 39 at least, an h^2 by 6.

@@ -36,7 +36,7 @@ def test_positions_of_turning_cranks():
     rng = np.random.default_rng(5)
     ratios = []
     with mpmath.workdps(40):
-        while len(ratios) < 300:
+        while len(ratios) < 150:
             linkage = random_linkage(rng)
             if not linkage.crank_turns:
                 continue
@@ -54,7 +54,7 @@ def test_lengths_and_areas():
     # Reference: the trapezoidal rule, which converges geometrically on a closed analytic path.
     rng = np.random.default_rng(6)
     lengths, areas = [], []
-    while len(lengths) < 200:
+    while len(lengths) < 100:
         linkage = random_linkage(rng)
         if not linkage.crank_turns:
             continue

@@ -30,7 +30,7 @@ WITHOUT = {
 # Solvers of the rooms beside those that `elastolink` itself names.
 OF_ROOMS = {
     "design": ("damping_effect", "length_effect", "screen"),
-    "frequencies": ("frozen_frequencies", "link_frequencies"),
+    "frequencies": ("link_frequencies",),
     "periodic": ("reduced_system", "steady_peaks"),
     "stability": ("krein_signatures", "tongue", "tongue_curves", "trace_tongue", "unstable_bands"),
 }

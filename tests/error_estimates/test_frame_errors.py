@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.frequencies import dynamic_stiffness, wittrick_williams
 
-SCENES = 200
+SCENES = 100
 
 
 @pytest.mark.slow

@@ -17,12 +17,11 @@ from elastolink.runtime.periodic import (
     simulate,
     steady_state,
 )
-from honesty import covers
+from honesty import FEWER_SCENES, SCENES, covers
 from manufactured import manufactured
 from wavy_springs import Wavy, tame
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
-COUNTS = [20, pytest.param(200, marks=pytest.mark.slow)]
 EPS = float(np.finfo(float).eps)
 SAMPLES = 8
 
@@ -87,11 +86,11 @@ def _outcomes(seed):
     return out
 
 
-@pytest.mark.parametrize("count", COUNTS)
-def test_the_estimates_cover_the_errors_and_are_not_idle(count):
+@FEWER_SCENES
+def test_the_estimates_cover_the_errors_and_are_not_idle(scenes):
     """In 99 of 100 cases, and not by more than a thousand times in the middle."""
     total: dict[str, list[tuple[float, float]]] = {}
-    for seed in range(count):
+    for seed in range(scenes):
         for name, pairs in _outcomes(seed).items():
             total.setdefault(name, []).extend(pairs)
     for name, pairs in total.items():
@@ -103,19 +102,19 @@ def test_the_estimates_cover_the_errors_and_are_not_idle(count):
         assert np.median(ratio) <= 1e3, f"{name}: {np.median(ratio):.3g}"
 
 
-@pytest.mark.parametrize("count", COUNTS)
+@SCENES
 @pytest.mark.parametrize("repelling", [False, True])
-def test_estimates_of_multipliers(repelling, count):
+def test_estimates_of_multipliers(repelling, scenes):
     rng = np.random.default_rng(2)
-    actual, estimate, scenes = [], [], 0
-    while scenes < count:
+    actual, estimate, drawn = [], [], 0
+    while drawn < scenes:
         squares = rng.uniform(1.0, 60.0, 2)
         if repelling:
             squares[0] *= -0.2
         scene = Wavy(rng, squares)
         if not tame(scene):
             continue
-        scenes += 1
+        drawn += 1
         speed = float(rng.uniform(0.3, 4.0))
         result = floquet_multipliers(scene.system, speed)
         exact = scene.multipliers(speed)

@@ -20,7 +20,7 @@ from honesty import verdict
 from scipy.interpolate import CubicSpline
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
-SCENES = 200
+SCENES = 80
 STATIONS = 5
 # A bar of 1 m and a tenth of it thick, so that its axial waves are no faster than they need be.
 SECTION = Section.rectangle(0.02, 0.1, modulus=2.1e11, density=7850.0)
@@ -181,4 +181,4 @@ def test_runs_of_all_coordinates():
 def test_runs_of_a_few_modes():
     """Those left out are added, all in the end: their figure is that of what they change."""
     rng = np.random.default_rng(8300)
-    verdict([ratio(rng, int(rng.integers(1, 3))) for _ in range(40)], 40)
+    verdict([ratio(rng, int(rng.integers(1, 3))) for _ in range(20)], 20)

@@ -1,4 +1,4 @@
-"""Error figures of slow multipliers and reduced systems, over 200 random stiff systems."""
+"""Error figures of slow multipliers and reduced systems, over 100 random stiff systems."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import floquet_multipliers
 from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
 
-SCENES = 200
+SCENES = 100
 
 
 def random_system(generator):

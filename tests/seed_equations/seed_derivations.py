@@ -11,7 +11,7 @@ from functools import cache
 import sympy as sp
 from sympy.simplify.fu import TR10i
 
-l1, l2, l3, l4 = LENGTHS = sp.symbols("ell_1 ell_2 ell_3 ell_4", positive=True)
+l1, l2, l3, l4 = sp.symbols("ell_1 ell_2 ell_3 ell_4", positive=True)
 theta2, theta3, theta4 = ANGLES = sp.symbols("theta_2 theta_3 theta_4", real=True)
 omega2, omega3, omega4 = SPEEDS = sp.symbols("omega_2 omega_3 omega_4", real=True)
 alpha2, alpha3, alpha4 = ACCELERATIONS = sp.symbols("alpha_2 alpha_3 alpha_4", real=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 
-import mpmath
 import sympy as sp
 from elastolink.derive.models import beam_frequency_functions as ff
 from elastolink.derive.models import beam_frequency_problem as problem
@@ -53,15 +52,3 @@ def axial():
             form = form.xreplace({symbol: value})
         found[name] = form.subs(problem.B, beta)
     return found
-
-
-def number(expression, **values):
-    """Return an expression at doubles, in 30 digits."""
-    table = {sp.Symbol(k, positive=True): sp.Rational(str(w)) for k, w in values.items()}
-    return mpmath.mpf(str(sp.N(expression.subs(table), 30)))
-
-
-def vanishes(expression):
-    """Return whether an expression in circular and hyperbolic functions is 0, by machine."""
-    above = sp.fraction(sp.together(sp.sympify(expression).rewrite(sp.exp)))[0]
-    return sp.simplify(sp.expand(above)) == 0

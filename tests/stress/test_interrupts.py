@@ -50,8 +50,7 @@ class Interrupts:
         return target
 
 
-@pytest.mark.parametrize("after", [False, True], ids=["before the move", "after it"])
-@pytest.mark.parametrize("number", [1, 2, 3, 4])
+@pytest.mark.parametrize(("number", "after"), [(1, True), (2, False), (4, False)])
 def test_an_interrupt_of_a_first_run_leaves_the_truth(number, after, tmp_path, monkeypatch, capsys):
     with monkeypatch.context() as patch:
         Interrupts(patch, number, after)
@@ -64,8 +63,7 @@ def test_an_interrupt_of_a_first_run_leaves_the_truth(number, after, tmp_path, m
     assert len(read_manifest(tmp_path)) == 2
 
 
-@pytest.mark.parametrize("after", [False, True], ids=["before the move", "after it"])
-@pytest.mark.parametrize("number", [1, 2, 3])
+@pytest.mark.parametrize(("number", "after"), [(1, False), (2, True), (3, False)])
 def test_an_interrupt_of_an_update_leaves_the_truth(number, after, tmp_path, monkeypatch):
     """An older text is replaced: at no time does the manifest vouch for the wrong one."""
     assert main([MODELS[1], "--out", str(tmp_path)]) == 0
@@ -168,9 +166,9 @@ def test_an_interrupted_process_says_one_line_and_leaves_the_truth(jobs, tmp_pat
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="process groups are interrupted otherwise there")
 def test_an_interrupt_at_any_time_leaves_the_truth(tmp_path):
-    for step in range(8):
+    for step in range(4):
         folder = tmp_path / str(step)
-        _interrupt(folder, 1, 0.4 + 0.4 * step)
+        _interrupt(folder, 1, 0.4 + 0.8 * step)
         if folder.exists():
             assert_truthful(folder)
 

@@ -325,16 +325,12 @@ def closed_chain(maps: Array, wrong: Array) -> Array | None:
     m, p, _ = maps.shape
     if p == 0:
         return np.zeros_like(wrong)
-    index = np.arange(m * p).reshape(m, p)
-    row = np.broadcast_to(index[:, :, None], (m, p, p))
-    column = np.broadcast_to(index[:, None, :], (m, p, p))
-    ahead = np.roll(index, -1, axis=0)
-    values = np.concatenate([-maps.ravel(), np.ones(m * p)])
-    places = (
-        np.concatenate([row.ravel(), index.ravel()]),
-        np.concatenate([column.ravel(), ahead.ravel()]),
-    )
-    matrix = sparse.csc_matrix((values, places), shape=(m * p, m * p))
+    each = np.arange(m)
+    blocks = np.stack([-maps, np.broadcast_to(np.eye(p), maps.shape)], axis=1)
+    columns = np.stack([each, np.roll(each, -1)], axis=1)
+    rows = 2 * np.arange(m + 1)
+    matrix = sparse.bsr_matrix((blocks.reshape(-1, p, p), columns.ravel(), rows)).tocsc()
+    matrix.eliminate_zeros()
     try:
         solution: Array = splu(matrix).solve(np.ascontiguousarray(wrong.reshape(m * p, -1)))
     except RuntimeError:

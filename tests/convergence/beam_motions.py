@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
+from elastolink.runtime.beams import (
+    Beam,
+    Node,
+    Section,
+    Structure,
+    linear_system,
+    linkage_system,
+)
 from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.linkages import FourBar
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.recovery import BeamMotion
+from elastolink.runtime.systems import with_modal_damping
 
 STEEL = {"modulus": 210e9, "density": 7850.0}
 FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
@@ -108,3 +116,11 @@ def rocking_bar(rng, elements):
     drag = rng.uniform(0.01, 0.1) * first
     system = turning_bar(angle, pinned=pinned, drag=drag, elements=elements)
     return system, rng.uniform(0.03, 0.6) * first
+
+
+def damped_four_bar(elements=1, **options):
+    """Return the elastic four-bar with 2 % of modal damping."""
+    made = linkage_system(
+        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=elements, **options
+    )
+    return with_modal_damping(made, 0.02)

@@ -44,11 +44,12 @@ def half_traces(f: PeriodicFunction, lam2: ArrayLike, mu: ArrayLike, damping: fl
     powers = np.arange(_ORDER)
     factorials = np.cumprod(np.maximum(powers, 1).astype(Real))
     falling = np.asarray((m * h)[:, None] ** powers / factorials, dtype=Real)
-    states = [(np.ones_like(lam), np.zeros_like(lam)), (np.zeros_like(lam), np.ones_like(lam))]
+    value = np.stack([np.ones_like(lam), np.zeros_like(lam)])
+    slope = value[::-1].copy()
     for step in range(steps):
         series = _taylor(f, m, h * step, falling)
-        states = [_advance(state, lam, amp, series, h) for state in states]
-    trace: Reals = states[0][0] + states[1][1]
+        value, slope = _advance(value, slope, lam, amp, series, h)
+    trace: Reals = value[0] + slope[1]
     trace = 0.5 * trace * np.exp(-_TURN * Real(damping))
     return trace.reshape(x.shape)
 
@@ -65,18 +66,14 @@ def _taylor(f: PeriodicFunction, m: Reals, t: Real, falling: Reals) -> Reals:
 
 
 def _advance(
-    state: tuple[Reals, Reals], lam2: Reals, mu: Reals, series: Reals, h: Real
+    value: Reals, slope: Reals, lam2: Reals, mu: Reals, series: Reals, h: Real
 ) -> tuple[Reals, Reals]:
-    """Advance (y, y') by one step."""
-    terms = [state[0], state[1] * h]
+    """Advance y and y' of both unit starts, ``(2, n)``, by one step."""
+    terms = np.zeros((_ORDER, *value.shape), dtype=Real)
+    terms[0], terms[1] = value, slope * h
     for k in range(_ORDER - 2):
-        total = (lam2 + mu * series[0]) * terms[k]
-        for j in range(1, k + 1):
-            total = total + mu * series[j] * terms[k - j]
-        terms.append(-h * h * total / ((k + 1) * (k + 2)))
-    value = np.zeros_like(lam2)
-    slope = np.zeros_like(lam2)
-    for k in range(_ORDER - 1, -1, -1):
-        value = value + terms[k]
-        slope = slope + k * terms[k]
-    return value, slope / h
+        total = lam2 * terms[k] + mu * np.tensordot(series[: k + 1], terms[k::-1], axes=1)
+        terms[k + 2] = -h * h * total / ((k + 1) * (k + 2))
+    powers = np.arange(_ORDER).astype(Real)
+    # The smallest terms first.
+    return terms[::-1].sum(axis=0), (powers[::-1, None, None] * terms[::-1]).sum(axis=0) / h

@@ -51,16 +51,6 @@ def test_no_width_to_first_order():
     assert closed.splitting == 0 and np.array_equal(closed.lower, closed.upper)
 
 
-def test_error_covers_the_exact_coefficients():
-    # alpha_2 of region 1 of a cos theta + b sin theta is -(a^2 + b^2)/8 by turning the origin.
-    for a, b in ((0.3, 1.7), (1e-3, 2.0), (5.0, 1e-9)):
-        f = el.PeriodicFunction(a=[0.0, a], b=[0.0, b])
-        found = boundary_series(f, 1, 4)
-        size = np.hypot(a, b)
-        exact = np.array([0.5, -1 / 8, -1 / 32, -1 / 384]) * size ** np.arange(1, 5)
-        assert np.all(np.abs(found.upper - exact) <= found.error[1] + 4e-16 * np.abs(exact))
-
-
 def test_plot():
     ax = boundary_series(MIXED, 2, 2).plot()
     assert {line.get_label() for line in ax.get_lines()} >= {"exact", "order 1", "order 2"}
@@ -327,16 +317,6 @@ def test_the_published_coefficients(name):
     found = from_operator(name)
     assert found[: len(expected)] == expected and len(found) == ORDER
     assert found == from_continued_fraction(name)
-
-
-@pytest.mark.parametrize("m", [1, 2, 3, 4])
-def test_the_width_of_a_region(m):
-    """DLMF 28.6.15: the first difference of a_m and b_m is 2 / (2^(m-1) (m-1)!)^2 q^m."""
-    high, low = from_operator(f"a{m}"), from_operator(f"b{m}")
-    difference = [x - y for x, y in zip(high, low, strict=True)]
-    factorial = np.prod(range(1, m), dtype=int)
-    assert difference[: m - 1] == [0] * (m - 1)
-    assert difference[m - 1] == Fraction(2, int(2 ** (m - 1) * factorial) ** 2)
 
 
 @pytest.mark.parametrize("name", PUBLISHED)

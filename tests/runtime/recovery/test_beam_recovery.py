@@ -8,6 +8,7 @@ from beam_motions import (
     FOUR_BAR,
     JOINT_MASSES,
     SECTIONS,
+    damped_four_bar,
     fourier_derivative,
     periodic_motion,
     rocking,
@@ -161,9 +162,7 @@ def _times(matrices, vectors):
 
 
 def test_forces_jump_nowhere_between_elements():
-    system = with_modal_damping(
-        linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=2), 0.02
-    )
+    system = damped_four_bar(2)
     motion = periodic_motion(system, 20.0, 32)
     beside = 0.5 + np.array([-1e-9, 1e-9])
     found = recover(system, motion, stations={"coupler": beside, "follower": beside})

@@ -10,12 +10,13 @@ from beam_motions import (
     FOUR_BAR,
     JOINT_MASSES,
     SECTIONS,
+    damped_four_bar,
     periodic_motion,
     rocking,
     steadily,
     turning_bar,
 )
-from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
+from elastolink.runtime.beams import linkage_system
 from elastolink.runtime.core.families import Term
 from elastolink.runtime.recovery import (
     beam_energies,
@@ -28,13 +29,6 @@ from elastolink.runtime.recovery.finer_mesh import finer_structure, finer_system
 from elastolink.runtime.systems import with_modal_damping
 
 APART = "apart"
-
-
-def four_bar(elements=1, **options):
-    made = linkage_system(
-        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=elements, **options
-    )
-    return with_modal_damping(made, 0.02)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +50,9 @@ def test_finer_elements(elements, kind, expected):
 
 
 def test_the_finer_system_has_parameters_and_damping_of_its_own_modes():
-    system = four_bar(2, gravity=(0.0, -9.81)).with_parameters(elasticity=0.9, damping_ratio=0.03)
+    system = damped_four_bar(2, gravity=(0.0, -9.81)).with_parameters(
+        elasticity=0.9, damping_ratio=0.03
+    )
     found = finer_system(system)
     made = with_modal_damping(
         linkage_system(
@@ -70,7 +66,7 @@ def test_the_finer_system_has_parameters_and_damping_of_its_own_modes():
 
 
 def test_terms_taken_away_are_missing_there_too():
-    system = four_bar().without("Kg").with_changed_terms(lambda term: replace(term, power=0))
+    system = damped_four_bar().without("Kg").with_changed_terms(lambda term: replace(term, power=0))
     found = finer_system(system)
     assert not found.has("Kg") and found.has("C") and found.size == 30
 
@@ -125,22 +121,6 @@ def test_figures_of_a_bar_hold_against_many_elements():
     other = elastic_coupler_curve(many, exact, link="bar")
     gap = np.max(np.hypot(*(curve.elastic[::8] - other.elastic).T))
     assert gap <= curve.error <= 10.0 * gap
-
-
-def test_a_frame_is_solved_once_more():
-    # Cubics are exact between loaded nodes: what is left is round-off.
-    bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
-    structure = frame(
-        {"O": (0, 0), "P": (1, 0)},
-        {"bar": ("O", "P")},
-        bar,
-        supports={"O": ("x", "y", "rotation")},
-        elements=1,
-        nodes={"P": {"force": (10.0, 2.0)}},
-    )
-    found = stress(linear_system(structure, geometric_stiffness=False))
-    exact = 10.0 / 2e-4 + 2.0 * 0.005 / (0.02 * 0.01**3 / 12)
-    assert abs(found.maximum.value - exact) <= found.error <= 1e-6 * exact
 
 
 def test_stretch_comes_from_the_forces():

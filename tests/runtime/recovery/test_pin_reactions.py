@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS, periodic_motion, rocking, turning_bar
+from beam_motions import (
+    FOUR_BAR,
+    JOINT_MASSES,
+    SECTIONS,
+    damped_four_bar,
+    periodic_motion,
+    rocking,
+    turning_bar,
+)
 from elastolink.runtime.beams import Section, frame, linear_system, linkage_system
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.linkages import SliderCrank
 from elastolink.runtime.recovery import pin_reactions
 from elastolink.runtime.recovery.strain_energy import beam_energies
 from elastolink.runtime.rigid import Machine, MassDistribution, rigid_forces
-from elastolink.runtime.systems import with_modal_damping
 
 SLIDER = SliderCrank(crank=0.1, coupler=0.37, offset=0.06)
 
@@ -32,16 +39,9 @@ def machine(linkage, masses):
     return Machine(linkage, bars, gravity=(0.0, -9.81))
 
 
-def four_bar(elasticity, **options):
-    made = linkage_system(
-        FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1, gravity=(0.0, -9.81), **options
-    )
-    return with_modal_damping(made, 0.02).with_parameters(elasticity=elasticity)
-
-
 def gaps_to_rigid(elasticity):
     """Return the largest differences from the rigid machine, over the largest force or torque."""
-    system = four_bar(elasticity)
+    system = damped_four_bar(gravity=(0.0, -9.81)).with_parameters(elasticity=elasticity)
     found = pin_reactions(system, periodic_motion(system, 30.0))
     masses = {"crank": JOINT_MASSES["B"], "follower": JOINT_MASSES["C"]}
     rigid = rigid_forces(machine(FOUR_BAR, masses), found.theta, 30.0)
@@ -84,7 +84,7 @@ def test_rigid_limit_of_the_slider_crank():
 
 @pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature"])
 def test_forces_balance_to_round_off(kind):
-    system = four_bar(1.0, kind=kind)
+    system = damped_four_bar(kind=kind, gravity=(0.0, -9.81))
     found = pin_reactions(system, periodic_motion(system, 25.0))
     assert found.checks["balance"].value <= 1e-10
     # Action and reaction with the joint's inertia: the coupler's and the follower's pin.

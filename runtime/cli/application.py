@@ -18,6 +18,7 @@ from typing import NoReturn
 
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from ..core.progress import time_taken
+from ..core.threads import use_one_thread
 from . import (
     balancing,
     beams,
@@ -58,7 +59,6 @@ _GROUPS = (
 _BAD_INPUT = 2
 _INTERRUPTED = 130
 _MODULES = "ELASTOLINK_GENERATED"
-_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -110,7 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     options = build_parser().parse_args(arguments)
     prefix = f"elastolink {options.command}"
-    _one_thread()
+    use_one_thread()
     folder = getattr(options, "modules", None)
     try:
         with _module_folder(folder), _short_warnings(prefix), time_taken():
@@ -132,16 +132,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _complain(prefix, "interrupted; no file is left half written")
         return _INTERRUPTED
     return _BAD_INPUT
-
-
-def _one_thread() -> None:
-    """Let linear algebra use one thread, unless the user has set how many, or NumPy is loaded.
-
-    Matrices of a few rows gain nothing from more: on two cores that others used as well the
-    commands took five to ten times the processor time, and longer.
-    """
-    if "numpy" not in sys.modules and not any(name in os.environ for name in _THREADS):
-        os.environ.update(dict.fromkeys(_THREADS, "1"))
 
 
 def _complain(prefix: str, message: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -128,10 +127,6 @@ def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
     return low, high
 
 
-def _shown(options: argparse.Namespace) -> bool:
-    return sys.stderr.isatty() and not options.json
-
-
 def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
     """Return the scene and its system, refused where the links are no beams."""
     opt.picture(options)
@@ -156,12 +151,10 @@ def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Sce
     raise bad(where, found, "beams whose forces can be recovered", fix)
 
 
-def _limit(options: argparse.Namespace) -> float | None:
-    if options.limit is None:
-        return None
-    value = opt.quantity(options.limit, "stress", "--limit")
+def _limit(text: str) -> float:
+    value = opt.quantity(text, "stress", "--limit")
     if value <= 0:
-        raise bad("--limit", repr(options.limit), "a positive stress", "correct the sign")
+        raise bad("--limit", repr(text), "a positive stress", "correct the sign")
     return value
 
 
@@ -192,7 +185,7 @@ def _critical(options: argparse.Namespace) -> int:
     refuse_frame(scene)
     speeds = _speeds(options, scene)
     system = scene.linear_system()
-    found = critical_speeds(system, speeds, method=options.method, progress=_shown(options))
+    found = critical_speeds(system, speeds, method=options.method, progress=opt.progress(options))
     rows = [
         (f"{speed:.6g}", str(mode), str(n), f"{error:.2g}")
         for speed, (mode, n), error in zip(found.speed, found.labels, found.error, strict=True)
@@ -211,7 +204,7 @@ def _campbell(options: argparse.Namespace) -> int:
     refuse_frame(scene)
     low, high = _speeds(options, scene)
     speeds = np.linspace(low, high, 27)
-    found = campbell(scene.linear_system(), speeds, progress=_shown(options))
+    found = campbell(scene.linear_system(), speeds, progress=opt.progress(options))
     return opt.finish(options, found, opt.ranges(found))
 
 
@@ -219,7 +212,7 @@ def _stress(options: argparse.Namespace) -> int:
     import numpy as np
 
     scene, system = _of_beams(options)
-    limit = _limit(options)
+    limit = None if options.limit is None else _limit(options.limit)
     if scene.model["mechanism"] == "frame":
         from ..recovery.stresses import stress
 
@@ -286,11 +279,9 @@ def _curve_lines(curve: StressCurve) -> list[str]:
     import numpy as np
 
     worst = np.max(curve.maximum, axis=1)
-    inner = np.flatnonzero((worst[1:-1] > worst[:-2]) & (worst[1:-1] >= worst[2:])) + 1
-    chosen = np.sort(inner[np.argsort(-worst[inner], kind="stable")[:_ROWS]])
     rows = [
         (f"{curve.speed[i]:.5g}", *(f"{value / 1e6:.5g}" for value in curve.maximum[i]))
-        for i in chosen
+        for i in opt.highest(worst, _ROWS)
     ]
     title = f"{len(curve.speed)} speeds; largest stress [MPa] where it is higher than beside:"
     if not rows:
@@ -302,9 +293,8 @@ def _running(options: argparse.Namespace) -> int:
     from ..design import running_speed
 
     scene, system = _of_beams(options, moving=True)
-    limit = _limit(options)
-    assert limit is not None
-    found = running_speed(system, _speeds(options, scene), limit, progress=_shown(options))
+    limit = _limit(options.limit)
+    found = running_speed(system, _speeds(options, scene), limit, progress=opt.progress(options))
     lines = [
         f"running speed: {found.speed:.5g} rad/s, stress over limit {found.band.ratio:.3g}",
         f"quiet from {found.band.low:.5g} to {found.band.high:.5g} rad/s",

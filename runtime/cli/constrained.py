@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from math import inf, pi
 from typing import TYPE_CHECKING
 
@@ -99,7 +98,7 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
         rod,
         span=revolutions * (2.0 * pi / abs(rod.speed)),
         samples=max(1, round(_SAMPLES * revolutions)),
-        progress=sys.stderr.isatty(),
+        progress=opt.progress(options),
     )
     norms = [
         (name, f"{float(getattr(result, f'{name}_norm').max()):.2e}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -216,9 +215,10 @@ def _simulate(options: argparse.Namespace) -> int:
 
     chosen = {name: getattr(options, name) for name in ("method", "initial")}
     given = {name: value for name, value in chosen.items() if value is not None}
-    shown = sys.stderr.isatty()
     try:
-        result = simulate(system, speed, options.revolutions, **given, progress=shown)
+        result = simulate(
+            system, speed, options.revolutions, **given, progress=opt.progress(options)
+        )
     except BadInput as error:
         fix = "give --initial Q,QD, such as --initial 0.001,0"
         told = (replace(p, fix=fix) if p.where == "initial" else p for p in error.problems)

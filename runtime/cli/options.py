@@ -198,7 +198,7 @@ def finish(
     more: Mapping[str, Any] | None = None,
     beside: Sequence[Result] = (),
 ) -> int:
-    """Write what was asked for and return the exit status: 1 where a self-check failed.
+    """Write what was requested and return the exit status: 1 where a self-check failed.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def finish(
     result : Result
         What was found.
     lines : sequence of str
-        The same for people; the error figure and the checks are added.
+        The same for people; the error and the checks are added.
     draw : callable, optional
         Draws into axes; ``result.plot`` by default.
     more : mapping of str, optional
@@ -231,7 +231,7 @@ def finish(
 
 
 def draw_into(options: argparse.Namespace, draw: Callable[[Axes], Any]) -> None:
-    """Write the picture that was asked for, if any."""
+    """Write the requested picture, if any."""
     path = picture(options)
     if path is not None:
         from ..core.plotting import new_figure
@@ -267,6 +267,19 @@ def even_rows(count: int, most: int) -> NDArray[np.intp]:
     import numpy as np
 
     return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
+
+
+def highest(values: NDArray[np.float64], most: int) -> NDArray[np.intp]:
+    """Return the places of the local maxima inside a row, rising, the highest ``most`` of them."""
+    import numpy as np
+
+    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    return np.sort(inner[np.argsort(-values[inner], kind="stable")[:most]])
+
+
+def progress(options: argparse.Namespace) -> bool:
+    """Return whether a progress bar is shown: on a terminal, and not beside JSON."""
+    return sys.stderr.isatty() and not options.json
 
 
 def crank_speeds(text: str) -> list[float]:
@@ -337,22 +350,3 @@ def _finite(content: Any) -> Any:
     if isinstance(content, float) and not math.isfinite(content):
         return None
     return content
-
-
-__all__ = [
-    "HelpFormatter",
-    "command",
-    "finish",
-    "load",
-    "picture",
-    "print_json",
-    "quantity",
-    "ranges",
-    "refuse_unused",
-    "save",
-    "scene_options",
-    "settings",
-    "spaced",
-    "table",
-    "values",
-]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,9 +55,7 @@ def _reproduce(options: argparse.Namespace) -> int:
     opt.picture(options)
     from ..gallery import reproduce
 
-    result = reproduce(
-        options.document, options.figure, folder, progress=sys.stderr.isatty() and not options.json
-    )
+    result = reproduce(options.document, options.figure, folder, progress=opt.progress(options))
     lines = result.lines()
     if not options.json:
         # The lines show every comparison; of the checks only those that fail remain to be told.

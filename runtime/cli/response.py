@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
@@ -67,12 +66,9 @@ def _steady_state(options: argparse.Namespace) -> int:
     else:
         speeds = [speed_of(options, scene)]
     system = scene.linear_system()
-    shown = sys.stderr.isatty() and not options.json
     if system.structure is not None:
-        return _of_beams(options, system, np.array(speeds), shown)
-    from ..periodic import steady_state
-
-    result = steady_state(system, np.array(speeds), method=options.method or "auto", progress=shown)
+        return _of_beams(options, system, np.array(speeds))
+    result = _solved(options, system, np.array(speeds))
     places = np.linspace(0.0, 1.0, _PLACES) if options.at is None else np.array([options.at])
     reached = result.peak(places)
     largest, place = np.max(reached, axis=1), places[np.argmax(reached, axis=1)]
@@ -80,19 +76,22 @@ def _steady_state(options: argparse.Namespace) -> int:
     return opt.finish(options, result, _lines(result, largest, place), more=more)
 
 
-def _of_beams(
-    options: argparse.Namespace, system: LinearPeriodic, speeds: Array, shown: bool
-) -> int:
+def _solved(options: argparse.Namespace, system: LinearPeriodic, speeds: Array) -> SteadyState:
+    from ..periodic import steady_state
+
+    method = options.method or "auto"
+    return steady_state(system, speeds, method=method, progress=opt.progress(options))
+
+
+def _of_beams(options: argparse.Namespace, system: LinearPeriodic, speeds: Array) -> int:
     """Show the motion of a linkage of beams: the largest values of its coordinates."""
     import numpy as np
-
-    from ..periodic import steady_state
 
     opt.refuse_unused(options, ("at",), "a link with mode shapes")
     if len(speeds) > 1:
         fix = "elastolink stress takes many: --speed START:STOP:COUNT"
         raise bad("--speed", f"{len(speeds)} speeds", "one for a linkage of beams", fix)
-    result = steady_state(system, speeds, method=options.method or "auto", progress=shown)
+    result = _solved(options, system, speeds)
     peaks = np.max(np.abs(result.q[0]), axis=0)
     rows = [
         (label, f"{peak:.6g}", _UNITS.get(label.rpartition(".")[2], "rad"))
@@ -109,9 +108,7 @@ def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:
     chosen = np.arange(len(speeds))
     title: list[str] = []
     if len(speeds) > _ROWS:
-        inner = (peaks[1:-1] > peaks[:-2]) & (peaks[1:-1] >= peaks[2:])
-        chosen = np.flatnonzero(inner) + 1
-        chosen = np.sort(chosen[np.argsort(-peaks[chosen], kind="stable")[:_ROWS]])
+        chosen = opt.highest(peaks, _ROWS)
         title = [f"{len(speeds)} speeds; where the deflection is larger than beside:", ""]
     rows = [
         (

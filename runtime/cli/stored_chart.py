@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -107,7 +106,7 @@ def run(
             options=told,
             executor=pool,
             store=options.store,
-            progress=sys.stderr.isatty() and not options.json,
+            progress=opt.progress(options),
         )
     return opt.finish(options, chart, _lines(chart, x, y))
 

@@ -1,4 +1,4 @@
-"""Fields of a result that are worked out when they are first looked at."""
+"""Fields of a result that are computed when they are first looked at."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Deferred:
 class DeferredField:
     """Descriptor of a dataclass field that takes a value, or a :class:`Deferred` one.
 
-    For error figures that would take longer than the work whose error they measure.
+    For error estimates that would take longer than the work whose error they measure.
     """
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -36,7 +36,7 @@ class DeferredField:
         instance.__dict__[self._name] = value
 
     def __get__(self, instance: object | None, owner: type | None = None) -> Any:
-        """Return the value, having worked it out on the first look."""
+        """Return the value, computed on the first look."""
         if instance is None:  # the dataclass asks for a default: there is none
             raise AttributeError(self._name)
         value = instance.__dict__[self._name]
@@ -47,7 +47,7 @@ class DeferredField:
 
 @dataclass(frozen=True)
 class DeferredGroup:
-    """Fields that are worked out together, when the first of them is looked at.
+    """Fields that are computed together, when the first of them is looked at.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class DeferredGroup:
         return self.make()
 
     def value(self, name: str) -> Any:
-        """Return one value, having worked out all of them."""
+        """Return one value, having computed all of them."""
         return self._made[name]
 
     def later(self, name: str) -> Deferred:

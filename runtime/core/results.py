@@ -1,4 +1,4 @@
-"""What every solver returns: values, method, error figure, self-checks, provenance."""
+"""What every solver returns: values, method, error, self-checks, provenance."""
 
 from __future__ import annotations
 
@@ -92,11 +92,11 @@ class Result:
     method : str
         Name of the method that was used.
     error : float or ndarray
-        Error figure of the main values, in the norm that ``error_norm`` names.
+        Error of the main values, in the norm that ``error_norm`` names.
     error_norm : str
         In words: which quantity, absolute or relative, largest or entrywise.
     error_kind : {"estimate", "bound"}
-        Whether the figure is proved or estimated.
+        Whether it is proved or estimated.
     checks : mapping of str to Check
         Self-checks by name.
     provenance : mapping of str to str
@@ -123,7 +123,7 @@ class Result:
     def passed(self) -> bool:
         """True where no self-check failed; a result without any (``checks`` is empty) passes.
 
-        Such a result rests on its error figure alone.
+        Such a result rests on its error alone.
         """
         return all(check.passed for check in self.checks.values())
 

@@ -21,10 +21,10 @@ from typing import Any
 
 from .errors import ElastolinkError, bad
 from .inputs import require_whole
+from .threads import THREADS
 
 # Pieces handed over for each worker: one being done and one waiting.
 _EACH = 2
-_PINNED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _MOST_WORKERS = 1024
 
 
@@ -168,9 +168,9 @@ def process_pool(workers: int) -> Iterator[Executor]:
     from concurrent.futures import ProcessPoolExecutor
 
     check_workers(workers)
-    before = {name: os.environ.get(name) for name in _PINNED}
+    before = {name: os.environ.get(name) for name in THREADS}
     # The libraries read it as they load, in the processes that start here.
-    os.environ.update(dict.fromkeys(_PINNED, "1"))
+    os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(max_workers=int(workers), mp_context=context) as pool:

@@ -13,8 +13,6 @@ from ..core.results import Result
 from ..recovery.stresses import FIBRES, StressResult
 
 Array = NDArray[np.float64]
-# Cycles beyond which a life is called endless.
-_ENDLESS = np.inf
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +96,7 @@ class Fatigue(Result):
     def revolutions(self) -> float:
         """Life of the worst place in revolutions; inf where every cycle is below the limit."""
         worst = float(np.max(self.damage))
-        return 1.0 / worst if worst > 0 else _ENDLESS
+        return 1.0 / worst if worst > 0 else np.inf
 
     @property
     def hours(self) -> float:

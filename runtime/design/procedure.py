@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
@@ -189,10 +189,8 @@ def _place(quiet: QuietSpeeds, band: Band) -> int:
 
 def _largest_multiplier(quiet: QuietSpeeds, band: Band) -> float:
     """Return the largest multiplier's modulus at the running speed, with its error."""
-    size, error = quiet.curve.multiplier, quiet.curve.multiplier_error
-    assert size is not None and error is not None
-    place = _place(quiet, band)
-    return float(size[place] + error[place])
+    curve, place = quiet.curve, _place(quiet, band)
+    return float(cast(Array, curve.multiplier)[place] + cast(Array, curve.multiplier_error)[place])
 
 
 def _linear_range(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:

@@ -18,7 +18,7 @@ from ..core.inputs import is_whole, require_whole
 from ..core.results import Check, Result, provenance
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
-from .changing_length import ChangingLength
+from .changing_length import ChangingLength, deflection_rows
 from .shape_stress import largest_by_shape
 from .speed_profile import Array, SpeedProfile
 from .unsteady import Drive, arrays_of, march
@@ -356,15 +356,14 @@ class _Run:
 
     def deflection(self, found: _Found) -> float:
         """Return the largest deflection over the length of a link."""
-        watch = self.full.relative_deflection
-        assert watch is not None
         largest = 0.0
         for begin in range(0, len(found.time), _CHUNK):
             part = slice(begin, begin + _CHUNK)
             time = found.time[part]
             angle = self.profile.angle(time)
-            rows = watch(angle)
-            if self.changing is not None:
+            if self.changing is None:
+                rows = deflection_rows(self.full, angle)
+            else:
                 rows = self.changing.deflections(angle, time)
             values = np.einsum("tkn,tn->tk", rows, found.q[part])
             largest = max(largest, float(np.max(np.abs(values))))

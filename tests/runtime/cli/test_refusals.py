@@ -84,7 +84,7 @@ forces smith_1972_12_6_12_12 --joint 34 | --joint
 classify smith_1972_12_6_12_12 --base-plane | --base-plane
 classify slider_crank_example --input follower | --input
 stability beale_1992_flexible_rod {free} --speed 90:110:3 | one speed
-simulate beale_1992_flexible_rod {free} --method rk4 | projection
+simulate beale_1992_flexible_rod {free} --method rk4 | collocation
 simulate beale_1992_flexible_rod {free} --initial 1,0 | --initial
 chart beale_1992_flexible_rod {free} | free_free_linear
 steady-state beale_1992_flexible_rod --at 1.5 | from 0 to 1

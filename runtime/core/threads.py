@@ -1,0 +1,19 @@
+"""Threads of linear algebra: one, where more do not pay."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+# Read by the libraries as they load.
+THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+def use_one_thread() -> None:
+    """Let linear algebra use one thread, unless the user has set how many, or NumPy is loaded.
+
+    Matrices of a few rows gain nothing from more: on two cores that others used as well the
+    commands took five to ten times the processor time, and longer.
+    """
+    if "numpy" not in sys.modules and not any(name in os.environ for name in THREADS):
+        os.environ.update(dict.fromkeys(THREADS, "1"))

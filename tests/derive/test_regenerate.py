@@ -147,6 +147,7 @@ def test_nothing_to_do_imports_nothing_but_the_standard_library(copy, tmp_path):
     assert forced.returncode != 0
 
 
+@pytest.mark.smoke
 def test_only_what_is_stale_is_derived(copy, capsys):
     (copy / f"{QUICK}.py").unlink()
     assert main(["--out", str(copy)]) == 0

@@ -23,6 +23,7 @@ def d(expression: sp.Expr, *by: sp.Symbol) -> sp.Expr:
     return sp.Derivative(expression, *by) if by else expression
 
 
+@pytest.mark.smoke
 def test_string_and_euler_bernoulli_beam():
     string = ActionDensity(x, t, l3, (y,), mu / 2 * y.diff(t) ** 2 - T / 2 * y.diff(x) ** 2)
     result = hamilton(string)

@@ -1,16 +1,100 @@
-"""Aannaque's algorithms of chapter 6: Newmark's steps, uncoupled modes, the transition matrix.
+"""Aannaque's algorithms of chapter 6: Newmark's steps, uncoupled modes, operations of each.
 
 They are redrawn, not recommended: :func:`~..periodic.steady_state` is what the library solves with.
+Operations: an addition or a multiplication is one, a product of matrices ``(a, b) (b, c)`` takes
+``(2 b - 1) a c``, a triangular decomposition ``(4 n^3 - 3 n^2 - n)/6``, each solution with it
+``2 n^2 - n``.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Mapping
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
 from ..periodic.ring import solve_ring
 from .historic_steps import newmark_matrices
+
+# Phases omega h between which a loss of stability is looked for, and how finely at first.
+_PHASES = np.geomspace(1e-6, 1e6, 481)
+_HALVINGS = 60
+
+
+# Tables 6.2 and 6.3 as printed, in millions: (N, n, cycles) to marching, algorithms 1 and 2 with
+# storage, the same without; (N, harmonics, n) to the Fourier series and algorithm 1.
+TABLE_6_2: Mapping[tuple[int, int, int], tuple[float, ...]] = {
+    (90, 10, 5): (2.43, 3.78, 5.93, 11.4, 7.71, 9.96),
+    (90, 10, 100): (6.02, 3.78, 5.93, 228, 7.71, 9.96),
+    (90, 50, 5): (259, 438, 707, 1270, 893, 1170),
+    (90, 50, 100): (345, 438, 707, 25500, 893, 1170),
+    (720, 10, 5): (19.5, 30.1, 47.4, 91.3, 61.8, 79.8),
+    (720, 10, 100): (48.2, 30.1, 47.4, 1830, 61.8, 79.8),
+    (720, 50, 5): (2070, 3490, 5650, 10200, 7160, 9340),
+    (720, 50, 100): (2760, 3490, 5650, 204000, 7160, 9340),
+}
+TABLE_6_3: Mapping[tuple[int, int, int], tuple[float, float]] = {
+    (90, 6, 10): (2.50, 3.78),
+    (90, 6, 50): (277, 438),
+    (90, 10, 10): (11.6, 3.78),
+    (90, 10, 50): (1200, 438),
+    (720, 6, 10): (2.59, 30.1),
+    (720, 6, 50): (277, 3490),
+    (720, 10, 10): (11.8, 30.1),
+    (720, 10, 50): (1200, 3490),
+    (720, 15, 10): (39.7, 30.1),
+    (720, 15, 50): (3920, 3490),
+}
+
+
+def printed_count(
+    algorithm: str,
+    *,
+    intervals: int,
+    freedoms: int,
+    cycles: int = 1,
+    harmonics: int = 1,
+    storage: bool = True,
+) -> int:
+    """Return the number of operations by the printed formula of an algorithm.
+
+    Parameters
+    ----------
+    algorithm : str
+        ``time_marching``, ``transition_matrix`` (algorithm 1), ``closed_form`` (algorithm 2), or
+        ``harmonic_balance`` (the Fourier series analysis).
+    intervals, freedoms : int
+        N and n.
+    cycles : int
+        Revolutions marched, n_c.
+    harmonics : int
+        N_h.
+    storage : bool
+        Whether the matrices of the intervals are kept.
+
+    """
+    big, n, c, h = intervals, freedoms, cycles, harmonics
+    tail = 14 * n**3 + 21 * n**2
+    formulas = {
+        ("time_marching", True): big * (22 * n**3 + (29 + 4 * c) * n**2 + (3 + 2 * c) * n),
+        ("time_marching", False): big * c * (22 * n**3 + 33 * n**2 + 5 * n),
+        ("transition_matrix", True): big * (38 * n**3 + 37 * n**2 + 7 * n) + 16 * n**3 + 8 * n**2,
+        ("transition_matrix", False): big * (78 * n**3 + 77 * n**2 + 10 * n) - tail - 3 * n,
+        ("closed_form", True): big * (62 * n**3 + 37 * n**2 + 9 * n)
+        + (8 * n**3 + 8 * n**2 + 2 * n),
+        ("closed_form", False): big * (102 * n**3 + 87 * n**2 + 10 * n) - tail - n,
+    }
+    fourier = (
+        h**3 * (8 * n**3 + 32 * n**2)
+        + h**2 * (12 * n**3 - 120 * n**2 + 8 * n + 32)
+        + h * (6 * n**3 + 270 * n**2 + 10 * n + 4 * n * big)
+        + (n**3 - 135 * n**2 + 4 * n)
+    )
+    formulas[("harmonic_balance", True)] = fourier
+    return formulas[(algorithm, storage)]
 
 
 def second_order_form(
@@ -100,3 +184,147 @@ def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> 
     scale = np.stack([1 / size, np.ones_like(size), np.ones_like(size)], axis=-1)
     scaled = generator / scale[..., :, None] * scale[..., None, :]
     return np.asarray(expm(scaled) * scale[..., :, None] / scale[..., None, :])
+
+
+def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
+    """Return the largest stable phase ``omega h`` of a step, of one freedom.
+
+    Parameters
+    ----------
+    gamma, beta : array_like
+        Parameters of the scheme; they broadcast.
+    damping : array_like
+        Damping over the critical, not negative.
+
+    Returns
+    -------
+    ndarray
+        The limit [rad]; inf where no step up to 1e6 is too long (stable without condition), 0
+        where none is short enough.
+
+    Raises
+    ------
+    BadInput
+        If a number is not finite, or negative.
+
+    Notes
+    -----
+    A multiplier may be on the unit circle: so it is at ``gamma = 1/2`` without damping.  The limit
+    is where a pair leaves the circle or one multiplier passes -1.
+    """
+    values = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
+    if not all(np.all(np.isfinite(v)) and np.all(v >= 0.0) for v in values):
+        raise bad(
+            "newmark_limit", "a number that is not finite or negative", "0 or more", "correct it"
+        )
+    g, b, z = (v[..., None] for v in values)
+    held = _stable(g, b, z, _PHASES)
+    first = np.argmin(held, axis=-1)
+    low = np.where(first > 0, _PHASES[first - 1], 0.0)
+    high = _PHASES[first]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        kept = _stable(values[0], values[1], values[2], middle)
+        low, high = np.where(kept, middle, low), np.where(kept, high, middle)
+    limit = np.where(first > 0, low, 0.0)
+    return np.where(np.all(held, axis=-1), np.inf, limit)
+
+
+def newmark_regions(
+    gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0
+) -> NDArray[np.int64]:
+    """Return the region of Fig. 6.1 that a scheme lies in.
+
+    Parameters
+    ----------
+    gamma, beta, damping : array_like
+        As :func:`newmark_limit`.
+
+    Returns
+    -------
+    ndarray of int
+        0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
+        multipliers at long steps, 3 stable without condition with a pair at every step.
+    """
+    limit = newmark_limit(gamma, beta, damping)
+    at = (np.asarray(v, dtype=float) for v in (gamma, beta, damping, _PHASES[-1]))
+    turning = margins(*at)[3]
+    paired = np.broadcast_to(turning >= 0.0, limit.shape)
+    found = np.where(limit > 0.0, 1, 0)
+    found = np.where(np.isinf(limit), 2, found)
+    return np.where(np.isinf(limit) & paired, 3, found).astype(np.int64)
+
+
+def margins(gamma: Array, beta: Array, damping: Array, phase: Array) -> tuple[Array, ...]:
+    """Return Routh's margins of a step (Aannaque (6.9)-(6.11)), all positive where it is stable.
+
+    Parameters
+    ----------
+    gamma, beta, damping, phase : ndarray
+        Parameters of the scheme, damping over the critical, natural frequency times the step.
+
+    Returns
+    -------
+    growth, flip, static, turning : ndarray
+        1 less the product P of the multipliers; 1 plus their sum S and P; 1 less S plus P; and
+        ``P - S^2/4`` over the squared phase: positive for a pair.
+    """
+    below = 1.0 + 2.0 * damping * gamma * phase + beta * phase**2
+    growth = (2.0 * damping * phase + (gamma - 0.5) * phase**2) / below
+    turned = 4.0 * damping * (2.0 * gamma - 1.0) * phase
+    flip = (4.0 + turned + 2.0 * (2.0 * beta - gamma) * phase**2) / below
+    square = (beta - 0.25 * (gamma + 0.5) ** 2) * phase**2
+    turning = (1.0 - damping**2 + damping * (gamma - 0.5) * phase + square) / below**2
+    return growth, flip, phase**2 / below, turning
+
+
+def _stable(gamma: Array, beta: Array, damping: Array, phase: Array) -> NDArray[np.bool_]:
+    growth, flip, static, _ = margins(gamma, beta, damping, phase)
+    value: NDArray[np.bool_] = (growth >= 0.0) & (flip >= 0.0) & (static >= 0.0)
+    return value
+
+
+def operation_count(
+    algorithm: str, *, intervals: int, freedoms: int, cycles: int = 1, storage: bool = True
+) -> int:
+    """Return the operations of an algorithm with Newmark's steps, counted from its steps.
+
+    As for the printed formulas the coefficients of the equation are given at all angles.
+
+    Parameters
+    ----------
+    algorithm : str
+        ``time_marching``, ``transition_matrix`` or ``closed_form``.
+    intervals, freedoms, cycles, storage
+        As :func:`printed_count`.
+    """
+    n, m = freedoms, 2 * freedoms
+    # Marching takes its steps in each revolution anew where they are not kept, algorithm 1 in
+    # both of its revolutions, algorithm 2 in the sum and in the recursion.
+    passes = 1 if storage else {"time_marching": cycles}.get(algorithm, 2)
+    steps = passes * intervals * _newmark_step(n)
+    once = _product(m, m, 1) + m
+    if algorithm == "time_marching":
+        return steps + cycles * intervals * once
+    # The transition matrix with its load, the start, the recursion.
+    ends = intervals * (_product(m, m, m + 1) + m + once) + m + _solve(m, 1)
+    inverses = passes * intervals * _solve(m, m) if algorithm == "closed_form" else 0
+    return steps + inverses + ends
+
+
+def _product(a: int, b: int, c: int) -> int:
+    return (2 * b - 1) * a * c
+
+
+def _solve(n: int, columns: int) -> int:
+    return (4 * n**3 - 3 * n**2 - n) // 6 + columns * (2 * n**2 - n)
+
+
+def _newmark_step(n: int) -> int:
+    """Count the map of one step as :func:`~..integrators.newmark.step_maps` takes it."""
+    wide = 2 * n + 1
+    # q'' at the left end, then q and v without the new acceleration.
+    left = _solve(n, wide) + 4 * n * wide
+    # M + gamma h G + beta h^2 H, and the right-hand side.
+    middle = 4 * n * n + 2 * _product(n, n, wide) + n * wide + n
+    return left + middle + _solve(n, wide) + 4 * n * wide

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..beams.structure import Structure
 from ..core.errors import bad
+from ..core.families import LinearPeriodic, Term
 from ..core.inputs import is_finite, numbers_in_a_row, require_kind
-from ..core.plotting import axes_or_new
 from ..core.results import Check, Result, provenance
 from ..frequencies.counting import modal, quadratic_forms, rigid_motions, rounding
 from ..frequencies.frames import DynamicStiffness, dynamic_stiffness
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from ..systems import with_modal_damping
+from .aannaque_models import beams, structure_of
 
 Array = NDArray[np.float64]
 
@@ -56,27 +54,6 @@ class HybridMatrices(Result):
     polynomial: Array
     iterations: NDArray[np.int64]
     labels: tuple[str, ...]
-
-    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "theta": ("theta",),
-        "mass": ("theta", "row", "column"),
-        "stiffness": ("theta", "row", "column"),
-        "first": ("theta",),
-        "polynomial": ("theta",),
-        "iterations": ("theta",),
-        "error": ("theta",),
-    }
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the first frequency [Hz] over the crank angle, exact and of the cubic element."""
-        axes = axes_or_new(ax)
-        degrees = np.degrees(self.theta)
-        axes.plot(degrees, self.first / (2.0 * np.pi), label="exact")
-        axes.plot(degrees, self.polynomial / (2.0 * np.pi), "--", label="cubic element")
-        axes.set_xlabel("crank angle [deg]")
-        axes.set_ylabel("first natural frequency [Hz]")
-        axes.legend()
-        return axes
 
 
 def hybrid_matrices(
@@ -203,3 +180,55 @@ def _newton(problem: DynamicStiffness, omega: float) -> tuple[float, float]:
     _, mass, sizes = quadratic_forms(problem.assembly, omega, found.vectors[:, :1])
     spread = float(rounding(sizes)[0]) / float(mass[0, 0])
     return new, spread / (2.0 * max(new, np.sqrt(spread)))
+
+
+_ANGLES = 128
+
+
+@lru_cache(maxsize=2)
+def hybrid(rtol: float) -> HybridMatrices:
+    """Return the matrices of the beams of Table 4.1 at even crank angles."""
+    return hybrid_matrices(
+        structure_of(beams(1)), 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES, rtol=rtol
+    )
+
+
+def fourier_sum(coefficients: NDArray[np.complex128], order: int, theta: Array) -> Array:
+    """Return a Fourier series, or its derivative of an order, ``(nt, ...)``."""
+    harmonics = np.arange(len(coefficients))
+    factors = (1j * harmonics) ** order * np.where(harmonics, 2.0, 1.0)
+    waves = np.exp(1j * np.outer(theta, harmonics)) * factors
+    return np.asarray(np.tensordot(waves, coefficients, axes=1).real)
+
+
+@lru_cache(maxsize=1)
+def hybrid_model() -> LinearPeriodic:
+    """Return the thesis' "exact" model: one element for each link, M and K at the first frequency.
+
+    Damping 2 %, the form of the thesis; the inertia of the rigid motion by the same masses.
+    """
+    base, found = beams(1), hybrid(1e-10)
+    order = [found.labels.index(label) for label in base.labels]
+    places = np.ix_(range(_ANGLES), order, order)
+    mass, stiffness = found.mass[places], found.stiffness[places]
+    cubic, force = base.array("M", found.theta), base.array("f", found.theta)
+    push = mass @ np.linalg.solve(cubic, force[..., None])
+    kept = _ANGLES // 2
+    m, k, f = (np.fft.rfft(a, axis=0)[:kept] / _ANGLES for a in (mass, stiffness, push[..., 0]))
+    terms = (
+        Term("M", None, partial(fourier_sum, m, 0)),
+        # The family's own M' is taken out, as of any instantaneous form.
+        Term("C", None, partial(fourier_sum, -m, 1), power=1),
+        Term("K", None, partial(fourier_sum, k, 0)),
+        Term("f", None, partial(fourier_sum, f, 0)),
+    )
+    bare = LinearPeriodic(
+        base.size,
+        terms,
+        {},
+        lambda values: {},
+        labels=base.labels,
+        relative_deflection=base.relative_deflection,
+        structure=base.structure,
+    )
+    return with_modal_damping(bare, 0.02)

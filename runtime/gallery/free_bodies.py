@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..rigid import Machine, RigidForces, rigid_forces
-from .sketches import LINK_COLOURS, Array, arrow, bar, pin, turning_arrow, write
-from .style import COLOURS
+from .drawing import COLOURS, LINK_COLOURS, Array, arrow, bar, pin, turning_arrow, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

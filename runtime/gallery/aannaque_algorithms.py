@@ -13,16 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import bad
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
 from ..periodic.ring import solve_ring
 from .historic_steps import newmark_matrices
-
-# Phases omega h between which a loss of stability is looked for, and how finely at first.
-_PHASES = np.geomspace(1e-6, 1e6, 481)
-_HALVINGS = 60
-
 
 # Tables 6.2 and 6.3 as printed, in millions: (N, n, cycles) to marching, algorithms 1 and 2 with
 # storage, the same without; (N, harmonics, n) to the Fourier series and algorithm 1.
@@ -189,6 +183,10 @@ def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> 
 def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
     """Return the largest stable phase ``omega h`` of a step, of one freedom.
 
+    By Routh's margins of a step (Aannaque (6.9)-(6.11)) a pair of multipliers leaves the unit
+    circle where ``2 zeta + (gamma - 1/2) p`` becomes negative, a real one passes -1 where
+    ``2 + 2 zeta (2 gamma - 1) p + (2 beta - gamma) p^2`` does.
+
     Parameters
     ----------
     gamma, beta : array_like
@@ -199,46 +197,20 @@ def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -
     Returns
     -------
     ndarray
-        The limit [rad]; inf where no step up to 1e6 is too long (stable without condition), 0
-        where none is short enough.
-
-    Raises
-    ------
-    BadInput
-        If a number is not finite, or negative.
-
-    Notes
-    -----
-    A multiplier may be on the unit circle: so it is at ``gamma = 1/2`` without damping.  The limit
-    is where a pair leaves the circle or one multiplier passes -1.
+        The limit [rad]; inf where no step is too long (stable without condition), 0 where none is
+        short enough.
     """
-    values = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
-    if not all(np.all(np.isfinite(v)) and np.all(v >= 0.0) for v in values):
-        raise bad(
-            "newmark_limit", "a number that is not finite or negative", "0 or more", "correct it"
-        )
-    g, b, z = (v[..., None] for v in values)
-    held = _stable(g, b, z, _PHASES)
-    first = np.argmin(held, axis=-1)
-    low = np.where(first > 0, _PHASES[first - 1], 0.0)
-    high = _PHASES[first]
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        kept = _stable(values[0], values[1], values[2], middle)
-        low, high = np.where(kept, middle, low), np.where(kept, high, middle)
-    limit = np.where(first > 0, low, 0.0)
-    return np.where(np.all(held, axis=-1), np.inf, limit)
+    g, b, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
+    half, last = z * (2.0 * g - 1.0), 2.0 * b - g
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pair = np.where(g < 0.5, 2.0 * z / (0.5 - g), np.inf)
+        below = np.sqrt(half**2 - 2.0 * last) - half
+        flip = np.where(below > 0.0, 2.0 / below, np.inf)
+    return np.minimum(pair, flip)
 
 
-def newmark_regions(
-    gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0
-) -> NDArray[np.int64]:
-    """Return the region of Fig. 6.1 that a scheme lies in.
-
-    Parameters
-    ----------
-    gamma, beta, damping : array_like
-        As :func:`newmark_limit`.
+def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
+    """Return the region of Fig. 6.1 that undamped schemes lie in, by multipliers of their steps.
 
     Returns
     -------
@@ -246,42 +218,17 @@ def newmark_regions(
         0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
         multipliers at long steps, 3 stable without condition with a pair at every step.
     """
-    limit = newmark_limit(gamma, beta, damping)
-    at = (np.asarray(v, dtype=float) for v in (gamma, beta, damping, _PHASES[-1]))
-    turning = margins(*at)[3]
-    paired = np.broadcast_to(turning >= 0.0, limit.shape)
-    found = np.where(limit > 0.0, 1, 0)
-    found = np.where(np.isinf(limit), 2, found)
-    return np.where(np.isinf(limit) & paired, 3, found).astype(np.int64)
-
-
-def margins(gamma: Array, beta: Array, damping: Array, phase: Array) -> tuple[Array, ...]:
-    """Return Routh's margins of a step (Aannaque (6.9)-(6.11)), all positive where it is stable.
-
-    Parameters
-    ----------
-    gamma, beta, damping, phase : ndarray
-        Parameters of the scheme, damping over the critical, natural frequency times the step.
-
-    Returns
-    -------
-    growth, flip, static, turning : ndarray
-        1 less the product P of the multipliers; 1 plus their sum S and P; 1 less S plus P; and
-        ``P - S^2/4`` over the squared phase: positive for a pair.
-    """
-    below = 1.0 + 2.0 * damping * gamma * phase + beta * phase**2
-    growth = (2.0 * damping * phase + (gamma - 0.5) * phase**2) / below
-    turned = 4.0 * damping * (2.0 * gamma - 1.0) * phase
-    flip = (4.0 + turned + 2.0 * (2.0 * beta - gamma) * phase**2) / below
-    square = (beta - 0.25 * (gamma + 0.5) ** 2) * phase**2
-    turning = (1.0 - damping**2 + damping * (gamma - 0.5) * phase + square) / below**2
-    return growth, flip, phase**2 / below, turning
-
-
-def _stable(gamma: Array, beta: Array, damping: Array, phase: Array) -> NDArray[np.bool_]:
-    growth, flip, static, _ = margins(gamma, beta, damping, phase)
-    value: NDArray[np.bool_] = (growth >= 0.0) & (flip >= 0.0) & (static >= 0.0)
-    return value
+    one, none = np.ones((4, 1, 1)), np.zeros((4, 1))
+    # A short step and a long one.
+    squares = np.array([0.1, 0.1, 1e4, 1e4])[:, None, None] ** 2
+    regions = []
+    for g, b in zip(gamma.ravel(), beta.ravel(), strict=True):
+        maps = step_maps(newmark_rule(g, b), one, 0.0 * one, squares * one, none, 1.0)
+        short, long = np.linalg.eigvals(maps[::2, :-1, :-1])
+        stable = [bool(np.max(np.abs(values)) <= 1.0 + 1e-9) for values in (short, long)]
+        pair = bool(np.iscomplex(long[0]))
+        regions.append((2 + pair if stable[1] else 1) if stable[0] else 0)
+    return np.array(regions).reshape(gamma.shape)
 
 
 def operation_count(

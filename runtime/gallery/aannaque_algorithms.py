@@ -55,20 +55,9 @@ def printed_count(
 ) -> int:
     """Return the number of operations by the printed formula of an algorithm.
 
-    Parameters
-    ----------
-    algorithm : str
-        ``time_marching``, ``transition_matrix`` (algorithm 1), ``closed_form`` (algorithm 2), or
-        ``harmonic_balance`` (the Fourier series analysis).
-    intervals, freedoms : int
-        N and n.
-    cycles : int
-        Revolutions marched, n_c.
-    harmonics : int
-        N_h.
-    storage : bool
-        Whether the matrices of the intervals are kept.
-
+    ``time_marching``, ``transition_matrix`` (algorithm 1), ``closed_form`` (algorithm 2) or
+    ``harmonic_balance`` (the Fourier series analysis); N intervals and n freedoms, n_c cycles
+    marched, N_h harmonics; ``storage`` of the intervals' matrices or not.
     """
     big, n, c, h = intervals, freedoms, cycles, harmonics
     tail = 14 * n**3 + 21 * n**2
@@ -181,24 +170,12 @@ def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> 
 
 
 def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
-    """Return the largest stable phase ``omega h`` of a step, of one freedom.
+    """Return the largest stable phase ``omega h`` of a step, of one freedom; parameters broadcast.
 
     By Routh's margins of a step (Aannaque (6.9)-(6.11)) a pair of multipliers leaves the unit
     circle where ``2 zeta + (gamma - 1/2) p`` becomes negative, a real one passes -1 where
-    ``2 + 2 zeta (2 gamma - 1) p + (2 beta - gamma) p^2`` does.
-
-    Parameters
-    ----------
-    gamma, beta : array_like
-        Parameters of the scheme; they broadcast.
-    damping : array_like
-        Damping over the critical, not negative.
-
-    Returns
-    -------
-    ndarray
-        The limit [rad]; inf where no step is too long (stable without condition), 0 where none is
-        short enough.
+    ``2 + 2 zeta (2 gamma - 1) p + (2 beta - gamma) p^2`` does.  Infinite where no step is too
+    long, 0 where none is short enough.
     """
     g, b, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
     half, last = z * (2.0 * g - 1.0), 2.0 * b - g
@@ -212,11 +189,8 @@ def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -
 def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
     """Return the region of Fig. 6.1 that undamped schemes lie in, by multipliers of their steps.
 
-    Returns
-    -------
-    ndarray of int
-        0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
-        multipliers at long steps, 3 stable without condition with a pair at every step.
+    0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
+    multipliers at long steps, 3 stable without condition with a pair at every step.
     """
     one, none = np.ones((4, 1, 1)), np.zeros((4, 1))
     # A short step and a long one.
@@ -234,16 +208,9 @@ def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
 def operation_count(
     algorithm: str, *, intervals: int, freedoms: int, cycles: int = 1, storage: bool = True
 ) -> int:
-    """Return the operations of an algorithm with Newmark's steps, counted from its steps.
+    """Return the operations of one of the algorithms but the last, counted from its steps.
 
     As for the printed formulas the coefficients of the equation are given at all angles.
-
-    Parameters
-    ----------
-    algorithm : str
-        ``time_marching``, ``transition_matrix`` or ``closed_form``.
-    intervals, freedoms, cycles, storage
-        As :func:`printed_count`.
     """
     n, m = freedoms, 2 * freedoms
     # Marching takes its steps in each revolution anew where they are not kept, algorithm 1 in

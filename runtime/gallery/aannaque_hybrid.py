@@ -19,20 +19,10 @@ _ANGLES = 128
 
 @dataclass(frozen=True)
 class HybridMatrices:
-    """Mass and stiffness of one element for each link, corrected for the frequency.
+    """Mass and stiffness of one element for each link at crank angles [rad], at their first mode.
 
-    Attributes
-    ----------
-    theta : ndarray, shape (nt,)
-        Crank angles [rad].
-    mass, stiffness : ndarray, shape (nt, n, n)
-        M and K at the first natural frequency (Aannaque (5.16), (5.17)).
-    first : ndarray, shape (nt,)
-        That frequency [rad/s].
-    iterations : ndarray, shape (nt,)
-        How often the matrices were formed anew.
-    labels : tuple of str
-        Names of the coordinates.
+    M and K ``(nt, n, n)`` as in (5.16) and (5.17), that frequency [rad/s], how often the matrices
+    were formed anew, and the names of the coordinates.
     """
 
     theta: Array

@@ -41,18 +41,8 @@ def beams(
 ) -> LinearPeriodic:
     """Return the mechanism of Table 4.1 with modal damping.
 
-    Parameters
-    ----------
-    elements : int
-        Elements for each link.
-    drop : tuple of str
-        :data:`THESIS` or :data:`FULL`.
-    kind : str
-        Formulation of the scene: which elements.
-    ratio : float
-        Damping ratio of every mode.
-    frame : float
-        L4 [m].
+    So many elements for each link; the form :data:`THESIS` or :data:`FULL`; the scene's
+    formulation, which names the elements; the damping ratio of every mode; L4 [m].
     """
     overrides = {
         "mesh.elements": elements,
@@ -65,13 +55,7 @@ def beams(
 
 
 def structure_of(system: LinearPeriodic) -> Structure:
-    """Return the beams of a system that is made of some.
-
-    Raises
-    ------
-    BadInput
-        If it has none.
-    """
+    """Return the beams of a system, which is refused where it has none."""
     if system.structure is None:
         raise bad("system", "no beams", "a system of beams", "load a scene with a mesh")
     return system.structure
@@ -143,18 +127,10 @@ def nearest(places: Array, speed: float) -> float:
 
 @dataclass(frozen=True)
 class ModelComparison:
-    """Natural frequencies of several models of a mechanism held at the same crank angles.
+    """Natural frequencies of several models of a mechanism held at the same crank angles [rad].
 
-    Attributes
-    ----------
-    names : tuple of str
-        The models; ``exact`` is that of dynamic stiffness.
-    size : ndarray of int
-        Numbers of coordinates, ``(models,)``; 0 of the exact one.
-    theta : ndarray
-        Crank angles [rad], ``(nt,)``.
-    frequency : ndarray
-        Natural frequencies [rad/s], rising, ``(models, nt, count)``.
+    Frequencies [rad/s], rising, ``(models, nt, count)``; the size of a model is its number of
+    coordinates, 0 of ``exact``, that of dynamic stiffness.
     """
 
     names: tuple[str, ...]
@@ -171,19 +147,7 @@ class ModelComparison:
 def compare_models(
     models: Mapping[str, LinearPeriodic], theta: Array, count: int = 4, *, exact: bool = True
 ) -> ModelComparison:
-    """Return the frequencies of several models and, by the first one's structure, the exact ones.
-
-    Parameters
-    ----------
-    models : mapping of str to LinearPeriodic
-        The models, for example with different elements.
-    theta : ndarray
-        Crank angles [rad], ``(nt,)``.
-    count : int
-        Number of frequencies.
-    exact : bool
-        Whether those of dynamic stiffness are computed too.
-    """
+    """Return the frequencies of several models and, by the first one's structure, exact ones."""
     names, sizes = list(models), [system.size for system in models.values()]
     rows = [held_frequencies(system, theta, {})[0][:, :count] for system in models.values()]
     structure = next(iter(models.values())).structure

@@ -324,17 +324,10 @@ def long_coupler(axes: Sequence[Axes], link: str) -> Drawn:
 
 @dataclass(frozen=True)
 class Cycles:
-    """Stresses at the gauges over the cycle at several speeds.
+    """Stresses [Pa] at the gauges over the cycle, ``(ns, nt)``, by link and place x/length.
 
-    Attributes
-    ----------
-    speed : ndarray, shape (ns,)
-        Crank speeds [rad/s].
-    theta : ndarray, shape (nt,)
-        Crank angles [rad].
-    stress : mapping of (str, float) to ndarray, shape (ns, nt)
-        Stress [Pa] of the outer fibre to the left of the link's direction, tension positive, by
-        link and place x/length.
+    Those of the outer fibre to the left of the link's direction, tension positive, at crank speeds
+    [rad/s] and angles [rad].
     """
 
     speed: Array

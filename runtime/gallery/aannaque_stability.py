@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...generated import hill_meissner
 from ..core.periodic_function import PeriodicFunction
-from ..hill import discriminant, hill_boundaries
+from ..hill import critical_damping, discriminant, hill_boundaries
 from .drawing import COLOURS, Array, legend_below, panel_title
 from .records import Drawn
 
@@ -41,30 +41,26 @@ _WIDEST = 4
 
 
 class StruttChart(NamedTuple):
-    """Half traces over (d, eps), the ends in d of each region, and points judged differently."""
+    """Ends in d of the unstable regions over eps, and how many points are judged differently."""
 
-    d: Array
-    eps: Array
     damping: float
-    half_trace: Array
+    d_range: tuple[float, float]
+    eps: Array
     regions: tuple[int, ...]
     lower: Array
     upper: Array
-    boundary_eps: Array
     contradictions: int
 
     def plot(self, ax: Axes) -> Axes:
         """Shade the unstable regions over (d, eps) between their exact boundaries."""
-        lowest = float(self.d[0])
         for low, high in zip(self.lower, self.upper, strict=True):
-            open_ = np.isfinite(high)
-            eps = self.boundary_eps[open_]
-            left, right = np.maximum(low[open_], lowest), np.maximum(high[open_], lowest)
-            ax.fill_betweenx(eps, left, right, color=_UNSTABLE, lw=0)
-            outline = np.concatenate([low[open_][::-1], high[open_]])
+            real = np.isfinite(high)
+            eps = self.eps[real]
+            ends = (np.maximum(end[real], self.d_range[0]) for end in (low, high))
+            ax.fill_betweenx(eps, *ends, color=_UNSTABLE, lw=0)
+            outline = np.concatenate([low[real][::-1], high[real]])
             ax.plot(outline, np.concatenate([eps[::-1], eps]), color=_LINE, lw=0.9)
-        ax.set(xlim=(lowest, float(self.d[-1])), ylim=(float(self.eps[0]), float(self.eps[-1])))
-        ax.set(xlabel="d", ylabel="ε")
+        ax.set(xlim=self.d_range, ylim=(self.eps[0], self.eps[-1]), xlabel="d", ylabel="ε")
         ax.grid(visible=False)
         return ax
 
@@ -75,63 +71,37 @@ def strutt_chart(
     eps_range: tuple[float, float],
     points: tuple[int, int] = (221, 201),
 ) -> StruttChart:
-    """Return the stability chart: half traces on a grid, boundaries from Hill's matrix."""
-    d, eps = (
-        np.linspace(*ends, count) for ends, count in zip((d_range, eps_range), points, strict=True)
-    )
-    half = discriminant(COSINE, 0.25 * d[:, None], 0.25 * eps, 0.5 * damping)
-    numbers = _reaching(d, eps)
-    lines = _with_tips(eps, numbers, damping) if damping else eps
-    ends = hill_boundaries(COSINE, 0.25 * lines, numbers, damping=0.5 * damping)
+    """Return the boundaries from Hill's matrix, held against half traces on a grid."""
+    d, grid = np.linspace(*d_range, points[0])[:, None], np.linspace(*eps_range, points[1])
+    numbers = _reaching(d_range[1], grid)
+    eps = grid
+    if damping:
+        # More values just above the tips that damping has blunted.
+        tips = 4.0 * critical_damping(COSINE, None, numbers[1:], damping=0.5 * damping).mu
+        share = np.append(1e-9, np.linspace(0.0, 1.0, 40)[1:] ** 2) * (grid[1] - grid[0])
+        near = (tips[:, None] + share).ravel()
+        eps = np.unique(np.concatenate([grid, near[(near > grid[0]) & (near < grid[-1])]]))
+    ends = hill_boundaries(COSINE, 0.25 * eps, numbers, damping=0.5 * damping)
     lower, upper, error = 4.0 * ends.lower, 4.0 * ends.upper, 4.0 * np.nan_to_num(ends.error)
+    half = discriminant(COSINE, 0.25 * d, 0.25 * grid, 0.5 * damping)
     inside, beside = np.zeros((2, *half.value.shape), dtype=bool)
-    grid = np.searchsorted(lines, eps)
-    for low, high, doubt in zip(lower[:, grid], upper[:, grid], error[:, grid], strict=True):
-        near = doubt + _BESIDE * (1.0 + np.abs(d[:, None]))
+    at = np.searchsorted(eps, grid)
+    for low, high, doubt in zip(lower[:, at], upper[:, at], error[:, at], strict=True):
+        near = doubt + _BESIDE * (1.0 + np.abs(d))
         with np.errstate(invalid="ignore"):
-            inside |= (d[:, None] > low) & (d[:, None] < high)
-            beside |= (np.abs(d[:, None] - low) < near) | (np.abs(d[:, None] - high) < near)
+            inside |= (d > low) & (d < high)
+            beside |= (np.abs(d - low) < near) | (np.abs(d - high) < near)
     gap = np.abs(half.value) - half.level
     wrong = ~beside & (np.abs(gap) > half.error) & (inside != (gap > 0.0))
-    seen = np.any(np.isfinite(upper) & (upper >= d[0]) & (lower <= d[-1]), axis=1)
-    return StruttChart(
-        d=d,
-        eps=eps,
-        damping=damping,
-        half_trace=half.value,
-        regions=tuple(n for n, shown in zip(numbers, seen, strict=True) if shown),
-        lower=lower[seen],
-        upper=upper[seen],
-        boundary_eps=lines,
-        contradictions=int(np.count_nonzero(wrong)),
-    )
+    seen = np.any(np.isfinite(upper) & (upper >= d_range[0]) & (lower <= d_range[1]), axis=1)
+    regions = tuple(n for n, shown in zip(numbers, seen, strict=True) if shown)
+    count = int(np.count_nonzero(wrong))
+    return StruttChart(damping, d_range, eps, regions, lower[seen], upper[seen], count)
 
 
-def _reaching(d: Array, eps: Array) -> tuple[int, ...]:
+def _reaching(highest: float, eps: Array) -> tuple[int, ...]:
     """Return the regions whose ends may lie left of the chart's right edge."""
-    farthest = float(d[-1]) + float(np.abs(eps).max())
-    return tuple(range(ceil(sqrt(max(farthest, 0.0))) + 2))
-
-
-def _with_tips(eps: Array, regions: tuple[int, ...], k: float) -> Array:
-    """Return eps with more values just above the tips that damping has blunted."""
-
-    def opened(values: Array, n: int) -> NDArray[np.bool_]:
-        ends = hill_boundaries(COSINE, 0.25 * values, (n,), damping=0.5 * k)
-        return np.asarray(np.isfinite(ends.upper[0]))
-
-    more = [eps]
-    for n in regions:
-        open_ = opened(eps, n)
-        for j in np.flatnonzero(open_[1:] != open_[:-1]):
-            start, inner = (eps[j], eps[j + 1]) if open_[j + 1] else (eps[j + 1], eps[j])
-            outer, tip = float(start), float(inner)
-            for _ in range(6):
-                between = np.linspace(outer, tip, 33)
-                first = max(int(np.argmax(opened(between, n))), 1)
-                outer, tip = float(between[first - 1]), float(between[first])
-            more.append(tip + (inner - tip) * np.linspace(0.0, 1.0, 40) ** 2)
-    return np.unique(np.concatenate(more))
+    return tuple(range(ceil(sqrt(max(highest + float(np.abs(eps).max()), 0.0))) + 2))
 
 
 class MultiplierSurfaces(NamedTuple):
@@ -153,16 +123,9 @@ class MultiplierSurfaces(NamedTuple):
         height = np.clip((self.first if which == "first" else self.second).real, -1.0, 1.0)
         faces = colormaps["cividis"](0.15 + 0.2 * (height[1:, 1:] + height[:-1, :-1] + 2.0))
         faces[..., :3] *= _light(self.d, self.eps, height)[..., None]
+        look: dict[str, Any] = {"facecolors": faces, "shade": False, "antialiased": False}
         drawn = space.plot_surface(
-            self.d,
-            self.eps,
-            height,
-            rstride=1,
-            cstride=1,
-            facecolors=faces,
-            shade=False,
-            linewidth=0.0,
-            antialiased=False,
+            self.d, self.eps, height, rstride=1, cstride=1, linewidth=0.0, **look
         )
         # By the nearest corner: thin ridges then hide what is behind them.
         drawn.set_zsort("max")
@@ -191,7 +154,7 @@ def multiplier_surfaces(
     The surfaces have their kinks there; on this grid they are drawn sharp.
     """
     low, high = d_range
-    numbers = _reaching(np.array([high]), eps)
+    numbers = _reaching(high, eps)
     ends = hill_boundaries(COSINE, 0.25 * eps, numbers)
     lines = np.sort(np.concatenate([ends.lower[1:], ends.upper]), axis=0)
     sides = (np.full((1, eps.size), side) for side in (low, high))
@@ -335,7 +298,7 @@ def figure_e_3(axes: Sequence[Axes]) -> Drawn:
     wide = [4.0 * hill_boundaries(COSINE, 0.25 * eps, range(1, 7)).width for eps in (1, 20)]
     damped = charts[1]
     opened = [
-        float(damped.boundary_eps[np.isfinite(row)][0])
+        float(damped.eps[np.isfinite(row)][0])
         for n, row in zip(damped.regions, damped.upper, strict=True)
         if n
     ]

@@ -100,19 +100,7 @@ def pivot(ax: Axes, place: ArrayLike, unit: float) -> None:
 
 
 def four_bar(ax: Axes, joints: Mapping[str, ArrayLike], unit: float, letters: str = "ABCD") -> None:
-    """Draw a four-bar linkage by its joints, with letters at them.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    joints : mapping of str to array_like, shape (2,)
-        Places of A, B, C and D.
-    unit : float
-        Width of a pivot.
-    letters : str
-        What is written at A, B, C and D.
-    """
+    """Draw a four-bar linkage by its joints, with letters at A, B, C and D."""
     a, b, c, d = (np.asarray(joints[name], dtype=float) for name in "ABCD")
     for link, start, end in (("crank", a, b), ("coupler", b, c), ("follower", d, c)):
         bar(ax, start, end, LINK_COLOURS[link], zorder=3)
@@ -153,21 +141,7 @@ def write(
 def arrow(
     ax: Axes, tail: ArrayLike, vector: ArrayLike, colour: str, text: str = "", side: float = 0.0
 ) -> None:
-    """Draw a vector to the scale of the axes; its name beyond the head, or to one side of it.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    tail, vector : array_like, shape (2,)
-        In the units of the axes.
-    colour : str
-        Of line and name.
-    text : str
-        Name.
-    side : float
-        Points by which the name is moved to the left of the arrow.
-    """
+    """Draw a vector to the scale of the axes; its name beyond the head, some points to its left."""
     start, way = np.asarray(tail, dtype=float), np.asarray(vector, dtype=float)
     head = start + way
     ax.annotate(

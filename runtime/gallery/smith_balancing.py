@@ -227,13 +227,7 @@ def _best_offset(thickness: float) -> float:
 
 @dataclass(frozen=True)
 class BalancedLink:
-    """A link balanced on its pivot; every array has the shape of offset and density number.
-
-    Attributes
-    ----------
-    offset, density_number : array_like
-        delta, above 0 and at most 1; K, zero or more.
-    """
+    """A link balanced on its pivot, by offset delta (above 0, at most 1) and density number K."""
 
     offset: Any
     density_number: Any

@@ -30,19 +30,11 @@ _SCAN = np.linspace(0.0, 0.5, 5001)
 
 @dataclass(frozen=True)
 class Estimate:
-    """One damping that section 9.5.5 quotes.
+    """One damping that section 9.5.5 quotes, of the unstable region 2 Omega/n of a chart's rig.
 
-    Attributes
-    ----------
-    chart : str
-        Number of the rig's stability chart.
-    region : int
-        Number n of the unstable region 2 Omega/n.
-    stable, unstable : float
-        Follower inertias [lbf in s^2] between which the region opens: stated in the thesis for the
-        first estimate, the measured neighbours for which its formula gives its value else.
-    quoted : float
-        K as the thesis gives it.
+    ``stable`` and ``unstable`` are follower inertias [lbf in s^2] between which the region opens:
+    stated in the thesis for the first estimate, the measured neighbours for which its formula gives
+    its value else; ``quoted`` is K as the thesis gives it.
     """
 
     chart: str
@@ -77,19 +69,11 @@ ESTIMATES = (
 
 @lru_cache(maxsize=512)
 def critical(estimate: Estimate, inertia: float, equation: str, order: int | None) -> float:
-    """Return the damping K at which the region of an estimate closes.
+    """Return the damping K at which the region of an estimate closes, at an inertia [lbf in s^2].
 
-    Parameters
-    ----------
-    estimate : Estimate
-        Rig and region.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    equation : str
-        ``"reduced"`` is (6.18), the equation of the thesis' charts.
-    order : int or None
-        Of the perturbation, whether or not it converges at so large a parameter; NaN where that
-        order leaves the region open at any damping.  None for the exact value.
+    By ``reduced``, (6.18), the equation of the thesis' charts, or ``complete``; to an order of the
+    perturbation, whether or not it converges at so large a parameter, NaN where that order leaves
+    the region open at any damping, or exactly (None).
     """
     f = estimate.rig.function(equation, inertia * LBF_IN_S2)
     n = estimate.region
@@ -256,16 +240,9 @@ def _decrement(rig: Rig) -> float:
 
 @lru_cache(maxsize=16)
 def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
-    """Return the regions that are open, widest first, and how many are closed.
+    """Return the open regions at an inertia [lbf in s^2], widest first, and how many are closed.
 
     Regions that reach beyond the range, with an end that is not known, are left out.
-
-    Parameters
-    ----------
-    chart : str
-        Number of the rig's stability chart.
-    inertia : float
-        Follower inertia [lbf in s^2].
     """
     bare = _edges(chart, inertia)
     width = bare.upper - bare.lower

@@ -47,18 +47,9 @@ def figure_45(axes: Sequence[Axes]) -> Drawn:
 def coupler(
     scene: str, decrement: float, inertia: float | None = None, equation: str = "complete"
 ) -> LinearPeriodic:
-    """Return the coupler's vibration.
+    """Return the coupler's vibration by a formulation, with a logarithmic decrement at rest.
 
-    Parameters
-    ----------
-    scene : str
-        Built-in scene.
-    decrement : float
-        Logarithmic decrement at rest.
-    inertia : float, optional
-        Of the follower [lbf in s^2]; the scene's by default.
-    equation : str
-        The formulation.
+    The follower's inertia [lbf in s^2] is the scene's where none is given.
     """
     changes: dict[str, Any] = {
         "model.formulation": equation,
@@ -129,16 +120,10 @@ def _vibrations(equation: str, speed: float) -> float:
 
 @dataclass(frozen=True)
 class Response:
-    """One recorded frequency response of chapter 9.
+    """One recorded frequency response of chapter 9: chart of the rig, inertia, range of the speed.
 
-    Attributes
-    ----------
-    chart : str
-        Number of the rig's stability chart, which names the rig.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    low, high : float
-        Range of the crank speed [rpm]: as written in the text or beside the trace, else chosen.
+    The follower's inertia [lbf in s^2]; speeds [rpm] as written in the text or beside the trace,
+    else chosen.
     """
 
     chart: str
@@ -158,17 +143,7 @@ class Response:
 
 @dataclass(frozen=True)
 class Envelope:
-    """Extreme deflections of the coupler's middle against the crank speed.
-
-    Attributes
-    ----------
-    speed : ndarray, shape (ns,)
-        Crank speeds [rpm].
-    least, greatest : ndarray, shape (ns,)
-        Deflections [mm].
-    stable : ndarray of bool, shape (ns,)
-        Whether the periodic motion is stable.
-    """
+    """Extreme deflections [mm] of the coupler's middle at crank speeds [rpm], and stability."""
 
     speed: Array
     least: Array
@@ -350,14 +325,7 @@ _CLAIMS: dict[str, Callable[[Response], list[float]]] = {
 def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:
     """Return crank angles [rad] and the deflection of the coupler's middle [mm] at them.
 
-    Parameters
-    ----------
-    chart : str
-        Number of the rig's stability chart.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    speed : float
-        Crank speed [rad/s].
+    Rig by the number of its chart, follower inertia [lbf in s^2], crank speed [rad/s].
     """
     rig = RIG[chart]
     system = coupler(rig.scene, decrements(rig)[1], inertia)

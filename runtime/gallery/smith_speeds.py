@@ -40,26 +40,12 @@ _NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 class Observation:
     """One crank speed that chapter 9 quotes.
 
-    Attributes
-    ----------
-    chart : str
-        Number of the rig's stability chart.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    region : int
-        Number n of the unstable region 2 Omega/n that it belongs to; 0 where it belongs to none.
-    speed : float
-        As quoted [rpm]; the middle of a range.
-    kind : str
-        ``resonance`` (or a rise of amplitude): set against the middle of the region; ``onset``:
-        unstable above it, against the lower end; ``end``: stable again above it, against the
-        upper end; ``range``: unstable between two speeds, against the middle; ``stable``.
-    figure : str
-        The response that it is read from.
-    meaning : str
-        What the text says of it, and how it fixes the inertia.
-    half_width : float
-        Half of a range [rpm].
+    Number of the rig's chart, follower inertia [lbf in s^2], number n of the unstable region
+    2 Omega/n that it belongs to (0 for none), speed [rpm] as quoted or the middle of a range, the
+    response that it is read from, what the text says of it and how it fixes the inertia, half of
+    a range [rpm].  By its kind it is set against the middle of the region (``resonance``, or a rise
+    of amplitude; ``range``: unstable between two speeds), the lower end (``onset``: unstable above
+    it) or the upper one (``end``: stable again above it).
     """
 
     chart: str

@@ -201,12 +201,3 @@ def turning_arrow(
     style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0}
     ax.annotate("", tip, xytext=start, arrowprops=style, zorder=7)
     write(ax, (x + radius, y), text, (4.0, 0.0), color=colour, ha="left")
-
-
-def measure(ax: Axes, start: Sequence[float], end: Sequence[float], text: str) -> None:
-    """Draw a dimension line with its text."""
-    style = {"arrowstyle": "<|-|>", "color": "0.35", "lw": 0.8, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", _pair(end), xytext=_pair(start), arrowprops=style, zorder=5)
-    ax.update_datalim([start, end])
-    middle = 0.5 * (np.asarray(start, dtype=float) + np.asarray(end, dtype=float))
-    write(ax, middle, text, fontsize=8)

@@ -55,6 +55,7 @@ def test_maxima_are_refined_between_samples():
     assert curve == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
 
 
+@pytest.mark.slow
 def test_midpoints_by_the_recovery_of_displacements():
     for elements in (2, 3):
         system = aannaque_models.beams(elements)
@@ -135,6 +136,7 @@ def test_the_stress_of_the_midpoint_needs_several_elements():
     assert np.max(np.abs(fine)) == pytest.approx(np.max(np.abs(base)), rel=0.1)
 
 
+@pytest.mark.slow
 def test_finite_elements_lie_above_the_exact_frequencies():
     """Aannaque 4.3: 10 % (first) and 26 % (fourth), one element against three; 5.4.2: 1.18 %."""
     models = {count: aannaque_models.beams(int(count), aannaque_models.FULL) for count in "13"}

@@ -26,6 +26,7 @@ def test_the_tip_from_rest_is_that_of_a_fixed_mesh():
     assert gap < 2e-5 * peak(tip)
 
 
+@pytest.mark.slow
 def test_steps_of_a_turn_are_enough():
     for scene, formulation, modes in ((STIFF, "polynomial", 6), (HEAVY, "overhang", 3)):
         system = rod(scene, formulation, modes)
@@ -58,6 +59,7 @@ def test_components_belong_to_a_deflection_across_the_rod(scene):
     np.testing.assert_allclose(turned, tip, atol=1e-13 * peak(tip))
 
 
+@pytest.mark.slow
 def test_foreshortening_turns_the_tip_by_an_angle_in_proportion_to_the_deflection():
     light, heavy = (
         beale_tip.lean(scene) / peak(stiff_tip(scene, "overhang", 6, ())[1])

@@ -197,8 +197,8 @@ def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
     squares = np.array([0.1, 0.1, 1e4, 1e4])[:, None, None] ** 2
     regions = []
     for g, b in zip(gamma.ravel(), beta.ravel(), strict=True):
-        maps = step_maps(newmark_rule(g, b), one, 0.0 * one, squares * one, none, 1.0)
-        short, long = np.linalg.eigvals(maps[::2, :-1, :-1])
+        steps = newmark_matrices(one, 0.0 * one, squares * one, none, 1.0, gamma=g, beta=b)
+        short, long = np.linalg.eigvals(steps[0][::2])
         stable = [bool(np.max(np.abs(values)) <= 1.0 + 1e-9) for values in (short, long)]
         pair = bool(np.iscomplex(long[0]))
         regions.append((2 + pair if stable[1] else 1) if stable[0] else 0)
@@ -235,7 +235,7 @@ def _solve(n: int, columns: int) -> int:
 
 
 def _newmark_step(n: int) -> int:
-    """Count the map of one step as :func:`~..integrators.newmark.step_maps` takes it."""
+    """Count the map of one step as :func:`~.historic_steps.newmark_matrices` takes it."""
     wide = 2 * n + 1
     # q'' at the left end, then q and v without the new acceleration.
     left = _solve(n, wide) + 4 * n * wide

@@ -71,7 +71,7 @@ def rig(scene: str = SHORT, frame: float = FRAME) -> LinearPeriodic:
 @lru_cache(maxsize=4)
 def midpoint(speed: float) -> ElasticCurve:
     """Return the path of the coupler's midpoint at a crank speed [rad/s]."""
-    return elastic_coupler_curve(rig(), periodic(rig(), speed), finer_mesh=False)
+    return elastic_coupler_curve(rig(), periodic(rig(), speed))
 
 
 def figure_8_2(axes: Sequence[Axes]) -> Drawn:

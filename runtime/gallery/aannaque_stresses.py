@@ -12,8 +12,8 @@ import numpy as np
 
 from ..core.errors import LinearRangeWarning
 from ..core.families import Array, LinearPeriodic
-from ..frequencies import NaturalFrequencies, frozen_frequencies, natural_frequencies
-from ..frequencies.marked_speeds import meissner_function
+from ..frequencies import NaturalFrequencies, natural_frequencies
+from ..hill import Meissner, discriminant
 from ..periodic import floquet_multipliers
 from ..periodic.reduced import reduced_system
 from ..recovery import recover, stress_operator
@@ -129,8 +129,7 @@ def _held() -> NaturalFrequencies:
 def _meissner(speed: Array, intervals: int) -> Array:
     """Return J of so many intervals of the first mode; exact means of each."""
     levels = _held().frequency[:, 0].reshape(intervals, -1).mean(axis=1)
-    phases = levels * (2.0 * np.pi / intervals) / speed[:, None]
-    return meissner_function(phases, np.broadcast_to(levels, (len(speed), intervals)))
+    return discriminant(Meissner.of(levels**2), 0.0, 1.0 / speed**2).value
 
 
 def figure_7_3(axes: Sequence[Axes]) -> Drawn:
@@ -185,7 +184,8 @@ def figure_7_4(axes: Sequence[Axes]) -> Drawn:
     ax.axhline(50.0 * 0.525, color="0.5", lw=0.8, ls="--")
     ax.text(20.5, 50.0 * 0.525 * 1.1, "5 % of the follower", fontsize=8, color="0.4")
     places = [nearest(maxima(_COARSE, values), CRITICAL) for values in curves[:3]]
-    means = [frozen_frequencies(beams(1, FULL, frame=frame)).mean[0] for frame in FRAMES]
+    systems = (beams(1, FULL, frame=frame) for frame in FRAMES)
+    means = [natural_frequencies(system, 0.0, 1).mean[0] for system in systems]
     spread = np.ptp(means) / means[0]
     return Drawn([*_falls(_COARSE, curves), places[0], np.ptp(places) / places[0], spread])
 
@@ -266,7 +266,7 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     ax.set_ylim(bottom=0.3)
     legend_below([ax])
     second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
-    means = [float(frozen_frequencies(beams(count)).mean[0]) for count in counts]
+    means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
     exact = float(np.mean(hybrid(1e-10).first))
     ratios = [means[0] / means[2], means[1] / means[2], means[2] / exact]
     return Drawn([*ratios, second / third, np.max(hybrid(1e-3).iterations)])
@@ -282,9 +282,7 @@ def bending_at_midpoint(
     motion = periodic(system if moving is None else moving, 30.0)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
-        forces = recover(
-            system, motion, stations={"follower": [0.5]}, method="shape", finer_mesh=False
-        )
+        forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
     beams_of = structure_of(system).beams
     (section,) = (beam.section for beam in beams_of if beam.name == "follower")
     factor = 0.5 * (section.thickness or np.nan) / section.second_moment

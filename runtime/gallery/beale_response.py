@@ -12,7 +12,7 @@ import numpy as np
 from ..core.families import Array, LinearPeriodic
 from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..periodic import floquet_multipliers
-from ..stability.charts.chart import StabilityChart, stability_chart
+from ..stability import StabilityChart, stability_chart
 from .beale_tip import AS_PRINTED, ENOUGH, FLEXIBLE, peak, rod, tip_from_rest
 from .drawing import COLOURS, crank_axis, legend_below, panel_title
 from .records import Drawn, Table
@@ -50,7 +50,7 @@ def _rod(
 
 def mean_frequency(formulation: str = "polynomial", modes: int = 3, ratio: float = _RATIO) -> float:
     """Return the mean first natural frequency [rad/s] over the crank angle."""
-    return float(frozen_frequencies(_rod(formulation, modes, AS_PRINTED, ratio)).mean[0])
+    return float(natural_frequencies(_rod(formulation, modes, AS_PRINTED, ratio), 0.0, 1).mean[0])
 
 
 def figure_11(axes: Sequence[Axes]) -> Drawn:
@@ -60,14 +60,14 @@ def figure_11(axes: Sequence[Axes]) -> Drawn:
         ("polynomial", 3, "-", COLOURS[0]),
         ("overhang", ENOUGH, "--", COLOURS[1]),
     ):
-        held = frozen_frequencies(_rod(formulation, modes, AS_PRINTED))
+        held = natural_frequencies(_rod(formulation, modes, AS_PRINTED))
         label = f"{modes} {formulation} modes, mean {held.mean[0]:.1f} rad/s"
         ax.plot(np.degrees(held.theta), held.frequency[:, 0], style, color=colour, label=label)
         ax.axhline(held.mean[0], color=colour, lw=0.6, ls=(0, (1, 3)))
     crank_axis(ax)
     ax.set_ylabel("first natural frequency [rad/s]")
     legend_below(axes)
-    first = frozen_frequencies(_rod("polynomial", 3, AS_PRINTED)).frequency[:, 0]
+    first = natural_frequencies(_rod("polynomial", 3, AS_PRINTED)).frequency[:, 0]
     return Drawn([mean_frequency(), np.max(first) / np.min(first)])
 
 
@@ -160,7 +160,7 @@ def chart(formulation: str, modes: int, drop: tuple[str, ...]) -> StabilityChart
 @lru_cache(maxsize=4)
 def frequencies(formulation: str, modes: int) -> Array:
     """Return the natural frequencies [rad/s] of the rod as the crank's length goes to zero."""
-    return frozen_frequencies(_rod(formulation, modes, AS_PRINTED, 1e-6)).mean
+    return natural_frequencies(_rod(formulation, modes, AS_PRINTED, 1e-6)).mean
 
 
 def figure_chart(axes: Sequence[Axes]) -> Drawn:

@@ -31,7 +31,7 @@ from ..rigid import (
     rigid_forces,
     with_counterweights,
 )
-from ..rigid.cases import CASES, Case
+from ..rigid.counterweights import CASES, Case
 from .drawing import (
     COLOURS,
     INK,

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill import critical_damping, hill_boundaries
+from ..hill import critical_damping, hill_boundaries, perturbation_boundaries
 from ..hill.bloch import effective_operator
 from ..periodic import floquet_multipliers
 from ..scenes import load_scene
-from ..stability.edges.tracing import StabilityEdges, stability_edges
+from ..stability import StabilityEdges, stability_edges
 from .drawing import COLOURS, Array, legend_below, panel_title
 from .records import Drawn, Table, Value
 from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig, region_name
@@ -139,9 +139,10 @@ def _estimates() -> Table:
         return "-".join("none" if np.isnan(end) else f"{end:.3f}" for end in ends)
 
     def refused(one: Estimate, order: int) -> bool:
-        """Whether the order's error bound refuses it at the stable inertia."""
-        f = one.rig.function("reduced", one.stable * LBF_IN_S2)
-        return bool(critical_damping(f, 1.0, (one.region,), order=order).outside[0])
+        """Whether the order does not visibly converge at the stable inertia."""
+        f, numbers = one.rig.function("reduced", one.stable * LBF_IN_S2), (one.region,)
+        closing = critical_damping(f, 1.0, numbers).damping[0]
+        return bool(perturbation_boundaries(f, 1.0, numbers, order, closing).outside[0])
 
     rows = []
     for one in ESTIMATES:

@@ -16,6 +16,7 @@ from ..periodic import simulate
 from ..periodic.equation import equation_of
 from ..scenes import load_scene
 from .drawing import COLOURS, Array, crank_axis, legend_below, panel_title
+from .historic_steps import de_vogelaere_maps, de_vogelaere_start, kutta_merson
 from .records import Drawn
 from .smith_linkages import f3_series, linkage_of
 
@@ -152,7 +153,7 @@ def figure_28(axes: Sequence[Axes]) -> Drawn:
 def _free_decay(step: float, waves: float) -> float:
     """Return what a half step [deg] leaves of y'' = -waves^2 y after one turn."""
     h = np.radians(step)
-    maps = de_vogelaere.maps(lambda t: np.full((len(t), 1, 1), -waves * waves), np.zeros(1), h)
+    maps = de_vogelaere_maps(lambda t: np.full((len(t), 1, 1), -waves * waves), np.zeros(1), h)
     return float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
 
 

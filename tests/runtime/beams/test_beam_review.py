@@ -35,47 +35,6 @@ def cantilever(**changes):
     return frame(given.pop("places"), given.pop("members"), given.pop("sections"), **given)
 
 
-def linkage(**changes):
-    return beam_linkage(FOUR_BAR, **{"sections": BARS, "elements": 1, **changes})
-
-
-@pytest.mark.parametrize(
-    ("make", "told"),
-    [
-        (lambda: Section.rectangle(0.02, 0.005, poisson=-1.0, **STEEL), "poisson"),
-        (lambda: Section.rectangle(0.02, 0.005, poisson="a", **STEEL), "poisson"),
-        (
-            lambda: Section.rectangle(0.02, 0.005, poisson=0.3, modulus="a", density=1.0),
-            "modulus",
-        ),
-        (lambda: Node(name="A", held=None), "held"),
-        (lambda: Node(name="A", held="x"), "held"),
-        (lambda: Node(name="A", joined="left"), "joined"),
-        (lambda: Node(name="A", stiffness={1: 1.0}), "node A"),
-        (lambda: Beam(name="a", start="A", end="B", section=None, length=1.0), "section"),
-        (lambda: linkage(sections=None), "sections"),
-        (lambda: linkage(nodes={"A": {"weight": 1.0}}), "weight"),
-        (lambda: linkage(nodes={"A": 3}), "nodes"),
-        (lambda: cantilever(nodes={"A": {"weight": 1.0}}), "weight"),
-        (lambda: cantilever(places={"A": 0, "B": (0, 1)}), "place of A"),
-        (lambda: cantilever(members={"a": ("A",)}), "member a"),
-        (lambda: cantilever(elements={}), "elements"),
-        (lambda: linear_system(None), "structure"),
-        (lambda: dynamic_stiffness(None), "structure"),
-        (lambda: dynamic_stiffness(linkage(), "a"), "theta"),
-        (lambda: wittrick_williams(None, count=3), "problem"),
-        (lambda: wittrick_williams(dynamic_stiffness(linkage()), upto="a"), "upto"),
-        (lambda: wittrick_williams(dynamic_stiffness(linkage()), count=True), "count"),
-        (lambda: wittrick_williams(dynamic_stiffness(linkage()), count=1, rtol=None), "rtol"),
-        (lambda: log_determinant(dynamic_stiffness(linkage()), "a"), "omega"),
-        (lambda: stress(linear_system(cantilever())).safety(None), "limit"),
-    ],
-)
-def test_unusable_values_are_told(make, told):
-    with pytest.raises(BadInput, match=told):
-        make()
-
-
 def test_a_torsion_damper_bends_the_end_of_a_beam():
     # Its moment needs a curvature at the end: without damper, spring or inertia there is none.
     found = {}

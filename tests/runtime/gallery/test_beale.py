@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import LinearRangeWarning
-from elastolink.runtime.frequencies import frozen_frequencies
+from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.gallery import beale_response, beale_tip, reproduce
 from elastolink.runtime.gallery.beale_tip import FLEXIBLE, HEAVY, STIFF, peak, rod, stiff_tip
 from elastolink.runtime.periodic import floquet_multipliers, steady_state

@@ -1,16 +1,83 @@
-"""Aannaque's algorithms of chapter 6: Newmark's steps, uncoupled modes, the transition matrix.
+"""Aannaque's algorithms of chapter 6: Newmark's steps, uncoupled modes, operations of each.
 
 They are redrawn, not recommended: :func:`~..periodic.steady_state` is what the library solves with.
+Operations: an addition or a multiplication is one, a product of matrices ``(a, b) (b, c)`` takes
+``(2 b - 1) a c``, a triangular decomposition ``(4 n^3 - 3 n^2 - n)/6``, each solution with it
+``2 n^2 - n``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..core.families import Array, LinearPeriodic
 from ..core.trigonometric import differentiated, even_angles
 from ..periodic.ring import solve_ring
 from .historic_steps import newmark_matrices
+
+# Tables 6.2 and 6.3 as printed, in millions: (N, n, cycles) to marching, algorithms 1 and 2 with
+# storage, the same without; (N, harmonics, n) to the Fourier series and algorithm 1.
+TABLE_6_2: Mapping[tuple[int, int, int], tuple[float, ...]] = {
+    (90, 10, 5): (2.43, 3.78, 5.93, 11.4, 7.71, 9.96),
+    (90, 10, 100): (6.02, 3.78, 5.93, 228, 7.71, 9.96),
+    (90, 50, 5): (259, 438, 707, 1270, 893, 1170),
+    (90, 50, 100): (345, 438, 707, 25500, 893, 1170),
+    (720, 10, 5): (19.5, 30.1, 47.4, 91.3, 61.8, 79.8),
+    (720, 10, 100): (48.2, 30.1, 47.4, 1830, 61.8, 79.8),
+    (720, 50, 5): (2070, 3490, 5650, 10200, 7160, 9340),
+    (720, 50, 100): (2760, 3490, 5650, 204000, 7160, 9340),
+}
+TABLE_6_3: Mapping[tuple[int, int, int], tuple[float, float]] = {
+    (90, 6, 10): (2.50, 3.78),
+    (90, 6, 50): (277, 438),
+    (90, 10, 10): (11.6, 3.78),
+    (90, 10, 50): (1200, 438),
+    (720, 6, 10): (2.59, 30.1),
+    (720, 6, 50): (277, 3490),
+    (720, 10, 10): (11.8, 30.1),
+    (720, 10, 50): (1200, 3490),
+    (720, 15, 10): (39.7, 30.1),
+    (720, 15, 50): (3920, 3490),
+}
+
+
+def printed_count(
+    algorithm: str,
+    *,
+    intervals: int,
+    freedoms: int,
+    cycles: int = 1,
+    harmonics: int = 1,
+    storage: bool = True,
+) -> int:
+    """Return the number of operations by the printed formula of an algorithm.
+
+    ``time_marching``, ``transition_matrix`` (algorithm 1), ``closed_form`` (algorithm 2) or
+    ``harmonic_balance`` (the Fourier series analysis); N intervals and n freedoms, n_c cycles
+    marched, N_h harmonics; ``storage`` of the intervals' matrices or not.
+    """
+    big, n, c, h = intervals, freedoms, cycles, harmonics
+    tail = 14 * n**3 + 21 * n**2
+    formulas = {
+        ("time_marching", True): big * (22 * n**3 + (29 + 4 * c) * n**2 + (3 + 2 * c) * n),
+        ("time_marching", False): big * c * (22 * n**3 + 33 * n**2 + 5 * n),
+        ("transition_matrix", True): big * (38 * n**3 + 37 * n**2 + 7 * n) + 16 * n**3 + 8 * n**2,
+        ("transition_matrix", False): big * (78 * n**3 + 77 * n**2 + 10 * n) - tail - 3 * n,
+        ("closed_form", True): big * (62 * n**3 + 37 * n**2 + 9 * n)
+        + (8 * n**3 + 8 * n**2 + 2 * n),
+        ("closed_form", False): big * (102 * n**3 + 87 * n**2 + 10 * n) - tail - n,
+    }
+    fourier = (
+        h**3 * (8 * n**3 + 32 * n**2)
+        + h**2 * (12 * n**3 - 120 * n**2 + 8 * n + 32)
+        + h * (6 * n**3 + 270 * n**2 + 10 * n + 4 * n * big)
+        + (n**3 - 135 * n**2 + 4 * n)
+    )
+    formulas[("harmonic_balance", True)] = fourier
+    return formulas[(algorithm, storage)]
 
 
 def second_order_form(
@@ -100,3 +167,78 @@ def _oscillator_steps(squares: Array, drag: Array, push: Array, step: float) -> 
     scale = np.stack([1 / size, np.ones_like(size), np.ones_like(size)], axis=-1)
     scaled = generator / scale[..., :, None] * scale[..., None, :]
     return np.asarray(expm(scaled) * scale[..., :, None] / scale[..., None, :])
+
+
+def newmark_limit(gamma: ArrayLike, beta: ArrayLike, damping: ArrayLike = 0.0) -> Array:
+    """Return the largest stable phase ``omega h`` of a step, of one freedom; parameters broadcast.
+
+    By Routh's margins of a step (Aannaque (6.9)-(6.11)) a pair of multipliers leaves the unit
+    circle where ``2 zeta + (gamma - 1/2) p`` becomes negative, a real one passes -1 where
+    ``2 + 2 zeta (2 gamma - 1) p + (2 beta - gamma) p^2`` does.  Infinite where no step is too
+    long, 0 where none is short enough.
+    """
+    g, b, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (gamma, beta, damping)))
+    half, last = z * (2.0 * g - 1.0), 2.0 * b - g
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pair = np.where(g < 0.5, 2.0 * z / (0.5 - g), np.inf)
+        below = np.sqrt(half**2 - 2.0 * last) - half
+        flip = np.where(below > 0.0, 2.0 / below, np.inf)
+    return np.minimum(pair, flip)
+
+
+def newmark_regions(gamma: Array, beta: Array) -> NDArray[np.int64]:
+    """Return the region of Fig. 6.1 that undamped schemes lie in, by multipliers of their steps.
+
+    0 unstable at every step, 1 stable up to a step, 2 stable without condition with two real
+    multipliers at long steps, 3 stable without condition with a pair at every step.
+    """
+    one, none = np.ones((4, 1, 1)), np.zeros((4, 1))
+    # A short step and a long one.
+    squares = np.array([0.1, 0.1, 1e4, 1e4])[:, None, None] ** 2
+    regions = []
+    for g, b in zip(gamma.ravel(), beta.ravel(), strict=True):
+        steps = newmark_matrices(one, 0.0 * one, squares * one, none, 1.0, gamma=g, beta=b)
+        short, long = np.linalg.eigvals(steps[0][::2])
+        stable = [bool(np.max(np.abs(values)) <= 1.0 + 1e-9) for values in (short, long)]
+        pair = bool(np.iscomplex(long[0]))
+        regions.append((2 + pair if stable[1] else 1) if stable[0] else 0)
+    return np.array(regions).reshape(gamma.shape)
+
+
+def operation_count(
+    algorithm: str, *, intervals: int, freedoms: int, cycles: int = 1, storage: bool = True
+) -> int:
+    """Return the operations of one of the algorithms but the last, counted from its steps.
+
+    As for the printed formulas the coefficients of the equation are given at all angles.
+    """
+    n, m = freedoms, 2 * freedoms
+    # Marching takes its steps in each revolution anew where they are not kept, algorithm 1 in
+    # both of its revolutions, algorithm 2 in the sum and in the recursion.
+    passes = 1 if storage else {"time_marching": cycles}.get(algorithm, 2)
+    steps = passes * intervals * _newmark_step(n)
+    once = _product(m, m, 1) + m
+    if algorithm == "time_marching":
+        return steps + cycles * intervals * once
+    # The transition matrix with its load, the start, the recursion.
+    ends = intervals * (_product(m, m, m + 1) + m + once) + m + _solve(m, 1)
+    inverses = passes * intervals * _solve(m, m) if algorithm == "closed_form" else 0
+    return steps + inverses + ends
+
+
+def _product(a: int, b: int, c: int) -> int:
+    return (2 * b - 1) * a * c
+
+
+def _solve(n: int, columns: int) -> int:
+    return (4 * n**3 - 3 * n**2 - n) // 6 + columns * (2 * n**2 - n)
+
+
+def _newmark_step(n: int) -> int:
+    """Count the map of one step as :func:`~.historic_steps.newmark_matrices` takes it."""
+    wide = 2 * n + 1
+    # q'' at the left end, then q and v without the new acceleration.
+    left = _solve(n, wide) + 4 * n * wide
+    # M + gamma h G + beta h^2 H, and the right-hand side.
+    middle = 4 * n * n + 2 * _product(n, n, wide) + n * wide + n
+    return left + middle + _solve(n, wide) + 4 * n * wide

@@ -1,4 +1,4 @@
-"""Aannaque's Figs. 3.6 to 3.10: assemblies, rates, transmission angle, coupler curves."""
+"""Aannaque's chapter 3 and Fig. 7.12: solution space, assemblies, rates, paths, free bodies."""
 
 from __future__ import annotations
 
@@ -10,25 +10,187 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..linkages import FourBar, FourBarMotion
-from ..linkages.curves import CouplerCurve, coupler_curve
-from ..linkages.transmission import TransmissionAngle, transmission_angle
-from .records import Drawn, Quoted
-from .sketches import Array, arc, bar, canvas, four_bar, pin, pivot, write
+from ..linkages.base_planes import BasePlane, base_plane
+from ..linkages.classification import SYMBOLS, classify
+from ..linkages.curves import coupler_curve
+from ..linkages.transmission import transmission_angle
+from ..scenes import load_scene
+from .aannaque_models import FRAMES
+from .drawing import (
+    COLOURS,
+    LINK_COLOURS,
+    Array,
+    arc,
+    bar,
+    canvas,
+    crank_axis,
+    four_bar,
+    legend_below,
+    panel_title,
+    pin,
+    pivot,
+    write,
+)
+from .free_bodies import draw_body, free_bodies, round_force, scale_bar
+from .records import Drawn, Table, Value
 from .smith_linkages import four_bar_of
-from .style import COLOURS, crank_axis, legend_below
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SCENE = "aannaque_1996_table_3_2"
+_SCENE = "aannaque_1996_table_3_2"
 _INPUT = radians(130.0)
-_ROUND_OFF = 1e-11
+_SPACE_LAMBDA = 1.5
+# Below, at and above the plane through the linkage of four equal links.
+_PLANES = {r"\lambda<\sqrt{3}": 1.0, r"\lambda=\sqrt{3}": sqrt(3.0), r"\lambda>\sqrt{3}": 3.0}
+_DIRECTIONS = np.vstack([np.ones(3), 2.0 * np.eye(3) - 1.0])
+_PLANE_NAMES = (
+    r"$1=\lambda_2+\lambda_3+\lambda_4$",
+    r"$\lambda_2=1+\lambda_3+\lambda_4$",
+    r"$\lambda_3=\lambda_2+1+\lambda_4$",
+    r"$\lambda_4=\lambda_2+\lambda_3+1$",
+)
+# Letters of the joints and the centre, and the names of what acts there.
+_BODIES = {
+    "crank": ("OAG", {"O": "$F_{01}$", "A": "$F_{21}$", "G": "$F_{1}$", "torque": "$C$"}),
+    "coupler": (
+        "ABG",
+        {"A": "$F_{12}$", "B": "$F_{32}$", "G": "$F_{2}$", "couple": r"$-J_2\alpha_2$"},
+    ),
+    "follower": (
+        "CBG",
+        {"C": "$F_{03}$", "B": "$F_{23}$", "G": "$F_{3}$", "couple": r"$-J_3\alpha_3$"},
+    ),
+}
+
+
+def figure_3_4(axes: Sequence[Axes]) -> Drawn:
+    """Draw the solution space up to a base plane, seen obliquely."""
+    ax, plane, total = axes[0], base_plane(_SPACE_LAMBDA), sqrt(3.0) * _SPACE_LAMBDA
+    ax.set_axis_off()
+    ax.set_aspect("equal")
+    far, near = 0.5 * (total + 1.0), 0.5 * (total - 1.0)
+    for i in range(3):
+        corners = np.full((3, 3), 0.0)
+        corners[:, i] = 1.0, far, far
+        corners[1, (i + 1) % 3] = near
+        corners[2, (i + 2) % 3] = near
+        _face(ax, corners, COLOURS[i], 0.30)
+        shift = ((-96, -14), (96, -14), (104, 44))[i]
+        _call(ax, corners.mean(axis=0), _PLANE_NAMES[i + 1], shift)
+    _face(ax, np.eye(3), COLOURS[3], 0.45)
+    _call(ax, np.full(3, 1.0 / 3.0), _PLANE_NAMES[0], (-172, 62))
+    _face(ax, plane.outline, "0.55", 0.25)
+    _call(ax, total * np.array([0.08, 0.46, 0.46]), "base plane", (84, 20))
+    for i, axis in enumerate(np.eye(3)):
+        ends = np.array([np.zeros(3), 1.25 * far * axis]) @ _VIEW.T
+        ax.plot(*ends.T, color="0.3", lw=0.9, zorder=1)
+        write(ax, ends[1], rf"$\lambda_{i + 2}$", 8.0 * ends[1] / np.hypot(*ends[1]), fontsize=11)
+    line = np.array([np.zeros(3), np.full(3, _SPACE_LAMBDA / sqrt(3.0))]) @ _VIEW.T
+    ax.plot(*line.T, "--", color="0.2", lw=1.0, zorder=8)
+    ax.plot(*line[1], "o", color="0.2", ms=3.5, zorder=8)
+    write(ax, line[1], r"$\lambda$", (8.0, 8.0), fontsize=11)
+    inside, outside = (np.mean(classify(_linkages(_beside(step))) > 0) for step in (1e-6, -1e-6))
+    gaps = np.abs(plane.outline @ _DIRECTIONS.T - 1.0)
+    distance = np.abs(plane.outline @ np.full(3, 1.0 / sqrt(3.0)) - plane.lam)
+    return Drawn([inside, outside, np.max(np.min(gaps, axis=1)), np.max(distance)])
+
+
+def _view() -> Array:
+    """Return the projection of the three axes on the paper, the third upwards."""
+    turn, tilt = np.radians(38.0), np.radians(24.0)
+    right = [-np.sin(turn), np.cos(turn), 0.0]
+    up = [-np.cos(turn) * np.sin(tilt), -np.sin(turn) * np.sin(tilt), np.cos(tilt)]
+    return np.array([right, up])
+
+
+_VIEW = _view()
+
+
+def _face(ax: Axes, corners: Array, colour: str, alpha: float) -> None:
+    flat = corners @ _VIEW.T
+    ax.fill(*flat.T, facecolor=colour, alpha=alpha, edgecolor="none", zorder=2)
+    ax.fill(*flat.T, facecolor="none", edgecolor=colour, lw=1.1, zorder=3)
+
+
+def _call(ax: Axes, place: Array, text: str, shift: tuple[float, float]) -> None:
+    """Name a face from outside, with a thin line to it."""
+    x, y = _VIEW @ place
+    ax.annotate(
+        text,
+        (float(x), float(y)),
+        xytext=shift,
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        arrowprops={"arrowstyle": "-", "color": "0.4", "lw": 0.7},
+        zorder=9,
+    )
+
+
+def _beside(step: float) -> Array:
+    """Return ratios a step off the four zero-mobility planes, shape (n, 3); inwards positive."""
+    generator = np.random.default_rng(34)
+    places = []
+    for normal in _DIRECTIONS:
+        part = generator.dirichlet(np.ones(3), 500)
+        if np.all(normal > 0):
+            places.append(part + step * normal)
+            continue
+        # Free ratios first, then the one that closes the linkage.
+        closing, place = int(np.argmax(normal)), generator.uniform(0.05, 3.0, (500, 3))
+        place[:, closing] = 0.0
+        place[:, closing] = 1.0 + place.sum(axis=1)
+        places.append(place - step * normal)
+    return np.concatenate(places)
+
+
+def _linkages(ratios: Array) -> Array:
+    """Return frame, input, coupler, output of ratios lambda_2, lambda_3, lambda_4."""
+    coupler, output, frame = ratios.T
+    return np.stack([frame, np.ones_like(frame), coupler, output], axis=-1)
+
+
+def figure_3_5(axes: Sequence[Axes]) -> Drawn:
+    """Draw three base planes with the class of each region."""
+    planes = [base_plane(lam) for lam in _PLANES.values()]
+    for ax, plane, name in zip(axes, planes, _PLANES, strict=True):
+        plane.plot(ax)
+        for text in ax.texts:
+            text.set_fontsize(7.0)
+        ax.grid(visible=False)
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.label.set_fontsize(8.0)
+        panel_title(ax, f"${name}$: {plane.lam:.4g}")
+        ax.set_title("")
+    rows = tuple(
+        (symbol, *(f"{plane.shares.get(symbol, 0.0):.4f}" for plane in planes))
+        for symbol in SYMBOLS[1:9]
+    )
+    header = ("class", *(f"lambda = {plane.lam:.4g}" for plane in planes))
+    table = Table("Share of each class in the area of the plane", header, rows)
+    return Drawn(_plane_values(planes), tables=(table,))
+
+
+def _plane_values(planes: Sequence[BasePlane]) -> list[float]:
+    counted = [
+        abs(np.mean(plane.numbers[plane.numbers > 0] == SYMBOLS.index(symbol)) - share)
+        for plane in planes
+        for symbol, share in plane.shares.items()
+    ]
+    return [
+        len(SYMBOLS) - 1,
+        len({symbol for plane in planes for symbol in plane.regions}),
+        max(abs(sum(plane.shares.values()) - 1.0) for plane in planes),
+        max(counted),
+        int(classify(np.ones((1, 4)))[0]),
+    ]
 
 
 @lru_cache(maxsize=1)
 def linkage() -> FourBar:
     """Return the linkage of Table 3.2."""
-    return four_bar_of(SCENE)
+    return four_bar_of(_SCENE)
 
 
 def cycle(frame: float | None = None) -> FourBarMotion:
@@ -42,239 +204,135 @@ def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     """Draw both assemblies at one crank angle."""
     ax, own = axes[0], linkage()
     canvas(ax)
-    unit = 0.1 * own.frame
     other = FourBar(own.frame, own.crank, own.coupler, own.follower, assembly="crossed")
     both = [item.motion(_INPUT) for item in (own, other)]
-    a, b, _, d = (np.asarray(both[0].joints[name]) for name in "ABCD")
+    a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
         c = np.asarray(motion.joints["C"])
-        bar(ax, b, c, "#1f5a8c", ls=style, zorder=3)
-        bar(ax, d, c, "#3a7d44", ls=style, zorder=3)
+        bar(ax, b, c, LINK_COLOURS["coupler"], ls=style, zorder=3)
+        bar(ax, d, c, LINK_COLOURS["follower"], ls=style, zorder=3)
         pin(ax, c)
         write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
-    bar(ax, a, b, "#c8641e", zorder=4)
+    bar(ax, a, b, LINK_COLOURS["crank"], zorder=4)
     for place, name, shift in ((a, "O", -16.0), (d, "C", 16.0)):
-        pivot(ax, place, unit)
+        pivot(ax, place, 0.1 * own.frame)
         write(ax, place, name, (shift, 4.0), style="italic")
     pin(ax, b)
     write(ax, b, "A", (-10.0, 10.0), style="italic")
     ax.plot([0.0, 0.12 * own.frame], [0.0, 0.0], color="0.35", lw=0.8)
     arc(ax, a, 0.07 * own.frame, (0.0, _INPUT), "$t_1$")
-    note = (
-        f"The input angle is not stated; drawn at {degrees(_INPUT):g} deg. Solid: open assembly, "
-        "dashed: crossed; the dotted line joins crank pin and follower pivot."
-    )
-    return Drawn(tuple(_assembly_rows(both)), (note,))
+    follower, coupler = _printed_angles(_INPUT)
+    gammas = [degrees(float(m.transmission_angle)) for m in both]
+
+    def gap(printed: Sequence[float], angles: Sequence[Array]) -> float:
+        apart = [min(abs(np.angle(np.exp(1j * (p - q)))) for p in printed) for q in angles]
+        return degrees(max(apart))
+
+    gaps = gap(follower, [m.theta4 for m in both]), gap(coupler, [m.theta3 for m in both])
+    return Drawn([*gaps, gammas[1] - gammas[0]])
 
 
-def _printed_angles(theta: float) -> tuple[list[float], list[float]]:
+def _printed_angles(theta: float) -> list[list[float]]:
     """Return t3 by (3.6) and t2 by (3.8), as printed, with either sign of the root."""
     own = linkage()
     r2, r3, r4 = (part / own.crank for part in (own.coupler, own.follower, own.frame))
     k1, k2, k4 = r4, r4 / r3, r4 / r2
     k3 = (1.0 - r2**2 + r3**2 + r4**2) / (2.0 * r3)
     k5 = (r3**2 - r4**2 - 1.0 - r2**2) / (2.0 * r2)
-    found = []
+    angles = []
     for first, last in (
         ((1.0 - k2) * cos(theta) + k3 - k1, k1 + k3 - (1.0 + k2) * cos(theta)),
         ((1.0 + k4) * cos(theta) + k5 - k1, k1 + (k4 - 1.0) * cos(theta) + k5),
     ):
         root = sqrt(4.0 * sin(theta) ** 2 - 4.0 * first * last)
-        found.append(
+        angles.append(
             [2.0 * atan((2.0 * sin(theta) + sign * root) / (2.0 * first)) for sign in (1.0, -1.0)]
         )
-    return found[0], found[1]
+    return angles
 
 
-def _assembly_rows(both: Sequence[FourBarMotion]) -> list[Quoted]:
-    follower, coupler = _printed_angles(_INPUT)
-    rows = []
-    for name, printed, angles in (
-        ("t3 by (3.6)", follower, [float(m.theta4) for m in both]),
-        ("t2 by (3.8)", coupler, [float(m.theta3) for m in both]),
+def _rates(ax: Axes, kind: str, label: str, *printed: Array) -> list[float]:
+    """Draw a rate of coupler and follower; return the largest gaps of the printed equations."""
+    motion, gaps = cycle(), []
+    for number, link, colour, values in zip(
+        (3, 4), ("coupler", "follower"), COLOURS, printed, strict=False
     ):
-        gaps = [min(abs(np.angle(np.exp(1j * (p - q)))) for p in printed) for q in angles]
-        rows.append(
-            Quoted(
-                f"{name}, worse of its two values, less the assemblies'",
-                0.0,
-                degrees(max(gaps)),
-                _ROUND_OFF,
-                "round-off",
-                "3.5",
-                unit="deg",
-            )
-        )
-    gammas = [degrees(float(m.transmission_angle)) for m in both]
-    rows.append(
-        Quoted(
-            "transmission angles of the two, difference",
-            0.0,
-            gammas[1] - gammas[0],
-            _ROUND_OFF,
-            "(3.9) holds for both: round-off",
-            "3.5",
-            unit="deg",
-        )
-    )
-    return rows
+        rate = getattr(motion, f"{kind}{number}")
+        ax.plot(np.degrees(motion.theta2), rate, color=colour, label=link)
+        gaps.append(float(np.max(np.abs(values - rate))))
+    _input_axes(ax, label)
+    legend_below([ax])
+    return gaps
+
+
+def _input_axes(ax: Axes, label: str) -> None:
+    ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
+    crank_axis(ax)
+    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=label)
 
 
 def figure_3_7(axes: Sequence[Axes]) -> Drawn:
     """Draw speeds of coupler and follower over the crank's."""
-    motion = cycle()
-    _rates(axes[0], motion, "omega", "relative angular velocity")
+    motion, own = cycle(), linkage()
     t1, t2, t3 = motion.theta2, motion.theta3, motion.theta4
-    own = linkage()
-    printed = {
-        "omega2": -own.crank * np.sin(t3 - t1) / (own.coupler * np.sin(t3 - t2)),
-        "omega3": -own.crank * np.sin(t2 - t1) / (own.follower * np.sin(t3 - t2)),
-    }
-    rows = _rate_rows(printed, motion, ("omega3", "omega4"))
-    return Drawn((*rows, *_advantage_rows(own)))
-
-
-def _advantage_rows(own: FourBar) -> list[Quoted]:
-    """Return (3.1) at the input angle of Fig. 3.6, as printed and as it must be."""
-    motion = own.motion(_INPUT)
-    beta = float(motion.theta3 - motion.theta2)
-    sines = abs(sin(float(motion.transmission_angle)) / sin(beta))
-    ratio = abs(1.0 / float(motion.omega4))
-    rows = []
-    for name, length, differs in (
-        ("L3 sin(gamma)/(L4 sin(beta))", own.frame, _NOT_FRAME),
-        ("L3 sin(gamma)/(L1 sin(beta))", own.crank, ""),
-    ):
-        rows.append(
-            Quoted(
-                f"{name} less omega1/omega3, input angle {degrees(_INPUT):g} deg",
-                0.0,
-                own.follower * sines / length - ratio,
-                _ROUND_OFF,
-                "round-off; (3.1)",
-                "3.3",
-                differs=differs,
-            )
-        )
-    return rows
-
-
-_NOT_FRAME = "the length below is the input link's, L1: the frame's L4 has no part in the ratio"
+    gaps = _rates(
+        axes[0],
+        "omega",
+        "relative angular velocity",
+        -own.crank * np.sin(t3 - t1) / (own.coupler * np.sin(t3 - t2)),
+        -own.crank * np.sin(t2 - t1) / (own.follower * np.sin(t3 - t2)),
+    )
+    # (3.1) at the input angle of Fig. 3.6, as printed, with the frame, and as it must be.
+    here = own.motion(_INPUT)
+    sines = abs(sin(float(here.transmission_angle)) / sin(float(here.theta3 - here.theta2)))
+    ratio = abs(1.0 / float(here.omega4))
+    advantage = (own.follower * sines / length - ratio for length in (own.frame, own.crank))
+    return Drawn([*gaps, *advantage])
 
 
 def figure_3_8(axes: Sequence[Axes]) -> Drawn:
     """Draw accelerations of coupler and follower over the crank's speed squared."""
-    motion = cycle()
-    _rates(axes[0], motion, "alpha", "relative angular acceleration")
-    t1, t2, t3, own = motion.theta2, motion.theta3, motion.theta4, linkage()
+    motion, own = cycle(), linkage()
+    t1, t2, t3 = motion.theta2, motion.theta3, motion.theta4
+    l1, l2, l3 = own.crank, own.coupler, own.follower
     w2, w3 = motion.omega3**2, motion.omega4**2
-    printed = {
-        "alpha2": (
-            own.crank * np.cos(t3 - t1) + own.coupler * w2 * np.cos(t3 - t2) - own.follower * w3
-        )
-        / (own.coupler * np.sin(t3 - t2)),
-        "alpha3": (
-            own.crank * np.cos(t2 - t1) - own.follower * w3 * np.cos(t2 - t3) + own.coupler * w2
-        )
-        / (own.follower * np.sin(t3 - t2)),
-    }
-    rows = _rate_rows(printed, motion, ("alpha3", "alpha4"))
-    return Drawn((*rows, *_jump_rows(motion)), (_JUMP_NOTE,))
-
-
-_JUMP_NOTE = (
-    "The sudden variation that section 7.5 sees here is the rise of the follower's acceleration "
-    "from its trough, 28 deg before the input angle 0, to its peak, 43 deg after it."
-)
-
-
-def _rates(ax: Axes, motion: FourBarMotion, kind: str, label: str) -> None:
-    for number, link, colour in ((3, "coupler", COLOURS[0]), (4, "follower", COLOURS[1])):
-        ax.plot(
-            np.degrees(motion.theta2), getattr(motion, f"{kind}{number}"), color=colour, label=link
-        )
-    ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
-    crank_axis(ax)
-    ax.set_xlabel("input angle $t_1$ [deg]")
-    ax.set_ylabel(label)
-    legend_below([ax])
-
-
-def _rate_rows(
-    printed: dict[str, Array], motion: FourBarMotion, names: Sequence[str]
-) -> list[Quoted]:
-    rows = []
-    for (name, values), own in zip(printed.items(), names, strict=True):
-        gap = values - getattr(motion, own)
-        rows.append(
-            Quoted(
-                f"{name} by (3.11) less the one here, worst over the cycle",
-                0.0,
-                float(np.max(np.abs(gap))),
-                _ROUND_OFF,
-                "round-off; t2 and t3 are theta3 and theta4 here",
-                "3.5",
-            )
-        )
-    return rows
-
-
-def _jump_rows(motion: FourBarMotion) -> list[Quoted]:
+    coupler = l1 * np.cos(t3 - t1) + l2 * w2 * np.cos(t3 - t2) - l3 * w3
+    follower = l1 * np.cos(t2 - t1) - l3 * w3 * np.cos(t2 - t3) + l2 * w2
+    gaps = _rates(
+        axes[0],
+        "alpha",
+        "relative angular acceleration",
+        coupler / (l2 * np.sin(t3 - t2)),
+        follower / (l3 * np.sin(t3 - t2)),
+    )
     theta, alpha = motion.theta2[:-1], motion.alpha4[:-1]
-    slope = np.gradient(motion.alpha4, motion.theta2)[:-1]
-    size = np.abs(slope)
+    size = np.abs(np.gradient(motion.alpha4, motion.theta2)[:-1])
     peaks = (size >= np.roll(size, 1)) & (size > np.roll(size, -1)) & (size > 0.5 * size.max())
     rise = degrees((theta[int(np.argmax(alpha))] - theta[int(np.argmin(alpha))]) % (2.0 * pi))
-    return [
-        Quoted(
-            "places in the cycle where the follower's acceleration changes suddenly",
-            1.0,
-            float(np.count_nonzero(peaks)),
-            0.0,
-            "peaks of |d alpha/dt1| above half the largest",
-            "7.5",
-        ),
-        Quoted(
-            "share of the cycle that the rise from trough to peak takes",
-            0.25,
-            rise / 360.0,
-            0.0,
-            "'sudden' read as less than a quarter",
-            "7.5",
-            relation="<",
-        ),
-    ]
+    return Drawn([*gaps, np.count_nonzero(peaks), rise / 360.0])
 
 
 def figure_3_9(axes: Sequence[Axes]) -> Drawn:
     """Draw the transmission angle over one cycle with the recommended band."""
-    ax, own = axes[0], linkage()
-    found = transmission_angle(own)
-    theta = np.linspace(0.0, 2.0 * pi, 721)
-    ax.axhspan(*np.degrees(found.band), color=COLOURS[2], alpha=0.10, label="recommended band")
-    ax.plot(np.degrees(theta), np.degrees(found.angle(theta)), color=COLOURS[0])
-    for angles, value, name in (
-        ([0.0, 360.0], found.least, "least"),
-        ([180.0], found.greatest, "greatest"),
+    ax, own, theta = axes[0], linkage(), np.linspace(0.0, 2.0 * pi, 721)
+    mu = transmission_angle(own)
+    ax.axhspan(*np.degrees(mu.band), color=COLOURS[2], alpha=0.10, label="recommended band")
+    ax.plot(np.degrees(theta), np.degrees(mu.angle(theta)), color=COLOURS[0])
+    for angles, value, name, shift in (
+        ([0.0, 360.0], mu.least, "least", (38.0, -12.0)),
+        ([180.0], mu.greatest, "greatest", (0.0, 10.0)),
     ):
-        text = f"{name}: {degrees(value):.2f}°"
         ax.plot(angles, [degrees(value)] * len(angles), "o", color=COLOURS[1], ms=5)
-        shift = (38.0, -12.0) if name == "least" else (0.0, 10.0)
-        write(ax, (angles[0], degrees(value)), text, shift)
+        write(ax, (angles[0], degrees(value)), f"{name}: {degrees(value):.2f}°", shift)
     crank_axis(ax)
-    ax.set_xlabel("input angle $t_1$ [deg]")
-    ax.set_ylabel(r"transmission angle $\gamma$ [deg]")
+    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=r"transmission angle $\gamma$ [deg]")
     ax.set_ylim(30.0, 150.0)
     legend_below([ax])
-    return Drawn(tuple(_transmission_rows(own, found)))
-
-
-def _transmission_rows(own: FourBar, found: TransmissionAngle) -> list[Quoted]:
-    rows = []
-    for name, angle, value, sign in (
-        ("minimum", found.at_least, found.least, 1.0),
-        ("maximum", found.at_greatest, found.greatest, -1.0),
+    values: list[Value] = []
+    for angle, value, sign in (
+        (mu.at_least, mu.least, 1.0),
+        (mu.at_greatest, mu.greatest, -1.0),
     ):
         cosine = (
             own.coupler**2
@@ -283,123 +341,115 @@ def _transmission_rows(own: FourBar, found: TransmissionAngle) -> list[Quoted]:
             - own.crank**2
             - own.frame**2
         ) / (2.0 * own.coupler * own.follower)
-        rows += [
-            Quoted(
-                f"input angle of the {name} transmission angle",
-                0.0 if sign > 0 else 180.0,
-                degrees(abs(float(angle[0]))),
-                1e-9,
-                "round-off",
-                "3.5",
-                unit="deg",
-            ),
-            Quoted(
-                f"{name} transmission angle, by (3.10)",
-                degrees(np.arccos(cosine)),
-                degrees(value),
-                _ROUND_OFF,
-                "round-off",
-                "3.5",
-                unit="deg",
-            ),
-        ]
-    return [
-        *rows,
-        Quoted(
-            "least transmission angle in the recommended band",
-            40.0,
-            degrees(found.least),
-            0.0,
-            "as stated",
-            "3.5",
-            relation=">",
-            unit="deg",
-        ),
-        Quoted(
-            "greatest transmission angle in the recommended band",
-            140.0,
-            degrees(found.greatest),
-            0.0,
-            "as stated",
-            "3.5",
-            relation="<",
-            unit="deg",
-        ),
-    ]
-
-
-def _points() -> tuple[tuple[str, float, float], ...]:
-    """Return the coupler points that are drawn: name, place along and across the coupler [m]."""
-    length = linkage().coupler
-    return (
-        ("A", 0.0, 0.0),
-        ("B", length, 0.0),
-        ("P", 0.25 * length, 0.0),
-        ("Q", 0.5 * length, 0.0),
-        ("R", 0.5 * length, 0.6 * length),
-        ("S", 1.3 * length, 0.5 * length),
-    )
+        values += [degrees(abs(float(angle[0]))), (degrees(value), degrees(np.arccos(cosine)))]
+    return Drawn([*values, degrees(mu.least), degrees(mu.greatest)])
 
 
 def figure_3_10(axes: Sequence[Axes]) -> Drawn:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
     ax, own = axes[0], linkage()
     canvas(ax)
-    curves = {name: coupler_curve(own, *place) for name, *place in _points()}
-    start = radians(70.0)
+    length, start = own.coupler, radians(70.0)
+    points = {
+        "A": (0.0, 0.0),
+        "B": (length, 0.0),
+        "P": (0.25 * length, 0.0),
+        "Q": (0.5 * length, 0.0),
+        "R": (0.5 * length, 0.6 * length),
+        "S": (1.3 * length, 0.5 * length),
+    }
+    curves = {name: coupler_curve(own, *place) for name, place in points.items()}
     for k in range(1, 8):
         joints = own.motion(start + k * pi / 4.0).joints
-        for ends, colour in (("AB", "#c8641e"), ("BC", "#1f5a8c"), ("DC", "#3a7d44")):
+        for ends, link in (("AB", "crank"), ("BC", "coupler"), ("DC", "follower")):
+            colour = LINK_COLOURS[link]
             bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
     for (name, curve), colour in zip(curves.items(), ("0.35", "0.35", *COLOURS[3:]), strict=False):
         closed = np.vstack([curve.position, curve.position[:1]])
         ax.plot(*closed.T, color=colour, lw=1.4, ls="--" if name in "AB" else "-", zorder=4)
     now = own.motion(start)
     joints = now.joints
-    for name, *place in _points()[2:]:
-        at = now.point("coupler", *place).position
-        if place[1]:
+    for name in "PQRS":
+        at = now.point("coupler", *points[name]).position
+        if name in "RS":
             lines = np.array([joints["B"], at, joints["C"]])
-            ax.plot(*lines.T, color="#1f5a8c", lw=1.0, zorder=4)
+            ax.plot(*lines.T, color=LINK_COLOURS["coupler"], lw=1.0, zorder=4)
         ax.plot(*at, "o", color="0.15", ms=4.0, zorder=8)
         write(ax, at, name, (8.0, 8.0), style="italic")
     four_bar(ax, joints, 0.07 * own.frame, "OABC")
-    note = (
-        "The points are not stated. A and B are the coupler's pins; P and Q lie on its line at a "
-        "quarter and a half of its length l, R at (0.5, 0.6) l and S at (1.3, 0.5) l of its own "
-        "axes. Eight positions of the crank, 45 deg apart."
-    )
-    return Drawn(tuple(_curve_rows(own, curves)), (note,))
-
-
-def _curve_rows(own: FourBar, curves: dict[str, CouplerCurve]) -> list[Quoted]:
     swing = transmission_angle(own).swing or 0.0
     pins = (("A", np.zeros(2), own.crank), ("B", np.array([own.frame, 0.0]), own.follower))
     off = [np.abs(np.hypot(*(curves[n].position - at).T) - r).max() for n, at, r in pins]
-    return [
-        Quoted(
-            "paths of the pins off a circle about their pivots",
-            0.0,
-            float(max(off)),
-            1e-12,
-            "round-off",
-            "3.6",
-            unit="m",
-        ),
-        Quoted(
-            "length of the crank pin's path over that of the circle",
-            1.0,
-            curves["A"].length / (2.0 * pi * own.crank),
-            1e-9,
-            "'either circles': round-off",
-            "3.6",
-        ),
-        Quoted(
-            "length of the follower pin's path over its arc, there and back",
-            1.0,
-            curves["B"].length / (2.0 * own.follower * swing),
-            1e-9,
-            "'or arcs': round-off",
-            "3.6",
-        ),
-    ]
+    around = curves["A"].length / (2.0 * pi * own.crank)
+    return Drawn([max(off), around, curves["B"].length / (2.0 * own.follower * swing)])
+
+
+def free_body(axes: Sequence[Axes], link: str) -> Drawn:
+    """Draw one link cut free (Fig. 3.11)."""
+    ax, scene = axes[0], load_scene(_SCENE)
+    machine, speed = scene.machine(), scene["operation"]["speed"]
+    body = free_bodies(machine, radians(105.0), speed)[0][link]
+    letters, names = _BODIES[link]
+    largest = max(float(np.hypot(*force)) for force in body.forces)
+    length = float(np.hypot(*(body.places[1] - body.places[0])))
+    scale = 0.55 * length / largest
+    canvas(ax)
+    draw_body(ax, body, letters, names, scale)
+    heads = np.array(body.places) + scale * np.array(body.forces)
+    low = np.min([*body.places, *heads], axis=0) - 0.22 * length
+    scale_bar(ax, low, scale, round_force(largest))
+    whole = free_bodies(machine, np.linspace(0.0, 2.0 * pi, 361), speed)[0][link]
+    values = [whole.unbalanced_force, whole.unbalanced_moment]
+    if link == "crank":
+        values.append(float(np.min(whole.torque)))
+    rows = []
+    for letter, force in zip(letters, body.forces, strict=True):
+        name = "".join(c for c in names[letter] if c not in "${}")
+        rows.append((name, *(f"{part:.4f}" for part in (*force, float(np.hypot(*force))))))
+    table = Table("Forces at this angle [N]", ("force", "x", "y", "size"), tuple(rows))
+    return Drawn(values, tables=(table,))
+
+
+def figure_7_12(axes: Sequence[Axes]) -> Drawn:
+    """Draw the follower's acceleration for several distances of the pivots."""
+    ax, speed = axes[0], load_scene(_SCENE)["operation"]["speed"]
+    for frame, colour in zip(FRAMES, COLOURS, strict=False):
+        motion = cycle(frame)
+        greatest = degrees(float(np.max(motion.transmission_angle)))
+        label = rf"$L_4$ = {frame:.3f} m, $\gamma_{{\max}}$ = {greatest:.0f}°"
+        ax.plot(np.degrees(motion.theta2), speed**2 * motion.alpha4, color=colour, label=label)
+    _input_axes(ax, "acceleration of the follower [rad/s$^2$]")
+    legend_below([ax], columns=3)
+    pulses = np.array([pulses_of(frame) for frame in FRAMES])
+    last = cycle(FRAMES[-1])
+    later = last.theta2 > radians(90.0)
+    place = last.theta2[later][int(np.argmax(np.abs(last.alpha4[later])))]
+    return Drawn(
+        [
+            degrees(float(place)),
+            degrees(float(np.max(last.transmission_angle))),
+            np.min(pulses[1:, 1] / pulses[:-1, 1]),
+            pulses[0, 1] / pulses[0, 0],
+            pulses[-1, 1] / pulses[-1, 0],
+            crossover(),
+            np.max(pulses[1:, 0]) / pulses[0, 0],
+        ]
+    )
+
+
+def pulses_of(frame: float) -> tuple[float, float]:
+    """Return the sizes of the first pulse (0 to 90 deg) and of the one about 180 deg."""
+    motion = cycle(frame)
+    turned, size = np.degrees(motion.theta2), np.abs(motion.alpha4)
+    first, second = (turned < 90.0), (np.abs(turned - 180.0) < 30.0)
+    return float(size[first].max()), float(size[second].max())
+
+
+def crossover() -> float:
+    """Return the frame length [m] at which the second pulse is as large as the first."""
+    low, high = 0.60, 0.68
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        first, second = pulses_of(middle)
+        low, high = (middle, high) if second < first else (low, middle)
+    return 0.5 * (low + high)

@@ -1,38 +1,33 @@
-"""The beams of Aannaque's Table 4.1 as the gallery uses them: models, motions and midpoints."""
+"""The beams of Aannaque's Table 4.1 as the gallery uses them: models, motions, frequencies."""
 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning
+from ..beams import Structure
+from ..core.errors import LinearRangeWarning, bad
 from ..core.families import Array, LinearPeriodic
+from ..frequencies import dynamic_stiffness, wittrick_williams
+from ..frequencies.held import held_frequencies
+from ..periodic import SteadyState, steady_state
+from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
-
-if TYPE_CHECKING:
-    from ..periodic import SteadyState
-    from ..recovery.stress_over_speed import StressCurve
 
 SCENE = "aannaque_1996_table_4_1"
 # The thesis' form (7.1), without stiffening; and the whole of the equations.
 THESIS: tuple[str, ...] = ("as_printed",)
 FULL: tuple[str, ...] = ()
 FRAME = 0.547
+# The distances of the pivots [m] of Figs. 8.19 to 8.23, and one more of chapter 7.
+FRAMES = (0.547, 0.600, 0.632, 0.642, 0.652, 0.662)
 CRITICAL = 62.0
 LINKS = ("crank", "coupler", "follower")
-# What the thesis' text does not say, said below each figure of its curves.
-FORM_NOTE = (
-    "Lines of the thesis' form: M q'' + C q' + K q = f, without Coriolis and centripetal terms and "
-    "without stiffening."
-)
-RANGE_NOTE = (
-    "Deflections beyond 5 % of a link are outside the linear range: at and above the critical "
-    "speeds the curves are the equations' answer, not a machine's."
-)
 
 
 @lru_cache(maxsize=24)
@@ -46,18 +41,8 @@ def beams(
 ) -> LinearPeriodic:
     """Return the mechanism of Table 4.1 with modal damping.
 
-    Parameters
-    ----------
-    elements : int
-        Elements for each link.
-    drop : tuple of str
-        :data:`THESIS` or :data:`FULL`.
-    kind : str
-        Formulation of the scene: which elements.
-    ratio : float
-        Damping ratio of every mode.
-    frame : float
-        L4 [m].
+    So many elements for each link; the form :data:`THESIS` or :data:`FULL`; the scene's
+    formulation, which names the elements; the damping ratio of every mode; L4 [m].
     """
     overrides = {
         "mesh.elements": elements,
@@ -69,10 +54,15 @@ def beams(
     return load_scene(SCENE, overrides=overrides).linear_system()
 
 
+def structure_of(system: LinearPeriodic) -> Structure:
+    """Return the beams of a system, which is refused where it has none."""
+    if system.structure is None:
+        raise bad("system", "no beams", "a system of beams", "load a scene with a mesh")
+    return system.structure
+
+
 def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> StressCurve:
     """Return the largest stresses over the speed, by the shapes as in the thesis."""
-    from ..recovery.stress_over_speed import stress_curve
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
         return stress_curve(system, speeds, rtol=rtol, method="shape")
@@ -80,8 +70,6 @@ def stresses(system: LinearPeriodic, speeds: Array, rtol: float = 1e-3) -> Stres
 
 def periodic(system: LinearPeriodic, speed: Array | float, rtol: float = 1e-5) -> SteadyState:
     """Return steady states, whatever their deflections."""
-    from ..periodic import steady_state
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LinearRangeWarning)
         return steady_state(system, speed, rtol=rtol)
@@ -89,14 +77,14 @@ def periodic(system: LinearPeriodic, speed: Array | float, rtol: float = 1e-5) -
 
 def midpoint(system: LinearPeriodic, link: str, theta: Array) -> Array:
     """Return what turns coordinates into the displacement across a link's midpoint [m], (nt, n)."""
-    structure, own = system.structure, system.relative_deflection
-    assert structure is not None and own is not None
-    placed = structure.elements
+    placed, deflection = structure_of(system).elements, system.relative_deflection
+    if deflection is None:
+        raise bad("system", "no deflections", "a system of beams", "load a scene with a mesh")
     at = [i for i, item in enumerate(placed) if item.beam.name == link]
     count = len(at)
     # Two places to each element: its middle and its end.
     row = 2 * at[count // 2] if count % 2 else 2 * at[count // 2 - 1] + 1
-    return np.asarray(own(theta)[:, row] * placed[at[0]].beam.length)
+    return np.asarray(deflection(theta)[:, row] * placed[at[0]].beam.length)
 
 
 def moved(system: LinearPeriodic, link: str, theta: Array, q: Array) -> Array:
@@ -135,3 +123,43 @@ def _tops_of_parabolas(speed: Array, values: Array, at: NDArray[np.intp]) -> Arr
 def nearest(places: Array, speed: float) -> float:
     """Return the place nearest to a speed."""
     return float(places[np.argmin(np.abs(places - speed))])
+
+
+@dataclass(frozen=True)
+class ModelComparison:
+    """Natural frequencies of several models of a mechanism held at the same crank angles [rad].
+
+    Frequencies [rad/s], rising, ``(models, nt, count)``; the size of a model is its number of
+    coordinates, 0 of ``exact``, that of dynamic stiffness.
+    """
+
+    names: tuple[str, ...]
+    size: NDArray[np.int64]
+    theta: Array
+    frequency: Array
+
+    def difference(self, model: str, reference: str = "exact") -> Array:
+        """Return a model's frequencies over those of another, less 1, ``(nt, count)``."""
+        one, other = (self.frequency[self.names.index(name)] for name in (model, reference))
+        return np.asarray(one / other - 1.0)
+
+
+def compare_models(
+    models: Mapping[str, LinearPeriodic], theta: Array, count: int = 4, *, exact: bool = True
+) -> ModelComparison:
+    """Return the frequencies of several models and, by the first one's structure, exact ones."""
+    names, sizes = list(models), [system.size for system in models.values()]
+    rows = [held_frequencies(system, theta, {})[0][:, :count] for system in models.values()]
+    structure = next(iter(models.values())).structure
+    if exact and structure is not None:
+        names, sizes = [*names, "exact"], [*sizes, 0]
+        rows.append(exact_frequencies(structure, theta, count))
+    return ModelComparison(
+        tuple(names), np.array(sizes, dtype=np.int64), np.asarray(theta), np.stack(rows)
+    )
+
+
+def exact_frequencies(structure: Structure, theta: Array, count: int) -> Array:
+    """Return the lowest natural frequencies [rad/s] by dynamic stiffness, ``(nt, count)``."""
+    problems = (dynamic_stiffness(structure, float(angle)) for angle in theta)
+    return np.stack([wittrick_williams(one, count=count).frequencies[:count] for one in problems])

@@ -1,28 +1,35 @@
-"""Aannaque's rig of chapter 8 as the gallery uses it: systems, speeds of the tests, stresses."""
+"""Aannaque's rig: paths, modes and largest stresses of chapters 8 and 9, appendices C and D."""
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from math import degrees, radians
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.errors import LinearRangeWarning, bad
-from ..core.families import LinearPeriodic
+from ..core.families import Array, LinearPeriodic
+from ..frequencies import (
+    LinkFrequencies,
+    NaturalFrequencies,
+    draw_mode,
+    link_frequencies,
+    natural_frequencies,
+)
+from ..recovery import ElasticCurve, elastic_coupler_curve, stress_operator
+from ..recovery.stress_over_speed import StressCurve, stress_curve
 from ..scenes import load_scene
+from .aannaque_kinematics import cycle
+from .aannaque_models import FRAME, exact_frequencies, maxima, periodic, structure_of
+from .drawing import COLOURS, crank_axis, legend_below, panel_title
+from .records import Drawn, Table
 
 if TYPE_CHECKING:
-    from ..periodic import SteadyState
-    from ..recovery.stress_over_speed import StressCurve
-
-Array = NDArray[np.float64]
+    from matplotlib.axes import Axes
 
 SHORT, LONG = "aannaque_1996_table_4_1", "aannaque_1996_long_coupler"
-FRAME = 0.547
 # Captions of Appendix C, Figs. C.1 to C.24 [rad/s].
 SPEEDS_C = (
     *(7.11, 9.71, 11.1, 13.43, 15.44, 16.28, 16.71, 17.70, 18.27, 20.07, 20.40, 21.01),
@@ -39,23 +46,288 @@ STATIONS: Mapping[str, tuple[float, ...]] = {
     "coupler": (0.5,),
     "follower": (0.5,),
 }
-# Relative errors that no picture shows.
-_MOTION, _CURVE = 1e-5, 1e-3
+_SLOW, _FAST = SPEEDS_C[0], SPEEDS_C[-1]
+# How much larger displacements are drawn beside the true path.
+_LARGER = {_SLOW: 200.0, _FAST: 8.0}
+# Captions of Figs. 8.9 to 8.18; by section 8.4 the cycle is divided into ten equal angles.
+CAPTIONS = (0, 36, 72, 108, 144, 180, 216, 252, 288, 316)
+ANGLES = tuple(360 * k // len(CAPTIONS) for k in range(len(CAPTIONS)))
+_LENGTHS = np.concatenate([np.linspace(0.30, 0.52, 8), np.linspace(0.535, 0.80, 16)])
+FRAMES = (0.547, 0.632, 0.642, 0.652, 0.662)
+_LOW, _HIGH, _LONG_HIGH = 5.0, 40.0, 30.0
+# Speeds at which the stresses of several L4 are compared: one far below the critical speeds, and
+# that of Fig. 8.24 [rad/s].
+_QUIET, _SHOWN = 6.0, 17.0
+# What is near, of a critical speed.
+_NEAR = 0.03
+
+
+@lru_cache(maxsize=12)
+def rig(scene: str = SHORT, frame: float = FRAME) -> LinearPeriodic:
+    """Return the linkage of a built-in scene with another distance of the pivots [m]."""
+    return load_scene(scene, overrides={"links.frame": frame}).linear_system()
+
+
+@lru_cache(maxsize=4)
+def midpoint(speed: float) -> ElasticCurve:
+    """Return the path of the coupler's midpoint at a crank speed [rad/s]."""
+    return elastic_coupler_curve(rig(), periodic(rig(), speed))
+
+
+def figure_8_2(axes: Sequence[Axes]) -> Drawn:
+    """Draw the path at a low and at a high speed, the rigid linkage's beside it."""
+    for ax, speed in zip(axes, (_SLOW, _FAST), strict=True):
+        path, larger = midpoint(speed), _LARGER[speed]
+        _closed(ax, path.elastic, "-", COLOURS[0], "elastic linkage")
+        _closed(ax, path.rigid, "--", "0.8", "rigid linkage")
+        enlarged = path.rigid + larger * path.displacement
+        _closed(ax, enlarged, ":", COLOURS[1], "elastic linkage, its displacement enlarged")
+        _paper(ax)
+        panel_title(ax, f"{speed:g} rad/s; dotted: displacement {larger:g} times as large")
+    legend_below(axes)
+    return Drawn([1e3 * midpoint(speed).largest for speed in (_SLOW, _FAST)])
+
+
+def figure_8_3(axes: Sequence[Axes]) -> Drawn:
+    """Draw the path at a low speed and how far it lies from that of the rigid linkage."""
+    path = midpoint(_SLOW)
+    _closed(axes[0], path.elastic, "-", COLOURS[0], "elastic linkage")
+    _closed(axes[0], path.rigid, "--", "0.8", "rigid linkage")
+    _paper(axes[0])
+    legend_below(axes)
+    _displacements(axes[1], {_SLOW: COLOURS[0]})
+    return Drawn([1e3 * path.largest])
+
+
+def figure_8_4(axes: Sequence[Axes]) -> Drawn:
+    """Draw the paths at a low and at a high speed over each other, and their distances."""
+    slow, fast = midpoint(_SLOW), midpoint(_FAST)
+    _closed(axes[0], slow.elastic, "--", COLOURS[4], f"{_SLOW:g} rad/s")
+    _closed(axes[0], fast.elastic, "-", COLOURS[1], f"{_FAST:g} rad/s")
+    enlarged = fast.rigid + _LARGER[_FAST] * fast.displacement
+    label = f"{_FAST:g} rad/s, displacement {_LARGER[_FAST]:g} times as large"
+    _closed(axes[0], enlarged, ":", COLOURS[1], label)
+    _paper(axes[0])
+    legend_below(axes)
+    _displacements(axes[1], {_SLOW: COLOURS[4], _FAST: COLOURS[1]})
+    return Drawn([fast.largest / slow.largest / (_FAST / _SLOW) ** 2])
+
+
+def _closed(ax: Axes, places: Array, style: str, colour: str, label: str) -> None:
+    around = np.vstack([places, places[:1]])
+    ax.plot(*(1e3 * around).T, style, color=colour, label=label)
+
+
+def _paper(ax: Axes) -> None:
+    ax.set_aspect("equal")
+    ax.set(xlabel="x [mm]", ylabel="y [mm]")
+
+
+def _displacements(ax: Axes, speeds: Mapping[float, str]) -> None:
+    for speed, colour in speeds.items():
+        path = midpoint(speed)
+        size = 1e3 * np.hypot(*path.displacement.T)
+        angle = np.degrees(np.append(path.theta, 2 * np.pi))
+        ax.plot(angle, np.append(size, size[0]), color=colour)
+    crank_axis(ax)
+    ax.set_ylim(bottom=0.0)
+    ax.set_ylabel("distance from the rigid path [mm]")
+
+
+@lru_cache(maxsize=1)
+def held_modes() -> NaturalFrequencies:
+    """Return the first three modes at the ten crank angles of section 8.4."""
+    return natural_frequencies(rig(), np.radians(ANGLES), 3)
+
+
+def modes(axes: Sequence[Axes], place: int) -> Drawn:
+    """Draw the modes at one of the ten crank angles (Figs. 8.9 to 8.18)."""
+    angle, tracked = ANGLES[place], held_modes().tracked[place]
+    computed, order = np.sort(tracked), np.argsort(tracked)
+    for rank, ax in enumerate(axes):
+        draw_mode(rig(), radians(angle), int(order[rank]) + 1, ax, found=held_modes())
+        hertz = computed[rank] / (2 * np.pi)
+        ax.set_title(f"mode {rank + 1}: {hertz:.1f} Hz, {computed[rank]:.1f} rad/s", fontsize=9)
+    exact = exact_frequencies(structure_of(rig()), np.array([radians(angle)]), 3)[0]
+    rows = tuple(
+        (str(rank + 1), *(f"{value / (2 * np.pi):.2f}" for value in pair))
+        for rank, pair in enumerate(zip(computed, exact, strict=True))
+    )
+    header = ("mode", "three elements per link [Hz]", "dynamic stiffness [Hz]")
+    table = Table(f"Natural frequencies at the crank angle {angle} deg", header, rows)
+    return Drawn([angle, 100.0 * np.max(np.abs(computed / exact - 1.0))], tables=(table,))
+
+
+@lru_cache(maxsize=1)
+def over_coupler() -> LinkFrequencies:
+    """Return the mean first natural frequency against the coupler's length."""
+    return link_frequencies(rig(), "coupler", "length", _LENGTHS)
+
+
+def crossing() -> float:
+    """Return the coupler length [m] at which coupler and follower, pinned, vibrate alike."""
+    pinned = dict(zip(over_coupler().links, over_coupler().pinned.T, strict=True))
+    # A pinned beam's frequency goes with the inverse square of its length.
+    return float(_LENGTHS[0] * np.sqrt(pinned["coupler"][0] / pinned["follower"][0]))
+
+
+def figure_9_1(axes: Sequence[Axes]) -> Drawn:
+    """Draw the mean first frequency over the coupler's length, and those of the pinned links."""
+    ax, over, hertz = axes[0], over_coupler(), 1.0 / (2 * np.pi)
+    length, mean = over.value, over.mean[:, 0]
+    pinned = dict(zip(over.links, over.pinned.T, strict=True))
+    coupler, follower = pinned["coupler"], pinned["follower"]
+    ax.plot(length, hertz * mean, color=COLOURS[0], label="mechanism, mean over the cycle")
+    low, high = hertz * over.least[:, 0], hertz * over.largest[:, 0]
+    label = "its range over the cycle"
+    ax.fill_between(length, low, high, color=COLOURS[0], alpha=0.15, lw=0, label=label)
+    ax.plot(length, hertz * coupler, "--", color=COLOURS[1], label="coupler, pinned-pinned")
+    ax.plot(length, hertz * follower, "-.", color=COLOURS[2], label="follower, pinned-pinned")
+    ax.axvline(FRAME, color="0.6", lw=0.8, ls=(0, (1, 3)))
+    ax.set(ylim=(0.0, 60.0), ylabel="first natural frequency [Hz]")
+    ax.set_xlabel("length of the coupler $L_2$ [m]")
+    legend_below(axes, columns=2)
+    apart = 100.0 * np.abs(mean / np.minimum(coupler, follower) - 1.0)
+    short = length < FRAME
+    values = [crossing(), float(np.max(apart[short])), float(np.max(apart[~short]))]
+    return Drawn(values, {"most": np.max(apart), "crank": hertz * pinned["crank"][0]})
+
+
+@lru_cache(maxsize=16)
+def curve(scene: str, frame: float, high: float = _HIGH) -> StressCurve:
+    """Return the largest stresses at the gauges over speeds from 5 rad/s up to a highest one."""
+    speeds = np.linspace(_LOW, high, 211)
+    return stress_curve(rig(scene, frame), speeds, stations=STATIONS, rtol=1e-3)
+
+
+@lru_cache(maxsize=2)
+def _held(scene: str) -> LinkFrequencies:
+    """Return the first two frequencies of a held linkage for all L4."""
+    return link_frequencies(rig(scene), "frame", "length", FRAMES, count=2)
+
+
+def mean_frequency(scene: str, frame: float, mode: int = 1) -> float:
+    """Return a mean natural frequency over the cycle [rad/s], crank held."""
+    return float(_held(scene).mean[FRAMES.index(frame), mode - 1])
+
+
+def _critical(found: StressCurve, link: str) -> Array:
+    """Return the speeds of maxima beside which the stress falls by 5 % at least."""
+    return maxima(found.speed, found.of(link), -np.log1p(-0.05))
+
+
+def long_frame(axes: Sequence[Axes], frame: float) -> Drawn:
+    """Draw the follower's largest stress over the speed for one L4 (Figs. 8.19 to 8.23)."""
+    ax, looks = axes[0], {FRAME: ("--", COLOURS[4])}
+    for value, (style, colour) in {**looks, frame: ("-", COLOURS[0])}.items():
+        over = curve(SHORT, value)
+        label = f"$L_4$ = {value:.3f} m"
+        ax.semilogy(over.speed, over.of("follower") / 1e6, style, color=colour, label=label)
+    _fractions(ax, mean_frequency(SHORT, frame), _HIGH)
+    ax.set_xlabel("crank speed [rad/s]")
+    ax.set_ylabel("largest stress at the follower's midpoint [MPa]")
+    legend_below(axes)
+    values = _orders(SHORT, frame, curve(SHORT, frame), "follower")
+    place = FRAMES.index(frame)
+    if place:
+        values += [_at(frame, w) / _at(FRAMES[place - 1], w) for w in (_QUIET, _SHOWN)]
+    if frame == FRAMES[-1]:
+        shift = [
+            abs(_nearest(other, order) / _nearest(FRAME, order) - 1.0)
+            for other in FRAMES[1:]
+            for order in (5, 6)
+        ]
+        values += [least_frame(_QUIET), least_frame(_SHOWN), 100.0 * max(shift)]
+    return Drawn(values)
+
+
+def _fractions(ax: Axes, mean: float, high: float, mode: int = 1) -> None:
+    """Mark a mode's mean frequency over whole numbers: of the second mode the lowest alone."""
+    first = int(mean / high) + 1
+    place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+    for order in range(first, (10 if mode == 1 else first) + 1):
+        speed = mean / order
+        if _LOW < speed < high:
+            ax.axvline(speed, color="0.6", lw=0.7, ls=(0, (1, 3)), zorder=1)
+            # Those up to the eighth have room for a name.
+            if order <= 8:
+                text = rf"$\bar\omega_{mode}/{order}$"
+                ax.annotate(text, (speed, 0.0), xytext=(2, 3), fontsize=7, color="0.4", **place)
+
+
+def _orders(scene: str, frame: float, over: StressCurve, link: str) -> list[float]:
+    """Return the mean frequency over each critical speed."""
+    values = []
+    for speed in _critical(over, link):
+        ratios = [mean_frequency(scene, frame, mode) / float(speed) for mode in (1, 2)]
+        apart = [abs(ratio / round(ratio) - 1.0) for ratio in ratios]
+        # The second mode only where the first does not explain it.
+        values.append(ratios[0 if apart[0] <= _NEAR else int(np.argmin(apart))])
+    return values
+
+
+def _at(frame: float, speed: float) -> float:
+    """Return the largest stress at the follower's midpoint [MPa]."""
+    over = curve(SHORT, frame)
+    return float(np.interp(speed, over.speed, over.of("follower"))) / 1e6
+
+
+def least_frame(speed: float) -> float:
+    """Return the L4 [m] of those tried with the least stress at the follower's midpoint."""
+    return min(FRAMES, key=lambda frame: _at(frame, speed))
+
+
+def _nearest(frame: float, order: int) -> float:
+    """Return the critical speed nearest to the mean first frequency over a whole number."""
+    speeds = _critical(curve(SHORT, frame), "follower")
+    return float(speeds[np.argmin(np.abs(speeds - mean_frequency(SHORT, frame) / order))])
+
+
+def figure_8_24(axes: Sequence[Axes]) -> Drawn:
+    """Draw the follower's stress over the cycle with a long ground link."""
+    ax, motion = axes[0], cycle(0.662)
+    values = []
+    for frame, style, colour in ((0.662, "-", COLOURS[0]), (FRAME, "--", COLOURS[4])):
+        shown = cycles(SHORT, frame, (_SHOWN,))
+        angle = np.degrees(np.append(shown.theta, 2 * np.pi))
+        stress = shown.stress["follower", 0.5][0] / 1e6
+        stress = np.append(stress, stress[0])
+        ax.plot(angle, stress, style, color=colour, label=f"$L_4$ = {frame:.3f} m")
+        if frame != FRAME:
+            values.append(angle[int(np.argmax(np.abs(stress)))])
+    ax.axvline(180.0, color="0.6", lw=0.7, ls=(0, (1, 3)))
+    crank_axis(ax)
+    ax.set_ylabel("stress at the follower's midpoint [MPa]")
+    legend_below(axes)
+    widest = degrees(float(motion.theta2[int(np.argmax(motion.transmission_angle))]))
+    lowest = min(float(_held(scene).least[:, 0].min()) for scene in (SHORT, LONG)) / (2 * np.pi)
+    # The input link with its flywheel: calculated and measured frequency [Hz].
+    return Drawn([*values, widest, lowest, 100.0 * (11.31 / 13.67 - 1.0)])
+
+
+def long_coupler(axes: Sequence[Axes], link: str) -> Drawn:
+    """Draw a link's largest stress over the speed, long coupler (Figs. 8.25 and 8.26)."""
+    ax, short, long = axes[0], curve(SHORT, FRAME), curve(LONG, FRAME, _LONG_HIGH)
+    ax.semilogy(long.speed, long.of(link) / 1e6, color=COLOURS[0], label="$L_2$ = 0.636 m")
+    kept = short.speed <= _LONG_HIGH
+    before = short.of(link)[kept] / 1e6
+    ax.semilogy(short.speed[kept], before, "--", color=COLOURS[4], label="$L_2$ = 0.328 m")
+    for mode in (1, 2):
+        _fractions(ax, mean_frequency(LONG, FRAME, mode), _LONG_HIGH, mode)
+    ax.set_xlabel("crank speed [rad/s]")
+    ax.set_ylabel(f"largest stress at the {link}'s midpoint [MPa]")
+    legend_below(axes)
+    ratios = [one.of("coupler") / one.of("follower") for one in (long, short)]
+    growth = np.exp(np.mean(np.log(ratios[0])) - np.mean(np.log(ratios[1][kept])))
+    return Drawn([*_orders(LONG, FRAME, long, link), growth])
 
 
 @dataclass(frozen=True)
 class Cycles:
-    """Stresses at the gauges over the cycle at several speeds.
+    """Stresses [Pa] at the gauges over the cycle, ``(ns, nt)``, by link and place x/length.
 
-    Attributes
-    ----------
-    speed : ndarray, shape (ns,)
-        Crank speeds [rad/s].
-    theta : ndarray, shape (nt,)
-        Crank angles [rad].
-    stress : mapping of (str, float) to ndarray, shape (ns, nt)
-        Stress [Pa] of the outer fibre to the left of the link's direction, tension positive, by
-        link and place x/length.
+    Those of the outer fibre to the left of the link's direction, tension positive, at crank speeds
+    [rad/s] and angles [rad].
     """
 
     speed: Array
@@ -63,35 +335,11 @@ class Cycles:
     stress: Mapping[tuple[str, float], Array]
 
 
-@lru_cache(maxsize=12)
-def rig(scene: str = SHORT, frame: float = FRAME) -> LinearPeriodic:
-    """Return the linkage of a built-in scene with another distance of the pivots [m].
-
-    Raises
-    ------
-    BadInput
-        If the scene has no linear periodic system.
-    """
-    return load_scene(scene, overrides={"links.frame": frame}).linear_system()
-
-
-def quiet_motion(system: LinearPeriodic, speed: float | tuple[float, ...]) -> SteadyState:
-    """Return the periodic motion at a crank speed [rad/s], or at each of some."""
-    from ..periodic import steady_state
-
-    with warnings.catch_warnings():
-        # At a critical speed the linear range may be left; the figures' notes say so.
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, rtol=_MOTION)
-
-
 @lru_cache(maxsize=16)
 def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
     """Return the stresses at the gauges over the cycle."""
-    from ..recovery import stress_operator
-
     system = rig(scene, frame)
-    motion = quiet_motion(system, speeds)
+    motion = periodic(system, np.array(speeds))
     form, stations = stress_operator(system, motion.theta, STATIONS)
     values = np.stack(
         [
@@ -100,54 +348,55 @@ def cycles(scene: str, frame: float, speeds: tuple[float, ...]) -> Cycles:
         ]
     )
     # Of each station the fibre on the positive side comes first.
-    found = {(one.beam, one.place): values[:, :, k] for k, one in enumerate(stations)}
-    return Cycles(np.array(speeds), motion.theta, found)
+    by_station = {(one.beam, one.place): values[:, :, k] for k, one in enumerate(stations)}
+    return Cycles(np.array(speeds), motion.theta, by_station)
 
 
-@lru_cache(maxsize=16)
-def curve(scene: str, frame: float, low: float, high: float, count: int) -> StressCurve:
-    """Return the largest stresses at the links' middles, and the input link's end, over speeds.
-
-    Parameters
-    ----------
-    scene : str
-        Built-in scene.
-    frame : float
-        Distance of the pivots [m].
-    low, high : float
-        Range of the speeds [rad/s].
-    count : int
-        Their number.
-    """
-    from ..recovery.stress_over_speed import stress_curve
-
-    return stress_curve(
-        rig(scene, frame), np.linspace(low, high, count), stations=STATIONS, rtol=_CURVE
-    )
+def gauges(letter: str, numbers: Sequence[int]) -> Cycles:
+    """Return the stresses over the cycle at the speeds of some figures of an appendix."""
+    scene, speeds = {"C": (SHORT, SPEEDS_C), "D": (LONG, SPEEDS_D)}[letter]
+    return cycles(scene, FRAME, tuple(speeds[number - 1] for number in numbers))
 
 
-def tops(x: Array, y: Array, prominence: float) -> Array:
-    """Return the abscissae of the local maxima of a curve that stand out.
+def sheet(axes: Sequence[Axes], letter: str, first: int, last: int) -> Drawn:
+    """Draw some figures of appendix C or D, a row of links for each."""
+    numbers = range(first, last + 1)
+    shown = gauges(letter, numbers)
+    angle = np.degrees(np.append(shown.theta, 2 * np.pi))
+    names = {"crank": "input link", "coupler": "coupler", "follower": "follower"}
+    for row, number in enumerate(numbers):
+        for column, (link, name) in enumerate(names.items()):
+            ax = axes[3 * row + column]
+            _gauge(ax, angle, shown.stress[link, 0.5][row], "-", COLOURS[0], 1.0, "midpoint")
+            if (link, 0.0) in shown.stress:
+                end = shown.stress[link, 0.0][row]
+                _gauge(ax, angle, end, "--", COLOURS[1], 0.8, "end at the flywheel")
+            ax.set_xlim(0.0, 360.0)
+            ax.set_xticks([0, 90, 180, 270, 360])
+            ax.locator_params(axis="y", nbins=4)
+            panel_title(ax, f"{letter}.{number}: {name}, {shown.speed[row]:g} rad/s")
+            if number < last:
+                ax.tick_params(labelbottom=False)
+            else:
+                ax.set_xlabel("crank angle [deg]")
+        axes[3 * row].set_ylabel("stress [MPa]")
+    legend_below(axes)
+    highest = max(_highest(shown, k) for k in range(len(numbers)))
+    peaks = [np.max(np.abs(shown.stress["crank", place]), axis=1) for place in (0.0, 0.5)]
+    return Drawn([highest, float(np.min(peaks[0] / peaks[1]))])
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-        The curve, x even.
-    prominence : float
-        Least fall on both sides over the maximum's own height.
 
-    Raises
-    ------
-    BadInput
-        If the curve has fewer than three points.
-    """
-    from scipy.signal import find_peaks
+def _gauge(
+    ax: Axes, angle: Array, stress: Array, style: str, colour: str, width: float, label: str
+) -> None:
+    values = np.append(stress, stress[0]) / 1e6
+    ax.plot(angle, values, style, color=colour, lw=width, label=label)
 
-    if len(x) < 3:
-        raise bad("x", f"{len(x)} points", "three at least", "take more speeds")
-    logs = np.log(y)
-    places, _ = find_peaks(logs, prominence=-np.log1p(-prominence))
-    # A parabola through the three highest places.
-    before, at, after = logs[places - 1], logs[places], logs[places + 1]
-    shift = 0.5 * (before - after) / (before - 2.0 * at + after)
-    return np.asarray(x[places] + shift * (x[1] - x[0]))
+
+def _highest(shown: Cycles, speed: int) -> float:
+    """Return the frequency [Hz] of the highest harmonic with 1 % of the largest, all links."""
+    best = 0
+    for values in shown.stress.values():
+        waves = np.abs(np.fft.rfft(values[speed]))[1:]
+        best = max(best, 1 + int(np.flatnonzero(waves >= 0.01 * waves.max())[-1]))
+    return best * float(shown.speed[speed]) / (2 * np.pi)

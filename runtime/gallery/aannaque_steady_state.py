@@ -1,8 +1,8 @@
-"""Aannaque's Figs. 6.3 to 6.5: modes, and convergence to the steady state."""
+"""Aannaque's chapter 6: Newmark's scheme, modes, convergence to the steady state, operations."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -11,26 +11,76 @@ from numpy.typing import NDArray
 
 from ..core.families import Array
 from ..core.trigonometric import even_angles
-from ..periodic import cycles_to_settle
-from .aannaque_algorithms import modal_motion, newmark_maps, transition_nodes
+from ..periodic import SteadyState, cycles_to_settle
+from .aannaque_algorithms import (
+    TABLE_6_2,
+    TABLE_6_3,
+    modal_motion,
+    newmark_limit,
+    newmark_maps,
+    newmark_regions,
+    operation_count,
+    printed_count,
+    transition_nodes,
+)
 from .aannaque_models import CRITICAL, FULL, THESIS, beams, midpoint, moved, periodic, rms
-from .records import Drawn, Quoted, Table
-from .style import COLOURS, crank_axis, legend_below, panel_title
+from .drawing import COLOURS, crank_axis, legend_below, panel_title
+from .records import Drawn, Table, Value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..periodic import SteadyState
-
 _SPEED = 35.0
-_INTERVALS = 256
 # Newmark's steps in a revolution, half a degree each.
 _STEPS = 720
-_CYCLES = 31
-_TOLERANCE = 1e-4
+_FORMS = ((THESIS, "the thesis' form"), (FULL, "full form with stiffening"))
+_NAMES = {
+    "time_marching": "time marching",
+    "transition_matrix": "algorithm 1",
+    "closed_form": "algorithm 2",
+}
 
 
-# ---------------------------------------------------------------- Figs. 6.3 and 6.4
+def figure_6_1(axes: Sequence[Axes]) -> Drawn:
+    """Draw the regions of stability of Newmark's scheme over gamma and beta."""
+    ax, right = axes[0], np.linspace(0.5, 1.2, 71)
+    pairs, real = 0.25 * (right + 0.5) ** 2, 0.5 * right
+    ax.axvspan(0.0, 0.5, color="#c9ced3", lw=0.0)
+    ax.fill_between(right, 0.0, real, color="#f1dcc6", lw=0.0)
+    ax.fill_between(right, real, pairs, color="#dfeadf", lw=0.0)
+    ax.fill_between(right, pairs, 0.8, color="#c2dcc4", lw=0.0)
+    ax.plot(right, pairs, color=COLOURS[0], label=r"$(\gamma + 1/2)^2/4$")
+    ax.plot(right, real, color=COLOURS[1], ls="--", label=r"$\gamma/2$")
+    ax.axvline(0.5, color="0.3", lw=0.8)
+    marks = (("mean acceleration", 0.25, "o"), ("linear acceleration", 1.0 / 6.0, "s"))
+    for name, place, mark in marks:
+        ax.plot(0.5, place, mark, color="0.1", ms=5, label=name, ls="none")
+    for x, y, words in (
+        (0.25, 0.5, "unstable"),
+        (0.85, 0.15, "stable up to a step"),
+        (0.75, 0.62, "stable at every step"),
+    ):
+        ax.text(x, y, words, ha="center", va="center")
+    ax.set(xlim=(0.0, 1.2), ylim=(0.0, 0.8), xlabel=r"$\gamma$", ylabel=r"$\beta$")
+    ax.grid(visible=False)
+    legend_below([ax])
+    # Points between the lines, on which the regions meet, that are in another region than drawn.
+    gamma, beta = np.meshgrid(np.arange(0.013, 1.2, 0.04), np.arange(0.003, 0.8, 0.04))
+    drawn = 1 + (beta > 0.5 * gamma).astype(int) + (beta > 0.25 * (gamma + 0.5) ** 2)
+    misjudged = np.where(gamma < 0.5, 0, drawn) != newmark_regions(gamma, beta)
+    below = newmark_limit(0.49, 0.25)
+    linear = (newmark_limit(0.5, 1.0 / 6.0), float(np.sqrt(12.0)))
+    least = [_least_beta(gamma) for gamma in (0.5, 0.9)]
+    return Drawn([np.count_nonzero(misjudged), *least, float(below), linear])
+
+
+def _least_beta(gamma: float) -> float:
+    """Return the least beta that is stable at every step."""
+    low, high = 0.0, 1.0
+    while high - low > 1e-9:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if np.isinf(newmark_limit(gamma, middle)) else (middle, high)
+    return 0.5 * (low + high)
 
 
 @lru_cache(maxsize=1)
@@ -41,7 +91,7 @@ def _whole() -> SteadyState:
 @lru_cache(maxsize=8)
 def _uncoupled(modes: int) -> Array:
     """Return the motion by uncoupled modes, constant in each of 256 intervals, ``(256, n)``."""
-    return modal_motion(beams(1), _SPEED, _INTERVALS, modes)
+    return modal_motion(beams(1), _SPEED, 256, modes)
 
 
 def _across(link: str, q: Array) -> Array:
@@ -49,89 +99,35 @@ def _across(link: str, q: Array) -> Array:
     return moved(beams(1), link, even_angles(2.0 * np.pi, len(q)), q)
 
 
-def deflection_figure(link: str) -> Callable[[Sequence[Axes]], Drawn]:
-    """Return the drawing of a link's midpoint over the cycle, with and without uncoupled modes."""
+def deflections(axes: Sequence[Axes], link: str) -> Drawn:
+    """Draw a link's midpoint over the cycle, with and without uncoupled modes (Fig. 6.3)."""
+    ax = axes[0]
+    for q, style, colour, label in (
+        (_whole().q, "-", COLOURS[0], "no uncoupling"),
+        (_uncoupled(9), "--", COLOURS[1], "all 9 modes, uncoupled"),
+        (_uncoupled(4), "-.", COLOURS[2], "4 modes, uncoupled"),
+        (periodic(beams(1, FULL), _SPEED).q, ":", "0.4", "full form with stiffening"),
+    ):
+        values = 1e3 * _across(link, q)
+        turned = np.linspace(0.0, 360.0, len(q) + 1)
+        ax.plot(turned, np.append(values, values[0]), style, color=colour, label=label)
+    _cycle_axis(ax, f"displacement across the\n{link}'s midpoint [mm]", columns=2)
+    coupler, follower = _gap("coupler", 9), _gap("follower", 9)
+    if link == "follower":
+        return Drawn([follower])
+    return Drawn([coupler, coupler / follower, _gap("coupler", 4)])
 
-    def draw(axes: Sequence[Axes]) -> Drawn:
-        ax = axes[0]
-        lines = (
-            (_whole().q, "-", "no uncoupling"),
-            (_uncoupled(9), "--", "all 9 modes, uncoupled"),
-            (_uncoupled(4), "-.", "4 modes, uncoupled"),
-        )
-        for (q, style, label), colour in zip(lines, COLOURS, strict=False):
-            values = 1e3 * _across(link, q)
-            turned = np.linspace(0.0, 360.0, len(q) + 1)
-            ax.plot(turned, np.append(values, values[0]), style, color=colour, label=label)
-        full = periodic(beams(1, FULL), _SPEED)
-        values = 1e3 * _across(link, full.q)
-        turned = np.linspace(0.0, 360.0, len(full.q) + 1)
-        label = "full form with stiffening"
-        ax.plot(turned, np.append(values, values[0]), ":", color="0.4", label=label)
-        crank_axis(ax)
-        ax.set_xlabel("input angle $t_1$ [deg]")
-        ax.set_ylabel(f"displacement across the\n{link}'s midpoint [mm]")
-        legend_below([ax], columns=2)
-        note = (
-            "One element for each link, damping 2 %. Displacement from the place on the rigid "
-            f"link, across it; uncoupled modes are constant in each of {_INTERVALS} intervals."
-        )
-        return Drawn(_uncoupling_rows(link), (note,))
 
-    return draw
+def _cycle_axis(ax: Axes, label: str, columns: int) -> None:
+    crank_axis(ax)
+    ax.set(xlabel="input angle $t_1$ [deg]", ylabel=label)
+    legend_below([ax], columns=columns)
 
 
 def _gap(link: str, modes: int) -> float:
     """Return the rms of what uncoupled modes are off by over the rms of the displacement."""
     exact = _across(link, _whole().q)
     return float(rms(_across(link, _uncoupled(modes)) - exact) / rms(exact))
-
-
-def _uncoupling_rows(link: str) -> tuple[Quoted, ...]:
-    coupler, follower = _gap("coupler", 9), _gap("follower", 9)
-    if link == "follower":
-        return (
-            Quoted(
-                "rms deviation of 9 uncoupled modes at the follower, over the rms",
-                0.2,
-                follower,
-                0.0,
-                "'a good result', read as a fifth",
-                "6.3",
-                relation="<",
-            ),
-        )
-    return (
-        Quoted(
-            "rms deviation of 9 uncoupled modes at the coupler, over the rms",
-            0.2,
-            coupler,
-            0.0,
-            "'quite inaccurate', read as a fifth",
-            "6.3",
-            relation=">",
-        ),
-        Quoted(
-            "that deviation at the coupler over that at the follower",
-            1.0,
-            coupler / follower,
-            0.0,
-            "worse at the coupler",
-            "6.3",
-            relation=">",
-        ),
-        Quoted(
-            "rms deviation of the lowest 4 uncoupled modes at the coupler, over the rms",
-            0.2,
-            _gap("coupler", 4),
-            0.0,
-            "'quite inaccurate', if the thesis kept the lowest four",
-            "6.3",
-            relation=">",
-            differs="the stiff modes spoil it, constant and uncoupled in each interval: the lowest "
-            "four alone are right to 7 %",
-        ),
-    )
 
 
 @lru_cache(maxsize=2)
@@ -141,8 +137,7 @@ def _contributions(link: str) -> tuple[Array, Array]:
 
     system, motion = beams(1), _whole()
     row = midpoint(system, link, motion.theta)
-    mass = system.array("M", motion.theta)
-    stiffness = system.array("K", motion.theta)
+    mass, stiffness = (system.array(name, motion.theta) for name in "MK")
     parts = np.empty((len(motion.theta), system.size))
     for i, q in enumerate(motion.q):
         shape = eigh(stiffness[i], mass[i])[1]
@@ -150,82 +145,28 @@ def _contributions(link: str) -> tuple[Array, Array]:
     return np.einsum("tn,tn->t", row, motion.q), parts
 
 
-def contribution_figure(link: str) -> Callable[[Sequence[Axes]], Drawn]:
-    """Return the drawing of the parts of four modes in the displacement of a midpoint."""
-
-    def draw(axes: Sequence[Axes]) -> Drawn:
-        ax = axes[0]
-        whole, parts = _contributions(link)
-        turned = np.degrees(_whole().theta)
-        ax.plot(turned, 1e3 * whole, color="0.15", lw=1.6, label="displacement")
-        for mode in range(4):
-            ax.plot(turned, 1e3 * parts[:, mode], color=COLOURS[mode], label=f"mode {mode + 1}")
-        crank_axis(ax)
-        ax.set_xlabel("input angle $t_1$ [deg]")
-        ax.set_ylabel(f"part of the {link}'s midpoint [mm]")
-        legend_below([ax], columns=5)
-        note = (
-            "Modes of the mechanism held at each angle, mass-normalised, of the motion without "
-            "uncoupling; one element for each link."
-        )
-        return Drawn(_contribution_rows(link), (note,), (_shares(),))
-
-    return draw
-
-
-def _share(link: str) -> Array:
+def contributions(axes: Sequence[Axes], link: str) -> Drawn:
+    """Draw the parts of four modes in the displacement of a midpoint (Fig. 6.4)."""
+    ax, turned = axes[0], np.degrees(_whole().theta)
     whole, parts = _contributions(link)
-    return rms(parts.T) / rms(whole)
-
-
-def _contribution_rows(link: str) -> tuple[Quoted, ...]:
-    follower, coupler = _share("follower"), _share("coupler")
-    closed = max(
-        float(np.max(np.abs(parts.sum(axis=1) - whole)) / np.max(np.abs(whole)))
-        for whole, parts in map(_contributions, ("follower", "coupler"))
-    )
-    if link == "follower":
-        return (
-            Quoted(
-                "rms of the first mode over that of the next largest, follower",
-                2.0,
-                float(follower[0] / np.max(follower[1:])),
-                0.0,
-                "'the first mode is dominant', read as twice the next",
-                "6.3",
-                relation=">",
-            ),
-            Quoted(
-                "sum of the modes less the displacement, over its peak",
-                0.0,
-                closed,
-                1e-9,
-                "all nine modes; round-off",
-                "6.3",
-            ),
-        )
-    return (
-        Quoted(
-            "rms of the modes 2 to 4 together over that of the first, coupler against follower",
-            1.0,
-            float(np.sum(coupler[1:4]) / coupler[0] / (np.sum(follower[1:4]) / follower[0])),
-            0.0,
-            "'more modes contribute to the deflection of the coupler'",
-            "6.3",
-            relation=">",
-        ),
-    )
-
-
-def _shares() -> Table:
-    rows = [
-        (link, *(f"{value:.3f}" for value in _share(link)[:6])) for link in ("coupler", "follower")
-    ]
+    ax.plot(turned, 1e3 * whole, color="0.15", lw=1.6, label="displacement")
+    for mode in range(4):
+        ax.plot(turned, 1e3 * parts[:, mode], color=COLOURS[mode], label=f"mode {mode + 1}")
+    _cycle_axis(ax, f"part of the {link}'s midpoint [mm]", columns=5)
+    shares, closed = {}, []
+    for name in ("coupler", "follower"):
+        whole, parts = _contributions(name)
+        shares[name] = rms(parts.T) / rms(whole)
+        closed.append(np.max(np.abs(parts.sum(axis=1) - whole)) / np.max(np.abs(whole)))
+    coupler, follower = shares["coupler"], shares["follower"]
+    values = [follower[0] / np.max(follower[1:]), max(closed)]
+    if link == "coupler":
+        higher = np.sum(coupler[1:4]) / coupler[0]
+        values = [higher / (np.sum(follower[1:4]) / follower[0])]
+    rows = tuple((name, *(f"{value:.3f}" for value in shares[name][:6])) for name in shares)
     header = ("midpoint of", *(f"mode {i}" for i in range(1, 7)))
-    return Table("rms of a mode's part over the rms of the displacement", header, tuple(rows))
-
-
-# ---------------------------------------------------------------- Fig. 6.5
+    title = "rms of a mode's part over the rms of the displacement"
+    return Drawn(values, tables=(Table(title, header, rows),))
 
 
 @lru_cache(maxsize=4)
@@ -238,13 +179,12 @@ def march(
     """
     system = beams(1, drop, ratio=ratio)
     maps, loads = newmark_maps(system, CRITICAL, _STEPS)
-    state = np.zeros(maps.shape[-1])
+    state, whole = np.zeros(maps.shape[-1]), np.eye(maps.shape[-1])
     states = np.empty((40, *loads.shape))
     for cycle in states:
         for k in range(len(maps)):
             cycle[k] = state
             state = maps[k] @ state + loads[k]
-    whole = np.eye(maps.shape[-1])
     for step in maps:
         whole = step @ whole
     values = np.linalg.eigvals(whole).astype(complex)
@@ -264,82 +204,168 @@ def _settled(values: Array, tolerance: float) -> float:
 
 def figure_6_5(axes: Sequence[Axes]) -> Drawn:
     """Draw the follower's midpoint from rest at 62 rad/s, and its change in a cycle."""
-    values = march()[0]
+    values, multipliers = march()
     cycles = np.arange(values.size) / values.shape[1]
     axes[0].plot(cycles, 1e3 * values.ravel(), color=COLOURS[0], lw=0.6)
     axes[0].set_ylabel("follower's midpoint [mm]")
     panel_title(axes[0], "from rest, the thesis' form")
-    for drop, colour, label in (
-        (THESIS, COLOURS[0], "the thesis' form"),
-        (FULL, COLOURS[1], "full form with stiffening"),
-    ):
+    for (drop, label), colour in zip(_FORMS, COLOURS, strict=False):
         change = changes(march(drop)[0])
-        axes[1].semilogy(
-            np.arange(2, len(change) + 2), change, "o-", color=colour, ms=3, label=label
-        )
-    axes[1].axhline(_TOLERANCE, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
-    axes[1].axvline(_CYCLES, color="0.4", lw=0.8, ls=":", label="31 cycles")
+        counted = np.arange(2, len(change) + 2)
+        axes[1].semilogy(counted, change, "o-", color=colour, ms=3, label=label)
+    axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
+    axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
     axes[1].set_ylabel("change in a cycle\nover the peak")
     for ax in axes:
         ax.set_xlim(0.0, 40.0)
     axes[1].set_xlabel("cycle")
     legend_below([axes[1]])
-    note = (
-        "One element for each link, damping 2 %, Newmark's steps of half a degree. Norm and model "
-        "of the 31 cycles are not stated. At this speed deflections are far beyond the linear "
-        "range."
-    )
-    return Drawn(tuple(_cycle_rows()), (note,), (_cycle_table(),))
-
-
-def _cycle_rows() -> list[Quoted]:
-    values, multipliers = march()
-    system = beams(1)
+    system, last = beams(1), values[-1]
     q = transition_nodes(*newmark_maps(system, CRITICAL, _STEPS))[:, : system.size]
-    exact = _across("follower", q)
-    last = values[-1]
-    return [
-        Quoted(
-            "cycles to a change of 1e-4 over the peak",
-            float(_CYCLES),
-            _settled(values, _TOLERANCE),
-            1.0,
-            "one cycle, from which the first is counted",
-            "6.8",
-            differs="neither norm nor intervals are stated: 22 to 29 cycles by change or rest, "
-            "with and without stiffening, 28 to 35 for 1e-5; 31 can be met and decides nothing",
-        ),
-        Quoted(
-            "largest multiplier's size at 62 rad/s",
-            1.0,
-            float(np.max(np.abs(multipliers))),
-            0.0,
-            "the march converges: a stable motion",
-            "6.8",
-            relation="<",
-        ),
-        Quoted(
-            "algorithm 1 in two cycles less 40 marched cycles, over the peak",
-            0.0,
-            float(np.max(np.abs(exact - last)) / np.max(np.abs(last))),
-            1e-5,
-            "what 40 cycles leave of the start; both by the same 720 steps",
-            "6.8",
-        ),
-    ]
+    off = np.max(np.abs(_across("follower", q) - last)) / np.max(np.abs(last))
+    numbers = [_settled(values, 1e-4), np.max(np.abs(multipliers)), off]
+    return Drawn(numbers, tables=(_cycle_table(),))
 
 
 def _cycle_table() -> Table:
     rows = []
-    for drop, name in ((THESIS, "the thesis' form"), (FULL, "full form with stiffening")):
+    for drop, name in _FORMS:
         values, multipliers = march(drop)
         top = multipliers[np.argmax(np.abs(multipliers))]
         for tolerance in (1e-4, 1e-5):
             cells = [name, f"{tolerance:g}", f"{abs(top):.4f}"]
-            cells += [
-                str(int(cycles_to_settle(top, tolerance, norm=norm)))
-                for norm in ("change", "remaining")
-            ]
+            cells.append(str(int(cycles_to_settle(top, tolerance, norm="change"))))
+            cells.append(str(int(cycles_to_settle(top, tolerance, norm="remaining"))))
             rows.append((*cells, f"{_settled(values, tolerance):.0f}"))
     header = ("form", "tolerance", "multiplier", "by change", "by rest", "marched, by change")
     return Table("Cycles from rest at 62 rad/s", header, tuple(rows))
+
+
+def _counted(name: str, intervals: int, freedoms: int, cycles: int = 1, **more: bool) -> float:
+    return float(
+        operation_count(name, intervals=intervals, freedoms=freedoms, cycles=cycles, **more)
+    )
+
+
+def _printed(name: str, intervals: int, freedoms: int, cycles: int = 1, **more: bool) -> float:
+    return float(printed_count(name, intervals=intervals, freedoms=freedoms, cycles=cycles, **more))
+
+
+def _cycles(ratio: float) -> int:
+    """Return the cycles to a change of 1e-4 over the peak at 62 rad/s."""
+    values = march(ratio=ratio)[1]
+    return int(cycles_to_settle(values[np.argmax(np.abs(values))], 1e-4))
+
+
+def figure_6_6(axes: Sequence[Axes]) -> Drawn:
+    """Draw the operations over the intervals: algorithms 1 and 2, and marching at two dampings."""
+    intervals = (90, 180, 360, 540, 720)
+    lines = [
+        ("transition_matrix", 1, "algorithm 1", COLOURS[0]),
+        ("closed_form", 1, "algorithm 2", COLOURS[1]),
+    ]
+    for ratio, colour in zip((0.02, 0.06), COLOURS[2:], strict=False):
+        label = rf"time marching, $\zeta$ = {ratio:g}, {_cycles(ratio)} cycles"
+        lines.append(("time_marching", _cycles(ratio), label, colour))
+    for ax, storage in zip(axes, (True, False), strict=True):
+        for name, cycles, label, colour in lines:
+            printed, counted = (
+                [1e-6 * count(name, n, 9, cycles, storage=storage) for n in intervals]
+                for count in (_printed, _counted)
+            )
+            ax.plot(intervals, printed, "o-", ms=3, color=colour, label=label)
+            ax.plot(intervals, counted, "--", lw=0.9, color=colour)
+        ax.plot([], [], "--", lw=0.9, color="0.4", label="counted here")
+        ax.set_xlabel("intervals")
+        panel_title(ax, "matrices stored" if storage else "no storage")
+        ax.set_ylim(bottom=0.0)
+    axes[0].set_ylabel("operations [million]")
+    legend_below([axes[0]], columns=3)
+    one, two = "transition_matrix", "closed_form"
+    values = [
+        max(
+            count(one, big, n) / count(two, big, n) for n in (1, 2, 9, 27, 100) for big in (90, 720)
+        )
+        for count in (_printed, _counted)
+    ]
+    values.append(_counted(one, 1440, 9) / _counted(one, 720, 9))
+    return Drawn([*values, _break_even(10), _break_even(50) / _break_even(10)])
+
+
+def _break_even(freedoms: int) -> float:
+    """Return the cycles from which marching takes more operations than algorithm 1."""
+    wanted, cycles = _printed("transition_matrix", 720, freedoms), 1
+    while _printed("time_marching", 720, freedoms, cycles) < wanted:
+        cycles += 1
+    return float(cycles)
+
+
+def table_6_1(axes: Sequence[Axes]) -> Drawn:
+    """Draw the counted operations over those of the printed formulas."""
+    freedoms = np.unique(np.round(np.geomspace(3, 300, 25)).astype(int))
+
+    def ratio(name: str, n: int, storage: bool = True) -> float:
+        return _counted(name, 720, n, 5, storage=storage) / _printed(
+            name, 720, n, 5, storage=storage
+        )
+
+    rows = []
+    for ax, storage in zip(axes, (True, False), strict=True):
+        words = "stored" if storage else "no storage"
+        for (name, label), colour in zip(_NAMES.items(), COLOURS, strict=False):
+            ratios = [ratio(name, int(n), storage) for n in freedoms]
+            ax.semilogx(freedoms, ratios, color=colour, label=label)
+            rows.append((label, words, *(f"{ratio(name, n, storage):.3f}" for n in (9, 27, 300))))
+        ax.axhline(1.0, color="0.5", lw=0.8)
+        ax.set_xlabel("freedoms $n$")
+        panel_title(ax, f"matrices {words}" if storage else words)
+    axes[0].set_ylabel("counted over printed operations")
+    legend_below([axes[0]])
+    header = ("algorithm", "matrices", "n = 9", "n = 27", "n = 300")
+    table = Table("Counted over printed operations", header, tuple(rows))
+    return Drawn([ratio(name, 300) for name in _NAMES], tables=(table,))
+
+
+def table_6_2(axes: Sequence[Axes]) -> Drawn:
+    """Draw the entries of Table 6.2 and those of the printed formulas."""
+    ax, places = axes[0], np.arange(len(TABLE_6_2))
+    columns = [(name, storage) for storage in (True, False) for name in _NAMES]
+    computed = np.array(
+        [[1e-6 * _printed(name, *key, storage=kept) for name, kept in columns] for key in TABLE_6_2]
+    )
+    printed = np.array(list(TABLE_6_2.values()), dtype=float)
+    for k, ((name, kept), colour) in enumerate(zip(columns, COLOURS, strict=False)):
+        label = f"{_NAMES[name]}, {'stored' if kept else 'no storage'}"
+        shift = places + 0.12 * (k - 2.5)
+        ax.semilogy(shift, computed[:, k], "_", color=colour, ms=9, mew=2, label=label)
+        ax.semilogy(shift, printed[:, k], "o", color=colour, ms=3)
+    ax.set_xticks(places, [f"N {big}\nn {n}\n$n_c$ {cycles}" for big, n, cycles in TABLE_6_2])
+    ax.set_ylabel("operations [million]")
+    legend_below([ax], columns=3)
+    return Drawn([np.max(np.abs(printed / computed - 1.0))])
+
+
+def table_6_3(axes: Sequence[Axes]) -> Drawn:
+    """Draw the operations of the Fourier series and of algorithm 1 over the harmonics."""
+    harmonics = np.arange(1, 31)
+
+    def series(number: int, big: int, n: int) -> float:
+        return 1e-6 * printed_count("harmonic_balance", intervals=big, freedoms=n, harmonics=number)
+
+    for ax, n in zip(axes, (10, 50), strict=True):
+        for big, colour in ((90, COLOURS[0]), (720, COLOURS[1])):
+            values = [series(int(h), big, n) for h in harmonics]
+            ax.semilogy(harmonics, values, color=colour, label=f"Fourier series, N = {big}")
+            one = 1e-6 * _printed("transition_matrix", big, n)
+            ax.axhline(one, color=colour, ls="--", lw=0.9, label=f"algorithm 1, N = {big}")
+            points = [(h, v[0]) for (b, h, k), v in TABLE_6_3.items() if (b, k) == (big, n)]
+            ax.plot(*np.transpose(points), "o", color=colour, ms=4)
+        ax.set_xlabel("harmonics")
+        panel_title(ax, f"{n} freedoms")
+    axes[0].set_ylabel("operations [million]")
+    axes[1].plot([], [], "o", color="0.4", ms=4, label="printed, Fourier series")
+    legend_below([axes[1]], columns=3)
+    numbers: list[Value] = []
+    for big, number, n in TABLE_6_3:
+        numbers += [series(number, big, n), 1e-6 * _printed("transition_matrix", big, n)]
+    return Drawn(numbers)

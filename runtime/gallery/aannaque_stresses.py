@@ -1,195 +1,250 @@
-"""Aannaque's Figs. 7.7 to 7.11: largest stress over the speed, elements and damping."""
+"""Aannaque's chapter 7: critical speeds, stresses over the speed, pivots' distance, elements."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import lru_cache, partial
+import warnings
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.families import Array, LinearPeriodic, Term
-from .aannaque_lengths import bending_at_midpoint
+from ..core.errors import LinearRangeWarning
+from ..core.families import Array, LinearPeriodic
+from ..frequencies import NaturalFrequencies, natural_frequencies
+from ..hill import Meissner, discriminant
+from ..periodic import floquet_multipliers
+from ..periodic.reduced import reduced_system
+from ..recovery import recover, stress_operator
+from .aannaque_hybrid import fourier_sum, hybrid, hybrid_model
 from .aannaque_models import (
-    FORM_NOTE,
+    CRITICAL,
+    FRAMES,
     FULL,
     LINKS,
-    RANGE_NOTE,
     THESIS,
     beams,
     maxima,
+    moved,
     nearest,
     periodic,
+    rms,
     stresses,
+    structure_of,
+    tops,
 )
-from .records import Drawn, Quoted
-from .style import COLOURS, crank_axis, legend_below
+from .drawing import COLOURS, crank_axis, legend_below
+from .records import Drawn, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .aannaque_hybrid import HybridMatrices
+# Speeds [rad/s] of Figs. 7.1 and 7.3; of 7.4 and 7.6, and of 7.5; of 7.7 to 7.11, the last fewer.
+_SPEEDS = np.linspace(20.0, 75.0, 221)
+_COARSE, _FINE = np.linspace(20.0, 70.0, 81), np.linspace(20.0, 70.0, 251)
+_WIDE, _FEWER = np.linspace(5.0, 70.0, 326), np.linspace(10.0, 70.0, 121)
+_MODES = 4
+# The range of L4 up to which the stresses fall.
+_LATE = 0.632
 
-_SPEEDS = np.linspace(5.0, 70.0, 326)
-_FEWER = np.linspace(10.0, 70.0, 121)
-_RATIOS = (0.02, 0.03, 0.06)
-_ANGLES = 128
+
+def _speed_axis(ax: Axes, speed: Array, label: str) -> None:
+    ax.set(xlim=(speed[0], speed[-1]), xlabel="crank speed [rad/s]", ylabel=label)
 
 
-# ---------------------------------------------------------------- the "exact" model
+def _apart(places: Array, others: Array) -> float:
+    """Return the largest distance of a place from the nearest of others, over the place."""
+    return max(float(np.min(np.abs(others - place)) / place) for place in places)
 
 
 @lru_cache(maxsize=2)
-def _hybrid(rtol: float) -> HybridMatrices:
-    from .aannaque_hybrid import hybrid_matrices
-
-    structure = beams(1).structure
-    assert structure is not None
-    return hybrid_matrices(structure, 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES, rtol=rtol)
+def _stress(drop: tuple[str, ...]) -> Array:
+    """Return the largest stress of all links [Pa], one element for each."""
+    return np.asarray(np.max(stresses(beams(1, drop), _SPEEDS).maximum, axis=1))
 
 
-def _series(coefficients: NDArray[np.complex128], order: int, theta: Array) -> Array:
-    """Return a Fourier series, or its derivative of an order, ``(nt, ...)``."""
-    harmonics = np.arange(len(coefficients))
-    factors = (1j * harmonics) ** order * np.where(harmonics, 2.0, 1.0)
-    waves = np.exp(1j * np.outer(theta, harmonics)) * factors
-    return np.asarray(np.tensordot(waves, coefficients, axes=1).real)
+@lru_cache(maxsize=2)
+def real_parts(drop: tuple[str, ...] = THESIS) -> Array:
+    """Return the larger real part of each pair of multipliers, by falling modulus, (ns, 4).
+
+    With one damping ratio they follow one another as the modes do, but where two pairs meet.
+    """
+    system = reduced_system(beams(1, drop), _MODES)
+    real = floquet_multipliers(system, _SPEEDS, rtol=1e-6).multipliers.real
+    return np.asarray(np.max(real.reshape(len(_SPEEDS), _MODES, 2), axis=-1))
+
+
+def figure_7_1(axes: Sequence[Axes]) -> Drawn:
+    """Draw the largest stress and the real parts of the multipliers over the speed."""
+    for drop, style, colour, label in (
+        (THESIS, "-", COLOURS[0], "the thesis' form"),
+        (FULL, ":", "0.4", "full form"),
+    ):
+        axes[0].semilogy(_SPEEDS, 1e-6 * _stress(drop), style, color=colour, label=label)
+    places = maxima(_SPEEDS, _stress(THESIS))
+    # The two modes whose multipliers tell the critical speeds of this range.
+    largest, second = real_parts().T[:2]
+    for values, style, colour, name in (
+        (largest, "-", COLOURS[1], "largest"),
+        (second, ".", COLOURS[2], "second"),
+    ):
+        label = f"multipliers of {name} modulus"
+        axes[1].plot(_SPEEDS, values, style, ms=3.5, color=colour, label=label)
+    for ax, label in zip(axes, ("largest stress [MPa]", "real part"), strict=True):
+        _speed_axis(ax, _SPEEDS, label)
+        for place in places:
+            ax.axvline(place, color="0.6", lw=0.6, ls=(0, (1, 3)))
+    axes[0].set_xlabel("")
+    legend_below(axes, columns=3)
+    both = [tops(_SPEEDS, largest), tops(_SPEEDS, second)]
+    values = [_apart(places, np.concatenate(both)), nearest(places, CRITICAL)]
+    values += [nearest(both[0], CRITICAL), float(np.max(np.abs(real_parts())))]
+    return Drawn(values, tables=(_maxima_table(places, both),))
+
+
+def _maxima_table(places: Array, both: Sequence[Array]) -> Table:
+    rows, mean = [], float(_held().mean[0])
+    for place in places:
+        rank = int(np.argmin([np.min(np.abs(one - place), initial=np.inf) for one in both]))
+        order = max(round(mean / float(place)), 1)
+        rows.append(
+            (
+                f"{place:.2f}",
+                f"{nearest(both[rank], float(place)):.2f}",
+                ("largest", "second")[rank],
+                f"{mean / order:.2f} (n = {order})" if rank == 0 else "",
+            )
+        )
+    header = ("stress [rad/s]", "real part [rad/s]", "modulus", "first mean frequency/n [rad/s]")
+    return Table("Critical speeds of the one-element model", header, tuple(rows))
 
 
 @lru_cache(maxsize=1)
-def hybrid_model() -> LinearPeriodic:
-    """Return the thesis' "exact" model: one element for each link, M and K at the first frequency.
+def _held() -> NaturalFrequencies:
+    """Return the frequencies of the one-element model, 720 to a cycle."""
+    return natural_frequencies(beams(1, FULL), 2.0 * np.pi * np.arange(720) / 720, _MODES)
 
-    Damping 2 %, the form of the thesis; the inertia of the rigid motion by the same masses.
-    """
-    from ..systems import with_modal_damping
 
-    base, found = beams(1), _hybrid(1e-10)
-    order = [found.labels.index(label) for label in base.labels]
-    places = np.ix_(range(_ANGLES), order, order)
-    mass, stiffness = found.mass[places], found.stiffness[places]
-    cubic, force = base.array("M", found.theta), base.array("f", found.theta)
-    push = mass @ np.linalg.solve(cubic, force[..., None])
-    kept = _ANGLES // 2
-    m, k, f = (np.fft.rfft(a, axis=0)[:kept] / _ANGLES for a in (mass, stiffness, push[..., 0]))
-    terms = (
-        Term("M", None, partial(_series, m, 0)),
-        # The family's own M' is taken out, as of any instantaneous form.
-        Term("C", None, partial(_series, -m, 1), power=1),
-        Term("K", None, partial(_series, k, 0)),
-        Term("f", None, partial(_series, f, 0)),
+def _meissner(speed: Array, intervals: int) -> Array:
+    """Return J of so many intervals of the first mode; exact means of each."""
+    levels = _held().frequency[:, 0].reshape(intervals, -1).mean(axis=1)
+    return discriminant(Meissner.of(levels**2), 0.0, 1.0 / speed**2).value
+
+
+def figure_7_3(axes: Sequence[Axes]) -> Drawn:
+    """Draw J_2, J_3, J_4 and the real part of a multiplier over the speed, first mode."""
+    ax, fine = axes[0], _meissner(_SPEEDS, 180)
+    ax.plot(_SPEEDS, fine, color="0.15", lw=1.2, label="180 intervals")
+    counts = {count: _meissner(_SPEEDS, count) for count in (2, 3, 4)}
+    for (count, values), mark, colour in zip(counts.items(), "os^", COLOURS, strict=False):
+        some = slice(2 * count - 4, None, 6)
+        ax.plot(_SPEEDS[some], values[some], mark, color=colour, ms=4, label=f"$J_{count}$")
+    damped = real_parts()[:, 0]
+    ax.plot(_SPEEDS, damped, "--", color=COLOURS[3], label="all modes, damping 2 %")
+    for level in (-1.0, 1.0):
+        ax.axhline(level, color="0.6", lw=0.6)
+    _speed_axis(ax, _SPEEDS, "half trace, real part")
+    ax.set_ylim(-1.3, 1.3)
+    legend_below([ax], columns=5)
+    reference, whole = tops(_SPEEDS, fine), _meissner(_SPEEDS, 720)
+    divisions = float(_held().mean[0]) / np.arange(1, 12)
+    gaps = [float(np.max(np.abs(_meissner(_SPEEDS, count) - whole))) for count in (90, 180)]
+    return Drawn(
+        [
+            *(_apart(reference, tops(_SPEEDS, values)) for values in counts.values()),
+            _apart(reference, divisions),
+            _apart(reference, tops(_SPEEDS, damped)),
+            np.log2(gaps[0] / gaps[1]),
+        ]
     )
-    bare = LinearPeriodic(
-        base.size,
-        terms,
-        {},
-        lambda values: {},
-        labels=base.labels,
-        relative_deflection=base.relative_deflection,
-        structure=base.structure,
-    )
-    return with_modal_damping(bare, 0.02)
 
 
-# ---------------------------------------------------------------- Figs. 7.7, 7.10, 7.11
+@lru_cache(maxsize=8)
+def _response(frame: float) -> tuple[Array, Array]:
+    """Return rms displacement of the follower's midpoint [m] and peak strain energy [J]."""
+    system = beams(1, frame=frame)
+    motion = periodic(system, _COARSE, rtol=1e-3)
+    stiffness = system.array("K", motion.theta)
+    energy = 0.5 * np.einsum("stn,tnm,stm->st", motion.q, stiffness, motion.q)
+    return rms(moved(system, "follower", motion.theta, motion.q)), np.max(energy, axis=1)
+
+
+def _six_frames(ax: Axes, speed: Array, curves: Sequence[Array], scale: float, label: str) -> None:
+    for frame, colour, values in zip(FRAMES, COLOURS, curves, strict=False):
+        ax.semilogy(speed, scale * values, color=colour, label=f"$L_4$ = {frame:.3f} m")
+    _speed_axis(ax, speed, label)
+    legend_below([ax], columns=3)
+
+
+def figure_7_4(axes: Sequence[Axes]) -> Drawn:
+    """Draw the rms displacement of the follower's midpoint over the speed, six frames."""
+    ax, curves = axes[0], [_response(frame)[0] for frame in FRAMES]
+    _six_frames(ax, _COARSE, curves, 1e3, "rms of the follower's midpoint [mm]")
+    ax.axhline(50.0 * 0.525, color="0.5", lw=0.8, ls="--")
+    ax.text(20.5, 50.0 * 0.525 * 1.1, "5 % of the follower", fontsize=8, color="0.4")
+    places = [nearest(maxima(_COARSE, values), CRITICAL) for values in curves[:3]]
+    systems = (beams(1, FULL, frame=frame) for frame in FRAMES)
+    means = [natural_frequencies(system, 0.0, 1).mean[0] for system in systems]
+    spread = np.ptp(means) / means[0]
+    return Drawn([*_falls(_COARSE, curves), places[0], np.ptp(places) / places[0], spread])
+
+
+def figure_7_5(axes: Sequence[Axes]) -> Drawn:
+    """Draw the largest stress of the input link over the speed, six frames."""
+    curves = [stresses(beams(1, frame=frame), _FINE).of("crank") for frame in FRAMES]
+    _six_frames(axes[0], _FINE, curves, 1e-6, "largest stress of the crank [MPa]")
+    return Drawn(_falls(_FINE, curves))
+
+
+def figure_7_6(axes: Sequence[Axes]) -> Drawn:
+    """Draw the peak strain energy over the speed, six frames."""
+    curves = [_response(frame)[1] for frame in FRAMES]
+    _six_frames(axes[0], _COARSE, curves, 1.0, "peak strain energy [J]")
+    return Drawn(_falls(_COARSE, curves))
+
+
+def _falls(speed: Array, curves: Sequence[Array]) -> list[float]:
+    """Return how curves change with L4: in the mean, and at their peaks up to 65 rad/s."""
+    chosen = [values for frame, values in zip(FRAMES, curves, strict=True) if frame <= _LATE]
+    ratios = [float(np.exp(np.mean(np.log(later / one)))) for one, later in pairwise(chosen)]
+    slow = [values[speed < 65.0] for values in chosen]
+    peaks = [float(np.max(values)) for values in slow]
+    heights = [peak / float(np.median(values)) for peak, values in zip(peaks, slow, strict=True)]
+    return [max(ratios), heights[0] / heights[-1], peaks[0] / peaks[-1]]
 
 
 @lru_cache(maxsize=8)
 def _curve(elements: int, ratio: float = 0.02, drop: tuple[str, ...] = THESIS) -> Array:
     """Return the largest stress of crank, coupler and follower [Pa], (ns, 3)."""
-    found = stresses(beams(elements, drop, ratio=ratio), _SPEEDS)
-    return np.stack([found.of(link) for link in LINKS], axis=1)
+    curve = stresses(beams(elements, drop, ratio=ratio), _WIDE)
+    return np.stack([curve.of(link) for link in LINKS], axis=1)
 
 
-def _speed_axes(ax: Axes) -> None:
-    ax.set_xlim(_SPEEDS[0], _SPEEDS[-1])
+def damping(axes: Sequence[Axes], ratio: float) -> Drawn:
+    """Draw the largest stress of each link over the speed (Figs. 7.7, 7.10, 7.11)."""
+    ax = axes[0]
+    for drop, style, lead in ((THESIS, "-", ""), (FULL, ":", "full form, ")):
+        for link, colour, values in zip(LINKS, COLOURS, _curve(3, ratio, drop).T, strict=False):
+            ax.semilogy(_WIDE, 1e-6 * values, style, color=colour, label=f"{lead}{link}")
+    _speed_axis(ax, _WIDE, "largest stress [MPa]")
     ax.set_ylim(bottom=0.3)
-    ax.set_xlabel("crank speed [rad/s]")
-
-
-def damping_figure(ratio: float) -> Callable[[Sequence[Axes]], Drawn]:
-    """Return the drawing of the largest stress of each link over the speed, one damping ratio."""
-
-    def draw(axes: Sequence[Axes]) -> Drawn:
-        ax = axes[0]
-        for drop, style, lead in ((THESIS, "-", ""), (FULL, ":", "full form, ")):
-            for link, colour, values in zip(LINKS, COLOURS, _curve(3, ratio, drop).T, strict=False):
-                label = f"{lead}{link}"
-                ax.semilogy(_SPEEDS, 1e-6 * values, style, color=colour, label=label)
-        _speed_axes(ax)
-        ax.set_ylabel("largest stress [MPa]")
-        legend_below([ax], columns=3)
-        note = (
-            f"Three elements for each link, damping {100 * ratio:g} %; axial and bending stress by "
-            f"the shape functions at 7 places. {FORM_NOTE} {RANGE_NOTE}"
-        )
-        return Drawn(_damping_rows(ratio), (note,))
-
-    return draw
-
-
-def _damping_rows(ratio: float) -> tuple[Quoted, ...]:
-    if ratio == _RATIOS[0]:
-        return (_stiffening_row(),)
-    base, own = _curve(3), _curve(3, ratio)
-    rows = []
-    for place, link in enumerate(LINKS):
-        at = [
-            int(np.argmin(np.abs(_SPEEDS - top)))
-            for top in maxima(_SPEEDS, base[:, place], 0.1)
-            if top > 20.0
-        ]
-        rows.append(
-            Quoted(
-                f"stress of the {link} at its critical speeds over that with 2 %, largest",
-                1.0,
-                float(np.max(own[at, place] / base[at, place])),
-                0.0,
-                "'invariably reduces stresses in links at the critical speeds' (7.6); maxima that "
-                "stand out by a tenth, above 20 rad/s",
-                "7.4.2",
-                relation="<",
-            )
-        )
-    slow = _SPEEDS > 20.0
-    rows.append(
-        Quoted(
-            "stress of a link over that with 2 %, largest over the speeds",
-            1.0,
-            float(np.max((own / base)[slow])),
-            0.0,
-            "'for the quiet speeds it is counterproductive for some links'",
-            "7.4.2",
-            relation=">",
-        )
-    )
-    return tuple(rows)
-
-
-def _stiffening_row() -> Quoted:
-    slow = (_SPEEDS > 20.0) & (_SPEEDS < 30.0)
-    gap = np.abs(_curve(3, 0.02, FULL) / _curve(3) - 1.0)
-    return Quoted(
-        "stress of the full form over the thesis' form less 1, largest, 20 to 30 rad/s",
-        0.02,
-        float(np.max(gap[slow])),
-        0.0,
-        "(7.1) leaves stiffening and the moving frame's terms out: read as below 2 %",
-        "7.2",
-        relation="<",
-        differs="they change the stress by a tenth at 20 to 30 rad/s, by more at higher speeds",
-    )
-
-
-# ---------------------------------------------------------------- Figs. 7.8 and 7.9
+    legend_below([ax], columns=3)
+    base, damped = _curve(3), _curve(3, ratio)
+    if ratio == 0.02:
+        slow = (_WIDE > 20.0) & (_WIDE < 30.0)
+        return Drawn([np.max(np.abs(_curve(3, ratio, FULL) / base - 1.0)[slow])])
+    values = []
+    for k in range(len(LINKS)):
+        peaks = [top for top in maxima(_WIDE, base[:, k], 0.1) if top > 20.0]
+        at = [int(np.argmin(np.abs(_WIDE - top))) for top in peaks]
+        values.append(np.max(damped[at, k] / base[at, k]))
+    return Drawn([*values, np.max((damped / base)[_WIDE > 20.0])])
 
 
 @lru_cache(maxsize=1)
 def _hybrid_curve() -> Array:
     """Return the largest stress of all links [Pa] of the "exact" model, by cubic shapes."""
-    from ..recovery import stress_operator
-
     motion = periodic(hybrid_model(), _FEWER, rtol=1e-3)
     form = stress_operator(beams(1), motion.theta, 7, method="shape")[0]
     largest = [
@@ -201,159 +256,83 @@ def _hybrid_curve() -> Array:
 
 def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     """Draw the largest stress over the speed for one, two and three elements, and "exact"."""
-    ax = axes[0]
-    for count, colour in zip((1, 2, 3), COLOURS, strict=False):
+    ax, counts = axes[0], (1, 2, 3)
+    largest = [np.max(_curve(count), axis=1) for count in counts]
+    for count, values, colour in zip(counts, largest, COLOURS, strict=False):
         label = f"{count} element{'s' if count > 1 else ''}"
-        ax.semilogy(_SPEEDS, 1e-6 * np.max(_curve(count), axis=1), color=colour, label=label)
+        ax.semilogy(_WIDE, 1e-6 * values, color=colour, label=label)
     ax.semilogy(_FEWER, 1e-6 * _hybrid_curve(), "--", color="0.2", label='"exact"')
-    _speed_axes(ax)
-    ax.set_ylabel("largest stress of all links [MPa]")
+    _speed_axis(ax, _WIDE, "largest stress of all links [MPa]")
+    ax.set_ylim(bottom=0.3)
     legend_below([ax])
-    note = (
-        '"Exact": one element for each link, M and K of the dynamic stiffness at the first natural '
-        "frequency of each angle; its stresses, too, come from cubic shapes. Damping 2 %. "
-        f"{FORM_NOTE} {RANGE_NOTE}"
-    )
-    return Drawn(tuple(_element_rows()), (note,))
+    second, third = (nearest(maxima(_WIDE, values), 23.5) for values in largest[1:])
+    means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) for count in counts]
+    exact = float(np.mean(hybrid(1e-10).first))
+    ratios = [means[0] / means[2], means[1] / means[2], means[2] / exact]
+    return Drawn([*ratios, second / third, np.max(hybrid(1e-3).iterations)])
 
 
-def _first_mode_speeds() -> list[float]:
-    """Return the speeds mean/3 of the first frequency: one, two, three elements and exact."""
-    from ..frequencies import natural_frequencies
+def bending_at_midpoint(
+    system: LinearPeriodic, moving: LinearPeriodic | None = None
+) -> tuple[Array, Array]:
+    """Return crank angles [rad] and the bending stress at the follower's midpoint [Pa], 30 rad/s.
 
-    means = [float(natural_frequencies(beams(count), 0.0, 1).mean[0]) / 3.0 for count in (1, 2, 3)]
-    return [*means, float(np.mean(_hybrid(1e-10).first)) / 3.0]
-
-
-def _element_rows() -> list[Quoted]:
-    tops = [
-        nearest(maxima(_SPEEDS, np.max(own, axis=1)), guess)
-        for own, guess in zip((_curve(1), _curve(2), _curve(3)), (26.2, 23.5, 23.5), strict=True)
-    ]
-    speeds = _first_mode_speeds()
-    return [
-        Quoted(
-            "mean first frequency over 3, one element against three",
-            1.02,
-            speeds[0] / speeds[2],
-            0.0,
-            "'overestimates the critical speeds noticeably', read as 2 %",
-            "7.4.1",
-            relation=">",
-        ),
-        Quoted(
-            "the same, two elements against three",
-            1.0,
-            speeds[1] / speeds[2],
-            0.005,
-            "'converges quite rapidly', read as half a per cent",
-            "7.4.1",
-        ),
-        Quoted(
-            'the same, three elements against "exact"',
-            1.0,
-            speeds[2] / speeds[3],
-            0.005,
-            "half a per cent",
-            "7.4.1",
-        ),
-        Quoted(
-            "maximum of the stress near 24 rad/s, two elements against three",
-            1.0,
-            tops[1] / tops[2],
-            0.02,
-            "the response's own critical speed, 2 %",
-            "7.4.1",
-        ),
-        Quoted(
-            "iterations of the frequency to 1e-3, most over the cycle",
-            5.0,
-            float(np.max(_hybrid(1e-3).iterations)),
-            0.0,
-            "'a maximum of 5 iterations'; 128 angles",
-            "7.4.1",
-            relation="<",
-        ),
-    ]
+    The motion is that of another system where one is given, the stress by the first one's shapes.
+    """
+    motion = periodic(system if moving is None else moving, 30.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        forces = recover(system, motion, stations={"follower": [0.5]}, method="shape")
+    beams_of = structure_of(system).beams
+    (section,) = (beam.section for beam in beams_of if beam.name == "follower")
+    factor = 0.5 * (section.thickness or np.nan) / section.second_moment
+    return forces.theta, np.asarray(factor * forces.of("follower", "moment")[:, 0])
 
 
-@lru_cache(maxsize=4)
-def _at_midpoint(model: int) -> tuple[Array, Array]:
-    """Return angles and stress at the follower's midpoint; 0 stands for the "exact" model."""
-    return (
-        bending_at_midpoint(beams(model))
-        if model
-        else bending_at_midpoint(beams(1), hybrid_model())
-    )
+def _cycle_axis(ax: Axes, columns: int = 4) -> None:
+    crank_axis(ax)
+    ax.set(xlabel="input angle $t_1$ [deg]", ylabel="stress at the follower's midpoint [MPa]")
+    legend_below([ax], columns=columns)
 
 
 def figure_7_9(axes: Sequence[Axes]) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle at 30 rad/s, four models."""
     ax = axes[0]
-    names = {1: "1 element", 2: "2 elements", 3: "3 elements", 0: '"exact"'}
-    for (model, name), colour in zip(names.items(), (*COLOURS[:3], "0.2"), strict=True):
-        theta, values = _at_midpoint(model)
-        style = "-" if model else "--"
+    models = {
+        "1 element": bending_at_midpoint(beams(1)),
+        "2 elements": bending_at_midpoint(beams(2)),
+        "3 elements": bending_at_midpoint(beams(3)),
+        '"exact"': bending_at_midpoint(beams(1), hybrid_model()),
+    }
+    even = []
+    for (name, (theta, values)), colour in zip(models.items(), (*COLOURS[:3], "0.2"), strict=True):
+        style = "--" if "exact" in name else "-"
         ax.plot(np.degrees(theta), 1e-6 * values, style, color=colour, label=name)
-    crank_axis(ax)
-    ax.set_xlabel("input angle $t_1$ [deg]")
-    ax.set_ylabel("stress at the follower's midpoint [MPa]")
-    legend_below([ax])
-    note = f"30 rad/s, damping 2 %, bending stress by the shape functions. {FORM_NOTE}"
-    return Drawn(tuple(_model_rows()), (note,))
+        half = np.fft.rfft(values) / len(values)
+        even.append(fourier_sum(half[:200], 0, 2.0 * np.pi * np.arange(512) / 512))
+    _cycle_axis(ax)
+    one, two = (float(np.corrcoef(values, even[2])[0, 1]) for values in even[:2])
+    peaks = [float(np.max(np.abs(values))) for values in even]
+    return Drawn([two, one / two, peaks[1] / peaks[0], peaks[2] / peaks[1]])
 
 
-def _even(model: int) -> Array:
-    """Return the stress at 512 even angles."""
-    values = _at_midpoint(model)[1]
-    half = np.fft.rfft(values) / len(values)
-    return np.asarray(_series(half[:200], 0, 2.0 * np.pi * np.arange(512) / 512))
+@lru_cache(maxsize=8)
+def midpoint_stress(frame: float) -> tuple[Array, Array]:
+    """Return angles and stress with three elements and another frame."""
+    return bending_at_midpoint(beams(3, frame=frame))
 
 
-def _likeness(one: Array, two: Array) -> float:
-    return float(np.corrcoef(one, two)[0, 1])
-
-
-def _model_rows() -> list[Quoted]:
-    motions = {model: _even(model) for model in (0, 1, 2, 3)}
-    peaks = {model: float(np.max(np.abs(values))) for model, values in motions.items()}
-    return [
-        Quoted(
-            "correlation of the stress with two elements and that with three",
-            0.95,
-            _likeness(motions[2], motions[3]),
-            0.0,
-            "'a good phase agreement', read as 0.95",
-            "7.4.1",
-            relation=">",
-        ),
-        Quoted(
-            "correlation of one element with three over that of two with three",
-            1.0,
-            _likeness(motions[1], motions[3]) / _likeness(motions[2], motions[3]),
-            0.0,
-            "'apart from the model with one element'",
-            "7.4.1",
-            relation="<",
-        ),
-        Quoted(
-            "largest stress with two elements over that with one",
-            1.0,
-            peaks[2] / peaks[1],
-            0.0,
-            "'the maximum amplitude decreases as the number of elements increases'",
-            "7.4.1",
-            relation="<",
-            differs="one cubic element has a straight bending moment: what inertia does between "
-            "its ends is not in it; from two elements on it is so",
-        ),
-        Quoted(
-            "largest stress with three elements over that with two",
-            1.0,
-            peaks[3] / peaks[2],
-            0.0,
-            "the same",
-            "7.4.1",
-            relation="<",
-        ),
-    ]
+def figure_7_13(axes: Sequence[Axes]) -> Drawn:
+    """Draw the stress at the follower's midpoint over the cycle, six frames."""
+    ax, pulses = axes[0], []
+    for frame, colour in zip(FRAMES, COLOURS, strict=False):
+        theta, values = midpoint_stress(frame)
+        turned, size = np.degrees(theta), np.abs(values)
+        ax.plot(turned, 1e-6 * values, color=colour, label=f"$L_4$ = {frame:.3f} m")
+        # Before a quarter turn with the response after it, and about half a turn.
+        later = (turned > 150.0) & (turned < 300.0)
+        pulses.append((float(np.max(size[~later])), float(np.max(size[later]))))
+    ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
+    _cycle_axis(ax, columns=3)
+    least = FRAMES[int(np.argmin(np.max(pulses, axis=1)))]
+    return Drawn([pulses[0][1] / pulses[0][0], pulses[-1][1] / pulses[-1][0], least])

@@ -1,9 +1,10 @@
-"""Beale and Scott's Figs. 11 and 12: frequency over the cycle, beating, and its resonances."""
+"""Beale and Scott's Figs. 11 and 12, resonances, and the stability chart that they left undone."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,21 +12,33 @@ import numpy as np
 from ..core.families import Array, LinearPeriodic
 from ..frequencies import ResonanceCurve, natural_frequencies, resonance_curve
 from ..periodic import floquet_multipliers
-from .beale_tip import FLEXIBLE, rod, tip_from_rest
-from .records import Drawn, Quoted, Table
-from .style import COLOURS, crank_axis, legend_below
+from ..stability import StabilityChart, stability_chart
+from .beale_tip import AS_PRINTED, ENOUGH, FLEXIBLE, peak, rod, tip_from_rest
+from .drawing import COLOURS, crank_axis, legend_below, panel_title
+from .records import Drawn, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _RATIO, _QUOTED = 0.2, 900.0
-_PRINTED, _COMPLETE = ("as_printed",), ()
-_ENOUGH = 6
+_COMPLETE: tuple[str, ...] = ()
 _TURNS = 60
-_STEPS = 192
 # Damping of the resonance curves: internal, this part of critical in the first mode.
 _DAMPING, _STIFFNESS = 0.01, 0.7e11 * 0.5208e-6
-_SPEEDS = np.geomspace(150.0, 1000.0, 240)
+# The chart.
+_SPEEDS, _RATIOS = np.linspace(500.0, 4000.0, 1401), np.linspace(0.01, 0.2, 191)
+_PANELS = [
+    (formulation, modes, drop, words)
+    for formulation, modes in (("polynomial", 3), ("overhang", 4))
+    for drop, words in ((AS_PRINTED, "as printed"), (_COMPLETE, "with centrifugal tension"))
+]
+_KINDS = (
+    (-1, "#f0bd98", "multiplier below -1"),
+    (1, "#c9783c", "multiplier above 1"),
+    (2, "#a58fc9", "complex multipliers: combination"),
+)
+# Marks closer than this [rad/s] share one label.
+_CLOSE = 150.0
 
 
 @lru_cache(maxsize=16)
@@ -37,151 +50,71 @@ def _rod(
 
 def mean_frequency(formulation: str = "polynomial", modes: int = 3, ratio: float = _RATIO) -> float:
     """Return the mean first natural frequency [rad/s] over the crank angle."""
-    return float(natural_frequencies(_rod(formulation, modes, _PRINTED, ratio), 0.0, 1).mean[0])
+    return float(natural_frequencies(_rod(formulation, modes, AS_PRINTED, ratio), 0.0, 1).mean[0])
 
 
 def figure_11(axes: Sequence[Axes]) -> Drawn:
     """Draw the first natural frequency with the crank held, against its angle."""
     ax = axes[0]
-    for formulation, modes, style in (("polynomial", 3, "-"), ("overhang", _ENOUGH, "--")):
-        found = natural_frequencies(_rod(formulation, modes, _PRINTED))
-        colour = COLOURS[0] if formulation == "polynomial" else COLOURS[1]
-        label = f"{modes} {formulation} modes, mean {found.mean[0]:.1f} rad/s"
-        ax.plot(np.degrees(found.theta), found.frequency[:, 0], style, color=colour, label=label)
-        ax.axhline(found.mean[0], color=colour, lw=0.6, ls=(0, (1, 3)))
+    for formulation, modes, style, colour in (
+        ("polynomial", 3, "-", COLOURS[0]),
+        ("overhang", ENOUGH, "--", COLOURS[1]),
+    ):
+        held = natural_frequencies(_rod(formulation, modes, AS_PRINTED))
+        label = f"{modes} {formulation} modes, mean {held.mean[0]:.1f} rad/s"
+        ax.plot(np.degrees(held.theta), held.frequency[:, 0], style, color=colour, label=label)
+        ax.axhline(held.mean[0], color=colour, lw=0.6, ls=(0, (1, 3)))
     crank_axis(ax)
     ax.set_ylabel("first natural frequency [rad/s]")
     legend_below(axes)
-    first = natural_frequencies(_rod("polynomial", 3, _PRINTED)).frequency[:, 0]
-    rows = (
-        Quoted(
-            "mean first natural frequency, three polynomial modes",
-            _QUOTED,
-            mean_frequency(),
-            50.0,
-            "a round hundred",
-            "3.2",
-            unit="rad/s",
-        ),
-        Quoted(
-            "greatest over least first natural frequency",
-            1.5,
-            float(np.max(first) / np.min(first)),
-            0.0,
-            "'large variations': more than half as much again",
-            "3.2",
-            relation=">",
-        ),
-    )
-    note = (
-        "The natural frequency of the rod at rest; the crank's speed plays no part. The converged "
-        "mean is 5 % lower than that of three polynomials."
-    )
-    return Drawn(rows, (note,))
+    first = natural_frequencies(_rod("polynomial", 3, AS_PRINTED)).frequency[:, 0]
+    return Drawn([mean_frequency(), np.max(first) / np.min(first)])
 
 
 def figure_12(axes: Sequence[Axes]) -> Drawn:
     """Draw the tip from rest near the mean frequency: three polynomials, and converged modes."""
-    mean = mean_frequency()
-    panels = (
-        (axes[0], "polynomial", 3, ((_PRINTED, mean), (_PRINTED, _QUOTED))),
-        (axes[1], "overhang", _ENOUGH, ((_PRINTED, _QUOTED), (_COMPLETE, _QUOTED))),
-    )
-    peaks: dict[tuple[str, tuple[str, ...], float], Array] = {}
-    for ax, formulation, modes, runs in panels:
-        for place, (drop, speed) in enumerate(runs):
-            theta, tip = _tip(formulation, modes, drop, speed)
-            physics = "as printed" if drop else "with tension"
-            label = f"{modes} {formulation} modes, {physics}, {speed:.4g} rad/s"
-            colour = COLOURS[place + (0 if formulation == "polynomial" else 2)]
-            ax.plot(theta / (2 * np.pi), tip, color=colour, lw=0.7, label=label)
-            turn = (len(tip) - 1) // _TURNS
-            peaks[formulation, drop, speed] = np.abs(tip[1:]).reshape(_TURNS, turn).max(axis=1)
-        ax.set_xlim(0.0, float(_TURNS))
-        ax.set_ylabel("tip deflection [m]")
+    mean, heights = mean_frequency(), []
+    for k, (formulation, modes, drop, speed) in enumerate(
+        (
+            ("polynomial", 3, AS_PRINTED, mean),
+            ("polynomial", 3, AS_PRINTED, _QUOTED),
+            ("overhang", ENOUGH, AS_PRINTED, _QUOTED),
+            ("overhang", ENOUGH, _COMPLETE, _QUOTED),
+        )
+    ):
+        system = _rod(formulation, modes, drop)
+        theta, tip = tip_from_rest(system, speed, turns=_TURNS, steps=192)
+        physics = "as printed" if drop else "with tension"
+        label = f"{modes} {formulation} modes, {physics}, {speed:.4g} rad/s"
+        axes[k // 2].plot(theta / (2 * np.pi), tip, color=COLOURS[k], lw=0.7, label=label)
+        heights.append(np.abs(tip[1:]).reshape(_TURNS, -1).max(axis=1))
+    for ax in axes:
+        ax.set(xlim=(0.0, float(_TURNS)), ylabel="tip deflection [m]")
     axes[1].set_xlabel("revolutions of the crank")
     legend_below(axes, columns=2)
-    return Drawn(tuple(_beating_rows(peaks, mean)), _BEATING_NOTES, (_multiplier_table(mean),))
+    three = heights[0]
+    values = [np.max(three), np.min(three) / np.max(three)]
+    values += [_largest("polynomial", 3, mean), _largest("overhang", ENOUGH, _QUOTED)]
+    return Drawn(values, tables=(_multiplier_table(mean),))
 
 
-def _tip(formulation: str, modes: int, drop: tuple[str, ...], speed: float) -> tuple[Array, Array]:
-    return tip_from_rest(_rod(formulation, modes, drop), speed, turns=_TURNS, steps=_STEPS)
-
-
-_BEATING_NOTES = (
-    "The linear equations hold to deflections of about 5 % of the length: what is drawn is their "
-    "solution, not the motion of a rod.",
-    "The paper's beating is that of a model with three polynomials. With converged modes the "
-    "printed equations are unstable at 900 rad/s: a pair of multipliers of modulus 1.063 off the "
-    "real axis, a combination region. At the mean of three polynomials, 917 rad/s, they are not. "
-    "With centrifugal tension the region lies elsewhere.",
-)
-
-
-def _beating_rows(
-    peaks: dict[tuple[str, tuple[str, ...], float], Array], mean: float
-) -> list[Quoted]:
-    three = peaks["polynomial", _PRINTED, mean]
-    where, six = "3.2", _rod("overhang", _ENOUGH, _PRINTED)
-    return [
-        Quoted(
-            "largest tip deflection, three polynomial modes at their mean frequency",
-            1.0,
-            float(np.max(three)),
-            0.0,
-            "'of the order of meters'",
-            where,
-            relation=">",
-            unit="m",
-        ),
-        Quoted(
-            "least over largest peak of a turn, the same",
-            0.5,
-            float(np.min(three) / np.max(three)),
-            0.0,
-            "'beating': the amplitude falls to less than half",
-            where,
-            relation="<",
-        ),
-        Quoted(
-            "largest multiplier, three polynomial modes at their mean frequency",
-            1.0,
-            _largest(_rod("polynomial", 3, _PRINTED), mean),
-            1e-9,
-            "'not unbounded'",
-            where,
-        ),
-        Quoted(
-            f"largest multiplier, {_ENOUGH} overhang modes at 900 rad/s",
-            1.0,
-            _largest(six, _QUOTED),
-            1e-3,
-            "'not unbounded'",
-            where,
-            differs="converged modes lie in a combination region: the motion is unbounded",
-        ),
-    ]
-
-
-def _largest(system: LinearPeriodic, speed: float) -> float:
-    found = floquet_multipliers(system, speed, rtol=1e-9)
-    return float(np.max(np.abs(found.multipliers)))
+def _largest(formulation: str, modes: int, speed: float) -> float:
+    motion = floquet_multipliers(_rod(formulation, modes, AS_PRINTED), speed, rtol=1e-9)
+    return peak(motion.multipliers)
 
 
 def _multiplier_table(mean: float) -> Table:
     rows = []
-    converged = mean_frequency("overhang", _ENOUGH)
-    for drop in (_PRINTED, _COMPLETE):
-        for formulation, modes in (("polynomial", 3), *(("overhang", n) for n in (2, 4, _ENOUGH))):
+    speeds = (_QUOTED, mean, mean_frequency("overhang", ENOUGH))
+    for drop in (AS_PRINTED, _COMPLETE):
+        for formulation, modes in (("polynomial", 3), *(("overhang", n) for n in (2, 4, ENOUGH))):
             cells = [f"{modes} {formulation} modes", "as printed" if drop else "with tension"]
-            for speed in (_QUOTED, mean, converged):
-                found = floquet_multipliers(_rod(formulation, modes, drop), speed, rtol=1e-9)
-                largest = float(np.max(np.abs(found.multipliers)))
-                growth = 0.0 if found.stable else float(found.growth)
-                cells.append(f"{largest:.5f}, {growth:.2f} 1/s")
+            for speed in speeds:
+                motion = floquet_multipliers(_rod(formulation, modes, drop), speed, rtol=1e-9)
+                growth = 0.0 if motion.stable else float(motion.growth)
+                cells.append(f"{peak(motion.multipliers):.5f}, {growth:.2f} 1/s")
             rows.append(tuple(cells))
-    speeds = tuple(f"at {speed:.1f} rad/s" for speed in (_QUOTED, mean, converged))
-    header = ("modes", "physics", *speeds)
+    header = ("modes", "physics", *(f"at {speed:.1f} rad/s" for speed in speeds))
     return Table("Largest multiplier and growth rate, crank ratio 0.2", header, tuple(rows))
 
 
@@ -193,57 +126,131 @@ def resonances(ratio: float) -> ResonanceCurve:
     """
     system = _rod("overhang", 2, _COMPLETE, ratio)
     drag = 2 * _DAMPING * _STIFFNESS / mean_frequency("overhang", 2, ratio)
-    return resonance_curve(system.with_parameters(internal_damping=drag), _SPEEDS)
+    speeds = np.geomspace(150.0, 1000.0, 240)
+    return resonance_curve(system.with_parameters(internal_damping=drag), speeds)
 
 
 def figure_resonances(axes: Sequence[Axes]) -> Drawn:
     """Draw the largest steady tip deflection against the crank speed, for three crank ratios."""
     ax = axes[0]
-    rows = []
-    for place, ratio in enumerate((0.05, 0.1, 0.2)):
+    values: list[float] = []
+    for ratio, colour in zip((0.05, 0.1, _RATIO), COLOURS, strict=False):
         curve = resonances(ratio)
-        speed, peak = curve.joined
-        ax.semilogy(speed, peak, color=COLOURS[place], label=f"crank ratio {ratio:g}")
-        ax.plot(curve.maxima, curve.maxima_peak, "o", color=COLOURS[place], ms=3)
-        mean = float(curve.mean_frequency[0])
-        first = curve.mode == 1
-        rows += [
-            Quoted(
-                f"resonant speed times {order} over the mean frequency, crank ratio {ratio:g}",
-                1.0,
-                float(order * speed / mean),
-                0.07,
-                "7 %: no fixed frequency",
-                "3.2",
-            )
-            for order, speed in zip(curve.order[first], curve.maxima[first], strict=True)
-            if order <= 4
-        ]
-        rows.append(_tenth(ratio))
+        ax.semilogy(*curve.joined, color=colour, label=f"crank ratio {ratio:g}")
+        ax.plot(curve.maxima, curve.maxima_peak, "o", color=colour, ms=3)
+        mean, first = float(curve.mean_frequency[0]), curve.mode == 1
+        at = zip(curve.order[first], curve.maxima[first], strict=True)
+        values += [order * speed / mean for order, speed in at if order <= 4]
+        system = _rod("polynomial", 3, AS_PRINTED, ratio)
+        values.append(peak(tip_from_rest(system, mean_frequency(ratio=ratio) / 10, turns=10)[1]))
         for order in range(1, 6) if ratio == _RATIO else ():
             ax.axvline(mean / order, color="0.7", lw=0.6, ls=(0, (1, 3)))
-    ax.set_xlabel("crank speed [rad/s]")
-    ax.set_ylabel("largest tip deflection [m]")
+    ax.set(xlabel="crank speed [rad/s]", ylabel="largest tip deflection [m]")
     legend_below(axes)
-    note = (
-        "Periodic motion with internal damping, 1 % of critical in the first mode, by two overhang "
-        "modes with tension; dotted: the mean first natural frequency over n at the crank ratio "
-        "0.2. The inhomogeneous instabilities are there, at omega_1/n of the mean frequency, "
-        "however much the frequency varies over the cycle."
-    )
-    return Drawn(tuple(rows), (note,))
+    return Drawn(values)
 
 
-def _tenth(ratio: float) -> Quoted:
-    speed = mean_frequency(ratio=ratio) / 10
-    _, tip = tip_from_rest(_rod("polynomial", 3, _PRINTED, ratio), speed, turns=10, steps=1440)
-    return Quoted(
-        f"largest tip deflection at a tenth of the mean frequency, crank ratio {ratio:g}",
-        0.05,
-        float(np.max(np.abs(tip))),
-        0.0,
-        "'small': within 5 % of the length, ten turns from rest",
-        "3.2",
-        relation="<",
-        unit="m",
+@lru_cache(maxsize=4)
+def chart(formulation: str, modes: int, drop: tuple[str, ...]) -> StabilityChart:
+    """Return the flexible rod's stability over crank speed and crank ratio."""
+    system = _rod(formulation, modes, drop, 0.1)
+    return stability_chart(system, ("speed", _SPEEDS), ("crank_ratio", _RATIOS))
+
+
+@lru_cache(maxsize=4)
+def frequencies(formulation: str, modes: int) -> Array:
+    """Return the natural frequencies [rad/s] of the rod as the crank's length goes to zero."""
+    return natural_frequencies(_rod(formulation, modes, AS_PRINTED, 1e-6)).mean
+
+
+def figure_chart(axes: Sequence[Axes]) -> Drawn:
+    """Draw two bases, three polynomials and four overhang modes, with and without tension."""
+    from matplotlib.colors import ListedColormap
+
+    colours, rows = ListedColormap(["#ffffff", *(colour for _, colour, _ in _KINDS)]), []
+    for ax, (formulation, modes, drop, words) in zip(axes, _PANELS, strict=True):
+        points = chart(formulation, modes, drop)
+        codes = sum((points.kind == kind) * (i + 1) for i, (kind, _, _) in enumerate(_KINDS))
+        ax.pcolormesh(points.x, points.y, codes, cmap=colours, vmin=0, vmax=3, rasterized=True)
+        _mark(ax, frequencies(formulation, modes))
+        panel_title(ax, f"{modes} {formulation} modes, {words}")
+        ax.set(xlim=(_SPEEDS[0], _SPEEDS[-1]), ylim=(-0.024, _RATIOS[-1]))
+        ax.set_yticks(np.linspace(0.0, 0.2, 5))
+        ax.grid(visible=False)
+        shares = (f"{100.0 * float(np.mean(points.kind == kind)):.1f}" for kind, _, _ in _KINDS)
+        error = f"{float(np.max(points.error)):.0e}"
+        rows.append((f"{modes} {formulation}", words, *shares, error))
+    for _, colour, label in _KINDS:
+        axes[0].fill([], [], color=colour, label=label)
+    for ax in axes[2:]:
+        ax.set_xlabel("crank speed [rad/s]")
+    for ax in axes[::2]:
+        ax.set_ylabel("crank ratio G/a$_x$")
+    legend_below(axes[:1])
+    shown = (f"{label} [%]" for _, _, label in _KINDS)
+    head = ("modes", "physics", *shown, "error of the invariants")
+    table = Table("Shares of the chart by kind of instability", head, tuple(rows))
+    return Drawn(_chart_values(), tables=(table,))
+
+
+def _mark(ax: Axes, omega: Array) -> None:
+    """Mark the speeds from which regions start, at the foot of the axes, where they fit."""
+    places = sorted(
+        (float((omega[i] + omega[j]) / n), _name(i, j, n))
+        for i, j in combinations_with_replacement(range(2), 2)
+        for n in range(1, 4)
     )
+    groups: list[list[tuple[float, str]]] = []
+    for place in places:
+        if not _SPEEDS[0] <= place[0] <= _SPEEDS[-1]:
+            continue
+        ax.plot([place[0]], [0.0], "^", color="0.2", ms=4, zorder=6)
+        if groups and place[0] - groups[-1][-1][0] < _CLOSE:
+            groups[-1].append(place)
+        else:
+            groups.append([place])
+    ax.axhline(0.0, color="0.2", lw=0.7)
+    for i, group in enumerate(groups):
+        # Neighbours stand on two lines, so that they do not meet.
+        ax.annotate(
+            ", ".join(name for _, name in group),
+            (float(np.mean([speed for speed, _ in group])), 0.0),
+            xytext=(0.0, -4.0 - 9.0 * (i % 2)),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            fontsize=6.5,
+        )
+
+
+def _name(i: int, j: int, n: int) -> str:
+    if i == j and n == 2:
+        return rf"$\omega_{i + 1}$"
+    above = rf"2\omega_{i + 1}" if i == j else rf"\omega_{i + 1}+\omega_{j + 1}"
+    if n == 1:
+        return f"${above}$"
+    return f"${above}/{n}$" if i == j else f"$({above})/{n}$"
+
+
+def _chart_values() -> list[float]:
+    """Return frequencies of two bases, a practical rod's multiplier, where regions start."""
+    three, four = frequencies("polynomial", 3), frequencies("overhang", 4)
+    slow = floquet_multipliers(_rod("overhang", 2, AS_PRINTED, 0.3), 20.0, rtol=1e-9)
+    return [
+        three[0] / four[0],
+        (three[0] + three[1]) / (four[0] + four[1]),
+        peak(slow.multipliers),
+        _start(0, 0, 1, 0.01),
+        _start(0, 1, 1, 0.01),
+        _start(1, 1, 2, 0.05),
+    ]
+
+
+def _start(i: int, j: int, n: int, ratio: float) -> float:
+    """Return the middle of a region at a crank ratio over where it should start."""
+    points, omega = chart("overhang", 4, AS_PRINTED), frequencies("overhang", 4)
+    start = float(omega[i] + omega[j]) / n
+    row = points.kind[int(np.argmin(np.abs(points.y - ratio)))]
+    kind = 2 if i != j else (-1) ** n
+    near = points.x[(row == kind) & (np.abs(points.x - start) < 0.05 * start)]
+    return (float(np.mean(near)) if len(near) else float("nan")) / start

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..rigid import Machine, RigidForces, rigid_forces
-from .sketches import LINK_COLOURS, Array, arrow, bar, pin, turning_arrow, write
-from .style import COLOURS
+from .drawing import COLOURS, LINK_COLOURS, Array, arrow, bar, pin, turning_arrow, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,18 +28,9 @@ _PINS = {
 class Body:
     """A link with all that acts on it, inertia included, at some crank angles.
 
-    Attributes
-    ----------
-    link : str
-        Its name.
-    places : tuple of ndarray, shape (..., 2)
-        First joint, second joint and centre of mass [m].
-    forces : tuple of ndarray, shape (..., 2)
-        At these places: the two pin forces on the link, and minus mass times acceleration [N].
-    inertia_couple : ndarray
-        Minus inertia about the centre times angular acceleration [N m].
-    torque : ndarray
-        Driving torque [N m]; zero but on the crank.
+    Places [m] of first joint, second joint and centre of mass, ``(..., 2)``; at these the two pin
+    forces on the link and minus mass times acceleration [N]; minus inertia about the centre times
+    angular acceleration, and the driving torque, zero but on the crank [N m].
     """
 
     link: str
@@ -70,16 +60,8 @@ def free_bodies(
 ) -> tuple[dict[str, Body], RigidForces]:
     """Return the links of a four-bar machine cut free, and the forces that were computed.
 
-    The pin forces come from the closed form, the inertia forces from the motion of the centres.
-
-    Parameters
-    ----------
-    machine : Machine
-        Without gravity and loads.
-    theta : array_like
-        Crank angles [rad].
-    speed, acceleration : float
-        Of the crank [rad/s, rad/s^2].
+    Without gravity and loads, at crank angles [rad], crank speed [rad/s] and acceleration.  The pin
+    forces come from the closed form, the inertia forces from the motion of the centres.
     """
     forces = rigid_forces(machine, theta, speed, acceleration, ("pins", "torque"))
     motion = machine.linkage.motion(theta, speed, acceleration)
@@ -113,20 +95,9 @@ def draw_body(
 ) -> None:
     """Draw one link cut free at a single crank angle, every force to the same scale.
 
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    body : Body
-        At one crank angle.
-    letters : str
-        Letters of first joint, second joint and centre.
-    names : mapping of str to str
-        Names of the forces at these letters, and of "torque" and "couple" where they are drawn.
-    scale : float
-        Length on paper of one newton [m].
-    shift : array_like
-        Where the link is moved to [m].
+    Letters of first joint, second joint and centre; names of the forces at these, and of "torque"
+    and "couple" where they are drawn; the length on paper of one newton [m]; where the link is
+    moved to [m].
     """
     places = [place + np.asarray(shift) for place in body.places]
     first, second, centre = places

@@ -1,10 +1,15 @@
-"""The page of the gallery: one HTML file, its pictures beside it."""
+"""The page of the gallery: one HTML file, its pictures beside it, written together."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+import shutil
+import tempfile
+from collections.abc import Mapping, Sequence
 from html import escape
+from pathlib import Path
 
+from ..core.errors import bad
 from .records import Quoted, Shown, Table
 
 _CSS = """
@@ -44,7 +49,7 @@ def page(title: str, shown: Sequence[Shown]) -> str:
     shown : sequence of Shown
         The figures in order.
     """
-    rows = [row for item in shown for row in item.drawn.quoted]
+    rows = [row for item in shown for row in item.quoted]
     agree = sum(row.agrees for row in rows)
     known = sum(bool(row.differs) and not row.agrees for row in rows)
     parts = [
@@ -65,7 +70,7 @@ def _summary(shown: Sequence[Shown]) -> str:
     lines = ["<table>\n<tr><th>figure</th><th>title</th><th>quoted</th>"]
     lines.append("<th>agree</th></tr>")
     for item in shown:
-        quoted = item.drawn.quoted
+        quoted = item.quoted
         agree = sum(row.agrees for row in quoted)
         lines.append(
             f'<tr><td><a href="#{item.entry.stem}">{escape(item.entry.label)}</a></td>'
@@ -82,10 +87,10 @@ def _figure(item: Shown) -> str:
         f'<h2 id="{entry.stem}">{escape(heading)}</h2>',
         f'<p><img src="{entry.stem}.png" alt="{escape(entry.title, quote=True)}"></p>',
     ]
-    lines += [f'<p class="note">{escape(note)}</p>' for note in item.drawn.notes]
-    if item.drawn.quoted:
-        lines.append(_quoted(item.drawn.quoted))
-    lines += [_table(table) for table in item.drawn.tables]
+    lines += [f'<p class="note">{escape(note)}</p>' for note in item.notes]
+    if item.quoted:
+        lines.append(_quoted(item.quoted))
+    lines += [_table(table) for table in item.tables]
     return "\n".join(lines)
 
 
@@ -115,3 +120,82 @@ def _table(table: Table) -> str:
         "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows
     ]
     return "\n".join([*lines, "</table>"])
+
+
+def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Write files into a folder; on an error or an interrupt it is left as it was.
+
+    The files are written beside the folder first, then moved.  Other files in the folder stay.
+
+    Parameters
+    ----------
+    folder : Path
+        Made where it does not exist.
+    contents : mapping of str to bytes
+        By file name.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be made or written.
+    """
+    made = _missing(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        staging = Path(tempfile.mkdtemp(prefix=".gallery.", dir=folder))
+    except OSError as refusal:
+        _remove(made)
+        reason = refusal.strerror or "an error"
+        raise bad(
+            str(folder), reason, "a folder that can be written", "choose another"
+        ) from refusal
+    try:
+        _stage_and_move(folder, staging, contents)
+    except BaseException:
+        shutil.rmtree(staging, ignore_errors=True)
+        _remove(made)
+        raise
+    shutil.rmtree(staging)
+
+
+def _stage_and_move(folder: Path, staging: Path, contents: Mapping[str, bytes]) -> None:
+    mask = os.umask(0)
+    os.umask(mask)
+    new, old = staging / "new", staging / "old"
+    new.mkdir()
+    old.mkdir()
+    for name, content in contents.items():
+        (new / name).write_bytes(content)
+        (new / name).chmod(0o666 & ~mask)
+    moved: list[str] = []
+    try:
+        for name in contents:
+            target = folder / name
+            moved.append(name)
+            if target.exists():
+                target.replace(old / name)
+            (new / name).replace(target)
+    except BaseException:
+        for name in moved:
+            if (old / name).exists():
+                (old / name).replace(folder / name)
+            elif not (new / name).exists():
+                (folder / name).unlink(missing_ok=True)
+        raise
+
+
+def _missing(folder: Path) -> list[Path]:
+    """Return the folders that would have to be made, the innermost first."""
+    found = []
+    while not folder.exists():
+        found.append(folder)
+        folder = folder.parent
+    return found
+
+
+def _remove(folders: list[Path]) -> None:
+    for folder in folders:
+        try:
+            folder.rmdir()
+        except OSError:
+            return

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import nan
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 from ..core.results import Check, Result
 
@@ -25,7 +27,7 @@ class Quoted:
     printed : float
         The value in the text; for words such as "an order of magnitude" the value they stand for.
     computed : float
-        The value found here.
+        The value computed here; not a number in a record that was not drawn.
     tolerance : float
         Largest deviation at which the two agree, in the same unit.
     meaning : str
@@ -41,11 +43,11 @@ class Quoted:
     """
 
     number: str
-    printed: float
-    computed: float
-    tolerance: float
-    meaning: str
-    where: str
+    printed: float = nan
+    computed: float = nan
+    tolerance: float = 0.0
+    meaning: str = ""
+    where: str = ""
     relation: Relation = "="
     unit: str = ""
     differs: str = ""
@@ -128,31 +130,60 @@ class Table:
         return head + ["| " + " | ".join(cell or "–" for cell in row) + " |" for row in self.rows]
 
 
+Value = SupportsFloat | tuple[SupportsFloat, ...]
+
+
 @dataclass(frozen=True)
 class Drawn:
     """What drawing a figure gives beside the picture.
 
     Attributes
     ----------
-    quoted : tuple of Quoted
-        Numbers of the text that the figure bears on.
-    notes : tuple of str
-        What the document leaves open and what was chosen for it.
+    values : sequence
+        The computed values of the record's quoted numbers, in their order; a tuple of computed,
+        printed and perhaps tolerance, where the printed value is that of a printed equation.
+    words : mapping
+        What stands in the braces of the record's texts.
     tables : tuple of Table
         Numbers behind the picture.
-    files : tuple of (str, str)
-        Further files to write beside the picture: name and text.
     """
 
-    quoted: tuple[Quoted, ...] = ()
-    notes: tuple[str, ...] = ()
+    values: Sequence[Value] = ()
+    words: Mapping[str, object] = field(default_factory=dict)
     tables: tuple[Table, ...] = ()
-    files: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class Page:
+    """A document of ours that a figure's notes and tables make up.
+
+    Attributes
+    ----------
+    file : str
+        Its name.
+    intro : str
+        What stands before them, in Markdown.
+    first : int
+        Which note is the first in it.
+    """
+
+    file: str
+    intro: str
+    first: int = 0
+
+    def text(self, notes: Sequence[str], tables: Sequence[Table]) -> str:
+        """Return the whole document."""
+        lines = [self.intro]
+        for note in notes[self.first :]:
+            lines += [fill(note, 110), ""]
+        for table in tables:
+            lines += [*table.markdown(), ""]
+        return "\n".join(lines)
 
 
 @dataclass(frozen=True)
 class FigureEntry:
-    """One figure or table of a document.
+    """The record of one figure or table of a document.
 
     Attributes
     ----------
@@ -170,6 +201,12 @@ class FigureEntry:
         Width and height of the picture [in].
     projection : str or None
         Of the axes: ``"3d"`` for a picture in space.
+    quoted : tuple of Quoted
+        Numbers of the text that the figure bears on, not computed yet.
+    notes : tuple of str
+        What the document leaves open and what was chosen for it.
+    page : Page or None
+        The document of ours that it writes.
     """
 
     document: str
@@ -179,6 +216,9 @@ class FigureEntry:
     panels: tuple[int, int] = (1, 1)
     size: tuple[float, float] = (7.2, 4.6)
     projection: str | None = None
+    quoted: tuple[Quoted, ...] = ()
+    notes: tuple[str, ...] = ()
+    page: Page | None = None
 
     @property
     def stem(self) -> str:
@@ -190,6 +230,24 @@ class FigureEntry:
             parts.append((plain[:digits].zfill(2) if digits else "") + plain[digits:])
         return "_".join([self.document, *parts])
 
+    def show(self, axes: Sequence[Axes]) -> Shown:
+        """Draw the figure and put the computed values beside the quoted ones."""
+        drawn = self.draw(axes)
+        words = drawn.words
+        rows = []
+        for row, value in zip(self.quoted, drawn.values, strict=True):
+            names = ("computed", "printed", "tolerance")
+            given = value if isinstance(value, tuple) else (value,)
+            changes: dict[str, Any] = {n: float(v) for n, v in zip(names, given, strict=False)}
+            if words:
+                for name in ("number", "meaning", "differs"):
+                    changes[name] = getattr(row, name).format_map(words)
+            rows.append(replace(row, **changes))
+        notes = tuple(note.format_map(words) if words else note for note in self.notes)
+        page = self.page
+        files = ((page.file, page.text(notes, drawn.tables)),) if page else ()
+        return Shown(self, tuple(rows), notes, drawn.tables, files)
+
 
 @dataclass(frozen=True)
 class Shown:
@@ -198,13 +256,22 @@ class Shown:
     Attributes
     ----------
     entry : FigureEntry
-        Which one.
-    drawn : Drawn
-        Quoted numbers, notes and tables.
+        Its record.
+    quoted : tuple of Quoted
+        The quoted numbers with the computed ones.
+    notes : tuple of str
+        As in the record, with the computed words in place.
+    tables : tuple of Table
+        Numbers behind the picture.
+    files : tuple of (str, str)
+        Further files to write beside the picture: name and text.
     """
 
     entry: FigureEntry
-    drawn: Drawn
+    quoted: tuple[Quoted, ...] = ()
+    notes: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,7 +297,7 @@ class Gallery(Result):
     @property
     def rows(self) -> tuple[tuple[FigureEntry, Quoted], ...]:
         """All quoted numbers, each with its figure."""
-        return tuple((item.entry, row) for item in self.shown for row in item.drawn.quoted)
+        return tuple((item.entry, row) for item in self.shown for row in item.quoted)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the checks and all rows, ready for JSON."""
@@ -240,8 +307,8 @@ class Gallery(Result):
                 "document": item.entry.document,
                 "figure": item.entry.label,
                 "title": item.entry.title,
-                "notes": list(item.drawn.notes),
-                "quoted": [row.to_dict() for row in item.drawn.quoted],
+                "notes": list(item.notes),
+                "quoted": [row.to_dict() for row in item.quoted],
             }
             for item in self.shown
         ]
@@ -252,7 +319,7 @@ class Gallery(Result):
         out = []
         for item in self.shown:
             out.append(f"{item.entry.document} {item.entry.label}: {item.entry.title}")
-            for row in item.drawn.quoted:
+            for row in item.quoted:
                 sign = "" if row.relation == "=" else f"{row.relation} "
                 unit = f" {row.unit}" if row.unit else ""
                 out.append(

@@ -14,7 +14,7 @@ from ..core.errors import bad
 from ..core.progress import bar
 from ..core.results import Check
 from . import registry
-from .records import Drawn, FigureEntry, Gallery, Shown
+from .records import FigureEntry, Gallery, Shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,7 +39,7 @@ def figures(document: str | None = None, figure: str | None = None) -> tuple[Fig
     BadInput
         If there is no such document or figure.
     """
-    known = registry.DOCUMENTS
+    known = registry.documents()
     if document is not None and document not in known:
         raise bad("document", repr(document), f"one of {sorted(known)}", "correct the name")
     names = list(known) if document is None else [document]
@@ -95,23 +95,22 @@ def reproduce(
     shown, files = [], {}
     with bar(progress, len(chosen)) as tick:
         for done, entry in enumerate(chosen, start=1):
-            drawn, picture = render(entry, picture=out is not None)
-            shown.append(Shown(entry, drawn))
+            item, picture = render(entry, picture=out is not None)
+            shown.append(item)
             if picture is not None:
                 files[f"{entry.stem}.png"] = picture
-                files |= {name: text.encode() for name, text in drawn.files}
+                files |= {name: text.encode() for name, text in item.files}
             if tick is not None:
                 tick(done)
     if out is not None:
-        from .page import page
-        from .writing import write_together
+        from .page import page, write_together
 
         files = {"index.html": page(_title(chosen), shown).encode(), **files}
         write_together(Path(out), files)
     return _gallery(shown, "" if out is None else str(out), tuple(files))
 
 
-def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Drawn, bytes | None]:
+def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | None]:
     """Draw one figure.
 
     Parameters
@@ -129,7 +128,7 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Drawn, bytes | 
     import matplotlib as mpl
 
     from ..core.plotting import new_figure
-    from .style import SETTINGS
+    from .drawing import SETTINGS
 
     with mpl.rc_context():
         # The user's own settings must not change the pictures.
@@ -138,8 +137,8 @@ def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Drawn, bytes | 
         canvas = new_figure(*entry.size)
         options = {"projection": entry.projection}
         axes = canvas.subplots(*entry.panels, squeeze=False, subplot_kw=options)
-        drawn = entry.draw(list(np.ravel(axes)))
-        return drawn, _png(canvas) if picture else None
+        shown = entry.show(list(np.ravel(axes)))
+        return shown, _png(canvas) if picture else None
 
 
 def _png(canvas: Figure) -> bytes:
@@ -152,7 +151,7 @@ def _gallery(shown: Sequence[Shown], folder: str, files: tuple[str, ...]) -> Gal
     checks: dict[str, Check] = {}
     worst = 0.0
     for item in shown:
-        for row in item.drawn.quoted:
+        for row in item.quoted:
             name = f"{item.entry.document} {item.entry.label}: {row.number}"
             checks[name if not row.differs else f"{name} (known to differ)"] = row.check
             if not row.differs:

@@ -1,11 +1,25 @@
-"""Smith's Figs. 20 to 22 and 23(d): cases of balance, force and torque on the frame, offset."""
+"""Smith's Figs. 20 to 23: cases of balance, force and moment on the frame, a balanced link.
+
+The balanced single link of chapter 5: a thin uniform rod (length L, mass M) turns about one end.
+Beyond the pivot the same section goes on for ``l = delta L`` (mass ``delta M``) and carries at its
+end a cylinder of mass m_c, thickness h and density rho, such that the centre of mass lies on the
+pivot.  Then::
+
+    m_c = (M/2) (1/delta - delta)
+    I = M L^2 [1/3 + delta/2 - delta^3/6 + (K/4) (1/delta - delta)^2],  K = M/(2 pi L^2 h rho)
+    dI/d(delta) = (M L^2/2) (1 - delta^2) [1 - K (1 + delta^2)/delta^3]
+
+Smith prints ``M L^2 (1 + delta^2)/2`` for the two bars; they have ``M L^2 (1 + delta^3)/3``.  His
+derivative, his K and ``K = delta^3/(1 + delta^2)`` follow from the latter.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
-from math import degrees, radians
-from typing import TYPE_CHECKING
+from math import radians
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,18 +32,27 @@ from ..rigid import (
     with_counterweights,
 )
 from ..rigid.counterweights import CASES, Case
-from .records import Drawn, Quoted, Table
-from .sketches import INK, LINK_COLOURS, Array, bar, canvas, four_bar, write
-from .smith_forces import INCH, TURN, example, example_forces, peak, polar_look
-from .style import COLOURS, crank_axis, legend_below, panel_title
+from .drawing import (
+    COLOURS,
+    INK,
+    LINK_COLOURS,
+    Array,
+    bar,
+    canvas,
+    crank_axis,
+    four_bar,
+    legend_below,
+    panel_title,
+    write,
+)
+from .records import Drawn, Table
+from .smith_forces import INCH, TURN, example, example_forces, finish_polar, peak
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_CRANK_ANGLE = radians(60.0)
-_OFFSET = 6.0 * INCH
-# Steel discs half an inch thick, as the thesis states neither.
-_STEEL, _THICKNESS = 7850.0, 0.5 * INCH
+# Steel discs half an inch thick, 6 in from the pins, as the thesis states none of these.
+_STEEL, _THICKNESS, _OFFSET = 7850.0, 0.5 * INCH, 6.0 * INCH
 _POUND_MASS = 0.45359237
 _NAMES: Mapping[Case, str] = {
     "a": "unbalanced",
@@ -37,10 +60,11 @@ _NAMES: Mapping[Case, str] = {
     "c": "fully balanced, 3 counterweights",
     "d": "fully balanced, 2 counterweights",
 }
-_DISCS = (
-    "The counterweights' material and size are not stated; taken as steel discs half an inch "
-    "thick, centred 6 in from the pins."
-)
+_MASS, _LENGTH, _DISC = 1.0, 1.0, 0.1
+_DENSITIES = {"A": 5.0, "B": 10.0, "C": 20.0, "D": 40.0, "E": 80.0}
+# So light that no counterweight at all is best.
+_LIGHT = 2.5
+_CUBE_ROOT_BELOW = 1e-60
 
 
 def _weights(
@@ -49,64 +73,44 @@ def _weights(
     return case_counterweights(example()[0], case, offset, density=_STEEL, thickness=thickness)
 
 
+@lru_cache(maxsize=8)
 def _forces(case: Case, offset: float = _OFFSET, thickness: float = _THICKNESS) -> RigidForces:
-    machine, speed = example()
     if case == "a":
         return example_forces()
+    machine, speed = example()
     changed = with_counterweights(machine, _weights(case, offset, thickness).values())
     return rigid_forces(changed, TURN, speed)
-
-
-@lru_cache(maxsize=8)
-def _case_forces(case: Case) -> RigidForces:
-    return _forces(case)
 
 
 def figure_20(axes: Sequence[Axes]) -> Drawn:
     """Draw the four configurations with their counterweights to scale."""
     linkage = example()[0].linkage
-    motion = linkage.motion(_CRANK_ANGLE)
+    motion = linkage.motion(radians(60.0))
     rows = []
     for ax, case in zip(axes, CASES, strict=True):
         canvas(ax)
         panel_title(ax, f"({case}) {_NAMES[case]}")
         for link, weight in _weights(case).items():
             _draw_weight(ax, motion, weight)
-            rows.append(
-                (
-                    f"({case})",
-                    link,
-                    f"{weight.mass / _POUND_MASS:.4f}",
-                    f"{weight.offset / INCH:.3f}",
-                    f"{weight.disc_radius / INCH:.3f}",
-                )
-            )
+            mass, offset = f"{weight.mass / _POUND_MASS:.4f}", f"{weight.offset / INCH:.3f}"
+            rows.append((f"({case})", link, mass, offset, f"{weight.disc_radius / INCH:.3f}"))
         four_bar(ax, motion.joints, 0.1 * linkage.lengths["frame"])
     _same_limits(axes)
     header = ("case", "link", "mass [lb]", "offset [in]", "radius [in]")
     table = Table("Counterweights", header, tuple(rows))
-    note = f"Drawn at theta2 = {degrees(_CRANK_ANGLE):g} deg, discs to scale. {_DISCS}"
-    return Drawn(tuple(_balance_rows()), (note,), (table,))
+    return Drawn(_balance_values(), tables=(table,))
 
 
 def _draw_weight(ax: Axes, motion: Motion, weight: Counterweight) -> None:
     from matplotlib.patches import Circle
 
-    colour = LINK_COLOURS[weight.link]
+    colour, radius = LINK_COLOURS[weight.link], weight.disc_radius
     start = motion.point(weight.link, 0.0).position
     centre = motion.point(weight.link, weight.along, weight.across).position
     bar(ax, start, centre, colour, lw=2.2, zorder=2)
-    disc = Circle(
-        (float(centre[0]), float(centre[1])),
-        weight.disc_radius,
-        facecolor=colour,
-        alpha=0.45,
-        edgecolor=INK,
-        lw=0.9,
-        zorder=2,
-    )
-    ax.add_patch(disc)
-    ax.update_datalim([centre - weight.disc_radius, centre + weight.disc_radius])
+    look: dict[str, Any] = {"facecolor": colour, "alpha": 0.45, "edgecolor": INK, "lw": 0.9}
+    ax.add_patch(Circle((float(centre[0]), float(centre[1])), radius, zorder=2, **look))
+    ax.update_datalim([centre - radius, centre + radius])
 
 
 def _same_limits(axes: Sequence[Axes]) -> None:
@@ -116,66 +120,33 @@ def _same_limits(axes: Sequence[Axes]) -> None:
     edge = 0.04 * (right - left)
     for ax in axes:
         ax.set_aspect("equal", adjustable="box")
-        ax.set_xlim(left - edge, right + edge)
-        ax.set_ylim(low - edge, high + edge)
+        ax.set(xlim=(left - edge, right + edge), ylim=(low - edge, high + edge))
 
 
-def _balance_rows() -> list[Quoted]:
-    unbalanced = peak(_case_forces("a").shaking_force)[0]
-    rows = []
-    plans: tuple[tuple[Case, int], ...] = (("b", 2), ("c", 3), ("d", 2))
-    for case, count in plans:
-        rows.append(
-            Quoted(
-                f"counterweights in case ({case})",
-                float(count),
-                float(len(_weights(case))),
-                0.0,
-                "a count",
-                "5",
-            )
+def _balance_values() -> list[float]:
+    """Return counts of weights, what force is left, growth of pin forces and of the torque."""
+    whole = peak(_forces("a").shaking_force)[0]
+    left = {case: peak(_forces(case).shaking_force)[0] / whole for case in ("c", "d")}
+
+    def growth(*names: str) -> float:
+        return min(
+            peak(getattr(_forces(case), name))[0] / peak(getattr(_forces("a"), name))[0]
+            for case in ("b", "c", "d")
+            for name in names
         )
-        if case != "b":
-            left = peak(_case_forces(case).shaking_force)[0] / unbalanced
-            text = f"force on the frame left in case ({case}), over case (a)"
-            rows.append(Quoted(text, 0.0, left, 1e-12, "round-off", "5"))
-    rows += [
-        Quoted(
-            f"least growth of the peak {name} in cases (b) to (d), ratio",
-            1.0,
-            min(_growth(case, names) for case, _ in plans),
-            0.0,
-            f"'adverse effects' upon {what}",
-            "5",
-            relation=">",
-        )
-        for name, what, names in (
-            ("pin force", "the individual pin forces", ("f12", "f23", "f34", "f41")),
-            ("driving torque", "the torque developed", ("torque",)),
-        )
-    ]
+
     # The two masses at B and C have the coupler's mass and centre, but not its inertia.
-    coupler = example()[0].mass("coupler")
-    length = example()[0].linkage.lengths["coupler"]
-    replaced = coupler.along / length * length**2
-    rows.append(
-        Quoted(
-            "inertia about B of the masses at B and C, over the coupler's",
-            1.0,
-            replaced / coupler.inertia,
-            0.0,
-            "'differs'; that the forces increase asks for more",
-            "5",
-            relation=">",
-        )
-    )
-    return rows
-
-
-def _growth(case: Case, names: Sequence[str]) -> float:
-    """Return the least ratio of peaks to those of the unbalanced machine."""
-    now, before = _case_forces(case), _case_forces("a")
-    return min(peak(getattr(now, name))[0] / peak(getattr(before, name))[0] for name in names)
+    coupler, length = example()[0].mass("coupler"), example()[0].linkage.lengths["coupler"]
+    return [
+        len(_weights("b")),
+        len(_weights("c")),
+        left["c"],
+        len(_weights("d")),
+        left["d"],
+        growth("f12", "f23", "f34", "f41"),
+        growth("torque"),
+        coupler.along / length * length**2 / coupler.inertia,
+    ]
 
 
 def figure_21(axes: Sequence[Axes]) -> Drawn:
@@ -186,129 +157,65 @@ def figure_21(axes: Sequence[Axes]) -> Drawn:
         ("b", COLOURS[1], 120, "^"),
     )
     for case, colour, step, style in plans:
-        values = _case_forces(case).shaking_force
+        values = _forces(case).shaking_force
         ax.plot(*values.T, color=colour, label=f"({case}) {_NAMES[case]}")
-        marked = values[:-1:step]
-        ax.plot(*marked.T, style, color=colour, ms=3.5, mfc="w" if style == "o" else colour)
-        _angles(ax, values, colour)
-    ax.plot(0.0, 0.0, "+", color="k")
-    ax.set_aspect("equal", adjustable="datalim")
-    polar_look(ax)
-    ax.set_xlabel("X [N]")
-    ax.set_ylabel("Y [N]")
-    legend_below([ax], columns=2)
-    ratio = peak(_case_forces("b").shaking_force)[0] / peak(_case_forces("a").shaking_force)[0]
-    row = Quoted(
-        "greatest force on the frame, partially balanced over unbalanced",
-        0.5,
-        ratio,
-        0.05,
-        "'approximately 50 %': a tenth",
-        "5",
-    )
-    return Drawn((row,), ("Marks every 10 deg in case (a), every 30 deg in case (b).",))
-
-
-def _angles(ax: Axes, values: Array, colour: str) -> None:
-    for angle in (0, 60, 120, 180, 240, 300):
-        place = values[4 * angle]
-        way = place / (np.hypot(*place) or 1.0)
-        write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
+        face = "w" if style == "o" else colour
+        ax.plot(*values[:-1:step].T, style, color=colour, ms=3.5, mfc=face)
+        for angle in (0, 60, 120, 180, 240, 300):
+            place = values[4 * angle]
+            way = place / (np.hypot(*place) or 1.0)
+            write(ax, place, f"{angle}°", 12.0 * way, color=colour, fontsize=7)
+    finish_polar(ax, "")
+    return Drawn([peak(_forces("b").shaking_force)[0] / peak(_forces("a").shaking_force)[0]])
 
 
 def figure_22(axes: Sequence[Axes]) -> Drawn:
     """Draw the moment on the frame in the four cases, by (4.13) and complete."""
     for ax, title in zip(axes, ("(4.13): $l_1 Y_{41}$", "with the drive's reaction"), strict=True):
-        complete = ax is axes[1]
         for case, colour in zip(CASES, COLOURS, strict=False):
             label = f"({case}) {_NAMES[case]}"
-            ax.plot(np.degrees(TURN), _moment(case, complete), color=colour, label=label)
+            ax.plot(np.degrees(TURN), _moment(case, ax is axes[1]), color=colour, label=label)
         ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
         crank_axis(ax)
         ax.set_ylabel("moment on the frame about A [N m]")
         panel_title(ax, title)
     axes[1].set_ylim(axes[0].get_ylim())
     legend_below(axes[:1], columns=2)
-    note = (
-        f"{_DISCS} 'Torque on the frame' is taken as (4.13), which the text's percentages fit; the "
-        "complete moment is beside it. For 'the balanced case' read the unbalanced one."
-    )
-    return Drawn(tuple(_moment_rows()), (note,))
+
+    def growth(case: Case, complete: bool) -> tuple[float, float]:
+        """Return that of the greatest size, and that of the range."""
+        now, before = _moment(case, complete), _moment("a", complete)
+        sizes = float(np.max(np.abs(now)) / np.max(np.abs(before)))
+        return sizes, float(np.ptp(now) / np.ptp(before))
+
+    printed = [growth("b", False)[0], *growth("c", False), *growth("d", False)]
+    cases: tuple[Case, ...] = ("b", "c", "d")
+    return Drawn([*printed, *(growth(case, True)[0] for case in cases)])
 
 
 def _moment(case: Case, complete: bool) -> Array:
-    forces = _case_forces(case)
+    forces = _forces(case)
     if complete:
         return forces.shaking_moment
     return np.asarray(example()[0].linkage.lengths["frame"] * forces["y41"])
 
 
-def _moment_rows() -> list[Quoted]:
-    half = "'50 %' read as 40 to 60 %"
-    nearer = "'nearer 100 %' read as nearer to it than to 50 %"
-    incomplete = (
-        "the percentages are those of (4.13), which leaves out the reaction of the drive; the "
-        "complete moment grows less"
-    )
-    one_sided = (
-        "nearer 50 % by the greatest size, as the moment of case (a) leans to one side and that of "
-        "case (c) does not; its range, greatest less least, grows as stated"
-    )
-    plans: tuple[tuple[Case, bool, str, float, float, str, str], ...] = (
-        ("b", False, "size", 1.5, 0.1, half, ""),
-        ("c", False, "size", 2.0, 0.25, nearer, one_sided),
-        ("c", False, "range", 2.0, 0.25, nearer, ""),
-        ("d", False, "size", 2.0, 0.25, nearer, ""),
-        ("d", False, "range", 2.0, 0.25, nearer, ""),
-        ("b", True, "size", 1.5, 0.1, half, incomplete),
-        ("c", True, "size", 2.0, 0.25, nearer, incomplete),
-        ("d", True, "size", 2.0, 0.25, nearer, ""),
-    )
-    rows = []
-    for case, complete, measure, printed, tolerance, meaning, differs in plans:
-        now, before = (_moment(name, complete) for name in (case, "a"))
-        size = np.ptp if measure == "range" else lambda values: np.max(np.abs(values))
-        which = "complete moment" if complete else "l1 Y41"
-        kind = "range" if measure == "range" else "greatest size"
-        rows.append(
-            Quoted(
-                f"{kind} of {which} in case ({case}) over case (a)",
-                printed,
-                float(size(now) / size(before)),
-                tolerance,
-                meaning,
-                "5",
-                differs=differs,
-            )
-        )
-    return rows
-
-
 def figure_23d(axes: Sequence[Axes]) -> Drawn:
     """Draw the crank-pin force for several offsets of the counterweights of case (d)."""
-    ax = axes[0]
-    peaks = {}
-    cases = ((None, "(a) unbalanced"), (6.0, "(d)"), (3.0, "(d')"), (1.0, "(d'')"))
+    ax, peaks = axes[0], {}
+    cases = ((0.0, "(a) unbalanced"), (6.0, "(d)"), (3.0, "(d')"), (1.0, "(d'')"))
     for (inches, name), colour in zip(cases, COLOURS, strict=False):
-        values = _forces("a").f23 if inches is None else _forces("d", inches * INCH).f23
-        peaks[inches or 0.0] = peak(values)[0]
-        label = name if inches is None else f"{name} offset {inches:g} in"
-        ax.plot(*values.T, color=colour, label=f"{label}: {peak(values)[0]:.1f} N")
-        ax.plot(*values[:-1:120].T, "o", color=colour, ms=2.6)
-    ax.plot(0.0, 0.0, "+", color="k")
-    ax.set_aspect("equal", adjustable="datalim")
-    polar_look(ax)
-    ax.set_xlabel("$X_{23}$ [N]")
-    ax.set_ylabel("$Y_{23}$ [N]")
-    legend_below([ax], columns=2)
-    best = {part: _best_offset(part * INCH) for part in (0.25, 0.5, 1.0)}
-    note = (
-        "The counterweights' material and size are not stated; with point masses the force would "
-        "only grow with the offset. With steel discs half an inch thick the best offset is "
-        f"{best[0.5]:.2f} in (a quarter of an inch: {best[0.25]:.2f} in, one inch: "
-        f"{best[1.0]:.2f} in). For pivots 'A and B' read A and D. Dots every 30 deg."
-    )
-    return Drawn(tuple(_offset_rows(peaks, best[0.5])), (note,))
+        force = (_forces("d", inches * INCH) if inches else _forces("a")).f23
+        peaks[inches] = peak(force)[0]
+        label = f"{name} offset {inches:g} in" if inches else name
+        ax.plot(*force.T, color=colour, label=f"{label}: {peaks[inches]:.1f} N")
+        ax.plot(*force[:-1:120].T, "o", color=colour, ms=2.6)
+    finish_polar(ax, "_{23}")
+    thin, usual, thick = (_best_offset(part * INCH) for part in (0.25, 0.5, 1.0))
+    rise = {inches: peaks[inches] - peaks[0.0] for inches in (1.0, 3.0, 6.0)}
+    ratios = [peaks[inches] / peaks[0.0] for inches in rise]
+    values = [*ratios, rise[3.0] / rise[1.0], rise[3.0] / rise[6.0], usual]
+    return Drawn(values, {"thin": thin, "usual": usual, "thick": thick})
 
 
 def _best_offset(thickness: float) -> float:
@@ -318,40 +225,157 @@ def _best_offset(thickness: float) -> float:
     return float(offsets[int(np.argmin(peaks))])
 
 
-def _offset_rows(peaks: Mapping[float, float], best: float) -> list[Quoted]:
-    rows = [
-        Quoted(
-            f"peak of F23 with an offset of {inches:g} in over the unbalanced one",
-            1.0,
-            peaks[inches] / peaks[0.0],
-            0.0,
-            "'an increase in the pin force'",
-            "5",
-            relation=">",
-        )
-        for inches in (1.0, 3.0, 6.0)
-    ]
-    rows += [
-        Quoted(
-            f"increase with 3 in over that with {inches:g} in",
-            1.0,
-            (peaks[3.0] - peaks[0.0]) / (peaks[inches] - peaks[0.0]),
-            0.0,
-            "'can be kept much lower'",
-            "5",
-            relation="<",
-        )
-        for inches in (1.0, 6.0)
-    ]
+@dataclass(frozen=True)
+class BalancedLink:
+    """A link balanced on its pivot, by offset delta (above 0, at most 1) and density number K."""
+
+    offset: Any
+    density_number: Any
+
+    @property
+    def inertia(self) -> Any:
+        """Moment of inertia about the pivot over ``M L^2``."""
+        delta, k = np.asarray(self.offset), self.density_number
+        bars = 1.0 / 3.0 + delta * (0.5 - delta * delta / 6.0)
+        return bars + k / 4.0 * ((1.0 - delta) * (1.0 + delta) / delta) ** 2
+
+    @property
+    def slope(self) -> Any:
+        """Derivative of the inertia by the offset."""
+        delta = np.asarray(self.offset)
+        rest = 1.0 - self.density_number / offset_function(delta)
+        return (1.0 - delta) * (1.0 + delta) / 2.0 * rest
+
+    @property
+    def counterweight(self) -> Any:
+        """Mass of the counterweight over that of the link."""
+        delta = np.asarray(self.offset)
+        return (1.0 - delta) * (1.0 + delta) / (2.0 * delta)
+
+    @property
+    def radius(self) -> Any:
+        """Radius of the counterweight over the length of the link."""
+        return np.sqrt(2.0 * self.density_number * self.counterweight)
+
+
+def density_number(mass: float, length: float, thickness: float, density: float) -> float:
+    """Return K of a link [kg, m] and its counterweight [m, kg/m^3]."""
+    return mass / (2.0 * np.pi * length * length * thickness * density)
+
+
+def offset_function(delta: Any) -> Any:
+    """Return ``delta^3/(1 + delta^2)``, the K for which delta is best (Smith Fig. 23 a)."""
+    return delta * delta * delta / (1.0 + delta * delta)
+
+
+def optimal_offset(density_number: Any) -> Any:
+    """Return the offset over length that makes the balanced link's inertia least.
+
+    For K < 1/2 it is the one real root of ``delta^3 = K (1 + delta^2)``, a minimum; ``delta = 1``
+    is a maximum then.  For K >= 1/2 the inertia falls all the way to ``delta = 1``: the
+    counterweight vanishes and the least inertia is that of a bar of twice the length.  With s =
+    1/delta the root of ``s^3 + s = 1/K`` is ``s = (2/sqrt 3) sinh(asinh(3 sqrt 3/(2 K))/3)``, and
+    one step of Newton's method mends the round-off that sinh amplifies.
+    """
+    k = np.asarray(density_number, dtype=float)
+    # Far below round-off 1 + delta^2 is 1, and 1/K might overflow.
+    safe = np.clip(k, _CUBE_ROOT_BELOW, 0.5)
+    s = 2.0 / np.sqrt(3.0) * np.sinh(np.arcsinh(1.5 * np.sqrt(3.0) / safe) / 3.0)
+    s = s - (s * s * s + s - 1.0 / safe) / (3.0 * s * s + 1.0)
+    return np.where(k >= 0.5, 1.0, np.where(k < _CUBE_ROOT_BELOW, np.cbrt(k), 1.0 / s))
+
+
+def _number(density: float) -> float:
+    return density_number(_MASS, _LENGTH, _DISC, density)
+
+
+def _best() -> list[tuple[str, float, float, float]]:
+    """Return letter, density, K and best offset of the five counterweights."""
     return [
-        *rows,
-        Quoted(
-            "best offset",
-            3.0,
-            best,
-            0.5,
-            "'approximately 3 in'; depends on the discs, see the note",
-            "5",
-            unit="in",
-        ),
+        (letter, density, _number(density), float(optimal_offset(_number(density))))
+        for letter, density in _DENSITIES.items()
     ]
+
+
+def figure_23a(axes: Sequence[Axes]) -> Drawn:
+    """Draw K over the offset for which it makes the inertia least."""
+    ax, delta = axes[0], np.linspace(0.0, 1.0, 401)
+    ax.plot(delta, offset_function(delta), color=COLOURS[0])
+    for letter, _, number, best in _best():
+        ax.plot([best, best, 0.0], [0.0, number, number], ":", color="0.6", lw=0.9)
+        ax.plot(best, number, "o", color=COLOURS[1], ms=5)
+        write(ax, (best, number), letter, (-10.0, 8.0))
+    ax.set(xlim=(0.0, 1.0), ylim=(0.0, 0.55))
+    ax.set_xlabel(r"offset $\delta=\ell/L$")
+    ax.set_ylabel(r"$K=\delta^3/(1+\delta^2)$")
+    ends = [offset_function(0.0), offset_function(1.0), np.diff(offset_function(delta)).min()]
+    return Drawn([*ends, optimal_offset(0.6), *_printed_equations(delta[1:])])
+
+
+def _printed_equations(delta: Array) -> list[float]:
+    """Return the printed inertia, its derivative and the quintic less what holds."""
+    number = _number(_DENSITIES["C"])
+    link = BalancedLink(delta, number)
+    bars, exact = 0.5 * (1.0 + delta**2), (1.0 + delta**3) / 3.0
+    rest = 0.25 * number * (1.0 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
+    slope = 0.5 * (1.0 - delta**2) + 0.5 * number * (delta - delta**-3.0)
+    return [
+        np.max(np.abs(bars + rest - link.inertia)),
+        np.max(np.abs(exact + rest - link.inertia)) / link.inertia.max(),
+        np.max(np.abs(slope - link.slope)) / np.abs(link.slope).max(),
+        max(abs(d**5 - k * d**4 - d**3 + k) for _, _, k, d in _best()),
+    ]
+
+
+def _densities(ax: Axes, delta: Array, beside: float) -> None:
+    """Draw the inertia over the offset for the densities, and its minima with their letters."""
+    for (letter, density, number, best), colour in zip(_best(), COLOURS, strict=False):
+        link = BalancedLink(delta, number)
+        ax.plot(delta, link.inertia, color=colour, label=rf"$\rho$ = {density:g}")
+        least = float(BalancedLink(best, number).inertia)
+        ax.plot(best, least, "o", color=colour, ms=4.5)
+        write(ax, (best, least), letter, (beside, -10.0), color=colour)
+    ax.set(xlabel=r"offset $\delta=\ell/L$", ylabel=r"$I_G/(M L^2)$")
+    legend_below([ax], columns=6)
+
+
+def figure_23b(axes: Sequence[Axes]) -> Drawn:
+    """Draw the inertia over the offset for a range of densities."""
+    ax, delta = axes[0], np.linspace(0.06, 1.0, 471)
+    light = BalancedLink(delta, _number(_LIGHT))
+    ax.plot(delta, light.inertia, "--", color="0.45", label=rf"$\rho$ = {_LIGHT:g}")
+    _densities(ax, delta, 0.0)
+    ax.set(xlim=(0.0, 1.0), ylim=(0.3, 2.0))
+    end = BalancedLink(1.0, _number(_LIGHT))
+    offsets = [best for *_, best in _best()]
+    pivoted = 2.0 * _MASS * (2.0 * _LENGTH) ** 2 / 12.0
+    values = [
+        optimal_offset(_number(_LIGHT)),
+        (float(end.inertia), pivoted),
+        end.radius,
+        max(offsets),
+        min(offsets),
+    ]
+    rows = []
+    for letter, density, number, best in _best():
+        link = BalancedLink(best, number)
+        cells = (number, best, link.inertia, link.counterweight, link.radius)
+        rows.append((letter, f"{density:g}", *(f"{float(cell):.5f}" for cell in cells)))
+    header = ("point", "density", "K", "delta", "I/(M L^2)", "m_c/M", "r_c/L")
+    return Drawn(values, tables=(Table("Minima of the inertia", header, tuple(rows)),))
+
+
+def figure_23c(axes: Sequence[Axes]) -> Drawn:
+    """Draw the neighbourhood of the minima, and the line on which they lie."""
+    ax, delta = axes[0], np.linspace(0.1, 1.0, 451)
+    line = BalancedLink(delta, offset_function(delta))
+    ax.plot(delta, line.inertia, "--", color="0.3", lw=1.3, label="minima of all densities")
+    _densities(ax, delta, 6.0)
+    ax.set(xlim=(0.1, 1.0), ylim=(0.4, 0.85))
+    # Each lettered offset beside the least of the sampled inertia: another route.
+    fine, best = np.linspace(0.05, 1.0, 9501), _best()
+    sampled = [fine[int(np.argmin(BalancedLink(fine, number).inertia))] for *_, number, _ in best]
+    offsets = [offset for *_, offset in best]
+    least = [float(BalancedLink(offset, number).inertia) for *_, number, offset in best]
+    falls = max(np.max(np.diff(offsets)), np.max(np.diff(least)))
+    return Drawn([*zip(offsets, sampled, strict=True), falls])

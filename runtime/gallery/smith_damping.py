@@ -1,29 +1,28 @@
-"""Section 9.5.5 of Smith: damping estimated from which regions are unstable, by any order, exactly.
-
-The thesis reads the damping K of two rigs from four unstable regions with its first-order formula
-(7.51).  Here the same readings are made with higher orders and with the exact equation.
-"""
+"""Smith's rigs further: damping read from unstable regions (9.5.5), regions of two modes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..hill import critical_damping, perturbation_boundaries
+from ..hill import critical_damping, hill_boundaries, perturbation_boundaries
 from ..hill.bloch import effective_operator
+from ..periodic import floquet_multipliers
 from ..scenes import load_scene
-from .records import Drawn, Quoted, Table
-from .smith_linkages import LBF_IN_S2, RIG, Array, Rig, region_name
-from .style import COLOURS, legend_below, panel_title
+from ..stability import StabilityEdges, stability_edges
+from .drawing import COLOURS, Array, legend_below, panel_title
+from .records import Drawn, Table, Value
+from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig, region_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from ..core.families import LinearPeriodic
 
 _ORDERS = (1, 2, 3, 4, 6)
 _SCAN = np.linspace(0.0, 0.5, 5001)
@@ -31,21 +30,11 @@ _SCAN = np.linspace(0.0, 0.5, 5001)
 
 @dataclass(frozen=True)
 class Estimate:
-    """One damping that section 9.5.5 quotes.
+    """One damping that section 9.5.5 quotes, of the unstable region 2 Omega/n of a chart's rig.
 
-    Attributes
-    ----------
-    chart : str
-        Number of the rig's stability chart.
-    region : int
-        Number n of the unstable region 2 Omega/n.
-    stable, unstable : float
-        Follower inertias [lbf in s^2] between which the region opens.
-    quoted : float
-        K as the thesis gives it.
-    stated : bool
-        True where the thesis states the two inertias for the estimate; otherwise they are the
-        measured neighbours for which its formula gives its figure.
+    ``stable`` and ``unstable`` are follower inertias [lbf in s^2] between which the region opens:
+    stated in the thesis for the first estimate, the measured neighbours for which its formula gives
+    its value else; ``quoted`` is K as the thesis gives it.
     """
 
     chart: str
@@ -53,7 +42,6 @@ class Estimate:
     stable: float
     unstable: float
     quoted: float
-    stated: bool
 
     @property
     def rig(self) -> Rig:
@@ -65,30 +53,27 @@ class Estimate:
         """Chart and region in a few words."""
         return f"Fig. {self.chart}, {region_name(self.region)}"
 
+    def both(self, equation: str, order: int | None) -> tuple[float, float]:
+        """Return the critical damping at the two inertias."""
+        low, high = (critical(self, i, equation, order) for i in (self.stable, self.unstable))
+        return low, high
+
 
 ESTIMATES = (
-    Estimate("82", 5, 0.0069, 0.0079, 0.02, stated=True),
-    Estimate("82", 6, 0.0130, 0.0149, 0.01, stated=False),
-    Estimate("85", 4, 0.0130, 0.0149, 0.005, stated=False),
-    Estimate("85", 3, 0.0058, 0.0079, 0.02, stated=False),
+    Estimate("82", 5, 0.0069, 0.0079, 0.02),
+    Estimate("82", 6, 0.0130, 0.0149, 0.01),
+    Estimate("85", 4, 0.0130, 0.0149, 0.005),
+    Estimate("85", 3, 0.0058, 0.0079, 0.02),
 )
 
 
 @lru_cache(maxsize=512)
 def critical(estimate: Estimate, inertia: float, equation: str, order: int | None) -> float:
-    """Return the damping K at which the region of an estimate closes.
+    """Return the damping K at which the region of an estimate closes, at an inertia [lbf in s^2].
 
-    Parameters
-    ----------
-    estimate : Estimate
-        Rig and region.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    equation : str
-        ``"reduced"`` is (6.18), the equation of the thesis' charts.
-    order : int or None
-        Of the perturbation, whether or not it converges at so large a parameter; NaN where that
-        order leaves the region open at any damping.  None for the exact value.
+    By ``reduced``, (6.18), the equation of the thesis' charts, or ``complete``; to an order of the
+    perturbation, whether or not it converges at so large a parameter, NaN where that order leaves
+    the region open at any damping, or exactly (None).
     """
     f = estimate.rig.function(equation, inertia * LBF_IN_S2)
     n = estimate.region
@@ -105,13 +90,6 @@ def critical(estimate: Estimate, inertia: float, equation: str, order: int | Non
     return float(_SCAN[k] + share * (_SCAN[k + 1] - _SCAN[k]))
 
 
-def _diverges(estimate: Estimate, order: int) -> bool:
-    """Return True where the order does not visibly converge at the stable inertia."""
-    f, regions = estimate.rig.function("reduced", estimate.stable * LBF_IN_S2), (estimate.region,)
-    closing = critical_damping(f, 1.0, regions).damping[0]
-    return bool(perturbation_boundaries(f, 1.0, regions, order, closing).outside[0])
-
-
 def at_rest(estimate: Estimate) -> tuple[float, float]:
     """Return K from the logarithmic decrements measured at rest, at the speed of the region.
 
@@ -124,132 +102,279 @@ def at_rest(estimate: Estimate) -> tuple[float, float]:
     return float(low * factor), float(high * factor)
 
 
-def figure_table(axes: Sequence[Axes]) -> Drawn:
+def estimates_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the damping that closes each region over the follower's inertia."""
+    values: list[Value] = []
     for ax, one in zip(axes, ESTIMATES, strict=True):
-        _panel(ax, one)
+        _estimate_panel(ax, one)
+        values.append((0.5 * sum(one.both("reduced", 1)), one.quoted, 0.15 * one.quoted))
     legend_below(axes, columns=3)
-    notes = (
-        "K closes the region; (6.18) is the equation of the thesis' charts. The inertias belong to "
-        "the estimate for the first panel; for the others the text does not state them, and those "
-        "measured are marked between which (7.51) gives the quoted K.",
-        *_conclusion(),
-    )
-    files = (("damping_estimates.md", damping_document()),)
-    return Drawn(tuple(_rows()), notes, (_table(),), files)
+    return Drawn(values, _estimate_words(), (_estimates(),))
 
 
-def _panel(ax: Axes, one: Estimate) -> None:
+def _estimate_panel(ax: Axes, one: Estimate) -> None:
     measured = one.rig.inertias / LBF_IN_S2
     inertia = np.linspace(0.95 * measured[0], 1.02 * measured[-1], 31)
-
-    def curve(equation: str, order: int | None) -> Array:
-        return np.array([critical(one, float(value), equation, order) for value in inertia])
-
-    ax.plot(inertia, curve("reduced", 1), "--", color=COLOURS[0], label="(7.51)")
-    ax.plot(inertia, curve("reduced", 2), ":", color=COLOURS[2], label="second order")
-    ax.plot(inertia, curve("reduced", None), color=COLOURS[5], label="exact, (6.18)")
-    ax.plot(inertia, curve("complete", None), color=COLOURS[3], label="exact, complete equation")
+    for equation, order, style, colour, label in (
+        ("reduced", 1, "--", COLOURS[0], "(7.51)"),
+        ("reduced", 2, ":", COLOURS[2], "second order"),
+        ("reduced", None, "-", COLOURS[5], "exact, (6.18)"),
+        ("complete", None, "-", COLOURS[3], "exact, complete equation"),
+    ):
+        values = [critical(one, float(value), equation, order) for value in inertia]
+        ax.plot(inertia, values, style, color=colour, label=label)
     ax.fill_between(inertia, *at_rest(one), color="0.92", lw=0, label="decrements at rest")
     ax.hlines(one.quoted, one.stable, one.unstable, color="black", lw=3.0, label="quoted")
-    ax.set_ylim(0.0, 0.16)
-    ax.set_xlabel("follower inertia [lbf in s²]")
-    ax.set_ylabel("critical damping $K$")
+    ax.set(ylim=(0.0, 0.16), xlabel="follower inertia [lbf in s²]", ylabel="critical damping $K$")
     panel_title(ax, f"{one.name}, {one.rig.name}")
 
 
-def _rows() -> list[Quoted]:
-    return [
-        Quoted(
-            f"K from {one.name}",
-            one.quoted,
-            0.5
-            * (critical(one, one.stable, "reduced", 1) + critical(one, one.unstable, "reduced", 1)),
-            0.15 * one.quoted,
-            "(7.51), middle of the two inertias; one digit is quoted",
-            "9.5.5",
-        )
-        for one in ESTIMATES
-    ]
-
-
-def _table() -> Table:
-    header = ("region", "inertia", "quoted", *(_order_name(k) for k in _ORDERS))
+def _estimates() -> Table:
+    orders = (("(7.51)" if order == 1 else f"order {order}") for order in _ORDERS)
+    header = ("region", "inertia", "quoted", *orders)
     header += ("exact, (6.18)", "exact, complete", "decrement at rest")
+
+    def span(one: Estimate, equation: str, order: int | None) -> str:
+        ends = one.both(equation, order)
+        return "-".join("none" if np.isnan(end) else f"{end:.3f}" for end in ends)
+
+    def refused(one: Estimate, order: int) -> bool:
+        """Whether the order does not visibly converge at the stable inertia."""
+        f, numbers = one.rig.function("reduced", one.stable * LBF_IN_S2), (one.region,)
+        closing = critical_damping(f, 1.0, numbers).damping[0]
+        return bool(perturbation_boundaries(f, 1.0, numbers, order, closing).outside[0])
+
     rows = []
     for one in ESTIMATES:
         cells = [one.name, f"{one.stable:g}-{one.unstable:g}", f"{one.quoted:g}"]
-        for order in _ORDERS:
-            star = "*" if _diverges(one, order) else ""
-            cells.append(_span(one, "reduced", order) + star)
-        cells += [_span(one, name, None) for name in ("reduced", "complete")]
+        cells += [span(one, "reduced", k) + ("*" if refused(one, k) else "") for k in _ORDERS]
+        cells += [span(one, name, None) for name in ("reduced", "complete")]
         low, high = at_rest(one)
         rows.append((*cells, f"{low:.2f}-{high:.2f}"))
     return Table("Damping K that closes the region", header, tuple(rows))
 
 
-def _order_name(order: int) -> str:
-    return "(7.51)" if order == 1 else f"order {order}"
+def _estimate_words() -> dict[str, object]:
+    """Return the numbers of the conclusion."""
 
+    def texts(values: Sequence[float], digits: int = 3) -> str:
+        parts = [f"{value:.{digits}f}" for value in values]
+        return f"{', '.join(parts[:-1])} and {parts[-1]}"
 
-def _span(one: Estimate, equation: str, order: int | None) -> str:
-    ends = [critical(one, value, equation, order) for value in (one.stable, one.unstable)]
-    return "-".join("none" if np.isnan(end) else f"{end:.3f}" for end in ends)
+    def spread(values: Sequence[float]) -> float:
+        return max(values) / min(values)
 
-
-def _middle(one: Estimate, equation: str, order: int | None) -> float:
-    return 0.5 * sum(critical(one, value, equation, order) for value in (one.stable, one.unstable))
-
-
-def _conclusion() -> list[str]:
-    first = [_middle(one, "reduced", 1) for one in ESTIMATES]
-    exact = [_middle(one, "reduced", None) for one in ESTIMATES]
-    complete = [_middle(one, "complete", None) for one in ESTIMATES]
-    spans = [
-        critical(one, value, "reduced", None)
-        for one in ESTIMATES
-        for value in (one.stable, one.unstable)
-    ]
-    ratio = [b / a for a, b in zip(first, exact, strict=True)]
+    first, exact, complete = (
+        [0.5 * sum(one.both(name, order)) for one in ESTIMATES]
+        for name, order in (("reduced", 1), ("reduced", None), ("complete", None))
+    )
+    spans = [end for one in ESTIMATES for end in one.both("reduced", None)]
     middles = [0.5 * sum(at_rest(one)) for one in ESTIMATES]
-    rest = [a / b for a, b in zip(middles, complete, strict=True)]
-    quoted = [a / one.quoted for a, one in zip(middles, ESTIMATES, strict=True)]
-    return [
-        "The first estimate's inertias are stated, and (7.51) gives its quoted figure to the one "
-        "digit that it has; for the other three the text states no inertia, and the measured ones "
-        "are taken for which (7.51) gives the quoted figure. Read with "
-        f"the exact boundaries of the same equation the four give K = {_list(exact)} instead of "
-        f"{_list(first)}: {_list(ratio, 1)} times as much. The complete equation gives "
-        f"{_list(complete)}.",
-        "If the inertias taken are the right ones, then, the four estimates differ among "
-        f"themselves by {max(exact) / min(exact):.1f} and not by {max(first) / min(first):.1f} "
-        f"({max(complete) / min(complete):.1f} with the complete equation), middle of a bracket "
-        "against middle; the brackets themselves are wide: together they reach from "
-        f"{min(spans):.3f} to {max(spans):.3f}. The damping quoted is then too small.",
-        "No order of the series helps: at these parameters it does not converge (starred: refused "
-        "by its own error figure). (7.51) is right only where mu is small.",
-        "The logarithmic decrements of the coupler at rest give, middle over middle, "
-        f"{_list(rest, 1)} times the exact value for the complete equation, and "
-        f"{_list(quoted, 1)} times the quoted one.",
+    return {
+        "exact": texts(exact),
+        "first": texts(first),
+        "ratio": texts([b / a for a, b in zip(first, exact, strict=True)], 1),
+        "complete": texts(complete),
+        "exact_spread": spread(exact),
+        "first_spread": spread(first),
+        "complete_spread": spread(complete),
+        "low": min(spans),
+        "high": max(spans),
+        "rest": texts([a / b for a, b in zip(middles, complete, strict=True)], 1),
+        "quoted": texts([a / one.quoted for a, one in zip(middles, ESTIMATES, strict=True)], 1),
+    }
+
+
+# The second mode: charts of the 1/16 in coupler, the least and greatest inertia [lbf in s^2].
+_CASES = tuple((chart, inertia) for chart in ("84", "87") for inertia in (0.0058, 0.0190))
+# Range of speeds over the first natural frequency.
+_SPAN = (0.45, 0.95)
+# Regions of the first mode alone, and how near to them, of the speed, those of two modes begin.
+_NUMBERS = (2, 3, 4, 5, 6)
+_NEAR = 0.005
+_KINDS = {
+    "principal 1": ("mode 1", COLOURS[0]),
+    "principal 2": ("mode 2", COLOURS[1]),
+    "sum": ("modes 1 and 2, sum", COLOURS[3]),
+    "difference": ("modes 1 and 2, difference", COLOURS[2]),
+}
+
+
+@dataclass(frozen=True)
+class _Region:
+    """One unstable region in rpm: kind, label, ends without damping, about what damping leaves."""
+
+    kind: str
+    label: str
+    lower: float
+    upper: float
+    damped: float
+
+    @property
+    def width(self) -> float:
+        return self.upper - self.lower
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.lower + self.upper)
+
+
+@lru_cache(maxsize=16)
+def _system(chart: str, damped: bool, modes: int = 2) -> LinearPeriodic:
+    rig = RIG[chart]
+    changes: dict[str, object] = {"model.modes": modes}
+    if damped:
+        changes["coupler.damping_ratio"] = _decrement(rig) / (2.0 * pi)
+    return load_scene(rig.scene, overrides=changes).linear_system()
+
+
+@lru_cache(maxsize=16)
+def _edges(chart: str, inertia: float) -> StabilityEdges:
+    low, high = (share * RIG[chart].frequency for share in _SPAN)
+    return stability_edges(_system(chart, False), (low, high), follower_inertia=inertia * LBF_IN_S2)
+
+
+def _decrement(rig: Rig) -> float:
+    """Return the lowest logarithmic decrement that was measured at rest."""
+    return float(load_scene(rig.scene).get("measured.log_decrement")[0])
+
+
+@lru_cache(maxsize=16)
+def regions(chart: str, inertia: float) -> tuple[list[_Region], int]:
+    """Return the open regions at an inertia [lbf in s^2], widest first, and how many are closed.
+
+    Regions that reach beyond the range, with an end that is not known, are left out.
+    """
+    bare = _edges(chart, inertia)
+    width = bare.upper - bare.lower
+    kept = np.flatnonzero(width > 2.0 * bare.error)
+    left = _left_by_damping(chart, inertia, bare.lower[kept], width[kept])
+    beginnings = _first_mode(chart, inertia)
+    first = {
+        i: next((n for n, end in beginnings.items() if abs(low - end) < _NEAR * end), 0)
+        for i, low in zip(kept.tolist(), (bare.lower[kept] / RPM).tolist(), strict=True)
+        if bare.kind[i] == "principal"
+    }
+    second = [i for i, n in first.items() if not n]
+    # Names that are not all of mode 2, counting down with the speed, are guesses.
+    certain = bool(np.all(bare.modes[second] == 2) and np.all(np.diff(bare.harmonic[second]) == -1))
+    opened = []
+    for i, share in zip(kept.tolist(), left.tolist(), strict=True):
+        low, high = float(bare.lower[i]) / RPM, float(bare.upper[i]) / RPM
+        kind, label = bare.kind[i], bare.labels[i]
+        if first.get(i):
+            kind, label = "principal 1", f"region {first[i]} of mode 1"
+        elif kind == "principal":
+            kind, label = "principal 2", label if certain else "region of mode 2"
+        opened.append(_Region(kind, label, low, high, share * (high - low)))
+    opened.sort(key=lambda one: -one.width)
+    return opened, int(np.count_nonzero(width <= 2.0 * bare.error))
+
+
+def _first_mode(chart: str, inertia: float) -> Mapping[int, float]:
+    """Return the speeds [rpm] at which regions of the first mode alone begin, by number."""
+    rig = RIG[chart]
+    f = rig.form("complete").function(1.0, follower_inertia=inertia * LBF_IN_S2)
+    upper = hill_boundaries(f, 1.0, _NUMBERS).upper.tolist()
+    begins = zip(_NUMBERS, upper, strict=True)
+    return {n: float(rig.frequency / np.sqrt(end) / RPM) for n, end in begins if end > 0.0}
+
+
+def _left_by_damping(chart: str, inertia: float, lower: Array, width: Array) -> Array:
+    """Return the share of each region in which its own multiplier grows despite the damping.
+
+    A region may lie within another one: what counts is that more multipliers are outside the unit
+    circle within it than on either side of it.
+    """
+    places = np.concatenate([[-0.03, 1.03], np.linspace(0.0, 1.0, 27)[1:-1]])
+    speeds = lower[:, None] + width[:, None] * places
+    motion = floquet_multipliers(
+        _system(chart, True), speeds.ravel(), follower_inertia=inertia * LBF_IN_S2
+    )
+    outside = np.abs(motion.multipliers) > 1.0 + motion.error
+    growing = np.sum(outside, axis=-1).reshape(speeds.shape)
+    beside = np.min(growing[:, :2], axis=1)
+    return np.asarray(np.mean(growing[:, 2:] > beside[:, None], axis=1))
+
+
+def modes_table(axes: Sequence[Axes]) -> Drawn:
+    """Draw the widths of all regions of two modes over the crank speed."""
+    tables = []
+    values: list[Value] = []
+    for ax, (chart, inertia) in zip(axes, _CASES, strict=True):
+        opened, closed = regions(chart, inertia)
+        title = f"{RIG[chart].name}, {inertia:g} lbf in s²"
+        _widths(ax, opened, title)
+        tables.append(_widest(chart, inertia, opened, closed))
+        # The first mode's regions with two modes beside those of the first mode alone.
+        for n in (3, 4):
+            alone, lower = _first_mode(chart, inertia)[n], np.array([one.lower for one in opened])
+            nearest = float(lower[np.argmin(np.abs(lower - alone))])
+            values.append((nearest, alone, _NEAR * alone))
+    axes[0].legend(loc="upper left", fontsize=7)
+    return Drawn(values, _mode_words(), tuple(tables))
+
+
+def _widths(ax: Axes, opened: Sequence[_Region], title: str) -> None:
+    for kind, (label, colour) in _KINDS.items():
+        chosen = [one for one in opened if one.kind == kind and np.isfinite(one.width)]
+        if not chosen:
+            continue
+        left = [one for one in chosen if one.damped > 0.0]
+        middles, widths = [one.middle for one in chosen], [one.width for one in chosen]
+        ax.plot(middles, widths, "o", mfc="none", color=colour, label=label)
+        ax.plot([one.middle for one in left], [one.damped for one in left], "o", color=colour, ms=4)
+    ax.set_yscale("log")
+    ax.set(ylim=(1e-10, 1e3), xlabel="crank speed [rpm]", ylabel="width [rpm]")
+    panel_title(ax, title)
+
+
+def _widest(chart: str, inertia: float, opened: Sequence[_Region], closed: int) -> Table:
+    shown = opened[:10]
+    rows = tuple(
+        (
+            one.label,
+            f"{one.lower:.3f}",
+            f"{one.upper:.3f}",
+            f"{one.width:.3g}",
+            f"{one.damped:.2g}" if one.damped > 0.0 else "closed",
+        )
+        for one in shown
+    )
+    more = f"; {len(opened) - 10} narrower, {closed} closed" if len(opened) > 10 else ""
+    return Table(
+        f"{RIG[chart].name}, follower inertia {inertia:g} lbf in s²: widest regions{more}",
+        ("region", "from [rpm]", "to [rpm]", "width", "width when damped"),
+        rows,
+    )
+
+
+def _mode_words() -> dict[str, object]:
+    """Return the numbers of the notes."""
+    every = [(case, one) for case in _CASES for one in regions(*case)[0]]
+    sums = [one for _, one in every if one.kind == "sum"]
+    others = [(case, one) for case, one in every if one.kind != "principal 1"]
+    alive = [(case, one) for case, one in others if one.damped > 0.0]
+    widest = [next(pair for pair in others if pair[0] == case) for case in _CASES]
+    parts = [
+        f"{RIG[chart].name} at {inertia:g}: {one.label}, {one.width:.2g} rpm"
+        for (chart, inertia), one in widest
     ]
+    return {
+        "decrement": _decrement(RIG[_CASES[0][0]]),
+        "widest": "; ".join(parts),
+        "sums": len(sums),
+        "sums_left": sum(one.damped > 0.0 for one in sums),
+        "differences": sum(one.kind == "difference" for _, one in every),
+        "alive": len(alive),
+        "added": sum(_stable_alone(case, one) for case, one in alive),
+    }
 
 
-def _list(values: Sequence[float], digits: int = 3) -> str:
-    texts = [f"{value:.{digits}f}" for value in values]
-    return f"{', '.join(texts[:-1])} and {texts[-1]}"
-
-
-def damping_document() -> str:
-    """Return the text of ``docs/damping_estimates.md``."""
-    table = _table()
-    lines = [
-        "# Damping read from stability charts",
-        "",
-        "Written by `elastolink reproduce smith --figure table_damping --out DIR`; every number is",
-        "computed. Smith, section 9.5.5, takes K from the follower inertia at which a region turns",
-        "from stable to unstable. A starred order refuses its number; it is shown all the same.",
-        "",
-    ]
-    for paragraph in _conclusion():
-        lines += [fill(paragraph, 110), ""]
-    return "\n".join([*lines, *table.markdown(), ""])
+def _stable_alone(case: tuple[str, float], one: _Region) -> bool:
+    """Return True where the damped first mode alone is stable in the middle of a region."""
+    chart, inertia = case
+    motion = floquet_multipliers(
+        _system(chart, True, 1), one.middle * RPM, follower_inertia=inertia * LBF_IN_S2
+    )
+    return bool(np.all(motion.stable))

@@ -36,12 +36,8 @@ EQUATIONS = ("reduced", "printed", "complete")
 class EndLoad:
     """Functions of the coupler equation at crank angles; every array has their shape.
 
-    Attributes
-    ----------
-    phi, f1, f2, f3 : ndarray
-        As defined under Smith (6.17).
-    cos23 : ndarray
-        ``cos(theta2 - theta3)``, the shape of the tension that (6.17) leaves out.
+    phi, f1, f2, f3 as defined under Smith (6.17), and ``cos(theta2 - theta3)``, the shape of the
+    tension that (6.17) leaves out.
     """
 
     phi: Array
@@ -52,15 +48,7 @@ class EndLoad:
 
 
 def end_load(linkage: FourBar, theta: ArrayLike) -> EndLoad:
-    """Return the functions phi, f1, f2, f3 of Smith (6.17).
-
-    Parameters
-    ----------
-    linkage : FourBar
-        Lengths in any one unit.
-    theta : array_like
-        Crank angles [rad].
-    """
+    """Return the functions phi, f1, f2, f3 of Smith (6.17) at crank angles [rad]."""
     motion = linkage.motion(theta)
     between = motion.theta3 - motion.theta4
     crank = motion.theta2 - motion.theta3
@@ -79,13 +67,7 @@ def linkage_of(proportions: str) -> FourBar:
 
 
 def four_bar_of(scene: str) -> FourBar:
-    """Return the four-bar linkage of a built-in scene.
-
-    Raises
-    ------
-    BadInput
-        If the scene has another linkage.
-    """
+    """Return the four-bar linkage of a built-in scene; another one is refused."""
     linkage = load_scene(scene).mechanism()
     if not isinstance(linkage, FourBar):
         raise bad(f"scene {scene}", type(linkage).__name__, "a four-bar linkage", "choose another")
@@ -101,19 +83,7 @@ def f3_series(proportions: str) -> PeriodicFunction:
 
 @dataclass(frozen=True)
 class Rig:
-    """One linkage and coupler of chapter 9.
-
-    Attributes
-    ----------
-    scene : str
-        Name of the built-in scene.
-    linkage : str
-        Proportions, as the thesis writes them.
-    thickness : str
-        Of the coupler, likewise.
-    figure : str
-        The stability chart's number.
-    """
+    """One linkage and coupler of chapter 9: scene, proportions, thickness, number of the chart."""
 
     scene: str
     linkage: str
@@ -148,21 +118,11 @@ class Rig:
         return self.form(equation).function(1.0, follower_inertia=inertia)
 
     def ends(self, equation: str, inertia: ArrayLike, regions: tuple[int, ...]) -> Array:
-        """Return the crank speeds that bound unstable regions of the first mode.
+        """Return the crank speeds [rad/s] that bound unstable regions of the first mode.
 
-        Parameters
-        ----------
-        equation : str
-            One of :data:`EQUATIONS`.
-        inertia : array_like
-            Follower inertias [kg m^2], shape ``(k,)``.
-        regions : tuple of int
-            Region n starts at the speed 2 Omega / n.
-
-        Returns
-        -------
-        ndarray, shape (2, len(regions), k)
-            Lower and upper speed [rad/s]; infinite where lambda^2 would be negative.
+        By one of the :data:`EQUATIONS`, at follower inertias [kg m^2] ``(k,)``; region n starts at
+        the speed 2 Omega / n.  Lower and upper speeds ``(2, len(regions), k)``, infinite where
+        lambda^2 would be negative.
         """
         values = np.atleast_1d(np.asarray(inertia, dtype=float))
         if equation == "reduced":

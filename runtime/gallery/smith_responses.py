@@ -1,4 +1,4 @@
-"""Smith's frequency responses, Figs. 52 to 80: the coupler's steady motion against the speed."""
+"""Smith's Figs. 45 to 80: wave-forms of the coupler and its steady motion against the speed."""
 
 from __future__ import annotations
 
@@ -7,184 +7,168 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import LinearRangeWarning
 from ..core.families import LinearPeriodic
+from ..hill import discriminant
+from ..periodic import SteadyState, simulate, steady_state
 from ..scenes import load_scene
-from .records import Drawn, Quoted
-from .smith_linkages import LBF_IN_S2, RIG, RPM, Array, Rig
-from .style import COLOURS, crank_axis, legend_below, panel_title
+from .drawing import COLOURS, Array, crank_axis, legend_below, panel_title
+from .records import Drawn
+from .smith_linkages import LBF_IN_S2, RIG, RPM, Rig
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..periodic import SteadyState
-
-_LEAST, _MOST = 0.0058, 0.0190
-_POINTS = 241
-# Orders whose marks have room for a label.
-_LABELLED = 8
+_RIG = RIG["84"]
+# Between the least and the greatest logarithmic decrement measured at 1/16 in (section 9.5.5).
+_DECREMENT = 0.075
+_LEAST = 0.0058
 # Largest deflection drawn, and that up to which linear equations hold, over the coupler's length.
 _DRAWN, _LINEAR = 0.15, 0.05
 
 
+def figure_45(axes: Sequence[Axes]) -> Drawn:
+    """Draw the sine and the shape under a central load over half the coupler."""
+    ax, x = axes[0], np.linspace(0.0, 0.5, 251)
+    ax.plot(x, np.sin(pi * x), color=COLOURS[0], label=r"$\sin(\pi x/l)$")
+    ax.plot(x, 3 * x - 4 * x**3, "--", color=COLOURS[1], label=r"$3(x/l) - 4(x/l)^3$")
+    ax.set(xlim=(0.0, 0.5), xlabel="x/l", ylabel="y")
+    legend_below([ax])
+    at = 0.1
+    return Drawn([100.0 * (1.0 - (3 * at - 4 * at**3) / np.sin(pi * at))])
+
+
+@lru_cache(maxsize=64)
+def coupler(
+    scene: str, decrement: float, inertia: float | None = None, equation: str = "complete"
+) -> LinearPeriodic:
+    """Return the coupler's vibration by a formulation, with a logarithmic decrement at rest.
+
+    The follower's inertia [lbf in s^2] is the scene's where none is given.
+    """
+    changes: dict[str, Any] = {
+        "model.formulation": equation,
+        "coupler.damping_ratio": decrement / (2 * pi),
+    }
+    if inertia is not None:
+        changes["follower.inertia"] = inertia * LBF_IN_S2
+    return load_scene(scene, overrides=changes).linear_system()
+
+
+def quiet_state(system: LinearPeriodic, speed: float | Array, samples: int = 256) -> SteadyState:
+    """Return the periodic motion, warning of nothing."""
+    with warnings.catch_warnings():
+        # At a resonance the linear range is left; the figures' notes say so.
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        return steady_state(system, speed, samples=samples)
+
+
+def periodic_response(system: LinearPeriodic, speed: float) -> tuple[Array, Array]:
+    """Return crank angles over one closed turn and the first mode's periodic motion at them."""
+    state = quiet_state(system, speed, 512)
+    return np.append(state.theta, 2 * pi), np.append(state.q[:, 0], state.q[0, 0])
+
+
+def wave_form(axes: Sequence[Axes], divisor: float) -> Drawn:
+    """Draw the wave-form at the speed Omega/divisor (Figs. 47 to 51)."""
+    ax, speed = axes[0], _RIG.frequency / divisor
+    damped = {name: coupler(_RIG.scene, _DECREMENT, None, name) for name in ("reduced", "complete")}
+    length = 1e3 * damped["complete"].reference_length
+    for equation, label, colour in (
+        ("reduced", "equation of the thesis (6.18)", COLOURS[0]),
+        ("complete", "complete equation", COLOURS[1]),
+    ):
+        theta, q = periodic_response(damped[equation], speed)
+        ax.plot(np.degrees(theta), length * q, color=colour, label=f"{label}, damped")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LinearRangeWarning)
+        undamped = coupler(_RIG.scene, 0.0, None, "reduced")
+        run = simulate(undamped, speed, 1.0, initial=(0.0, 0.0), samples=512)
+    label = "(6.18), undamped, from rest"
+    ax.plot(np.degrees(run.theta), length * run.q[:, 0], "--", color=COLOURS[4], label=label)
+    crank_axis(ax)
+    ax.set_ylabel("deflection of the middle [mm]")
+    legend_below([ax], columns=3)
+    values = [_vibrations(name, speed) for name in damped]
+    if divisor == round(divisor):
+
+        def harmonic(speed: float) -> float:
+            _, q = periodic_response(damped["reduced"], speed)
+            return float(np.abs(np.fft.rfft(q[:-1])[int(divisor)]))
+
+        values.append(harmonic(speed) / harmonic(0.97 * speed))
+    return Drawn(values)
+
+
+def _vibrations(equation: str, speed: float) -> float:
+    """Return the undamped characteristic exponent: free vibrations in one crank cycle."""
+    f = _RIG.form(equation).function(speed)
+    lam2 = (_RIG.frequency / speed) ** 2
+    half = float(discriminant(f, lam2, 1.0).value)
+    # Within a region the exponent has the region's own real part.
+    part = float(np.arccos(np.clip(half, -1.0, 1.0))) / (2 * pi)
+    # The half trace fixes it up to sign and whole numbers; the mean stiffness says which.
+    near = float(np.sqrt(lam2 + f.mean))
+    candidates = [whole + sign * part for whole in range(int(near) + 3) for sign in (-1, 1)]
+    return min(candidates, key=lambda value: abs(value - near))
+
+
 @dataclass(frozen=True)
 class Response:
-    """One recorded frequency response of chapter 9.
+    """One recorded frequency response of chapter 9: chart of the rig, inertia, range of the speed.
 
-    Attributes
-    ----------
-    figure : str
-        Its number.
-    chart : str
-        Number of the rig's stability chart, which names the rig.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    low, high : float
-        Range of the crank speed [rpm]: as written in the text or beside the trace, else chosen.
-    resonances : tuple of (float, int)
-        Crank speed [rpm] of a resonance that the text quotes, and the n of Omega/n.
-    notes : tuple of str
-        What is to be said of it.
+    The follower's inertia [lbf in s^2]; speeds [rpm] as written in the text or beside the trace,
+    else chosen.
     """
 
-    figure: str
     chart: str
     inertia: float
     low: float
     high: float
-    resonances: tuple[tuple[float, int], ...] = ()
-    notes: tuple[str, ...] = ()
 
     @property
     def rig(self) -> Rig:
         """Linkage and coupler."""
         return RIG[self.chart]
 
-    @property
-    def title(self) -> str:
-        """Title of the picture."""
-        return f"Frequency response, linkage {self.rig.name}, I4 = {self.inertia:g} lbf in s2"
-
-
-_FALLING = (
-    "The trace was taken while the speed fell. The linear equation has one periodic motion at each "
-    "speed, whichever way it is reached: what falling changes, the jump of a softening spring, is "
-    "measured and lies beyond it.",
-)
-_ASKEW = (
-    "The caption has 0.00788, the list of figures 0.00783 or 0.0079 lbf in s2; the inertia of the "
-    "table is 0.0079.",
-)
-_RANGE = ("The range of the speed is not legible and was chosen.",)
-
-RESPONSES = (
-    Response("52", "83", _LEAST, 100.0, 470.0),
-    Response("53", "85", 0.0079, 300.0, 420.0, ((350.0, 2),), (*_ASKEW, *_RANGE)),
-    Response("56", "82", 0.0069, 150.0, 350.0, ((250.0, 3),)),
-    Response("57", "82", 0.0079, 150.0, 350.0, ((250.0, 3),)),
-    Response("58", "82", 0.0109, 150.0, 350.0),
-    Response("59", "82", 0.0130, 150.0, 350.0),
-    Response("60", "82", 0.0149, 150.0, 350.0),
-    Response("61", "82", _MOST, 150.0, 350.0, ((220.0, 3),)),
-    Response("62", "85", _LEAST, 300.0, 420.0, ((360.0, 2),), _RANGE),
-    Response("63", "85", _LEAST, 400.0, 530.0, (), _RANGE),
-    Response("65", "85", 0.0079, 300.0, 500.0, ((360.0, 2),), (*_ASKEW, *_RANGE)),
-    Response("66", "85", _LEAST, 400.0, 500.0, (), (*_FALLING, *_RANGE)),
-    Response("67", "85", _LEAST, 290.0, 420.0, (), (*_FALLING, *_RANGE)),
-    Response("68", "85", 0.0079, 290.0, 500.0, (), (*_FALLING, *_ASKEW, *_RANGE)),
-    Response("74", "83", _LEAST, 200.0, 600.0, ((300.0, 4), (400.0, 3), (600.0, 2))),
-    Response("75", "83", _LEAST, 250.0, 520.0, ((300.0, 4), (400.0, 3)), _RANGE),
-    Response("76", "83", 0.0109, 150.0, 320.0, (), _RANGE),
-    Response("79", "84", _LEAST, 200.0, 600.0),
-    Response("80", "84", _LEAST, 550.0, 1000.0),
-)
-RESPONSE = {one.figure: one for one in RESPONSES}
-
-_NOTE = (
-    "The document's curve is a recorded trace; drawn is the least and the greatest deflection of "
-    "the coupler's middle over a turn in the periodic motion by the complete linear equation, one "
-    "mode, with viscous damping of the logarithmic decrements measured at rest (9.5.5). Shaded: "
-    "speeds at which that motion is unstable with the middle decrement. Dashed: 5 % of the "
-    "coupler's length, beyond which linear equations do not describe the rig; peaks are cut off."
-)
-_UNDRAWN = (
-    "Figs. 69 to 71, 77 and 78 show the non-linearity of the higher resonances and 72, 73 free "
-    "vibrations: measured, not computed here; so is Fig. 64, the vibration of period 4 pi that "
-    "damping just keeps in check."
-)
-
-
-@lru_cache(maxsize=64)
-def coupler(scene: str, inertia: float, decrement: float) -> LinearPeriodic:
-    """Return the coupler's vibration by the complete equation.
-
-    Parameters
-    ----------
-    scene : str
-        Built-in scene.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    decrement : float
-        Logarithmic decrement at rest.
-    """
-    changes = {
-        "model.formulation": "complete",
-        "coupler.damping_ratio": decrement / (2 * pi),
-        "follower.inertia": inertia * LBF_IN_S2,
-    }
-    return load_scene(scene, overrides=changes).linear_system()
-
-
-def quiet_state(system: LinearPeriodic, speed: float | Array, samples: int = 256) -> SteadyState:
-    """Return the periodic motion, warning of nothing."""
-    from ..periodic import steady_state
-
-    with warnings.catch_warnings():
-        # At a resonance the linear range is left; the figures' notes say so.
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        return steady_state(system, speed, rtol=1e-6, samples=samples)
+    def envelope(self, decrement: float) -> Envelope:
+        """Return the extreme deflections over the range, for a logarithmic decrement."""
+        return _envelope(self, decrement)
 
 
 @dataclass(frozen=True)
 class Envelope:
-    """Extreme deflections of the coupler's middle against the crank speed.
-
-    Attributes
-    ----------
-    speed : ndarray, shape (ns,)
-        Crank speeds [rpm].
-    least, greatest : ndarray, shape (ns,)
-        Deflections [mm].
-    stable : ndarray of bool, shape (ns,)
-        Whether the periodic motion is stable.
-    frequency : float
-        Natural frequency of the coupler as a crank speed [rpm].
-    """
+    """Extreme deflections [mm] of the coupler's middle at crank speeds [rpm], and stability."""
 
     speed: Array
     least: Array
     greatest: Array
     stable: NDArray[np.bool_]
-    frequency: float
+
+    @property
+    def height(self) -> Array:
+        """Greatest less least deflection [mm]."""
+        return self.greatest - self.least
+
+    @property
+    def unstable(self) -> Array:
+        """The unstable ones of the speeds [rpm]."""
+        return self.speed[~self.stable]
 
 
 @lru_cache(maxsize=64)
-def envelope(figure: str, decrement: float) -> Envelope:
-    """Return the extreme deflections that a figure shows, for a logarithmic decrement."""
-    one = RESPONSE[figure]
-    system = coupler(one.rig.scene, one.inertia, decrement)
-    speed = np.linspace(one.low, one.high, _POINTS)
+def _envelope(one: Response, decrement: float) -> Envelope:
+    system = coupler(one.rig.scene, decrement, one.inertia)
+    speed = np.linspace(one.low, one.high, 241)
     motion = quiet_state(system, speed * RPM)
     middle = 1e3 * system.reference_length * motion.q[..., 0]
     stable = np.ones(len(speed), bool) if motion.stable is None else np.asarray(motion.stable)
-    return Envelope(
-        speed, middle.min(axis=-1), middle.max(axis=-1), stable, one.rig.frequency / RPM
-    )
+    return Envelope(speed, middle.min(axis=-1), middle.max(axis=-1), stable)
 
 
 def decrements(rig: Rig) -> tuple[float, float, float]:
@@ -193,174 +177,185 @@ def decrements(rig: Rig) -> tuple[float, float, float]:
     return float(least), 0.5 * float(least + most), float(most)
 
 
-def response_figure(figure: str) -> Callable[[Sequence[Axes]], Drawn]:
-    """Return the function that draws one frequency response."""
-    one = RESPONSE[figure]
-
-    def draw(axes: Sequence[Axes]) -> Drawn:
-        ax = axes[0]
-        low, middle, high = decrements(one.rig)
-        for decrement, colour, width in (
-            (low, COLOURS[1], 0.8),
-            (middle, COLOURS[0], 1.3),
-            (high, COLOURS[2], 0.8),
-        ):
-            found = envelope(figure, decrement)
-            label = f"decrement {decrement:.3g}"
-            front = 3.0 if decrement == middle else 2.0
-            ax.plot(found.speed, found.greatest, color=colour, lw=width, label=label, zorder=front)
-            ax.plot(found.speed, found.least, color=colour, lw=width, zorder=front)
-        found = envelope(figure, middle)
-        _shade(ax, found)
-        _limits(ax, found, 1e3 * coupler(one.rig.scene, one.inertia, middle).reference_length)
-        _fractions(ax, found)
-        ax.set_xlim(one.low, one.high)
-        ax.set_xlabel("crank speed [rpm]")
-        ax.set_ylabel("deflection of the middle [mm]")
-        legend_below(axes)
-        from .smith_response_rows import response_rows
-
-        return Drawn(response_rows(one), (_NOTE, *one.notes, _UNDRAWN))
-
-    return draw
+def response(
+    axes: Sequence[Axes],
+    chart: str,
+    inertia: float,
+    low: float,
+    high: float,
+    resonances: Sequence[float] = (),
+    claim: str = "",
+) -> Drawn:
+    """Draw a frequency response; compute resonances near speeds [rpm] and what a claim needs."""
+    one, ax = Response(chart, inertia, low, high), axes[0]
+    least, middle, most = decrements(one.rig)
+    for decrement, colour, width, front in (
+        (least, COLOURS[1], 0.8, 2.0),
+        (middle, COLOURS[0], 1.3, 3.0),
+        (most, COLOURS[2], 0.8, 2.0),
+    ):
+        ends = one.envelope(decrement)
+        label = f"decrement {decrement:.3g}"
+        ax.plot(ends.speed, ends.greatest, color=colour, lw=width, label=label, zorder=front)
+        ax.plot(ends.speed, ends.least, color=colour, lw=width, zorder=front)
+    ends = one.envelope(middle)
+    _shade(ax, ends)
+    _limits(ax, ends, 1e3 * coupler(one.rig.scene, middle, inertia).reference_length)
+    _fractions(ax, one)
+    ax.set(xlim=(low, high), xlabel="crank speed [rpm]", ylabel="deflection of the middle [mm]")
+    legend_below(axes)
+    return Drawn([*(resonance(one, at) for at in resonances), *(_CLAIMS[claim](one))])
 
 
-def _shade(ax: Axes, found: Envelope) -> None:
+def _shade(ax: Axes, ends: Envelope) -> None:
     """Mark the speeds at which the periodic motion is unstable."""
     ax.fill_between(
-        found.speed,
+        ends.speed,
         0.0,
         1.0,
-        where=list(~found.stable),
+        where=list(~ends.stable),
         color="#f7e3d3",
         lw=0,
         step="mid",
         transform=ax.get_xaxis_transform(),
-        label="unstable" if not np.all(found.stable) else None,
+        label="unstable" if not np.all(ends.stable) else None,
         zorder=0,
     )
 
 
-def _limits(ax: Axes, found: Envelope, length: float) -> None:
+def _limits(ax: Axes, ends: Envelope, length: float) -> None:
     """Keep the axis to what can be read; mark how far linear equations hold."""
-    top = max(float(np.max(np.abs(values))) for values in (found.least, found.greatest))
+    top = max(float(np.max(np.abs(values))) for values in (ends.least, ends.greatest))
     end = min(1.15 * top, _DRAWN * length)
     ax.set_ylim(-end, end)
-    for sign in (1.0, -1.0):
-        if _LINEAR * length < end:
-            ax.axhline(sign * _LINEAR * length, color="0.5", lw=0.7, ls="--", zorder=1)
+    if _LINEAR * length < end:
+        for level in (_LINEAR * length, -_LINEAR * length):
+            ax.axhline(level, color="0.5", lw=0.7, ls="--", zorder=1)
 
 
-def _fractions(ax: Axes, found: Envelope) -> None:
+def _fractions(ax: Axes, one: Response) -> None:
+    """Mark the fractions of the natural frequency; those up to the eighth have room for a name."""
+    place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
     for order in range(1, 13):
-        speed = found.frequency / order
-        if found.speed[0] < speed < found.speed[-1]:
+        speed = one.rig.frequency / RPM / order
+        if one.low < speed < one.high:
             ax.axvline(speed, color="0.6", lw=0.7, ls=(0, (1, 3)), zorder=1)
-        if found.speed[0] < speed < found.speed[-1] and order <= _LABELLED:
-            ax.annotate(
-                f"Ω/{order}",
-                (speed, 1.0),
-                xycoords=("data", "axes fraction"),
-                xytext=(2, -8),
-                textcoords="offset points",
-                fontsize=7,
-                color="0.4",
-            )
+            if order <= 8:
+                text = f"Ω/{order}"
+                ax.annotate(text, (speed, 1.0), xytext=(2, -8), fontsize=7, color="0.4", **place)
 
 
-def resonance(figure: str, speed: float) -> float:
+def resonance(one: Response, speed: float) -> float:
     """Return the crank speed [rpm] of the greatest deflection's maximum nearest to a speed."""
-    one = RESPONSE[figure]
-    found = envelope(figure, decrements(one.rig)[0])
-    height = found.greatest - found.least
+    ends = one.envelope(decrements(one.rig)[0])
+    height = ends.height
     inner = (height[1:-1] > height[:-2]) & (height[1:-1] >= height[2:])
-    places = found.speed[1:-1][inner]
+    places = ends.speed[1:-1][inner]
     return float(places[np.argmin(np.abs(places - speed))]) if len(places) else float("nan")
+
+
+def _harmonics(one: Response, orders: range) -> list[float]:
+    """Return how far from Omega/n [%] each harmonic is greatest, at most."""
+    system = coupler(one.rig.scene, decrements(one.rig)[0], one.inertia)
+    factor, apart = np.linspace(0.94, 1.06, 61), []
+    for order in orders:
+        motion = quiet_state(system, factor * one.rig.frequency / order)
+        size = np.abs(np.fft.rfft(motion.q[..., 0], axis=-1)[:, order])
+        apart.append(abs(float(factor[np.argmax(size)]) - 1.0))
+    return [100.0 * max(apart)]
+
+
+def _increment(one: Response) -> list[float]:
+    """Return how the second increment of the inertia raises the amplitude near 300 rpm."""
+    sizes = []
+    for inertia in (one.inertia, 0.0069):
+        other = Response(one.chart, inertia, one.low, one.high)
+        ends = other.envelope(decrements(one.rig)[0])
+        sizes.append(float(np.interp(300.0, ends.speed, ends.height)))
+    return [sizes[0] / sizes[1]]
+
+
+def _middle(speeds: Array) -> float:
+    return 0.5 * float(speeds[0] + speeds[-1])
+
+
+def _region(one: Response) -> list[float]:
+    """Return the middle of the unstable region 2 Omega/5 below 300 rpm."""
+    unstable = one.envelope(decrements(one.rig)[0]).unstable
+    return [_middle(unstable[(unstable > 245.0) & (unstable < 291.0)])]
+
+
+def _passed(one: Response) -> list[float]:
+    """Return place and end of the unstable region 2 Omega/3 at the least inertia."""
+    unstable = one.envelope(decrements(one.rig)[1]).unstable
+    return [_middle(unstable), float(unstable[-1])]
+
+
+def _onset(one: Response) -> list[float]:
+    return [float(one.envelope(decrements(one.rig)[1]).unstable[0])]
+
+
+def _above(one: Response) -> list[float]:
+    unstable = one.envelope(decrements(one.rig)[1]).unstable
+    return [float(unstable[unstable > 1.2 * one.rig.frequency / RPM / 2][0])]
+
+
+def _between(one: Response) -> list[float]:
+    """Return at how many speeds about 500 rpm the periodic motion is largest."""
+    ends = one.envelope(decrements(one.rig)[0])
+    inside = np.flatnonzero(np.abs(ends.speed - 500.0) < 15.0)
+    beside = np.maximum(ends.height[inside - 1], ends.height[inside + 1])
+    return [int(np.count_nonzero(ends.height[inside] > beside))]
+
+
+# What section 9.5.3 says of single figures, by the names in their records.
+_CLAIMS: dict[str, Callable[[Response], list[float]]] = {
+    "": lambda one: [],
+    "harmonics 3 to 10": lambda one: _harmonics(one, range(3, 11)),
+    "harmonics 4 to 7": lambda one: _harmonics(one, range(4, 8)),
+    "increment": _increment,
+    "region 5": _region,
+    "region 3 passed": _passed,
+    "region 3 onset": _onset,
+    "region 3 onset, second": _above,
+    "largest about 500 rpm": _between,
+}
 
 
 def wave(chart: str, inertia: float, speed: float) -> tuple[Array, Array]:
     """Return crank angles [rad] and the deflection of the coupler's middle [mm] at them.
 
-    Parameters
-    ----------
-    chart : str
-        Number of the rig's stability chart.
-    inertia : float
-        Follower inertia [lbf in s^2].
-    speed : float
-        Crank speed [rad/s].
+    Rig by the number of its chart, follower inertia [lbf in s^2], crank speed [rad/s].
     """
     rig = RIG[chart]
-    system = coupler(rig.scene, inertia, decrements(rig)[1])
+    system = coupler(rig.scene, decrements(rig)[1], inertia)
     motion = quiet_state(system, speed)
     return motion.theta, 1e3 * system.reference_length * motion.q[:, 0]
 
 
-_ORDER, _BESIDE = 4, 0.04
-_INERTIAS = (0.0058, 0.0079, 0.0109)
-
-
 def figure_54(axes: Sequence[Axes]) -> Drawn:
-    """Draw the wave-form below, at and above a resonance."""
-    rig = RIG["84"]
-    first = []
-    for ax, factor, name in zip(
-        axes, (1.0 - _BESIDE, 1.0, 1.0 + _BESIDE), ("below", "at", "above"), strict=True
-    ):
-        speed = factor * rig.frequency / _ORDER
+    """Draw the wave-form below, at and above the resonance Omega/4."""
+    order, first = 4, []
+    for ax, factor, name in zip(axes, (0.96, 1.0, 1.04), ("below", "at", "above"), strict=True):
+        speed = factor * RIG["84"].frequency / order
         theta, bent = wave("84", _LEAST, speed)
         ax.plot(np.degrees(theta), bent, color=COLOURS[0])
         crank_axis(ax)
         panel_title(ax, f"{name} resonance: {speed / RPM:.0f} rpm")
-        first.append(np.fft.rfft(bent)[_ORDER] / len(bent))
+        first.append(np.fft.rfft(bent)[order] / len(bent))
     axes[0].set_ylabel("deflection of the middle [mm]")
     turned = abs(float(np.degrees(np.angle(first[2] / first[0]))))
-    rows = (
-        Quoted(
-            "fundamental vibration at resonance over the greater one beside it",
-            1.0,
-            float(abs(first[1]) / max(abs(first[0]), abs(first[2]))),
-            0.0,
-            "'rapid increase in amplitude of the fundamental vibration'",
-            "9.5.3",
-            relation=">",
-        ),
-        Quoted(
-            "its phase above resonance against below",
-            90.0,
-            turned,
-            0.0,
-            "'changed phase relationship': more than a quarter of a wave",
-            "9.5.3",
-            relation=">",
-            unit="deg",
-        ),
-    )
-    note = (
-        "Which resonance is not stated: Omega/4 is taken, and 4 % less and more, with the least "
-        "follower inertia and the middle of the decrements measured."
-    )
-    return Drawn(rows, (note,))
+    return Drawn([abs(first[1]) / max(abs(first[0]), abs(first[2])), turned])
 
 
 def figure_55(axes: Sequence[Axes]) -> Drawn:
     """Draw the wave-form at one speed for several follower inertias."""
     ax, sizes = axes[0], []
-    for inertia, colour in zip(_INERTIAS, COLOURS, strict=False):
+    for inertia, colour in zip((_LEAST, 0.0079, 0.0109), COLOURS, strict=False):
         theta, bent = wave("82", inertia, 230.0 * RPM)
         ax.plot(np.degrees(theta), bent, color=colour, label=f"I4 = {inertia:g} lbf in s2")
         sizes.append(float(np.ptp(bent)))
     crank_axis(ax)
     ax.set_ylabel("deflection of the middle [mm]")
     legend_below(axes)
-    row = Quoted(
-        "least growth of the amplitude from one inertia to the next, ratio",
-        1.0,
-        float(np.min(np.array(sizes[1:]) / np.array(sizes[:-1]))),
-        0.0,
-        "'correspondingly increased vibrational amplitude'",
-        "9.5.3",
-        relation=">",
-    )
-    note = "The inertias are not legible: three of the table in section 9.4.1 are taken."
-    return Drawn((row,), (note,))
+    return Drawn([np.min(np.array(sizes[1:]) / np.array(sizes[:-1]))])

@@ -15,58 +15,27 @@ from ..hill import discriminant
 from ..periodic import simulate
 from ..periodic.equation import equation_of
 from ..scenes import load_scene
+from .drawing import COLOURS, Array, crank_axis, legend_below, panel_title
 from .historic_steps import de_vogelaere_maps, de_vogelaere_start, kutta_merson
-from .records import Drawn, Quoted
-from .smith_linkages import Array, f3_series, linkage_of
-from .style import COLOURS, crank_axis, legend_below, panel_title
+from .records import Drawn
+from .smith_linkages import f3_series, linkage_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # A wave of 20 degrees, as the text says of Fig. 28.
 _LAMBDA = 18.0
-_MODES = 3
 _KUTTA_MERSON_RTOL = 1e-4
 _MU = 0.5
 _UNSTABLE, _STABLE = (0.25, 1.0, 2.25), (0.5, 1.5, 3.0)
-_DATA = (
-    "The text gives no data beyond a wavelength of about 20 deg: taken are lambda = 18, linkage "
-    "(2,1,2,2), whose ratio of the modes' amplitudes is the one described under Fig. 31, the "
-    "coupler 1/16 in thick and 15 in long with the least follower inertia of chapter 9, and a "
-    "start from rest at 0 deg."
-)
-_HALF_STEP = (
-    "By the listing of appendix 4 the step length h is half of the step after which values are "
-    "kept; the decay below shows that the text uses it in this sense too. That listing halves h "
-    "from 10 deg, and so could use 2.5, 1.25 or 0.625 deg but none of the steps of this figure."
-)
 
 
-@lru_cache(maxsize=1)
-def _system() -> LinearPeriodic:
-    """Return three modes of (6.18) for the data of :data:`_DATA`."""
-    scene = load_scene(
-        "smith_1972_5152_sixteenth_inch",
-        overrides={
-            "model.formulation": "reduced",
-            "model.modes": _MODES,
-            "links.crank": "7.5 in",
-            "links.follower": "15 in",
-        },
-    )
-    return scene.linear_system()
-
-
-@lru_cache(maxsize=1)
-def _first_mode() -> LinearPeriodic:
-    scene = load_scene(
-        "smith_1972_5152_sixteenth_inch",
-        overrides={
-            "model.formulation": "reduced",
-            "links.crank": "7.5 in",
-            "links.follower": "15 in",
-        },
-    )
+@lru_cache(maxsize=2)
+def _system(modes: int) -> LinearPeriodic:
+    """Return (6.18) for linkage (2,1,2,2) with the 1/16 in coupler, 15 in long."""
+    changes = {"model.formulation": "reduced", "model.modes": modes}
+    sizes = {"links.crank": "7.5 in", "links.follower": "15 in"}
+    scene = load_scene("smith_1972_5152_sixteenth_inch", overrides=changes | sizes)
     return scene.linear_system()
 
 
@@ -88,7 +57,7 @@ class _Run:
 @lru_cache(maxsize=32)
 def _march(step: float, turns: int, start: tuple[float, float] | None = None) -> _Run:
     """March with de Vogelaere's method and a half step in degrees, against Smith's rule or not."""
-    system, h = _first_mode(), np.radians(step)
+    system, h = _system(1), np.radians(step)
     speed = _speed(system)
     equation = equation_of(system, speed, {}, forcing=start is None)
 
@@ -122,7 +91,7 @@ def _march(step: float, turns: int, start: tuple[float, float] | None = None) ->
 
 def _kutta_merson(turns: int) -> _Run:
     """March from rest with the Kutta-Merson programme, values kept at each degree."""
-    system = _first_mode()
+    system = _system(1)
     speed = _speed(system)
     equation = equation_of(system, speed, {}, forcing=True)
     unit = float(equation.scale[0, 0])
@@ -144,12 +113,10 @@ def _kutta_merson(turns: int) -> _Run:
 
 def _remaining(step: float) -> float:
     """Return the amplitude of a free vibration after one turn over that at its start."""
-    ends = []
     # Small enough to stay within the linear range, which a free vibration has no part in.
     size = 1e-3
-    for start in ((size, 0.0), (0.0, size)):
-        run = _march(step, 1, start)
-        ends.append((run.q[-1, 0] / size, run.qd[-1, 0] / (size * run.speed)))
+    runs = [_march(step, 1, start) for start in ((size, 0.0), (0.0, size))]
+    ends = [(run.q[-1, 0] / size, run.qd[-1, 0] / (size * run.speed)) for run in runs]
     return float(np.sqrt(abs(np.linalg.det(np.array(ends)))))
 
 
@@ -179,73 +146,15 @@ def figure_28(axes: Sequence[Axes]) -> Drawn:
         panel_title(ax, f"step length {step:g} deg")
     for ax in axes[:-1]:
         ax.set_xlabel("")
-    rows = (
-        Quoted(
-            "longest step for lambda = 18, h < 18/lambda",
-            1.0,
-            360.0 / (20.0 * _LAMBDA),
-            1e-12,
-            "exact",
-            "6.2.3.1",
-            unit="deg",
-        ),
-        Quoted(
-            "fast vibration left after one crank cycle, step 2 deg",
-            0.2,
-            _remaining(2.0),
-            0.0,
-            "'almost disappeared' read as a fifth",
-            "6.2.3.1",
-            relation="<",
-            differs="0.53 for a wave of 20 deg exactly, since the decay grows with the sixth power "
-            "of lambda; a fifth needs a wave of 17 deg",
-        ),
-        Quoted(
-            "the same for a wave of 17 deg",
-            0.2,
-            _free_decay(2.0, 360.0 / 17.0),
-            0.02,
-            "a tenth of it",
-            "6.2.3.1",
-            relation="<",
-        ),
-        Quoted(
-            "fast vibration left after one crank cycle, step 1 deg",
-            1.0,
-            _remaining(1.0),
-            0.05,
-            "'approximately constant' read as 5 %",
-            "6.2.3.1",
-        ),
-        Quoted(
-            "the same, step 0.1 deg",
-            1.0,
-            _remaining(0.1),
-            0.05,
-            "'no essential change' read as 5 %",
-            "6.2.3.1",
-        ),
-    )
-    return Drawn(rows, (_DATA, _HALF_STEP))
+    waves = 360.0 / (20.0 * _LAMBDA), _remaining(2.0), _free_decay(2.0, 360.0 / 17.0)
+    return Drawn([*waves, _remaining(1.0), _remaining(0.1)])
 
 
-def _free_decay(step: float, lam: float) -> float:
-    """Return what de Vogelaere's method leaves of y'' = -lam^2 y after one turn.
-
-    Parameters
-    ----------
-    step : float
-        Half step [deg].
-    lam : float
-        Vibrations in one turn.
-    """
+def _free_decay(step: float, waves: float) -> float:
+    """Return what a half step [deg] leaves of y'' = -waves^2 y after one turn."""
     h = np.radians(step)
-
-    def generator(theta: Array) -> Array:
-        return np.full((len(theta), 1, 1), -lam * lam)
-
-    step_map = de_vogelaere_maps(generator, np.zeros(1), h)[0]
-    return float(np.max(np.abs(np.linalg.eigvals(step_map))) ** (pi / h))
+    maps = de_vogelaere_maps(lambda t: np.full((len(t), 1, 1), -waves * waves), np.zeros(1), h)
+    return float(np.max(np.abs(np.linalg.eigvals(maps[0]))) ** (pi / h))
 
 
 def _cycles(axes: Sequence[Axes]) -> None:
@@ -265,182 +174,68 @@ def figure_29(axes: Sequence[Axes]) -> Drawn:
         _line(ax, long, COLOURS[1], "h = 1 deg", "--")
         _line(ax, short, COLOURS[0], "h = 0.5 deg")
     _cycles(axes)
-    lag = _lag(long, short, 4)
-    row = Quoted(
-        "phase between steps of 1 and 0.5 deg in the fourth cycle",
-        30.0,
-        lag,
-        0.0,
-        "'slight' after 'a few cycles' read as a twelfth of a wave in the fourth",
-        "6.2.3.1",
-        relation="<",
-        unit="deg of the wave",
-    )
-    return Drawn((row,), (_DATA,))
+    return Drawn([_lag(long, short, 4)])
 
 
 def figure_30(axes: Sequence[Axes]) -> Drawn:
     """Draw de Vogelaere's and the Kutta-Merson solution over four crank cycles."""
-    ours = _march(0.5, 4)
-    other = _kutta_merson(4)
+    ours, other = _march(0.5, 4), _kutta_merson(4)
     for ax in axes:
         _line(ax, ours, COLOURS[0], "de Vogelaere, h = 0.5 deg")
         _line(ax, other, COLOURS[1], "Kutta-Merson, variable step", "--")
     _cycles(axes)
-    row = Quoted(
-        "phase between the two methods in the fourth cycle",
-        60.0,
-        _lag(ours, other, 4),
-        0.0,
-        "'slight difference in frequency' read as a sixth of a wave in the fourth cycle",
-        "6.2.3.1",
-        relation="<",
-        unit="deg of the wave",
-    )
-    note = (
-        "The tolerance of the Kutta-Merson programme is not stated; taken is a relative "
-        f"{_KUTTA_MERSON_RTOL:g} for one step, none longer than the 1 deg at which values are "
-        "kept. A difference is the error of the looser method, no necessary feature of a variable "
-        "step: here it cannot be seen."
-    )
-    return Drawn((row,), (_DATA, note))
+    return Drawn([_lag(ours, other, 4)])
 
 
-def _modes() -> tuple[Array, Array, Array]:
-    """Return angles [rad], coordinates and their fast parts over one turn."""
-    system = _system()
-    per_turn = 3240
-    run = simulate(system, _speed(system), 1.0, samples=per_turn)
-    fast = np.full_like(run.q, np.nan)
-    for m in range(1, _MODES + 1):
-        # The mean over one wave of the mode is the slow part.
+def _fast_parts(q: Array) -> Array:
+    """Return coordinates of one turn less their means over one wave of their modes."""
+    fast, per_turn = np.full_like(q, np.nan), len(q) - 1
+    for m, values in enumerate(q.T, start=1):
         wave = per_turn // (round(_LAMBDA) * m * m)
         kernel = np.full(wave + 1, 1.0 / wave)
         kernel[[0, -1]] *= 0.5
-        slow = np.convolve(run.q[:, m - 1], kernel, mode="valid")
-        first = wave // 2
-        inside = slice(first, first + len(slow))
-        fast[inside, m - 1] = run.q[inside, m - 1] - slow
-    return run.theta, run.q, fast
+        slow = np.convolve(values, kernel, mode="valid")
+        inside = slice(wave // 2, wave // 2 + len(slow))
+        fast[inside, m - 1] = values[inside] - slow
+    return fast
 
 
 def figure_31(axes: Sequence[Axes]) -> Drawn:
     """Draw the first three modes, each on a scale of its own."""
-    theta, q, fast = _modes()
+    system = _system(3)
+    run = simulate(system, _speed(system), 1.0, samples=3240)
     for m, (ax, colour) in enumerate(zip(axes, COLOURS, strict=False), start=1):
-        ax.plot(np.degrees(theta), 1e6 * q[:, m - 1], color=colour, lw=0.9)
-        ax.set_ylabel(rf"$10^6\,U_{m}$")
+        ax.plot(np.degrees(run.theta), 1e6 * run.q[:, m - 1], color=colour, lw=0.9)
         crank_axis(ax)
+        ax.set_ylabel(rf"$10^6\,U_{m}$")
         panel_title(ax, f"mode {m}")
-        if m < _MODES:
-            ax.set_xlabel("")
-    return Drawn(tuple(_mode_rows(q, fast)), (_DATA,))
-
-
-def _mode_rows(q: Array, fast: Array) -> list[Quoted]:
+    for ax in axes[:-1]:
+        ax.set_xlabel("")
+    fast = _fast_parts(run.q)
     size = np.sqrt(2.0 * np.nanmean(fast**2, axis=0))
-    slow = np.nanmax(np.abs(q - fast), axis=0)
-    return [
-        Quoted(
-            "fast part: first mode over second",
-            10.0,
-            float(size[0] / size[1]),
-            0.0,
-            "'more than an order of magnitude'",
-            "6.2.3.2",
-            relation=">",
-        ),
-        Quoted(
-            "fast part: second mode over third",
-            10.0,
-            float(size[1] / size[2]),
-            5.0,
-            "'approximately the same' read as within a half",
-            "6.2.3.2",
-        ),
-        Quoted(
-            "slow part: first mode over second",
-            10.0,
-            float(slow[0] / slow[1]),
-            0.0,
-            "'a similar relationship' read as an order of magnitude",
-            "6.2.3.2",
-            relation=">",
-        ),
-        Quoted(
-            "slow part: second mode over third",
-            10.0,
-            float(slow[1] / slow[2]),
-            5.0,
-            "'a similar relationship' read as within a half",
-            "6.2.3.2",
-        ),
-        Quoted(
-            "peak of the first mode over that of the third",
-            100.0,
-            float(np.max(np.abs(q[:, 0])) / np.max(np.abs(q[:, 2]))),
-            0.0,
-            "'two or three orders of magnitude', the lower",
-            "6.2.2",
-            relation=">",
-        ),
-        Quoted(
-            "peak of the first mode over that of the second",
-            100.0,
-            float(np.max(np.abs(q[:, 0])) / np.max(np.abs(q[:, 1]))),
-            0.0,
-            "'two or three orders of magnitude', the lower",
-            "6.2.2",
-            relation=">",
-            differs="one and a half orders; section 6.2.3.2 itself says 'more than an order'",
-        ),
-    ]
+    slow = np.nanmax(np.abs(run.q - fast), axis=0)
+    peak = np.max(np.abs(run.q), axis=0)
+    ratios = [part[m] / part[m + 1] for part in (size, slow) for m in (0, 1)]
+    return Drawn([*ratios, peak[0] / peak[2], peak[0] / peak[1]])
 
 
 def figure_32(axes: Sequence[Axes]) -> Drawn:
     """Draw the forcing of the first and the second mode."""
-    system = _system()
-    theta = np.linspace(0.0, 2 * pi, 721)
-    forcing = system.array("f", theta)
-    ax = axes[0]
+    ax, theta = axes[0], np.linspace(0.0, 2 * pi, 721)
+    forcing = _system(3).array("f", theta)
     for m, colour in zip((1, 2), COLOURS, strict=False):
         ax.plot(np.degrees(theta), forcing[:, m - 1], color=colour, label=f"mode {m}: $g_{m}$")
     crank_axis(ax)
     ax.set_ylabel(r"forcing $g_m(\theta_2)$")
     legend_below([ax])
-    note = (
-        "The caption's number (6.14) belongs to the end force; the forcing stands on the right of "
-        "(6.16). Linkage (2,1,2,2), as for Fig. 28."
-    )
-    same = float(np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0)))
     peaks = np.max(np.abs(forcing), axis=0)
-    rows = (
-        Quoted(
-            "forcing less the right side of (6.16), modes 1 and 2",
-            0.0,
-            float(np.max(np.abs(forcing[:, :2] - _right_side(theta)))),
-            1e-12,
-            "round-off",
-            "6.2.2",
-        ),
-        Quoted(
-            "peak of g_1 over that of g_3",
-            3.0,
-            float(peaks[0] / peaks[2]),
-            1e-9,
-            "'inversely proportional to the mode order', odd modes",
-            "6.2.2",
-        ),
-        Quoted(
-            "largest difference of g_3 and g_1/3",
-            0.0,
-            same,
-            1e-12,
-            "odd modes 'similar in form'",
-            "6.2.3.2",
-        ),
+    return Drawn(
+        [
+            np.max(np.abs(forcing[:, :2] - _right_side(theta))),
+            peaks[0] / peaks[2],
+            np.max(np.abs(forcing[:, 2] - forcing[:, 0] / 3.0)),
+        ]
     )
-    return Drawn(rows, (note,))
 
 
 def _right_side(theta: Array) -> Array:
@@ -454,18 +249,14 @@ def _right_side(theta: Array) -> Array:
 def figure_33(axes: Sequence[Axes]) -> Drawn:
     """Draw three unstable and three stable solutions of the homogeneous equation."""
     f = f3_series("(2,1,2,2)")
-    scene = load_scene(
-        "hill_example",
-        overrides={
-            "function.a": [float(v) for v in f.a],
-            "function.b": [float(v) for v in f.b],
-            "parameters.mu": _MU,
-            "parameters.damping": 0.0,
-        },
-    )
-    system = scene.linear_system()
+    changes = {
+        "function.a": [float(v) for v in f.a],
+        "function.b": [float(v) for v in f.b],
+        "parameters.mu": _MU,
+        "parameters.damping": 0.0,
+    }
+    system = load_scene("hill_example", overrides=changes).linear_system()
     half = discriminant(f, np.array(_UNSTABLE + _STABLE), _MU).value
-    rows = []
     for i, lam2 in enumerate(_UNSTABLE + _STABLE):
         run = simulate(system.with_parameters(lam2=lam2), 1.0, 6.0, initial=(1.0, 0.0))
         column, row = divmod(i, 3)
@@ -477,20 +268,4 @@ def figure_33(axes: Sequence[Axes]) -> Drawn:
         ax.set_ylabel("u")
         if row == 2:
             ax.set_xlabel("crank cycles")
-        rows.append(
-            Quoted(
-                f"|half trace| at lambda^2 = {lam2:g}",
-                1.0,
-                float(abs(half[i])),
-                0.0,
-                f"{kind}: {'above' if column == 0 else 'below'} 1",
-                "6.2.3.3",
-                relation=">" if column == 0 else "<",
-            )
-        )
-    note = (
-        "Linkage and epsilon are not stated; taken are f3 of (2,1,2,2) and epsilon = "
-        f"{_MU:g}, without forcing, from u = 1, u' = 0. The verdicts hold for epsilon from 0.1 "
-        "to 0.5 at least."
-    )
-    return Drawn(tuple(rows), (note,))
+    return Drawn(list(np.abs(half)))

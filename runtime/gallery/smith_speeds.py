@@ -1,94 +1,145 @@
-"""Smith's Figs. 82 to 87: stability charts of the six rigs, with the speeds quoted."""
+"""Smith's Figs. 82 to 87: charts of the six rigs, quoted speeds, printed and complete equation."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..hill import discriminant
+from ..hill import discriminant, perturbation_boundaries
 from ..scenes import load_scene
-from .records import Drawn, Quoted, Table
+from ..stability.boundary_speeds import speed_boundaries
+from .drawing import COLOURS, Array, legend_below
+from .records import Drawn, Table
 from .smith_linkages import (
     EQUATIONS,
     LBF_IN_S2,
+    PROPORTIONS,
     RIG,
+    RIGS,
     RPM,
-    Array,
     Rig,
     end_load,
     linkage_of,
     region_name,
 )
-from .smith_observations import OBSERVATIONS, Observation
-from .style import COLOURS, legend_below
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _REGIONS = (3, 4, 5, 6, 7, 8)
 _THESIS, _COMPLETE, _FILL = COLOURS[0], COLOURS[1], "#f7e3d3"
-_TOLERANCE = 0.05
-_MEANING = "5 %: motor scale 1.5 %, frequency 2 %, speeds in tens of rpm"
-_NOTE = (
-    "Boundaries without damping, as in the thesis: equation (6.18), dashed where a resonance "
-    "belongs to the region, dotted where instability alone does, and the complete equation, "
-    "shaded. The points of the thesis are lost with its picture: those shown are the speeds that "
-    "section 9.5.3 quotes."
-)
-_BELOW = (
-    "observed lower than by any of the equations; the frequency of this coupler is not quoted but "
-    "half of that at 1/16 in, and a resonance softens as it grows"
-)
-_ABOVE = (
-    "read from the response curve, where the forced amplitude grows with speed; 2 Omega/5 is "
-    "480 rpm for the 20 Hz observed"
-)
+_NAMES = {"reduced": "(6.18)", "printed": "(6.17)", "complete": "complete"}
 
 
-def predicted(observation: Observation, equation: str) -> float:
-    """Return the crank speed [rpm] that an equation sets against an observation.
+@dataclass(frozen=True)
+class Observation:
+    """One crank speed that chapter 9 quotes.
 
-    The middle of the region for a resonance or a range, an end for an onset or an end.
+    Number of the rig's chart, follower inertia [lbf in s^2], number n of the unstable region
+    2 Omega/n that it belongs to (0 for none), speed [rpm] as quoted or the middle of a range, the
+    response that it is read from, what the text says of it and how it fixes the inertia, half of
+    a range [rpm].  By its kind it is set against the middle of the region (``resonance``, or a rise
+    of amplitude; ``range``: unstable between two speeds), the lower end (``onset``: unstable above
+    it) or the upper one (``end``: stable again above it).
     """
-    ends = observation.rig.ends(equation, observation.si_inertia, (observation.region,))
-    low, high = (float(v) for v in ends[:, 0, 0] / RPM)
-    if observation.kind == "onset":
-        return low
-    return high if observation.kind == "end" else 0.5 * (low + high)
+
+    chart: str
+    inertia: float
+    region: int
+    speed: float
+    kind: Literal["resonance", "onset", "end", "range", "stable"]
+    figure: str
+    meaning: str
+    note: str = ""
+    half_width: float = 0.0
+
+    @property
+    def rig(self) -> Rig:
+        """The linkage and coupler."""
+        return RIG[self.chart]
+
+    @property
+    def si_inertia(self) -> float:
+        """Follower inertia [kg m^2]."""
+        return self.inertia * LBF_IN_S2
+
+    def predicted(self, equation: str) -> float:
+        """Return the crank speed [rpm] that an equation sets against it."""
+        ends = self.rig.ends(equation, self.si_inertia, (self.region,))
+        low, high = (float(v) for v in ends[:, 0, 0] / RPM)
+        if self.kind == "onset":
+            return low
+        return high if self.kind == "end" else 0.5 * (low + high)
+
+    def percent(self, equation: str) -> float:
+        """Return the computed speed less the quoted one, in percent of it."""
+        return 100.0 * (self.predicted(equation) / self.speed - 1.0)
+
+    @property
+    def nearest(self) -> str:
+        """The equation that comes nearest."""
+        return min(EQUATIONS, key=lambda name: abs(self.predicted(name) - self.speed))
 
 
-def chart_figure(figure: str) -> Callable[[Sequence[Axes]], Drawn]:
-    """Return the function that draws the chart of one rig."""
-    rig = RIG[figure]
+_LEAST, _GREATEST = 0.0058, 0.0190
+_TEXT = "section 9.5.3 says the least, the list of figures 0.0069"
+_HIGHER = "'higher values': 0.0109 to 0.0190; 0.0149 taken"
+OBSERVATIONS = (
+    Observation("82", _LEAST, 6, 250.0, "resonance", "56", "third subharmonic, low inertia", _TEXT),
+    Observation(
+        "82", _GREATEST, 6, 220.0, "resonance", "61", "third subharmonic, greatest inertia"
+    ),
+    Observation("82", _LEAST, 5, 300.0, "resonance", "56", "small rise in amplitude", _TEXT),
+    Observation(
+        "82", 0.0149, 5, 270.0, "range", "58-61", "no period, from 260 to 280 rpm", _HIGHER, 10.0
+    ),
+    Observation("82", _GREATEST, 0, 230.0, "stable", "55", "stable at every inertia shown"),
+    Observation("83", _LEAST, 8, 300.0, "resonance", "75", "resonance"),
+    Observation("83", _LEAST, 6, 400.0, "resonance", "75", "resonance"),
+    Observation("83", _LEAST, 5, 500.0, "resonance", "75", "apparent resonance, softening"),
+    Observation("83", _LEAST, 4, 600.0, "resonance", "74", "unsymmetric resonance"),
+    Observation("84", _LEAST, 3, 900.0, "onset", "80", "unstable above"),
+    Observation("85", 0.0079, 4, 350.0, "resonance", "53", "resonance, printed inertia 0.00783"),
+    Observation("85", _LEAST, 4, 360.0, "resonance", "62", "resonance"),
+    Observation("85", 0.0079, 4, 360.0, "resonance", "65", "resonance"),
+    Observation("85", _LEAST, 3, 460.0, "resonance", "63", "vibration of period 4 pi"),
+    Observation("85", _LEAST, 3, 480.0, "end", "63", "stable again from here"),
+    Observation("85", 0.0079, 3, 450.0, "onset", "65", "unstable above"),
+)
+_COMPARED = tuple(one for one in OBSERVATIONS if one.region)
 
-    def draw(axes: Sequence[Axes]) -> Drawn:
-        ax = axes[0]
-        low, high = load_scene(rig.scene).get("chart.x_range")
-        least, greatest = load_scene(rig.scene).get("chart.y_range")
-        inertia = np.linspace(least, greatest, 61)
-        _boundaries(ax, rig, inertia, (low / RPM, high / RPM))
-        seen = [one for one in OBSERVATIONS if one.chart == figure]
-        _points(ax, seen)
-        _frame(ax, rig, inertia, (low / RPM, high / RPM))
-        legend_below([ax], columns=3)
-        rows = [*_speed_rows(seen), _order_row(rig), *_EXTRA.get(figure, _none)(rig)]
-        notes = [_NOTE] if seen else [_NOTE, "The text quotes no speed for this rig."]
-        return Drawn(tuple(rows), tuple(notes), (_table(seen),) if seen else ())
 
-    return draw
+def chart(axes: Sequence[Axes], figure: str) -> Drawn:
+    """Draw the chart of one rig."""
+    rig, ax = RIG[figure], axes[0]
+    low, high = (end / RPM for end in load_scene(rig.scene).get("chart.x_range"))
+    least, greatest = load_scene(rig.scene).get("chart.y_range")
+    inertia = np.linspace(least, greatest, 61)
+    _boundaries(ax, rig, inertia, high)
+    seen = [one for one in OBSERVATIONS if one.chart == figure]
+    _points(ax, seen)
+    _frame(ax, rig, inertia, (low, high))
+    legend_below([ax], columns=3)
+    compared = [one for one in seen if one.region]
+    sizes = order_sizes(rig)
+    values = [one.predicted("complete") for one in compared]
+    values += [max(sizes[name] for name in ("phi", "eps1 f1", "eps2 f2")), *_claims(rig)]
+    return Drawn(values, tables=(_quoted_speeds(compared),) if seen else ())
 
 
-def _boundaries(ax: Axes, rig: Rig, inertia: Array, window: tuple[float, float]) -> None:
+def _boundaries(ax: Axes, rig: Rig, inertia: Array, high: float) -> None:
     across = 1e3 * inertia
-    thesis = rig.ends("reduced", inertia, _REGIONS) / RPM
-    complete = rig.ends("complete", inertia, _REGIONS) / RPM
     # Beyond the picture every value does; infinite ones cannot be drawn.
-    thesis, complete = (np.minimum(ends, 10 * window[1]) for ends in (thesis, complete))
+    thesis, complete = (
+        np.minimum(rig.ends(name, inertia, _REGIONS) / RPM, 10 * high)
+        for name in ("reduced", "complete")
+    )
     ax.fill_between([], [], color=_FILL, label="complete equation, unstable")
-    labelled = set()
     for i, n in enumerate(_REGIONS):
         ax.fill_between(across, complete[0, i], complete[1, i], color=_FILL, lw=0)
         style, label = (
@@ -98,8 +149,7 @@ def _boundaries(ax: Axes, rig: Rig, inertia: Array, window: tuple[float, float])
         )
         for k in (0, 1):
             ax.plot(across, complete[k, i], color=_COMPLETE, lw=0.8)
-            named = None if label in labelled else label
-            labelled.add(label)
+            named = label if i < 2 and k == 0 else None
             ax.plot(across, thesis[k, i], style, color=_THESIS, lw=1.3, label=named)
 
 
@@ -132,83 +182,37 @@ def _points(ax: Axes, seen: Sequence[Observation]) -> None:
 
 def _frame(ax: Axes, rig: Rig, inertia: Array, window: tuple[float, float]) -> None:
     """Set limits, the measured inertias along the top, fractions of the frequency at the right."""
-    ax.set_xlim(1e3 * inertia[0], 1e3 * inertia[-1])
-    ax.set_ylim(*window)
+    ax.set(xlim=(1e3 * inertia[0], 1e3 * inertia[-1]), ylim=window)
     ax.grid(visible=False)
     for value in rig.inertias:
         ax.axvline(1e3 * value, color="0.85", lw=0.6, zorder=0)
     ax.set_xlabel(r"follower inertia $I_4$ [10$^{-3}$ kg m$^2$]")
     ax.set_ylabel(r"crank speed $\omega_2$ [rpm]")
-    top = ax.secondary_xaxis("top")
-    top.set_xticks(
-        1e3 * rig.inertias,
-        [f"{value / LBF_IN_S2:.4f}" for value in rig.inertias],
-        rotation=60,
-        fontsize=7,
-        ha="left",
-    )
+    top, right = ax.secondary_xaxis("top"), ax.secondary_yaxis("right")
+    names = [f"{value / LBF_IN_S2:.4f}" for value in rig.inertias]
+    top.set_xticks(1e3 * rig.inertias, names, rotation=60, fontsize=7, ha="left")
     top.set_xlabel(r"measured inertias [lbf in s$^2$]", fontsize=8)
-    right = ax.secondary_yaxis("right")
-    speeds = [(2 * rig.frequency / n / RPM, region_name(n)) for n in range(2, 10)]
-    shown = [(speed, name) for speed, name in speeds if window[0] <= speed <= window[1]]
-    right.set_yticks([speed for speed, _ in shown], [name for _, name in shown], fontsize=8)
+    speeds = {n: 2 * rig.frequency / n / RPM for n in range(2, 10)}
+    shown = {n: speed for n, speed in speeds.items() if window[0] <= speed <= window[1]}
+    right.set_yticks(list(shown.values()), [region_name(n) for n in shown], fontsize=8)
     right.set_ylabel("fractions of the coupler frequency", fontsize=8)
 
 
-def _speed_rows(seen: Sequence[Observation]) -> list[Quoted]:
-    rows = []
-    for one in seen:
-        if one.region == 0:
-            continue
-        computed = predicted(one, "complete")
-        name = f"Fig. {one.figure}, {region_name(one.region)}, I = {one.inertia:.4f}"
-        rows.append(
-            Quoted(
-                f"{name}: {one.meaning}",
-                one.speed,
-                computed,
-                _TOLERANCE * one.speed,
-                _MEANING,
-                "9.5.3",
-                unit="rpm",
-                differs=_KNOWN.get((one.chart, one.inertia, one.region, one.speed), ""),
-            )
+def _quoted_speeds(compared: Sequence[Observation]) -> Table:
+    rows = tuple(
+        (
+            f"Fig. {one.figure}",
+            one.meaning + (f" ({one.note})" if one.note else ""),
+            f"{one.inertia:.4f}",
+            region_name(one.region),
+            f"{one.speed:.0f}",
+            *(f"{one.predicted(name):.1f} ({one.percent(name):+.1f} %)" for name in EQUATIONS),
         )
-    return rows
-
-
-# Observations more than 5 % off the complete equation, and the likely reason.
-_KNOWN = {
-    ("82", 0.0190, 6, 220.0): _BELOW,
-    ("83", 0.0058, 5, 500.0): _ABOVE,
-    ("85", 0.0079, 4, 350.0): _BELOW,
-    ("85", 0.0058, 4, 360.0): _BELOW,
-    ("85", 0.0079, 4, 360.0): _BELOW,
-    ("85", 0.0058, 3, 460.0): _BELOW,
-    ("85", 0.0058, 3, 480.0): _BELOW,
-}
-
-
-def _table(seen: Sequence[Observation]) -> Table:
-    rows = []
-    for one in seen:
-        if one.region == 0:
-            continue
-        values = [predicted(one, equation) for equation in EQUATIONS]
-        rows.append(
-            (
-                f"Fig. {one.figure}",
-                one.meaning + (f" ({one.inertia_note})" if one.inertia_note else ""),
-                f"{one.inertia:.4f}",
-                region_name(one.region),
-                f"{one.speed:.0f}",
-                *(f"{value:.1f} ({100 * (value / one.speed - 1):+.1f} %)" for value in values),
-            )
-        )
-    header = ("response", "what the text says", "I4 [lbf in s²]", "region", "quoted [rpm]")
-    return Table(
-        "Quoted speeds", (*header, "(6.18) [rpm]", "(6.17) [rpm]", "complete [rpm]"), tuple(rows)
+        for one in compared
     )
+    header = ("response", "what the text says", "I4 [lbf in s²]", "region", "quoted [rpm]")
+    equations = (f"{_NAMES[name]} [rpm]" for name in EQUATIONS)
+    return Table("Quoted speeds", (*header, *equations), rows)
 
 
 def order_sizes(rig: Rig) -> dict[str, float]:
@@ -232,113 +236,260 @@ def order_sizes(rig: Rig) -> dict[str, float]:
     return {name: float(np.max(np.abs(values))) / follower for name, values in terms.items()}
 
 
-def _order_row(rig: Rig) -> Quoted:
-    sizes = order_sizes(rig)
-    kept = {name: sizes[name] for name in ("phi", "eps1 f1", "eps2 f2")}
-    largest = max(kept, key=lambda name: kept[name])
-    return Quoted(
-        f"largest coupler term of (6.17), {largest}, over the follower's, least inertia",
-        0.1,
-        kept[largest],
-        0.0,
-        "'at least one order of magnitude smaller'",
-        "9.5.4",
-        relation="<",
-        differs=""
-        if rig.thickness == "1/32"
-        else "the heavier couplers' terms are larger, and the "
-        "term that (6.17) leaves out is larger still",
-    )
+def _claims(rig: Rig) -> list[float]:
+    """Return what section 9.5 says of single rigs."""
 
+    def damping(n: int, *inertias: float) -> float:
+        """K by (7.51), ``mu sqrt(a_n^2 + b_n^2)/(2 n)``, half way between two inertias."""
+        middle = 0.5 * sum(inertias) * LBF_IN_S2
+        return float(rig.function("reduced", middle).amplitudes[n]) / (2 * n)
 
-def _none(_: Rig) -> list[Quoted]:
+    if rig.figure == "82":
+        speed = 230.0 * RPM
+        least = float(min(load_scene(rig.scene).get("measured.log_decrement")))
+        ratio = least / (2 * pi) * rig.frequency / speed
+        halves = [
+            discriminant(rig.function("complete", i), (rig.frequency / speed) ** 2, 1.0, ratio)
+            for i in rig.inertias
+        ]
+        worst = max(float(abs(half.value) / half.level) for half in halves)
+        return [worst, damping(5, 0.0069, 0.0079), damping(6, 0.0130, 0.0149)]
+    if rig.figure == "83":
+        return [26.0 * 3.0 / 4.0]
+    if rig.figure == "84":
+        return [100.0 * (26.5 / 26.0 - 1.0)]
+    if rig.figure == "85":
+        return [damping(3, 0.0058, 0.0079), damping(4, 0.0130, 0.0149)]
     return []
 
 
-def _rows_82(rig: Rig) -> list[Quoted]:
-    worst = 0.0
-    speed = 230.0 * RPM
-    damping = _damping_at_rest(rig) * rig.frequency / speed
-    for inertia in rig.inertias:
-        f = rig.function("complete", float(inertia))
-        half = discriminant(f, (rig.frequency / speed) ** 2, 1.0, damping)
-        worst = max(worst, float(abs(half.value) / half.level))
-    return [
-        Quoted(
-            "|half trace| over the stable limit at 230 rpm, all eight inertias (Fig. 55)",
-            1.0,
-            worst,
-            0.0,
-            "complete equation with the least decrement measured at rest, 0.15",
-            "9.5.3",
-            relation="<",
-        ),
-        _damping_row(rig, 5, (0.0069, 0.0079), 0.02, "between 0.0069 and 0.0079"),
-        _damping_row(rig, 6, (0.0130, 0.0149), 0.01, "inertias not quoted: 0.0130 and 0.0149"),
+def equations_table(axes: Sequence[Axes]) -> Drawn:
+    """Draw the deviation of each equation from each quoted speed; give the tables."""
+    ax, places = axes[0], np.arange(len(_COMPARED))
+    for equation, marker, colour in zip(EQUATIONS, "os^", COLOURS, strict=False):
+        values = [one.percent(equation) for one in _COMPARED]
+        ax.plot(values, places, marker, color=colour, ms=5, label=_NAMES[equation])
+    ax.axvline(0.0, color="0.4", lw=0.8)
+    names = [
+        f"{one.rig.name}, I {one.inertia:.4f}, {region_name(one.region)}: "
+        f"{one.speed:.0f} rpm ({one.kind})"
+        for one in _COMPARED
     ]
+    ax.set_yticks(places, names, fontsize=7)
+    ax.invert_yaxis()
+    ax.set_xlabel("computed less quoted speed [% of the quoted]")
+    legend_below([ax])
+    tables = (_terms(), _shifts(), _observed(), _summary())
+    left = [_parts(name) for name in _rig_linkages()]
+    count = sum(one.nearest == "complete" for one in _COMPARED)
+    first, complete = _first_order_trend(), _trend("complete")
+    ratio = min(b / a for a, b in left)
+    values = [_gap_of_two_routes(), ratio, count / len(_COMPARED)]
+    return Drawn([*values, first[1] / first[0], complete[1] / complete[0]], _words(count), tables)
 
 
-def _rows_83(rig: Rig) -> list[Quoted]:
-    return [
-        Quoted(
-            "frequency in proportion to the thickness, from 26 Hz at 1/16 in",
-            20.0,
-            26.0 * 3.0 / 4.0,
-            0.6,
-            "3 %: two frequencies known to 2 %",
-            "9.4.2",
-            unit="Hz",
-        )
+def _rig_linkages() -> list[str]:
+    return list(dict.fromkeys(rig.linkage for rig in RIGS))
+
+
+def _terms() -> Table:
+    rows = [
+        (rig.name, *(f"{size:.3f}" for size in order_sizes(rig).values()), _ratio(rig.linkage))
+        for rig in RIGS
     ]
-
-
-def _rows_84(rig: Rig) -> list[Quoted]:
-    return [
-        Quoted(
-            "computed frequency, 26.5 Hz, over the observed 26 Hz, less 1",
-            2.0,
-            100.0 * (26.5 / 26.0 - 1.0),
-            0.0,
-            "'within 2 %'",
-            "9.5.3",
-            relation="<",
-            unit="%",
-        )
-    ]
-
-
-def _rows_85(rig: Rig) -> list[Quoted]:
-    return [
-        _damping_row(rig, 3, (0.0058, 0.0079), 0.02, "between 0.0058 and 0.0079"),
-        _damping_row(rig, 4, (0.0130, 0.0149), 0.005, "inertias not quoted: 0.0130 and 0.0149"),
-    ]
-
-
-_EXTRA: dict[str, Callable[[Rig], list[Quoted]]] = {
-    "82": _rows_82,
-    "83": _rows_83,
-    "84": _rows_84,
-    "85": _rows_85,
-}
-
-
-def _damping_at_rest(rig: Rig) -> float:
-    """Return the damping ratio of the least logarithmic decrement measured."""
-    least = min(load_scene(rig.scene).get("measured.log_decrement"))
-    return float(least) / (2 * pi)
-
-
-def _damping_row(
-    rig: Rig, n: int, inertias: tuple[float, float], printed: float, meaning: str
-) -> Quoted:
-    """Return K by (7.51), ``mu sqrt(a_n^2 + b_n^2)/(2 n)``, half way between two inertias."""
-    middle = 0.5 * sum(inertias) * LBF_IN_S2
-    size = float(rig.function("reduced", middle).amplitudes[n])
-    return Quoted(
-        f"damping K by (7.51), region {region_name(n)}",
-        printed,
-        size / (2 * n),
-        0.25 * printed,
-        f"one digit; {meaning}",
-        "9.5.5",
+    others = [name for name in PROPORTIONS if name not in _rig_linkages()]
+    rows += [(f"{name}, no rig", *[""] * 5, _ratio(name)) for name in others]
+    left_out = ("left out: ε2 cos(θ2-θ3)", "left out: (π²/3 - 1/4) φ")
+    header = ("linkage, coupler", "φ", "ε1 f1", "ε2 f2", *left_out)
+    return Table(
+        "Peaks of the periodic terms of the first mode over that of the follower's, ε3 f3, "
+        "at the least follower inertia",
+        (*header, "left out over kept coupler part"),
+        tuple(rows),
     )
+
+
+def _ratio(linkage: str) -> str:
+    kept, left = _parts(linkage)
+    return f"{left / kept:.2f}"
+
+
+def _parts(linkage: str) -> tuple[float, float]:
+    """Return the peaks of the coupler part that (6.17) keeps and of the one it leaves out."""
+    links, theta = linkage_of(linkage), np.linspace(0.0, 2 * pi, 1441)
+    parts = end_load(links, theta)
+    eps1, eps2 = pi**2 / 3, pi**2 * links.crank / (2 * links.coupler)
+    kept = eps1 * parts.f1 + eps2 * parts.f2 - parts.phi
+    return float(np.max(np.abs(kept))), float(np.max(np.abs(_left_out(linkage, theta))))
+
+
+def _left_out(linkage: str, theta: Array) -> Array:
+    links = linkage_of(linkage)
+    parts = end_load(links, theta)
+    tension = pi**2 * links.crank / (2 * links.coupler) * parts.cos23
+    return tension + (pi**2 / 3 - 0.25) * parts.phi
+
+
+def _gap_of_two_routes() -> float:
+    """Return the largest difference of what (6.17) leaves out, by the modules and by hand."""
+    theta, gaps = np.linspace(0.0, 2 * pi, 181), []
+    for rig in RIGS:
+        complete, printed = (
+            rig.function(name, float(rig.inertias[0]))(theta) for name in ("complete", "printed")
+        )
+        gaps.append(np.max(np.abs(complete - printed - _left_out(rig.linkage, theta))))
+    return float(max(gaps))
+
+
+@dataclass(frozen=True)
+class _Shift:
+    """Ends of one region [rpm], lower and upper, by each equation and with the second mode."""
+
+    rig: Rig
+    inertia: float
+    region: int
+    ends: dict[str, Array]
+    two_modes: Array
+
+
+@lru_cache(maxsize=1)
+def _moved() -> tuple[_Shift, ...]:
+    moved = []
+    for rig in RIGS:
+        # Those that the thesis observed with this linkage.
+        regions = (3, 4, 5) if rig.linkage == "(10,1,10,4)" else (4, 5, 6)
+        for inertia in (float(rig.inertias[0]), float(rig.inertias[-1])):
+            ends = {name: rig.ends(name, inertia, regions)[..., 0] / RPM for name in EQUATIONS}
+            for i, n in enumerate(regions):
+                here = {name: values[:, i] for name, values in ends.items()}
+                moved.append(_Shift(rig, inertia, n, here, two_modes(rig, inertia, n) / RPM))
+    return tuple(moved)
+
+
+def _shifts() -> Table:
+    def pair(values: Array) -> str:
+        # Zero without a sign.
+        low, high = (round(float(value), 1) + 0.0 for value in values)
+        return f"{low:+.1f}, {high:+.1f}"
+
+    rows = []
+    for one in _moved():
+        base = one.ends["reduced"]
+        place = (one.rig.name, f"{one.inertia / LBF_IN_S2:.4f}", region_name(one.region))
+        moves = (pair(one.ends[name] - base) for name in EQUATIONS[1:])
+        further = pair(one.two_modes - one.ends["complete"])
+        rows.append((*place, f"{base[0]:.1f} to {base[1]:.1f}", *moves, further))
+    header = (
+        "linkage, coupler",
+        "I4 [lbf in s²]",
+        "region",
+        "unstable by (6.18) [rpm]",
+        "shift by (6.17) [rpm]",
+        "shift by complete [rpm]",
+        "further by the second mode [rpm]",
+    )
+    return Table("Ends of the unstable regions, and how far they move", header, tuple(rows))
+
+
+def two_modes(rig: Rig, inertia: float, n: int) -> Array:
+    """Return the ends [rad/s] of a region of the first mode where the second is coupled with it."""
+    alone = rig.ends("complete", inertia, (n,))[:, 0, 0]
+    ends = speed_boundaries(
+        rig.system("complete", 2),
+        1 if n % 2 == 0 else -1,
+        speed_range=(0.985 * float(alone[0]), 1.015 * float(alone[1])),
+        harmonics=16,
+        follower_inertia=inertia,
+    )
+    share = np.sum(ends.cosine[..., 0] ** 2 + ends.sine[..., 0] ** 2, axis=-1)
+    first = ends.speed[share > 0.5]
+    return np.array([first[np.argmin(np.abs(first - end))] for end in alone])
+
+
+def _observed() -> Table:
+    rows = tuple(
+        (
+            one.rig.name,
+            f"{one.inertia:.4f}",
+            region_name(one.region),
+            one.meaning,
+            f"{one.speed:.0f}",
+            *(f"{one.predicted(name):.1f}" for name in EQUATIONS),
+            _NAMES[one.nearest],
+        )
+        for one in _COMPARED
+    )
+    header = ("linkage, coupler", "I4 [lbf in s²]", "region", "quoted in section 9.5.3", "[rpm]")
+    return Table("Speeds that chapter 9 quotes", (*header, *_NAMES.values(), "nearest"), rows)
+
+
+def _rms(equation: str, *, fitted: bool) -> float:
+    """Return the root mean square deviation in percent, with one frequency per coupler fitted."""
+    total = 0.0
+    for thickness in {rig.thickness for rig in RIGS}:
+        here = [one for one in _COMPARED if one.rig.thickness == thickness]
+        gaps = np.array([one.percent(equation) for one in here])
+        if fitted and len(gaps):
+            gaps = gaps - np.mean(gaps)
+        total += float(np.sum(gaps**2))
+    return float(np.sqrt(total / len(_COMPARED)))
+
+
+def _summary() -> Table:
+    rows = [
+        (
+            _NAMES[name],
+            str(sum(one.nearest == name for one in _COMPARED)),
+            f"{_rms(name, fitted=False):.1f} %",
+            f"{_rms(name, fitted=True):.1f} %",
+            *(f"{value:.1f}" for value in _trend(name)),
+        )
+        for name in EQUATIONS
+    ]
+    rows.append(("(6.18), first order", "", "", "", *(f"{v:.1f}" for v in _first_order_trend())))
+    rows.append(("quoted", "", "", "", "250", "220"))
+    header = (
+        "equation",
+        "nearest to quoted speeds",
+        "rms deviation",
+        "the same, frequencies fitted",
+        "Ω/3, least inertia [rpm]",
+        "Ω/3, greatest [rpm]",
+    )
+    title = "Which equation is nearer (Ω/3: (5,1,5,2) with 1/32 in)"
+    return Table(title, header, tuple(rows))
+
+
+def _trend(equation: str) -> Array:
+    """Return the middles of Omega/3 [rpm] at the least and the greatest inertia."""
+    rig = RIG["82"]
+    return np.asarray(np.mean(rig.ends(equation, rig.inertias[[0, -1]], (6,))[:, 0] / RPM, axis=0))
+
+
+def _first_order_trend() -> Array:
+    rig = RIG["82"]
+    # The larger inertia is beyond what first order may be trusted with: as Smith did all the same.
+    f, ends = rig.function("reduced", 1.0), rig.inertias[[0, -1]]
+    bounds = perturbation_boundaries(f, ends, (6,), outside="value")
+    speeds = rig.frequency / np.sqrt(np.stack([bounds.lower[0], bounds.upper[0]])) / RPM
+    return np.asarray(np.mean(speeds, axis=0))
+
+
+def _words(count: int) -> dict[str, object]:
+    """Return the numbers of the conclusion."""
+    edges = [one for one in _COMPARED if one.kind in {"onset", "end"}]
+    shifts = np.abs([one.ends["complete"] - one.ends["reduced"] for one in _moved()])
+    second = [np.max(np.abs(one.two_modes - one.ends["complete"])) for one in _moved()]
+    words: dict[str, object] = {
+        "ratios": " and ".join(_ratio(name) for name in _rig_linkages()),
+        "count": count,
+        "all": len(_COMPARED),
+        "least": float(np.min(shifts)),
+        "most": float(np.max(shifts)),
+        "second": float(max(second)),
+    }
+    for name in EQUATIONS:
+        words[f"plain_{name}"] = _rms(name, fitted=False)
+        words[f"fitted_{name}"] = _rms(name, fitted=True)
+        words[f"edge_{name}"] = float(np.sqrt(np.mean([one.percent(name) ** 2 for one in edges])))
+    return words

@@ -14,7 +14,6 @@ from elastolink.runtime import beams, frequencies, recovery
 from elastolink.runtime import frequencies as dynamic_stiffness
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import Transcendental
-from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.linkages import FourBar
 
 # The longest line of a refusal that can still be read at a glance.
@@ -80,7 +79,6 @@ CALLS = (
     (frequencies.pinned_frequency, {"section": BAR, "length": 1.0}),
     (dynamic_stiffness.dynamic_stiffness, {"structure": structure, "theta": 0.1}),
     (dynamic_stiffness.element_matrices, {"structure": structure, "theta": 0.1}),
-    (hybrid_matrices, {"structure": structure, "theta": [0.1], "rtol": 1e-3}),
     (dynamic_stiffness.log_determinant, {"problem": problem, "omega": [10.0]}),
     (dynamic_stiffness.member_matrices, {"omega": 1.0, **MEMBER}),
     (dynamic_stiffness.wittrick_williams, {"problem": problem, "count": 1, "rtol": 1e-10}),

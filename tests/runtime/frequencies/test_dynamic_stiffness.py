@@ -15,7 +15,6 @@ from elastolink.runtime.frequencies import (
     member_matrices,
     wittrick_williams,
 )
-from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices
 from elastolink.runtime.linkages import FourBar
 from scipy.integrate import quad_vec
 from scipy.linalg import eigvalsh
@@ -228,25 +227,6 @@ def test_determinant_of_one_and_two_pieces():
         log_determinant(whole, [0.0, 1.0])
 
 
-def test_hybrid_element_reaches_the_exact_first_frequency():
-    """At most five iterations at 1e-3, as in the thesis; two or three are enough."""
-    theta = np.linspace(0.0, 2 * np.pi, 5)
-    found = hybrid_matrices(four_bar(), theta)
-    assert found.passed
-    assert found.iterations.min() >= 1 and found.iterations.max() <= 3
-    exact = [
-        wittrick_williams(dynamic_stiffness(four_bar(), angle), count=1).frequencies[0]
-        for angle in theta
-    ]
-    assert np.all(np.abs(found.first - exact) <= found.error)
-    assert np.all(found.polynomial >= found.first * (1 - 1e-9))
-    tight = hybrid_matrices(four_bar(), theta[:2], rtol=1e-9)
-    assert tight.iterations.max() <= 5
-    stiffness = dynamic_stiffness(four_bar(), 0.0).stiffness(tight.first[0])
-    formed = tight.stiffness[0] - tight.first[0] ** 2 * tight.mass[0]
-    np.testing.assert_allclose(formed, stiffness, atol=1e-6 * np.abs(stiffness).max())
-
-
 def test_matrices_of_a_section_that_loses_energy():
     """Complex stiffness: analytic in it, so that a small loss turns D by its derivative."""
     data = {"length": 0.4, "axial_stiffness": 2e6, "mass_per_length": 0.6}
@@ -284,7 +264,6 @@ def test_static_limits_are_the_cubic_element():
         ),
         (lambda: member_matrices(1.0, 0.0, 1.0, 1.0, 1.0), "length"),
         (lambda: member_matrices(1.0, 1.0, -1.0, 1.0, 1.0), "bending_stiffness"),
-        (lambda: hybrid_matrices(bar((FREE, FREE)), 0.0), "no stiffness"),
     ],
 )
 def test_refusals(call, words):

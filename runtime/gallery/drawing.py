@@ -1,4 +1,4 @@
-"""Sketches of linkages for the gallery: bars, pins, pivots, arrows to scale, arcs with letters."""
+"""How the gallery draws: one look, legends and axes; linkages with pins, arrows and arcs."""
 
 from __future__ import annotations
 
@@ -13,6 +13,54 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+
+# Blue, orange, green, purple, grey, brown: told apart in print and by the colour-blind.
+COLOURS = ("#1f5a8c", "#c8641e", "#3a7d44", "#7a4a9c", "#5c5c5c", "#8c2d04", "#2a9d9d", "#b8a000")
+
+SETTINGS: dict[str, Any] = {
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.labelsize": 9.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "0.9",
+    "grid.linewidth": 0.6,
+    "xtick.direction": "out",
+    "ytick.direction": "out",
+}
+
+
+def legend_below(axes: Sequence[Axes], columns: int = 4) -> None:
+    """Put one legend for all the axes under them, each label once."""
+    handles, labels = [], []
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            if label not in labels:
+                handles.append(handle)
+                labels.append(label)
+    axes[0].figure.legend(
+        handles, labels, loc="outside lower center", ncols=min(columns, len(labels))
+    )
+
+
+def crank_axis(ax: Axes, turns: float = 1.0) -> None:
+    """Label the horizontal axis as the crank angle in degrees."""
+    last = 360.0 * turns
+    step = 60.0 if turns <= 1 else 180.0 if turns <= 4 else 360.0
+    ax.set_xlim(0.0, last)
+    ax.set_xticks([step * i for i in range(round(last / step) + 1)])
+    ax.set_xlabel(r"crank angle $\theta_2$ [deg]")
+
+
+def panel_title(ax: Axes, text: str) -> None:
+    """Write a panel's title at its left."""
+    ax.set_title(text, loc="left", fontsize=9)
+
 
 INK, GROUND = "#2b2b2b", "0.45"
 LINK_COLOURS = {"crank": "#c8641e", "coupler": "#1f5a8c", "follower": "#3a7d44"}
@@ -52,19 +100,7 @@ def pivot(ax: Axes, place: ArrayLike, unit: float) -> None:
 
 
 def four_bar(ax: Axes, joints: Mapping[str, ArrayLike], unit: float, letters: str = "ABCD") -> None:
-    """Draw a four-bar linkage by its joints, with letters at them.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    joints : mapping of str to array_like, shape (2,)
-        Places of A, B, C and D.
-    unit : float
-        Width of a pivot.
-    letters : str
-        What is written at A, B, C and D.
-    """
+    """Draw a four-bar linkage by its joints, with letters at A, B, C and D."""
     a, b, c, d = (np.asarray(joints[name], dtype=float) for name in "ABCD")
     for link, start, end in (("crank", a, b), ("coupler", b, c), ("follower", d, c)):
         bar(ax, start, end, LINK_COLOURS[link], zorder=3)
@@ -105,21 +141,7 @@ def write(
 def arrow(
     ax: Axes, tail: ArrayLike, vector: ArrayLike, colour: str, text: str = "", side: float = 0.0
 ) -> None:
-    """Draw a vector to the scale of the axes; its name beyond the head, or to one side of it.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    tail, vector : array_like, shape (2,)
-        In the units of the axes.
-    colour : str
-        Of line and name.
-    text : str
-        Name.
-    side : float
-        Points by which the name is moved to the left of the arrow.
-    """
+    """Draw a vector to the scale of the axes; its name beyond the head, some points to its left."""
     start, way = np.asarray(tail, dtype=float), np.asarray(vector, dtype=float)
     head = start + way
     ax.annotate(
@@ -179,12 +201,3 @@ def turning_arrow(
     style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0}
     ax.annotate("", tip, xytext=start, arrowprops=style, zorder=7)
     write(ax, (x + radius, y), text, (4.0, 0.0), color=colour, ha="left")
-
-
-def measure(ax: Axes, start: Sequence[float], end: Sequence[float], text: str) -> None:
-    """Draw a dimension line with its text."""
-    style = {"arrowstyle": "<|-|>", "color": "0.35", "lw": 0.8, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", _pair(end), xytext=_pair(start), arrowprops=style, zorder=5)
-    ax.update_datalim([start, end])
-    middle = 0.5 * (np.asarray(start, dtype=float) + np.asarray(end, dtype=float))
-    write(ax, middle, text, fontsize=8)

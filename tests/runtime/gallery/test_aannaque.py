@@ -1,0 +1,221 @@
+"""What the gallery computes for Aannaque's figures, by other routes."""
+
+import numpy as np
+import pytest
+from elastolink.runtime.frequencies import dynamic_stiffness
+from elastolink.runtime.gallery import (
+    aannaque_frequencies,
+    aannaque_models,
+    aannaque_rig,
+    aannaque_steady_state,
+    aannaque_stresses,
+)
+from elastolink.runtime.gallery.aannaque_algorithms import operation_count, printed_count
+from elastolink.runtime.gallery.aannaque_hybrid import hybrid_matrices, hybrid_model
+from elastolink.runtime.gallery.aannaque_kinematics import crossover, linkage
+from elastolink.runtime.gallery.aannaque_models import compare_models
+from elastolink.runtime.linkages import FourBar
+from elastolink.runtime.periodic import floquet_multipliers
+from elastolink.runtime.recovery import recover, stress_operator
+from scipy.optimize import brentq
+
+
+def test_the_pulses_cross_where_the_peaks_found_by_roots_do():
+    # Another route: extremes of the acceleration as roots of its derivative.
+    own = linkage()
+
+    def excess(frame):
+        other = FourBar(frame, own.crank, own.coupler, own.follower)
+
+        def slope(angle, h=1e-5):
+            ends = other.motion([angle - h, angle + h]).alpha4
+            return (ends[1] - ends[0]) / (2.0 * h)
+
+        places = [brentq(slope, *np.radians(ends)) for ends in ((30.0, 60.0), (165.0, 200.0))]
+        first, second = np.abs(other.motion(places).alpha4)
+        return second - first
+
+    # Samples a tenth of a degree apart miss a peak by less than 2e-6 of its size here.
+    assert crossover() == pytest.approx(brentq(excess, 0.62, 0.67), abs=5e-6)
+
+
+def test_the_clamped_bars_of_table_5_1():
+    # cos z cosh z = 1, by the factor between the table and bars of unit data.
+    for number in (4, 10):
+        root = np.sqrt(aannaque_frequencies._exact()[number - 1] / aannaque_frequencies._FACTOR)
+        assert abs(np.cos(root) - 1.0 / np.cosh(root)) < 1e-9
+
+
+def test_maxima_are_refined_between_samples():
+    x = np.linspace(0.0, 10.0, 101)
+    found = aannaque_models.tops(x, np.cos(x - 1.234))
+    assert found == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
+    curve = aannaque_models.maxima(x, np.exp(np.cos(x - 1.234)))
+    # The logarithm is the cosine itself.
+    assert curve == pytest.approx([1.234, 1.234 + 2.0 * np.pi], abs=1e-4)
+
+
+@pytest.mark.slow
+def test_midpoints_by_the_recovery_of_displacements():
+    for elements in (2, 3):
+        system = aannaque_models.beams(elements)
+        motion = aannaque_models.periodic(system, 20.0)
+        for link in ("coupler", "follower") if elements == 2 else ("follower",):
+            found = recover(system, motion, stations={link: [0.5]}, method="shape")
+            ours = aannaque_models.moved(system, link, motion.theta, motion.q)
+            theirs = found.of(link, "across")[:, 0]
+            assert np.max(np.abs(ours - theirs)) < 1e-9 * np.max(np.abs(theirs))
+
+
+def test_the_march_settles_to_the_cyclic_solution():
+    system = aannaque_models.beams(1)
+    values = aannaque_steady_state.march()[0][-1]
+    motion = aannaque_models.periodic(system, aannaque_models.CRITICAL, rtol=1e-6)
+    exact = aannaque_models.moved(system, "follower", motion.theta, motion.q)
+    # Newmark's 720 steps: the sixth oscillation of the second mode is 4e-4 late in phase.
+    assert abs(np.max(values) / np.max(exact) - 1.0) < 5e-3
+
+
+def test_the_exact_model_has_the_first_frequency_of_the_dynamic_stiffness():
+    """At most five iterations at 1e-3, as in the thesis; two or three are enough."""
+    angles = np.array([0.3, 2.0, 4.1])
+    structure = aannaque_models.beams(1).structure
+    exact = aannaque_models.exact_frequencies(structure, angles, 1)[:, 0]
+    matrices = hybrid_matrices(structure, angles)
+    assert matrices.iterations.min() >= 1 and matrices.iterations.max() <= 3
+    np.testing.assert_allclose(matrices.first, exact, rtol=1e-4)
+    fine = hybrid_matrices(structure, angles, rtol=1e-9)
+    np.testing.assert_allclose(fine.first, exact, rtol=1e-11)
+    formed = fine.stiffness[0] - fine.first[0] ** 2 * fine.mass[0]
+    stiffness = dynamic_stiffness(structure, angles[0]).stiffness(fine.first[0])
+    np.testing.assert_allclose(formed, stiffness, atol=1e-6 * np.abs(stiffness).max())
+
+
+@pytest.mark.slow
+def test_the_system_of_the_exact_model_has_it_too():
+    system, angles = hybrid_model(), np.array([0.3, 2.0, 4.1])
+    found = hybrid_matrices(aannaque_models.beams(1).structure, angles, rtol=1e-10)
+    mass, stiffness = system.array("M", angles), system.array("K", angles)
+    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.min(axis=1)
+    np.testing.assert_allclose(np.sqrt(squares), found.first, rtol=1e-6)
+
+
+def test_operations_of_marching_from_where_it_costs_more():
+    # 16 N n^3 + ... = 4 n_c N n^2: 4 n and a little more.
+    for freedoms in (10, 50):
+        assert 4 * freedoms <= aannaque_steady_state._break_even(freedoms) <= 4 * freedoms + 3
+
+
+@pytest.mark.slow
+def test_multipliers_of_four_modes_are_those_of_all():
+    place = 168
+    speed = float(aannaque_stresses._SPEEDS[place])
+    whole = floquet_multipliers(aannaque_models.beams(1), speed, rtol=1e-7).multipliers
+    pairs = whole[:4].real.reshape(2, 2).max(axis=1)
+    # The five higher modes carry no motion: 1e-3 of the second pair, less of the first.
+    np.testing.assert_allclose(aannaque_stresses.real_parts()[place, :2], pairs, atol=2e-3)
+
+
+@pytest.mark.slow
+def test_stresses_over_the_speed_by_single_motions():
+    system = aannaque_models.beams(3)
+    curve = aannaque_stresses._curve(3)
+    for place in (150, 250):
+        speed = float(aannaque_stresses._WIDE[place])
+        motion = aannaque_models.periodic(system, speed, rtol=1e-5)
+        form = stress_operator(system, motion.theta, 7, method="shape")[0]
+        values = form.values(speed, motion.q, motion.qd / speed)
+        # Between 256 angles the peak is a little higher.
+        assert np.max(np.abs(values)) == pytest.approx(np.max(curve[place]), rel=3e-3)
+
+
+@pytest.mark.slow
+def test_the_stress_of_the_midpoint_needs_several_elements():
+    base = aannaque_stresses.midpoint_stress(aannaque_models.FRAME)[1]
+    fine = aannaque_stresses.bending_at_midpoint(aannaque_models.beams(4))[1]
+    assert np.max(np.abs(fine)) == pytest.approx(np.max(np.abs(base)), rel=0.1)
+
+
+@pytest.mark.slow
+def test_finite_elements_lie_above_the_exact_frequencies():
+    """Aannaque 4.3: 10 % (first) and 26 % (fourth), one element against three; 5.4.2: 1.18 %."""
+    models = {count: aannaque_models.beams(int(count), aannaque_models.FULL) for count in "13"}
+    found = compare_models(models, 2 * np.pi * np.arange(10) / 10)
+    mean = 100 * np.mean(found.difference("1", "3"), axis=0)
+    assert round(mean[0]) == 10 and round(mean[3]) == 26
+    assert np.max(found.difference("3")) == pytest.approx(0.0118, abs=5e-5)
+    assert all(np.all(found.difference(name) > 0) for name in models)
+    assert list(found.size) == [9, 27, 0]
+
+
+@pytest.mark.slow
+def test_stresses_of_a_cycle_are_those_of_the_curve_over_the_speed():
+    # Two routes: the full equations at some speeds, and the sweep on moving modes.
+    speeds = (11.1, 17.725, 24.35)
+    found = aannaque_rig.cycles(aannaque_rig.SHORT, aannaque_rig.FRAME, speeds)
+    swept = aannaque_rig.stress_curve(
+        aannaque_rig.rig(), np.array(speeds), stations=aannaque_rig.STATIONS, rtol=1e-3
+    )
+    stations = {"crank": 0.0, "coupler": 0.5, "follower": 0.5}
+    size = np.stack([np.max(np.abs(found.stress[pair]), axis=1) for pair in stations.items()], -1)
+    # The sweep's error, and a peak between 256 angles: (pi/256)^2/2 times its harmonic squared.
+    tolerance = 1e-3 + 0.5 * (6 * np.pi / 256) ** 2
+    whole = np.stack([swept.of(link) for link in stations], axis=-1)
+    own = np.stack([swept.fibre[:, swept.links.index(link)] for link in stations], axis=-1) > 0
+    assert np.any(own) and np.any(~own)
+    np.testing.assert_allclose(size[own], whole[own], rtol=tolerance)
+    # Where the other fibre has the largest stress, this one's is less.
+    assert np.all(size[~own] < whole[~own] * (1 + tolerance))
+
+
+def test_maxima_stand_out_by_the_share_asked_for():
+    x = np.linspace(0.0, 10.0, 401)
+    y = np.exp(np.log(1.1) * np.exp(-(((x - 3.013) / 0.2) ** 2)))
+    y *= np.exp(np.log(1.02) * np.exp(-(((x - 7.0) / 0.2) ** 2)))
+    # A parabola through three places, an eighth of the width apart, is off by its cube.
+    assert aannaque_models.maxima(x, y, -np.log1p(-0.05)) == pytest.approx([3.013], abs=2e-4)
+    assert len(aannaque_models.maxima(x, y, -np.log1p(-0.01))) == 2
+
+
+def test_the_ten_angles_are_even():
+    np.testing.assert_array_equal(np.diff(aannaque_rig.ANGLES), 36)
+    assert len(aannaque_rig.ANGLES) == 10
+    assert aannaque_rig.CAPTIONS[:-1] == aannaque_rig.ANGLES[:-1]
+
+
+@pytest.mark.slow
+def test_lengths_at_which_both_pinned_links_vibrate_alike():
+    # sqrt(I/A) is what the sections differ by; lengths go with its square root.
+    ratio = np.sqrt(83.34 / 85.5) / np.sqrt(65.12 / 78.75)
+    assert aannaque_rig.crossing() == pytest.approx(0.525 * np.sqrt(ratio), rel=1e-12)
+
+
+@pytest.mark.slow
+def test_the_slow_path_moves_as_the_squared_speed():
+    slow, slower = (aannaque_rig.midpoint(speed) for speed in (3.0, 1.5))
+    # Far below the lowest resonance inertia forces alone count, and their square of the speed.
+    assert slow.largest / slower.largest == pytest.approx(4.0, rel=0.02)
+
+
+@pytest.mark.slow
+def test_the_second_mode_explains_what_the_first_does_not():
+    assert aannaque_rig.mean_frequency(aannaque_rig.LONG, 0.547, 1) < 130.0
+    assert aannaque_rig.mean_frequency(aannaque_rig.LONG, 0.547, 2) > 150.0
+
+
+def test_operations_of_an_algorithm_by_hand():
+    # N (38 n^3 + 37 n^2 + 7 n) + 16 n^3 + 8 n^2 with N = 90, n = 10.
+    assert printed_count("transition_matrix", intervals=90, freedoms=10) == 3776100
+    for name in ("time_marching", "transition_matrix", "closed_form"):
+        one, two = (operation_count(name, intervals=n, freedoms=8, cycles=10) for n in (100, 200))
+        assert 1.9 < two / one <= 2.01
+    one, two = (
+        operation_count("time_marching", intervals=90, freedoms=9, cycles=c) for c in (1, 31)
+    )
+    # A product with a vector of 2 n, and the load.
+    assert (two - one) / 30 == 90 * ((2 * 18 - 1) * 18 + 18)
+    kept = operation_count("time_marching", intervals=90, freedoms=9, cycles=31)
+    assert (
+        operation_count("time_marching", intervals=90, freedoms=9, cycles=31, storage=False)
+        > 5 * kept
+    )

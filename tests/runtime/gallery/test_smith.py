@@ -1,0 +1,251 @@
+"""What the gallery computes for Smith's figures, by other routes."""
+
+from dataclasses import replace
+from math import radians
+
+import mpmath
+import numpy as np
+import pytest
+from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.periodic_function import PeriodicFunction
+from elastolink.runtime.gallery import smith_charts, smith_responses
+from elastolink.runtime.gallery.free_bodies import free_bodies, round_force
+from elastolink.runtime.gallery.smith_balancing import (
+    BalancedLink,
+    density_number,
+    offset_function,
+    optimal_offset,
+)
+from elastolink.runtime.gallery.smith_forces import INCH, TURN, example, peak
+from elastolink.runtime.gallery.smith_linkages import (
+    LBF_IN_S2,
+    RIGS,
+    RPM,
+    end_load,
+    four_bar_of,
+    linkage_of,
+)
+from elastolink.runtime.gallery.smith_responses import Response
+from elastolink.runtime.gallery.smith_speeds import OBSERVATIONS
+from elastolink.runtime.hill import hill_boundaries
+from elastolink.runtime.periodic import simulate, steady_peaks
+from elastolink.runtime.rigid import case_counterweights, rigid_forces, with_counterweights
+from elastolink.runtime.scenes import load_scene
+
+MP = mpmath.mp.clone()
+MP.dps = 400
+# Figs. 62 and 79.
+FIRST = Response("85", 0.0058, 300.0, 420.0)
+LAST = Response("84", 0.0058, 200.0, 600.0)
+
+
+@pytest.mark.parametrize("rig", RIGS, ids=lambda rig: rig.figure)
+def test_the_reduced_coefficient_is_eps3_times_f3(rig):
+    # Two routes: the emitted module, and f3 and eps3 as defined under Smith (6.17).
+    scene = load_scene(rig.scene)
+    inertia = float(rig.inertias[3])
+    coupler, follower = scene["links"]["coupler"], scene["links"]["follower"]
+    eps3 = inertia * np.pi**2 / (scene["coupler"]["mass_per_length"] * coupler**2 * follower)
+    theta = np.linspace(0.0, 2 * np.pi, 50)
+    expected = eps3 * end_load(linkage_of(rig.linkage), theta).f3
+    np.testing.assert_allclose(rig.function("reduced", inertia)(theta), expected, atol=1e-11)
+
+
+def test_ends_in_a_batch_are_those_one_by_one():
+    rig, regions = RIGS[0], (4, 5)
+    for equation in ("reduced", "complete"):
+        together = rig.ends(equation, rig.inertias[:3], regions)
+        for k, inertia in enumerate(rig.inertias[:3]):
+            one = hill_boundaries(rig.function(equation, float(inertia)), 1.0, regions)
+            expected = rig.frequency / np.sqrt(np.stack([one.upper, one.lower]))
+            np.testing.assert_allclose(together[..., k], expected, rtol=1e-11)
+
+
+def test_observations_agree_with_the_scenes():
+    for one in OBSERVATIONS:
+        measured = one.rig.inertias / LBF_IN_S2
+        assert len(measured) == 8
+        assert np.min(np.abs(measured - one.inertia)) < 1e-9, one
+    for rig in RIGS:
+        scene = load_scene(rig.scene)
+        keys = ("measured.speeds", "measured.regions", "measured.inertias")
+        speeds, numbers, inertias = (scene.get(key, ()) for key in keys)
+        seen = {
+            (round(one.speed), one.region, round(one.inertia, 4))
+            for one in OBSERVATIONS
+            if one.rig is rig
+        }
+        for speed, n, inertia in zip(speeds, numbers, inertias, strict=True):
+            assert (round(speed / RPM), n, round(inertia / LBF_IN_S2, 4)) in seen
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
+def test_second_order_boundaries_miss_by_the_third_power(n):
+    f = PeriodicFunction([0.1, 1.0, 0.4, 0.15, 0.3], [0.0, 0.3, -0.2, 0.1, 0.2])
+    errors = []
+    for mu in (0.04, 0.02, 0.01):
+        exact = hill_boundaries(f, mu, (n,))
+        drawn = smith_charts._to_order(f, np.array(mu), (n,), 2)
+        gaps = np.abs([exact.lower - drawn.lower, exact.upper - drawn.upper])
+        errors.append(float(np.max(gaps)))
+    slopes = np.log2(np.divide(errors[:-1], errors[1:]))
+    np.testing.assert_allclose(slopes, 3.0, atol=0.15)
+
+
+def test_the_periodic_response_closes_and_is_what_marching_settles_to():
+    system = smith_responses.coupler(RIGS[2].scene, 0.075)
+    speed = RIGS[2].frequency / 3.5
+    theta, q = smith_responses.periodic_response(system, speed)
+    assert abs(q[-1] - q[0]) < 1e-12
+    # After 120 turns the start has decayed by exp(-0.075 * 3.5 * 120) = 2e-14.
+    settled = simulate(system, speed, 121.0, samples=64)
+    np.testing.assert_allclose(settled.q[-65:, 0], q[::8], atol=1e-10)
+    assert len(theta) == 513
+
+
+@pytest.mark.parametrize("link", ["crank", "coupler", "follower"])
+def test_a_free_body_with_a_wrong_force_is_out_of_balance(link):
+    machine, speed = example()
+    body = free_bodies(machine, TURN, speed, 25.0)[0][link]
+    assert body.unbalanced_force < 1e-12 and body.unbalanced_moment < 1e-12
+    first, second, inertia = body.forces
+    wrong = replace(body, forces=(first, 1.01 * second, inertia))
+    assert wrong.unbalanced_force > 1e-4 and wrong.unbalanced_moment > 1e-4
+    # The couple alone spoils the moments and leaves the forces.
+    wrong = replace(body, inertia_couple=1.01 * body.inertia_couple, torque=1.01 * body.torque)
+    assert wrong.unbalanced_force < 1e-12
+    assert wrong.unbalanced_moment > 1e-4
+
+
+@pytest.mark.parametrize(
+    ("largest", "size"), [(7.0, 2.0), (10.0, 5.0), (3.9, 1.0), (0.05, 0.02), (4.0, 2.0)]
+)
+def test_the_measure_of_forces_is_round_and_at_most_half_of_the_largest(largest, size):
+    assert round_force(largest) == pytest.approx(size, rel=1e-12)
+
+
+def test_point_masses_alone_would_have_no_best_offset():
+    # What the note on Fig. 23(d) says: without a size of its own the nearest weight is the best.
+    machine, speed = example()
+    cases = [case_counterweights(machine, "d", INCH * offset) for offset in (0.25, 1.0, 3.0, 6.0)]
+    balanced = [with_counterweights(machine, weights.values()) for weights in cases]
+    peaks = [peak(rigid_forces(one, TURN, speed).f23)[0] for one in balanced]
+    assert np.all(np.diff(peaks) > 0.0)
+
+
+def test_the_unbalanced_peaks_are_those_by_newton_and_euler():
+    # Smith's example at its worst angle: nine equations, written down here once more.
+    machine, speed = example()
+    theta = radians(18.0)
+    motion = machine.linkage.motion(theta, speed)
+    a, b = np.zeros((9, 9)), np.zeros(9)
+    # Unknowns: x12, y12, x23, y23, x34, y34, x41, y41, torque.
+    plan = (("crank", "AB"), ("coupler", "BC"), ("follower", "CD"))
+    for row, (link, pins) in enumerate(plan):
+        mass = machine.mass(link)
+        place = motion.point(link, mass.along / mass.mass)
+        arms = [motion.joints[name] - place.position for name in pins]
+        for start, arm, way in ((2 * row, arms[0], 1.0), (2 * row + 2, arms[1], -1.0)):
+            a[3 * row, start] = a[3 * row + 1, start + 1] = way
+            a[3 * row + 2, start : start + 2] = -way * arm[1], way * arm[0]
+        b[3 * row : 3 * row + 2] = mass.mass * place.acceleration
+        b[3 * row + 2] = mass.inertia_about_centre * motion.link(link).angular_acceleration
+    a[2, 8] = 1.0
+    solved = np.linalg.solve(a, b)
+    found = rigid_forces(machine, theta, speed)
+    expected = np.concatenate([found.f12, found.f23, found.f34, found.f41, [found.torque]])
+    np.testing.assert_allclose(solved, expected, rtol=0.0, atol=1e-11 * np.max(np.abs(expected)))
+
+
+def test_only_a_scene_with_a_four_bar_gives_one():
+    assert four_bar_of("smith_1972_10_8_10_10").lengths["crank"] == pytest.approx(8.0 * INCH)
+    with pytest.raises(BadInput, match="four-bar"):
+        four_bar_of("slider_crank_example")
+
+
+def test_the_surfaces_of_the_space_are_those_of_the_sum_of_both_functions():
+    pair = smith_charts._functions()
+    lower, upper = pair.along(0.3, 0.4, np.array([0.0, 1.0]))
+    exact = hill_boundaries(pair.first * 0.3 + pair.second * 0.4, 1.0, (2,))
+    assert lower[1] == exact.lower[0] and upper[1] == exact.upper[0]
+    assert lower[0] == pytest.approx(1.0, abs=1e-13)
+    near = pair.to_order(np.array([3e-3]), np.array([4e-3]), 2)
+    true = pair.along(3e-3, 4e-3, np.ones(1))
+    # What is left out is of the third order.
+    for one, other in zip(near, true, strict=True):
+        assert abs(one[0] - other[0]) < 1e-6
+
+
+def test_extremes_are_those_of_the_steady_peaks():
+    decrement = smith_responses.decrements(LAST.rig)[1]
+    ends = LAST.envelope(decrement)
+    system = smith_responses.coupler(LAST.rig.scene, decrement, LAST.inertia)
+    chosen = [0, 100, 200]
+    peaks = steady_peaks(system, ends.speed[chosen] * RPM, x=[0.5])
+    size = np.maximum(ends.greatest, -ends.least)[chosen]
+    # Both take the largest of even angles, here 256 or more of them.
+    assert size == pytest.approx(1e3 * peaks.peak, rel=1e-3)
+    for speed, place in ((400.0, 391.0), (530.0, 520.0)):
+        assert smith_responses.resonance(LAST, speed) == pytest.approx(place, abs=2.0)
+
+
+def test_more_damping_lowers_a_resonance():
+    heights = [
+        np.max(FIRST.envelope(value).greatest) for value in smith_responses.decrements(FIRST.rig)
+    ]
+    assert heights[0] > heights[1] > heights[2]
+
+
+@pytest.mark.parametrize("k", [0.0, 0.02, 0.3, 0.5, 2.0])
+def test_inertia_and_slope_are_those_of_rod_extension_and_cylinder(k):
+    """In 400 digits: bars from -delta to 1, a disc of radius^2 = 2 K m at -delta."""
+
+    def exact(delta):
+        disc = (1 - delta**2) / (2 * delta)
+        return (1 + delta**3) / 3 + disc * delta**2 + disc * (2 * MP.mpf(k) * disc) / 2
+
+    for delta in np.linspace(0.05, 1.0, 40):
+        link = BalancedLink(delta, k)
+        assert abs(link.inertia / exact(MP.mpf(float(delta))) - 1) < 8 * np.finfo(float).eps
+        slope = MP.diff(exact, MP.mpf(float(delta)), h=MP.mpf(10) ** -100)
+        assert float(link.slope) == pytest.approx(float(slope), rel=1e-12, abs=1e-13)
+
+
+def test_printed_factors_of_the_inertia_are_wrong_and_its_derivative_is_right():
+    # Smith prints (1 + delta^2)/2 for the bars; but his derivative has the slope of this function.
+    delta, k = 0.4, 0.1
+    link = BalancedLink(delta, k)
+    printed = 0.5 * (1 + delta**2) + k / 4 * (1 / delta - delta) ** 2 + 0.5 * (delta - delta**3)
+    assert abs(printed - link.inertia) > 0.1
+    assert link.slope == pytest.approx(0.5 * (1 - delta**2) + k / 2 * (delta - delta**-3))
+
+
+@pytest.mark.parametrize("exponent", [-300, -61, -59, -20, -6, -1])
+def test_optimal_offset_has_every_digit(exponent):
+    for mantissa in (1.0, 2.7, 4.9):
+        k = MP.mpf(float(mantissa * 10.0**exponent))
+        offset = MP.mpf(float(optimal_offset(float(k))))
+        # One Newton step from a double doubles its digits: the root to 30 of them.
+        residual = offset**3 - k * (1 + offset**2)
+        exact = offset - residual / (3 * offset**2 - 2 * k * offset)
+        assert abs(offset / exact - 1) < 4 * np.finfo(float).eps
+
+
+@pytest.mark.parametrize("k", [1e-4, 0.0199, 0.1, 0.3183, 0.45, 0.7, 3.0])
+def test_root_is_the_least_inertia_of_all_offsets(k):
+    delta, best = np.linspace(0.01, 1.0, 20001), optimal_offset(k)
+    inertia = BalancedLink(delta, k).inertia
+    assert BalancedLink(best, k).inertia <= inertia.min() * (1 + 1e-15)
+    assert abs(delta[np.argmin(inertia)] - best) < 1e-4
+    # From K = 1/2 on no counterweight at all is best.
+    assert (best == 1.0) == (k >= 0.5)
+    assert k >= 0.5 or offset_function(best) == pytest.approx(k, rel=1e-14)
+
+
+def test_smith_densities_all_have_their_minimum_inside():
+    # M = L = 1, h = 0.1 and these densities are the values of Smith's Figs. 23 (b), (c).
+    numbers = np.array(
+        [density_number(1.0, 1.0, 0.1, rho) for rho in (5.0, 10.0, 20.0, 40.0, 80.0)]
+    )
+    offsets = optimal_offset(numbers)
+    assert np.all(np.diff(offsets) < 0) and np.all((offsets > 0.2) & (offsets < 0.9))

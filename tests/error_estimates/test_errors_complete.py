@@ -12,12 +12,12 @@ from elastolink.runtime.core.results import Result
 # Whose error estimate is that of another solver, which is called: the second name.
 DELEGATED = {
     "driving_torque": "rigid_forces",
+    "frequency_exponents": "natural_frequencies",
     "link_frequencies": "natural_frequencies",
     "pin_forces": "rigid_forces",
     "shaking_force": "rigid_forces",
     "shaking_moment": "rigid_forces",
     "sweep": "stability_chart",
-    "trace_tongue": "stability_edges",
     "balance": "with_crank_counterweight",  # a helper of its test, which calls it
 }
 # Whole numbers, classes, or an approximation whose error is another function's.
@@ -27,13 +27,8 @@ WITHOUT = {
     "mobility": "a whole number",
     "screen": "says itself that it has none; screening_error measures it",
 }
-# Solvers of the rooms beside those that `elastolink` itself names.
-OF_ROOMS = {
-    "design": ("damping_effect", "length_effect", "screen"),
-    "frequencies": ("link_frequencies",),
-    "periodic": ("reduced_system", "steady_peaks"),
-    "stability": ("krein_signatures", "tongue", "tongue_curves", "trace_tongue", "unstable_bands"),
-}
+ROOMS = ("linkages", "rigid", "beams", "hill", "periodic", "recovery", "constrained")
+ROOMS += ("frequencies", "stability", "design", "sweeps")
 SOURCES = [path.read_text() for path in Path(__file__).parent.glob("test_*_errors.py")]
 
 
@@ -43,19 +38,23 @@ def _descendants(kind):
         yield from _descendants(child)
 
 
+def _returned(function):
+    return getattr(function, "__annotations__", {}).get("return", "")
+
+
 def _solvers():
-    """Return the public functions that return a result."""
+    """Return the public functions, of the package and of its rooms, that return a result."""
     public = {name: getattr(elastolink, name) for name in elastolink.__all__}
-    for room, own in OF_ROOMS.items():
+    for room in ROOMS:
         module = import_module(f"elastolink.runtime.{room}")
-        public |= {name: getattr(module, name) for name in own}
+        public |= {name: getattr(module, name) for name in module.__all__}
     names = {kind.__name__ for kind in _descendants(Result)} | {"Prepared", "ReducedSystem"}
     return {
         name
         for name, value in public.items()
         if not isinstance(value, type)
         and callable(value)
-        and names & set(re.findall(r"\w+", str(value.__annotations__.get("return", ""))))
+        and names & set(re.findall(r"\w+", str(_returned(value))))
     }
 
 

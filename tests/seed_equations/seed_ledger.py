@@ -198,7 +198,7 @@ class Ledger:
             entry.check(entry)
             assert_current(entry)
             changed = next(entry.changed(), None)
-            assert (changed is None) == (not entry.printed)
+            assert (changed is None) == (not (entry.printed or entry.corrected))
             assert changed is None or not changed.survives()
 
         @pytest.mark.slow

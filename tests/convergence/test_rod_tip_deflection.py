@@ -49,21 +49,6 @@ def test_the_reference_holds_the_block_and_repeats_its_table():
 
 
 @pytest.mark.slow
-def test_the_reference_converges_in_third_order_of_its_elements():
-    # The block's force makes v''' jump within an element, for the tip's influence line as well:
-    # each costs 3/2 powers of the element's length.
-    rod = flexible(0.2, 300.0)
-    finest = tip_motion(rod, mesh_for(rod, 48, 8), 1, 200, 8)[0]
-    errors = [
-        np.max(np.abs(tip_motion(rod, mesh_for(rod, fine, 8), 1, 200, 8)[0] - finest))
-        for fine in (3, 6, 12)
-    ]
-    slopes = np.diff(np.log2(errors))
-    assert np.all(slopes < -2.5), slopes
-    assert errors[-1] < 1e-7
-
-
-@pytest.mark.slow
 def test_the_reference_knows_the_static_deflection():
     # A very slow crank: each moment the rod bends as under the resting load m x phi'' w^2.
     rod = flexible(0.2, 2.0)

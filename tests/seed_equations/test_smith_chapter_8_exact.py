@@ -18,7 +18,6 @@ FIRST = ExactHarmonics.of(
 SECOND = ExactHarmonics.of(
     Fraction(-1, 7), [0, Fraction(2, 5), 1], [Fraction(1, 2), 0, Fraction(-1, 3)]
 )
-EVEN = ExactHarmonics.of(0, [Fraction(3, 2), Fraction(-1, 4), Fraction(2, 7)])
 MATHIEU = ExactHarmonics.of(0, [0, -2])  # y'' + (a - 2 q cos 2x) y = 0
 
 
@@ -129,43 +128,6 @@ def test_both_columns_of_plain_matrices_give_a_b_and_their_conjugates(n):
             own, across = (mpmath.mpc(*map(rational, row[k])) for row in (a, b))
             wanted = [[own, across], [mpmath.conj(across), mpmath.conj(own)]] if n else [[own]]
             assert mpmath.norm(h - mpmath.matrix(wanted)) < mpmath.mpf(10) ** -45
-
-
-# ---------------------------------------------------------------- relations of exact results
-
-
-def test_several_parameters_are_one_combined_function():
-    """Smith (8.39)-(8.43): the boundaries know F alone."""
-    weights, drag = (Fraction(3), Fraction(-2, 5)), Fraction(1, 8)
-    pairs = list(zip(weights, (FIRST, SECOND), strict=True))
-    rows = [[sum(w * f.harmonic(m)[i] for w, f in pairs) for m in range(4)] for i in (0, 1)]
-    both = ExactHarmonics.of(rows[0][0], rows[0][1:], rows[1][1:])
-    for n in (0, 1, 3):
-        several = exact_operator((FIRST, SECOND), n, 6, True).components((*weights, drag))
-        single = exact_operator((both,), n, 6, True).components((1, drag))
-        assert several == single
-
-
-def test_the_first_order_is_the_mean_the_harmonic_and_the_drag():
-    for n in (1, 2):
-        found = exact_operator([FIRST], n, 1, True)
-        a_n, b_n = FIRST.harmonic(n)
-        assert found.exponents == (((1, 0), (0, 1)),)
-        assert found.diagonal == (((-FIRST.mean, 0), (0, -n)),)
-        assert found.coupling == (((-a_n / 2, b_n / 2), (0, 0)),)
-
-
-def test_an_even_function_gives_real_coefficients_and_a_turned_one_a_phase():
-    real = exact_operator([EVEN], 3, 6)
-    assert all(y == 0 for rows in (real.diagonal, real.coupling) for row in rows for _, y in row)
-    # f(theta + pi/2): c_m i^m, so that B gets i^n and A stays.
-    turned = ExactHarmonics.of(0, [0, Fraction(1, 4), 0], [Fraction(-3, 2), 0, Fraction(2, 7)])
-    found = exact_operator([turned], 3, 6)
-    assert found.diagonal == real.diagonal
-    assert found.coupling == tuple(tuple((y, -x) for x, y in row) for row in real.coupling)
-
-
-# ---------------------------------------------------------------- series
 
 
 def test_what_has_no_real_series_is_refused():

@@ -1,7 +1,7 @@
 """Multipliers of the rod in an unstable region: every formulation tends to the same ones.
 
 The error of a multiplier is that of the system with so many shapes.  What the shapes leave out is
-told by a few shapes more: twice the change is the figure tested here.
+told by a few shapes more: twice the change is the estimate tested here.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def test_the_formulations_agree_to_their_stated_errors(eps, speed, drop):
     # Sixteen exact modes: two shapes less move it by less than 1e-6 (twelve by 3e-6).
     truth = largest("overhang", 16, eps, speed, drop)
     assert truth > 1.05
-    for formulation, (value, figure) in found.items():
-        assert abs(value - truth) <= figure, formulation
-        assert figure < 0.02, formulation
+    for formulation, (value, estimate) in found.items():
+        assert abs(value - truth) <= estimate, formulation
+        assert estimate < 0.02, formulation
     values = list(found.values())
     for i, (one, first) in enumerate(values):
         for other, second in values[:i]:

@@ -12,7 +12,7 @@ from honesty import covers
 from wavy_springs import Wavy, tame
 
 
-def test_boundary_figure():
+def test_boundary_estimate():
     actual, estimates = [], []
     rng = np.random.default_rng(3)
     while len(actual) < 400:

@@ -35,7 +35,7 @@ def test_frequencies(monkeypatch, scenes):
 
 
 def test_the_basis_at_a_place_that_is_a_node():
-    """The figure of a root holds where both bays, held at the block, vibrate alike."""
+    """The estimate of a root holds where both bays, held at the block, vibrate alike."""
     place = overhang_truth.NAMED["a node of slope"]
     roots = OverhangBasis(4).roots(np.array([place]))[0]
     for mode, root in enumerate(roots, start=1):

@@ -1,4 +1,4 @@
-"""Figures of systems on moving modes: arrays against their definition, modes that are known.
+"""Errors of systems on moving modes: arrays against their definition, modes that are known.
 
 Oscillators of given rates are seen through random coordinates that wave with the crank, so that
 modes and mean products are known without any solver; their arrays and the projections are
@@ -110,7 +110,7 @@ def exact_parts(scene, small, theta):
 
 
 def ratios(rng):
-    """Return figure over error of the arrays, and of the squared frequencies that they hold."""
+    """Return estimate over error of the arrays, and of the squared frequencies that they hold."""
     scene, small = reduced(rng)
     theta = rng.uniform(0.0, 2 * np.pi, ANGLES)
     worst = 0.0
@@ -144,7 +144,7 @@ def test_many_reductions():
     both(9200, SCENES)
 
 
-def test_the_figure_sees_arrays_that_no_series_resolves():
+def test_the_estimate_sees_arrays_that_no_series_resolves():
     """A mass whose waves hold more harmonics than angles are taken: what is lost is told."""
 
     def mass(theta):

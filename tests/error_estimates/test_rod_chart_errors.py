@@ -1,4 +1,4 @@
-"""Error figures of charts of several modes: random rods, random axes, every sampled point."""
+"""Error estimates of charts of several modes: random rods, random axes, every sampled point."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _random_rod(rng, number):
 
 
 @pytest.mark.slow
-def test_errors_of_invariants_are_within_their_figures():
+def test_errors_of_invariants_are_within_their_estimates():
     """The reference is collocation of order 16 to 1e-13, point by point."""
     rng = np.random.default_rng(1992)
     ratios = []

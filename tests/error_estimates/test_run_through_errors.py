@@ -1,4 +1,4 @@
-"""Figures of run-ups of random bars against Gauss collocation of a far finer mesh of time.
+"""Error estimates of run-ups of random bars against Gauss collocation of a far finer mesh of time.
 
 The reference writes the second-order equation out from the family's documentation, with the
 derivatives of its arrays, and takes four stages a step, in which the axial waves turn by
@@ -142,22 +142,22 @@ def exact_largest(system, profile, start, phases=(PHASE,)):
 
 
 def ratio(rng, modes=None):
-    """Return figure over actual error of the largest stress of one random run."""
+    """Return estimate over actual error of the largest stress of one random run."""
     system, first = rocking_bar(rng)
     profile = random_profile(rng, first)
     start = str(rng.choice(["steady", "rest"]))
     rtol = float(10.0 ** rng.uniform(-3.5, -1.2))
     found = run_through(system, profile, modes=modes, stations=STATIONS, rtol=rtol, start=start)
-    figure = float(found.error[0])
-    phase = PHASE if figure > 1e-4 else 0.3 * PHASE
+    estimate = float(found.error[0])
+    phase = PHASE if estimate > 1e-4 else 0.3 * PHASE
     exact = exact_largest(system, profile, start, (phase,))[0]
     actual = abs(found.largest["bar"] / exact - 1.0)
-    return np.array([figure / max(actual, 1e-12)])
+    return np.array([estimate / max(actual, 1e-12)])
 
 
 @pytest.mark.slow
 def test_the_reference_is_one():
-    """Shorter steps change it by far less than the figures are."""
+    """Shorter steps change it by far less than the estimates are."""
     rng = np.random.default_rng(8000)
     for start in ("rest", "steady", "rest"):
         system, first = rocking_bar(rng)
@@ -179,6 +179,6 @@ def test_runs_of_all_coordinates():
 
 @pytest.mark.slow
 def test_runs_of_a_few_modes():
-    """Those left out are added, all in the end: their figure is that of what they change."""
+    """Those left out are added, all in the end: their estimate is that of what they change."""
     rng = np.random.default_rng(8300)
     verdict([ratio(rng, int(rng.integers(1, 3))) for _ in range(20)], 20)

@@ -1,4 +1,4 @@
-"""Error figures of slow multipliers and reduced systems, over 100 random stiff systems."""
+"""Error estimates of slow multipliers and reduced systems, over 100 random stiff systems."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def random_system(generator):
 
 
 @pytest.mark.slow
-def test_slow_multipliers_lie_within_their_figures():
+def test_slow_multipliers_lie_within_their_estimates():
     generator = np.random.default_rng(7)
     inside, ratio, held = [], [], []
     for _ in range(SCENES):

@@ -128,7 +128,7 @@ def test_coefficients_keep_their_digits_beside_a_large_multiplier():
     assert np.all(np.abs(found - wanted) <= 32 * size * np.finfo(float).eps * weight)
 
 
-def test_error_figures_of_circulatory_systems_hold():
+def test_error_estimates_of_circulatory_systems_hold():
     """Undamped: the last coefficient is the determinant, 1; the others from multipliers."""
     rng = np.random.default_rng(4)
     covered = []

@@ -1,6 +1,6 @@
-"""Where the numbers themselves are ill-conditioned: the figure grows with it, or a clear refusal.
+"""Where the numbers themselves are ill-conditioned: the estimate grows with it, or a clear refusal.
 
-Each test names its danger and the figure it guards.
+Each test names its danger and the estimate it guards.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)
     [1, 3, 5, pytest.param(7, marks=pytest.mark.slow), 8],
 )
 def test_coordinates_that_hardly_differ(exponent):
-    """Danger: a basis nearly dependent.  Figure: that of the multipliers."""
+    """Danger: a basis nearly dependent.  Estimate: that of the multipliers."""
     squares, speed = np.array([2.0, 5.3]), 1.1
     basis = np.array([[1.0, 1.0], [0.0, 10.0**-exponent]])
     terms = (
@@ -48,7 +48,7 @@ def test_coordinates_that_hardly_differ(exponent):
 
 
 def test_every_mode_from_the_first_to_the_hundredth():
-    """Danger: cosh and sinh lose every digit by mode 12.  Figure: the bound of each frequency."""
+    """Danger: cosh and sinh lose every digit by mode 12.  Estimate: the bound of each frequency."""
     structure = frame({"A": (0, 0), "B": (1, 0)}, {"bar": ("A", "B")}, BAR, supports={"A": CLAMPED})
     problem = dynamic_stiffness(structure, inextensible=True)
     found = wittrick_williams(problem, count=100)
@@ -70,7 +70,7 @@ def test_every_mode_from_the_first_to_the_hundredth():
 
 @pytest.mark.parametrize("exponent", range(1, 16, 2))
 def test_a_hair_from_an_undamped_resonance(exponent):
-    """Danger: a motion that grows without bound.  Figure: that of the steady state."""
+    """Danger: a motion that grows without bound.  Estimate: that of the steady state."""
     speed = 1.0 + 10.0**-exponent
     terms = (
         Term("M", None, np.eye(1)),
@@ -89,7 +89,7 @@ def test_a_hair_from_an_undamped_resonance(exponent):
 
 
 def test_at_an_undamped_resonance_no_motion_is_claimed():
-    """Danger: a division by zero.  Figure: infinite, and never a number that looks like one."""
+    """Danger: a division by zero.  Estimate: infinite, and never a number that looks like one."""
     terms = (
         Term("M", None, np.eye(1)),
         Term("K", None, np.eye(1)),

@@ -34,7 +34,7 @@ def bar(exponent, kind="cubic", held=CLAMPED, slope=0.3):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("exponent", EXPONENTS)
 def test_a_held_bar_is_never_called_loose(kind, exponent):
-    """Danger: eps (L/h)^3.  Figure: that of the first frequency, or the refusal that says why."""
+    """Danger: eps (L/h)^3.  Estimate: that of the first frequency, or the refusal that says why."""
     try:
         found = natural_frequencies(linear_system(bar(exponent, kind)), 0.0, 1)
     except BadInput as refusal:
@@ -53,7 +53,7 @@ def test_a_held_bar_is_never_called_loose(kind, exponent):
 
 @pytest.mark.parametrize("exponent", EXPONENTS)
 def test_a_loose_bar_is_called_loose_whatever_its_elements(exponent):
-    """Danger: round-off that resists.  Figure: the motion that is named, a turn about the pin."""
+    """Danger: round-off that resists.  Estimate: the motion that is named, a turn about the pin."""
     with pytest.raises(BadInput, match="that nothing resists") as refusal:
         linear_system(bar(exponent, held=PINNED))
     # Six names are told; the end that is held is not among them.
@@ -63,7 +63,7 @@ def test_a_loose_bar_is_called_loose_whatever_its_elements(exponent):
 
 @pytest.mark.parametrize("exponent", (2, 4, 5, 7))
 def test_a_linkage_with_a_short_element(exponent):
-    """Danger: a node next to a pin of an ordinary linkage.  Figure: the refusal's own words."""
+    """Danger: a node next to a pin of an ordinary linkage.  Estimate: the refusal's own words."""
     short, long = 10.0**-exponent, 0.328
     sections = dict.fromkeys(("crank", "coupler", "follower"), BAR)
     linkage = FourBar(crank=0.17, coupler=long, follower=0.525, frame=0.547)

@@ -49,7 +49,7 @@ def test_positions_of_turning_cranks():
     verdict(ratios)
 
 
-@pytest.mark.parametrize("count", [5, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [5, pytest.param(40, marks=pytest.mark.slow)])
 def test_lengths_and_areas(count):
     # Reference: the trapezoidal rule, which converges geometrically on a closed analytic path.
     rng = np.random.default_rng(6)

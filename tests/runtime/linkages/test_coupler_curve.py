@@ -186,7 +186,7 @@ def both_passages_alike(linkage, place, p):
     return sides[0] == sides[1]
 
 
-@pytest.mark.parametrize("scenes", [6, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [6, pytest.param(60, marks=pytest.mark.slow)])
 def test_double_points_are_those_of_the_cubic(scenes):
     for seed in range(scenes):
         rng = np.random.default_rng(seed)

@@ -65,9 +65,9 @@ class Taylor:
         """Return the product."""
         if not isinstance(other, Taylor):
             return Taylor(self.c * other)
-        out = np.zeros_like(self.c)
-        for k in range(len(out)):
-            out[k] = np.sum(self.c[: k + 1] * other.c[k::-1], axis=0)
+        out = self.c[0] * other.c
+        for k in range(1, len(out)):
+            out[k:] += self.c[k] * other.c[:-k]
         return Taylor(out)
 
     __rmul__ = __mul__

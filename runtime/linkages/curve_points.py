@@ -208,13 +208,13 @@ def _distance(first: Array, second: Array, i: int, j: int) -> float:
 
 
 def _newton(path: Path, first: Array, second: Array) -> tuple[Array, Array]:
-    one, two = path(first, 1), path(second, 1)
-    gap = one.c[0] - two.c[0]
+    places, rates = path(np.concatenate([first, second]), 1).c.reshape(2, 2, -1)
+    gap = places[0] - places[1]
     half = 0.5 * (first - second)
     sine = np.sin(half)
     sine = np.where(np.abs(sine) < 1e-12, 1e-12, sine)
     slope = 0.5 * gap * np.cos(half) / sine
-    a, b = one.c[1] - slope, slope - two.c[1]
+    a, b = rates[0] - slope, slope - rates[1]
     determinant = (a.conj() * b).imag
     determinant = np.where(determinant == 0, 1e-300, determinant)
     with np.errstate(over="ignore", invalid="ignore"):

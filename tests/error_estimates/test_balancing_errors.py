@@ -20,7 +20,7 @@ def exact(machine):
     return float(np.sqrt(np.sum(left**2) / np.sum(force**2)))
 
 
-@pytest.mark.parametrize("scenes", [4, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [4, pytest.param(80, marks=pytest.mark.slow)])
 def test_error_bounds_the_distance_from_the_optimum_and_is_not_idle(scenes):
     ratios, kept = [], 0
     for seed in range(scenes):

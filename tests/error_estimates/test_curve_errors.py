@@ -49,12 +49,12 @@ def test_positions_of_turning_cranks():
     verdict(ratios)
 
 
-@pytest.mark.slow
-def test_lengths_and_areas():
+@pytest.mark.parametrize("count", [5, pytest.param(40, marks=pytest.mark.slow)])
+def test_lengths_and_areas(count):
     # Reference: the trapezoidal rule, which converges geometrically on a closed analytic path.
     rng = np.random.default_rng(6)
     lengths, areas = [], []
-    while len(lengths) < 100:
+    while len(lengths) < count:
         linkage = random_linkage(rng)
         if not linkage.crank_turns:
             continue

@@ -16,7 +16,7 @@ from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, Result, provenance
-from ..core.trigonometric import differentiated, even_angles
+from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import floquet_multipliers
 from ..periodic.periodic_motion import by_segments
@@ -479,9 +479,7 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
     for k in range(links):
         rows_of = np.flatnonzero(link == k)
         rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
-        wave = np.fft.rfft(values[:, rows_of[rows], columns].T, axis=1)
-        wave[:, -1] *= 0.5
-        fine = np.abs(np.fft.irfft(wave, n=_FINER * count, axis=1)) * _FINER
+        fine = np.abs(resampled(values[:, rows_of[rows], columns], _FINER * count)).T
         place = np.argmax(fine, axis=1)
         each = np.arange(len(place))
         before = fine[each, place - 1]

@@ -71,7 +71,7 @@ class StressCurve(Result):
         Largest deflection over the length of its link, ``(ns,)``; None where links have none.
     multiplier, multiplier_error : ndarray or None
         Modulus of the largest Floquet multiplier, and its absolute error, ``(ns,)``; None where
-        that was not asked for.
+        that was not requested.
     """
 
     speed: Array
@@ -98,7 +98,7 @@ class StressCurve(Result):
 
     @property
     def stable(self) -> NDArray[np.bool_] | None:
-        """Whether nearby motions stay near, ``(ns,)``; None where that was not asked for.
+        """Whether nearby motions stay near, ``(ns,)``; None where that was not requested.
 
         The largest multiplier is then within the unit circle by more than its error: what the
         error leaves open is not called stable (see ``undecided``).
@@ -118,7 +118,7 @@ class StressCurve(Result):
     def unstable_ranges(self) -> tuple[tuple[float, float], ...]:
         """Ranges not known to be stable [rad/s], rising, from stable speed to stable speed.
 
-        None are given where stability was not asked for.
+        None are given where stability was not requested.
         """
         if self.stable is None:
             return ()

@@ -35,8 +35,8 @@ def test_errors_of_held_frequencies(scenes):
         system = LinearPeriodic(n, terms, {}, lambda values: {})
         frequency, error = held_frequencies(system, np.zeros(1), {})
         exact = _exact(mass, stiffness)
-        for found, figure, true in zip(frequency[0], error[0], exact, strict=True):
-            ratio.append(float(figure / max(abs(found - true), mpmath.mpf(found) * 2**-60)))
+        for found, estimate, true in zip(frequency[0], error[0], exact, strict=True):
+            ratio.append(float(estimate / max(abs(found - true), mpmath.mpf(found) * 2**-60)))
     verdict(ratio)
 
 

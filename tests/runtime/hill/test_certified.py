@@ -269,7 +269,7 @@ def test_poor_functions(f, k):
 
 
 def agree(f, mu, regions, damping=0.0):
-    """Plain and certified boundaries, each within the other's figure; the certified ones."""
+    """Plain and certified boundaries, each within the other's estimate; the certified ones."""
     plain = hill_boundaries(f, mu, regions, damping)
     proved = hill_boundaries(f, mu, regions, damping, certified=True)
     assert proved.passed

@@ -322,7 +322,7 @@ def linear_system(
         With the factors ``elasticity``, ``distributed_mass`` and ``lumped_mass`` (1) as
         parameters, ``rayleigh_mass`` and ``rayleigh_stiffness`` (a, b) where given, ``retardation``
         (factor, 1) where a material is viscous.  Add modal damping with ``with_modal_damping``.
-        With a sliding pin it keeps no structure: stresses cannot be asked for.
+        With a sliding pin it keeps no structure: stresses cannot be computed.
 
     Raises
     ------
@@ -357,7 +357,7 @@ def linear_system(
     if any(beam.section.retardation for beam in structure.beams):
         parameters["retardation"] = 1.0
     options = {"form": form, "geometric_stiffness": str(geometric_stiffness).lower()}
-    told = {
+    made_with = {
         "form": form,
         "geometric_stiffness": geometric_stiffness,
         "rayleigh": rayleigh,
@@ -374,7 +374,7 @@ def linear_system(
         limits={name: "non-negative" for name in parameters} | dict.fromkeys(FACTORS, "positive"),
         relative_deflection=partial(_relative_deflection, arrays, slide),
         structure=structure if slide is None else None,
-        remesh=partial(_remeshed, structure, told),
+        remesh=partial(_remeshed, structure, made_with),
     )
 
 

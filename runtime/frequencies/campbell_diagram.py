@@ -1,8 +1,8 @@
 """Campbell's diagram: frequencies against the crank speed, with the lines of its multiples.
 
 The exponents of a running mechanism are known but for multiples of the speed, and those of
-different modes pass each other as the speed changes.  Modes are told apart by shape: at each speed
-each motion is resolved, along the whole turn, into the modes of the mechanism held still.
+different modes pass each other as the speed changes.  Modes are distinguished by shape: at each
+speed each motion is resolved, along the whole turn, into the modes of the mechanism held still.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def _named(
     chosen[mode] = motion
     phase, rate = np.angle(values), np.log(np.abs(values))
     own = shares[chosen, np.arange(count)]
-    # Where a motion locks to the speed it grows in one form and decays in another: both are told
+    # Where a motion locks to the speed it grows in one form and decays in another: both are shown
     # as the one that grows.
     turned = np.abs(np.exp(1j * phase[:, None]) - np.exp(1j * phase[chosen]))
     # Motions whose phases are this close turn alike: pairs of which one grows and one decays.
@@ -151,7 +151,7 @@ class Campbell(Result):
         Frequencies of the running mechanism [rad/s], ``(ns, modes)``: the imaginary parts of the
         characteristic exponents, all terms with them (axial forces, Coriolis, centripetal, Euler),
         each with that multiple of the speed added that brings it to its mode; NaN where they were
-        not asked for.  A motion is named by its shape, taken apart along the turn into the modes of
+        not requested.  A motion is named by its shape, taken apart along the turn into the modes of
         the mechanism held still: names do not depend on the other speeds.
     growth : ndarray
         Their real parts [1/s], ``(ns, modes)``: positive where the motion grows.
@@ -278,8 +278,8 @@ def campbell(
     if exponents:
         rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
         found = running_frequencies(system, speeds, held, rest)
-    told = found.frequency if exponents else held
-    crossing = [row for k in range(count) for row in _crossings(speeds, told[:, k], k + 1)]
+    shown = found.frequency if exponents else held
+    crossing = [row for k in range(count) for row in _crossings(speeds, shown[:, k], k + 1)]
     crossing.sort()
     return Campbell(
         method="means of held frequencies" + "; characteristic exponents" * exponents,

@@ -570,7 +570,7 @@ def wittrick_williams(
     count : int, optional
         That many frequencies, the lowest ones; give one of the two.
     rtol : float
-        Relative width that is asked for where there is bisection alone.
+        Relative width where there is bisection alone.
 
     Returns
     -------

@@ -220,7 +220,7 @@ def rigid_beams(
 
 
 def _numbered(structure: Structure, pieces: Pieces) -> Freedoms:
-    """Return the coordinates with one element for each beam, or the pieces that are asked for."""
+    """Return the coordinates with one element for each beam, or the requested pieces."""
     held = all({"x", "y", "rotation"} <= set(node.held) for node in structure.nodes)
     usual: tuple[float, ...] = (0.5, 0.5) if held else (1.0,)
     beams = [

@@ -102,7 +102,7 @@ def _quotients(mass: Array, stiffness: Array, shape: Array) -> tuple[Array, Arra
     square = np.sum(shape * (stiffness @ shape), axis=1) / kinetic
     summed = np.sum(size * (np.abs(stiffness) @ size), axis=1)
     summed += square * np.sum(size * (np.abs(mass) @ size), axis=1)
-    # Round-offs of a sum's terms that its error is told as.
+    # Round-offs of the terms of a sum that make its error.
     return square, 2.0 * _EPS * summed / kinetic
 
 
@@ -217,7 +217,7 @@ def _by_panels(
         gap = np.abs(fine - coarse)
         share = (panels[:, 1] - panels[:, 0])[:, None] / period
         allowed = enough * np.abs(fine) + rounding + 0.1 * enough * share * np.max(np.abs(fine))
-        # Panels open at once, beyond which their error is told instead.
+        # Panels open at once, beyond which their error is added instead.
         last = step == _HALVINGS or len(panels) > 48
         good = np.all(gap <= allowed, axis=1) | last
         total = total + np.sum(fine[good], axis=0)

@@ -255,7 +255,7 @@ def natural_frequencies(
 
 
 def _walk(modes: Modes, arrays: Arrays, period: float, count: int, start: float) -> Walk:
-    """Return a turn of the crank, of so many modes that no curve asked for leaves them."""
+    """Return a turn of the crank, of so many modes that no requested curve leaves them."""
     size = modes(np.array([start])).frequency.shape[-1]
     watched = min(count, size)
     while True:

@@ -361,7 +361,7 @@ class Curves:
     start : float
         First angle [rad].
     size, count : int
-        Number of ranks, and of curves asked for.
+        Number of ranks, and of requested curves.
     period : float
         Period [rad].
     """
@@ -388,21 +388,21 @@ class Curves:
 
     @property
     def highest(self) -> int:
-        """Highest rank, from 0, that a curve asked for reaches."""
+        """Highest rank, from 0, that a requested curve reaches."""
         _, label = self._passed
         ranks = np.argsort(label, axis=1)
         return int(np.max(ranks[:, : self.count]))
 
     @property
     def closure(self) -> Indices:
-        """Which curve each of those asked for becomes after a whole turn."""
+        """Which curve each requested one becomes after a whole turn."""
         # The curve that ends at rank r goes on as the curve that begins there.
         ranks: Indices = np.argsort(self._passed[1][-1])
         return ranks[: self.count]
 
     @property
     def turns(self) -> int:
-        """Whole turns after which every curve asked for has come back."""
+        """Whole turns after which every requested curve has come back."""
         step = np.argsort(self._passed[1][-1])
         found = 1
         for curve in range(self.count):
@@ -429,7 +429,7 @@ class Curves:
         return out
 
     def follow(self, theta: Array, values: Array) -> Array:
-        """Return values by rank ``(nt, size)`` along the curves asked for, ``(nt, count)``."""
+        """Return values by rank ``(nt, size)`` along the requested curves, ``(nt, count)``."""
         ranks = np.argsort(self.labels(theta), axis=1)[:, : self.count]
         return np.take_along_axis(values, ranks, axis=1)
 

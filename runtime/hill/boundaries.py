@@ -102,7 +102,7 @@ class Boundaries(Result):
     ----------
     lower, upper : ndarray, shape (len(regions), *mu.shape)
         Ends in lam2 of each unstable region; NaN where damping has closed it, or where that cannot
-        be told (a check fails).
+        be decided (a check fails).
     error : ndarray, shape (len(regions), *mu.shape)
         Estimate of the absolute error, valid for both ends; NaN where they are.
     regions : tuple of int

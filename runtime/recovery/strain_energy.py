@@ -16,6 +16,7 @@ from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check
+from ..core.trigonometric import differentiated, even_angles, interpolated
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
 from .finer_mesh import CAUTION, on_finer_mesh
@@ -54,29 +55,21 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
     """
     count = 256
     while True:
-        theta = system.period * np.arange(count) / count
+        theta = even_angles(system.period, count)
         forms = ElementForms(system, theta)
-        amplitudes = np.fft.rfft(forms.stiffening[power], axis=0) / count
-        tail = float(np.max(np.abs(amplitudes[count // 3 :])))
-        largest = float(np.max(np.abs(amplitudes)))
+        values = forms.stiffening[power]
+        amplitudes = np.abs(np.fft.rfft(values, axis=0)) / count
+        largest = float(np.max(amplitudes))
         if power == 0:
             # Supports may take all of a constant load: what is left is round-off of it.
             largest += float(np.max(np.abs(forms.axial.force("static", theta))))
             largest += float(np.max(np.abs(forms.axial.node_forces)))
-        if tail <= _RESOLVED * largest:
-            break
+        if float(np.max(amplitudes[count // 3 :])) <= _RESOLVED * largest:
+            return interpolated(values, system.period, noise=1e-13).derivative
         count *= 2
         if count > _MOST:
             found = f"axial forces that {_MOST} samples do not resolve"
             raise bad("structure", found, "a smooth motion", "keep off dead points")
-    rates = 2j * np.pi / system.period * np.arange(count // 3)
-    weights = 2.0 * rates[:, None, None] * amplitudes[: count // 3]
-
-    def slope(angles: Array) -> Array:
-        waves = np.exp(angles[:, None] * rates)
-        return np.asarray(np.real(np.einsum("tk,kep->tep", waves, weights)))
-
-    return slope
 
 
 def _none(elements: int) -> Callable[[Array], Array]:
@@ -383,18 +376,15 @@ def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
 def _balance(made: BeamEnergies, motion: BeamMotion) -> Check:
     """Return the difference of power and rate of energy over the largest power."""
     count = len(made.theta)
-    waves = np.arange(count // 2 + 1) * (2j * np.pi / (motion.period or 1.0))
-    if count % 2 == 0:
-        waves[-1] = 0.0
-    spectrum = made.speed * waves * np.fft.rfft(made.total)
-    rate = np.fft.irfft(spectrum, n=count)
+    rate = made.speed * differentiated(made.total, motion.period or 1.0)
+    upper = np.abs(np.fft.rfft(rate))
     power = made.drive + made.loads - made.dissipated
     largest = float(np.max(np.abs(power)))
     peaks = np.max(np.abs(motion.q), axis=0)
     relative = float(np.max(motion.doubt / np.where(peaks > 0, peaks, 1.0)))
     # The rate of the highest harmonic enlarges an error of the motion; squares of a motion have
     # twice its harmonics, and those beyond the samples fall upon the upper ones.
-    beyond = 4.0 * float(np.sum(np.abs(spectrum[count // 3 :]))) / count
+    beyond = 4.0 * float(np.sum(upper[count // 3 :])) / count
     # Round-off of energies that are sums of large parts, over the largest power.
     limit = count * relative + beyond / max(largest, np.finfo(float).tiny) + 1e-9
     return Check(float(np.max(np.abs(rate - power))) / largest if largest else 0.0, limit)

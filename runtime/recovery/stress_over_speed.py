@@ -16,7 +16,7 @@ from ..core.errors import LINEAR_RANGE, bad
 from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, require_whole
 from ..core.results import Check, Result, provenance
-from ..core.trigonometric import differentiated, even_angles
+from ..core.trigonometric import differentiated, even_angles, resampled
 from ..periodic.equation import equation_of
 from ..periodic.multipliers import floquet_multipliers
 from ..periodic.periodic_motion import by_segments
@@ -71,7 +71,7 @@ class StressCurve(Result):
         Largest deflection over the length of its link, ``(ns,)``; None where links have none.
     multiplier, multiplier_error : ndarray or None
         Modulus of the largest Floquet multiplier, and its absolute error, ``(ns,)``; None where
-        that was not asked for.
+        that was not requested.
     """
 
     speed: Array
@@ -98,7 +98,7 @@ class StressCurve(Result):
 
     @property
     def stable(self) -> NDArray[np.bool_] | None:
-        """Whether nearby motions stay near, ``(ns,)``; None where that was not asked for.
+        """Whether nearby motions stay near, ``(ns,)``; None where that was not requested.
 
         The largest multiplier is then within the unit circle by more than its error: what the
         error leaves open is not called stable (see ``undecided``).
@@ -118,7 +118,7 @@ class StressCurve(Result):
     def unstable_ranges(self) -> tuple[tuple[float, float], ...]:
         """Ranges not known to be stable [rad/s], rising, from stable speed to stable speed.
 
-        None are given where stability was not asked for.
+        None are given where stability was not requested.
         """
         if self.stable is None:
             return ()
@@ -479,9 +479,7 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
     for k in range(links):
         rows_of = np.flatnonzero(link == k)
         rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
-        wave = np.fft.rfft(values[:, rows_of[rows], columns].T, axis=1)
-        wave[:, -1] *= 0.5
-        fine = np.abs(np.fft.irfft(wave, n=_FINER * count, axis=1)) * _FINER
+        fine = np.abs(resampled(values[:, rows_of[rows], columns], _FINER * count)).T
         place = np.argmax(fine, axis=1)
         each = np.arange(len(place))
         before = fine[each, place - 1]

@@ -17,6 +17,7 @@ from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
+from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
     Station,
@@ -329,11 +330,7 @@ class StressResult(StationResult):
         if self.period is None or len(self.theta) < 3:
             return self.theta, values
         count = _FINER * len(self.theta)
-        spectrum = np.fft.rfft(values, axis=0)
-        if len(self.theta) % 2 == 0:
-            spectrum[-1] *= 0.5
-        fine = np.fft.irfft(spectrum, n=count, axis=0) * _FINER
-        return self.period * np.arange(count) / count, fine
+        return even_angles(self.period, count), resampled(values, count)
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
         """Return the factor of safety of each beam: allowed over largest stress.

@@ -1,4 +1,4 @@
-"""Error figures of the perturbation boundaries against Hill's matrix, over random scenes."""
+"""Errors of the perturbation boundaries against Hill's matrix, over random scenes."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,7 +16,7 @@ POINTS = 6
 
 @dataclass
 class Entry:
-    """One region at one point: the error against the figure."""
+    """One region at one point: the error against the estimate."""
 
     mu: float
     strength: float
@@ -26,7 +26,7 @@ class Entry:
     # Half the first-order width over the strength: what the root is expanded about.
     lead: float
     flagged: bool
-    figure: float = np.nan
+    estimate: float = np.nan
     gap: float = np.nan
     known: float = np.nan
 
@@ -73,7 +73,7 @@ def entries(seed):
         if n:
             gap = max(gap, abs(told.lower[0, i] - exact.lower[0, i]))
         if np.isfinite(gap):
-            entry.figure, entry.gap = float(found.error[0, i]), float(gap)
+            entry.estimate, entry.gap = float(found.error[0, i]), float(gap)
             entry.known = float(exact.error[0, i])
         elif not entry.flagged:
             # One says open, the other closed: only where the result says that it cannot tell.
@@ -93,10 +93,10 @@ scenes = pytest.mark.parametrize(
 
 
 @scenes
-def test_the_figure_covers_the_error(count):
-    unflagged = [e for e in sweep(count) if np.isfinite(e.figure)]
+def test_the_estimate_covers_the_error(count):
+    unflagged = [e for e in sweep(count) if np.isfinite(e.estimate)]
     assert len(unflagged) > 3 * count
-    covered = [e.gap <= e.figure + e.known for e in unflagged]
+    covered = [e.gap <= e.estimate + e.known for e in unflagged]
     assert np.mean(covered) >= 0.99
     # Damped regions and both forms each for themselves, so that none hides behind the others.
     for form in ("uniform", "series"):
@@ -110,10 +110,10 @@ def test_the_figure_covers_the_error(count):
 
 
 @scenes
-def test_the_figure_is_not_idle(count):
-    seen = [e for e in sweep(count) if np.isfinite(e.figure) and e.gap > 4 * e.known]
+def test_the_estimate_is_not_idle(count):
+    seen = [e for e in sweep(count) if np.isfinite(e.estimate) and e.gap > 4 * e.known]
     assert len(seen) > count
-    ratios = np.array([e.figure / e.gap for e in seen])
+    ratios = np.array([e.estimate / e.gap for e in seen])
     assert np.median(ratios) <= 1e3
     for order in range(1, 9):
         assert np.median([r for r, e in zip(ratios, seen, strict=True) if e.order == order]) <= 1e3
@@ -128,7 +128,7 @@ def test_what_is_flagged_is_far_from_small_mu(count):
     flagged = [e for e in sweep(count) if e.flagged]
     assert len(flagged) > 0.05 * count
     for e in flagged:
-        assert np.isnan(e.figure)
+        assert np.isnan(e.estimate)
         if abs(e.mu) * e.strength < 0.05:
             assert e.form == "series"
             assert e.lead < 0.1
@@ -143,7 +143,7 @@ def test_flags_are_not_idle(count):
 
 
 def exact_scene(seed):
-    """Return figures and errors of one region of a function of few harmonics, to 30 digits."""
+    """Return estimates and errors of one region of a function of few harmonics, to 30 digits."""
     rng = np.random.default_rng([seed, 7])
     harmonics = int(rng.integers(1, 5))
     a, b = np.round(rng.uniform(-1, 1, (2, harmonics + 1)) * 64) / 64
@@ -172,7 +172,7 @@ def test_down_to_round_off(count):
     """Against 30 digits: there the error of Hill's matrix in doubles hides nothing."""
     pairs = np.array([pair for seed in range(count) for pair in exact_scene(seed)])
     assert len(pairs) > count
-    figure, gap = pairs.T
-    assert np.mean(gap <= figure) >= 0.99
+    estimate, gap = pairs.T
+    assert np.mean(gap <= estimate) >= 0.99
     # Half a unit in the last place of lam2 is the least that an error can mean.
-    assert np.median(figure / np.maximum(gap, 1e-17)) <= 1e3
+    assert np.median(estimate / np.maximum(gap, 1e-17)) <= 1e3

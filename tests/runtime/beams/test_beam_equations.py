@@ -115,6 +115,7 @@ def test_the_full_form_is_hamiltonian_and_the_instantaneous_is_not():
     assert hamiltonian_gap(undamped("instantaneous"), 1e5, angles) > 1e-3
 
 
+@pytest.mark.smoke
 def test_a_frame_that_stands_still_keeps_its_frequencies_of_closed_form():
     bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)
     beam = frame(

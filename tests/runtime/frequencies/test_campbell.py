@@ -29,14 +29,15 @@ def test_constant_frequencies_and_their_orders():
     np.testing.assert_allclose(found.held, np.tile([30.0, 70.0], (40, 1)), rtol=1e-12)
     np.testing.assert_allclose(found.running, found.held, rtol=1e-7)
     assert np.max(np.abs(found.growth)) < 1e-5
-    labels = list(zip(found.crossing_mode, found.crossing_order, strict=True))
+    # At 10 rad/s two orders meet: which comes first is round-off.
+    labels = sorted(zip(found.crossing_mode, found.crossing_order, strict=True))
     expected = sorted(
         (value / n, mode, n)
         for mode, value in ((1, 30.0), (2, 70.0))
         for n in range(1, 9)
         if 8.3 < value / n < 41.0
     )
-    assert labels == [(mode, n) for _, mode, n in expected]
+    assert labels == sorted((mode, n) for _, mode, n in expected)
     np.testing.assert_allclose(found.crossing_speed, [w for w, _, _ in expected], rtol=1e-3)
     away = np.abs(found.crossing_speed - [w for w, _, _ in expected])
     assert np.all(away <= found.crossing_error + 1e-6)

@@ -189,7 +189,7 @@ def test_checks_are_made_late_once_and_survive_pickling():
 
 
 def level_off(f, found, i, n, k):
-    """How far the damped half trace is from its level, and what the figure allows, where open."""
+    """How far the damped half trace is from its level, and what the estimate allows, where open."""
     there = ~np.isnan(found.lower[i])
     mu, reach = found.mu[there], found.error[i][there]
     out = []
@@ -253,7 +253,7 @@ def test_no_damping_in_some_entries():
 
 
 def test_near_the_tip_the_error_grows_and_still_covers():
-    """Find K at which region 1 closes by bisection; just inside, the figure must cover."""
+    """Find K at which region 1 closes by bisection; just inside, the estimate must cover."""
     mu = 0.6
     low, _ = closing_damping(COSINE, mu, 0.2, 0.4)
     # Independent: the largest |half trace| over the region equals the level at the tip.
@@ -292,7 +292,7 @@ def test_what_doubles_cannot_decide_fails_a_check(mu):
     for away, open_ in ((-1e-9, True), (1e-9, False)):
         found = hill_boundaries(COSINE, mu, (1,), closing * (1.0 + away))
         assert np.isfinite(found.upper[0]) == open_ and found.passed
-    # At the tip itself: either ends whose figure covers their distance, or a failing check.
+    # At the tip itself: either ends whose estimate covers their distance, or a failing check.
     for steps in range(-8, 9):
         k = closing * (1.0 + steps * 1e-15)
         found = hill_boundaries(COSINE, mu, (1,), k)

@@ -136,7 +136,7 @@ def test_coefficients_beyond_all_harmonics_are_refused(name):
 
 
 @pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-11])
-def test_figures_next_to_the_tip(short):
+def test_estimates_next_to_the_tip(short):
     """The ends move as ``centre -+ c sqrt(K0 - K)``: both slopes times what is left are known."""
     from elastolink.runtime.hill import critical_damping
 

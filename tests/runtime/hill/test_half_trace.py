@@ -174,7 +174,7 @@ COSINE = PeriodicFunction([0.0, 1.0])
         (-1.0, 20.0, 0.0, (5000, 1)),
     ],
 )
-def test_any_box_is_within_its_figure(low, high, reach, shape):
+def test_any_box_is_within_its_error(low, high, reach, shape):
     f = general(12, 0.7)
     lam2, mu = np.linspace(low, high, shape[0]), np.linspace(-reach, reach, shape[1])
     found = discriminant(f, lam2[:, None], mu)

@@ -44,7 +44,7 @@ def test_the_formula(name):
         np.testing.assert_allclose(found.upper[i][~closed], middle + half, rtol=1e-14, atol=1e-15)
 
 
-def test_a_figure_beyond_half_the_width_fails_the_check():
+def test_an_error_beyond_half_the_width_fails_the_check():
     f = PeriodicFunction([0.0, 1.0, 0.2])
     assert perturbation_boundaries(f, [0.0, 0.05], (1, 2)).passed
     assert not perturbation_boundaries(f, [0.0, 3.0], (1, 2)).passed

@@ -55,7 +55,7 @@ def test_the_motion_from_its_start_is_periodic(n):
 @pytest.mark.parametrize("n", [1, 2, 5])
 @pytest.mark.parametrize("damping", [0.0, 0.001])
 @pytest.mark.parametrize("order", [1, 3, 8])
-def test_the_figure_covers_the_exact_solution(end, n, damping, order):
+def test_the_estimate_covers_the_exact_solution(end, n, damping, order):
     f, mu = PeriodicFunction([0.1, 0.5, 0.4, 0.3, 0.3, 0.3], [0.0, 0.2, -0.3, 0.1, 0.2, 0.1]), 0.05
     exact = boundary_solution(f, mu, n, end, None, damping)
     found = boundary_solution(f, mu, n, end, order, damping)

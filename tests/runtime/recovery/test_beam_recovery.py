@@ -189,7 +189,7 @@ def test_accelerations_from_the_series_and_from_the_equation_agree():
         np.testing.assert_allclose(eliminated, equation, atol=1e-10 * size)
 
 
-def test_the_two_ways_differ_by_their_error_figure():
+def test_the_two_ways_differ_by_their_error():
     system = linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=2)
     motion = periodic_motion(system, 15.0)
     first, second = (recover(system, motion, method=m) for m in ("equilibrium", "shape"))

@@ -30,6 +30,7 @@ def at_20():
     return system, motion, stress(system, motion)
 
 
+@pytest.mark.smoke
 def test_cantilever_stress_by_hand():
     # sigma = N/A -+ M c/I: 10 N along and 2 N across the end of 1 m, 20 mm by 10 mm.
     bar = Section.rectangle(0.02, 0.01, modulus=210e9, density=7850.0)

@@ -1,4 +1,4 @@
-"""The mesh's part of the error figures: which finer mesh, what is done where there is none."""
+"""The mesh's part of the error estimates: which finer mesh, what is done where there is none."""
 
 from __future__ import annotations
 
@@ -106,14 +106,14 @@ def test_every_result_counts_the_mesh_where_it_can():
         assert np.all(np.asarray(found.error) > 0.0)
 
 
-def test_figures_of_a_bar_hold_against_many_elements():
+def test_errors_of_a_bar_hold_against_many_elements():
     system, speed = turning_bar(rocking, elements=1, drag=2.0), 10.0
     many = turning_bar(rocking, elements=8, drag=2.0)
     exact = periodic_motion(many, speed, 32)
     own, true = recover(system, speed), recover(many, exact)
-    for figure, name in zip(own.error, ("axial", "shear", "moment"), strict=True):
+    for estimate, name in zip(own.error, ("axial", "shear", "moment"), strict=True):
         gap = np.max(np.abs(getattr(own, name)[::8] - getattr(true, name)))
-        assert gap <= figure <= 10.0 * gap
+        assert gap <= estimate <= 10.0 * gap
     energies = beam_energies(system, speed)
     gap = np.max(np.abs(energies.strain[::8] - beam_energies(many, exact).strain))
     assert gap <= energies.error <= 10.0 * gap

@@ -7,7 +7,8 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.recovery import stress_curve
 from elastolink.runtime.recovery.stresses import stress
 
-SPEEDS = np.linspace(18.0, 60.0, 90)
+# One range of tables; the slow tests have two.
+SPEEDS, WIDE = np.linspace(18.0, 35.0, 60), np.linspace(18.0, 60.0, 90)
 
 
 @pytest.fixture(scope="module")
@@ -24,20 +25,20 @@ def curve(system):
 def test_it_passes_its_own_checks_whatever_the_order(system, curve):
     assert set(curve.checks) == {"converged", "equation", "linear range"}
     assert curve.checks["equation"].passed
-    assert curve.maximum.shape == curve.error.shape == (90, 3)
+    assert curve.maximum.shape == curve.error.shape == (60, 3)
     assert curve.links == ("crank", "coupler", "follower")
     given = [*SPEEDS[::-3], SPEEDS[0], SPEEDS[-1]]
     turned = stress_curve(system, given, stations=5, stability=False)
     assert np.array_equal(turned.maximum[0], turned.maximum[-1])
     assert turned.stable is None and turned.undecided is None and turned.unstable_ranges == ()
-    gap = np.abs(turned.maximum[:30] / curve.maximum[::-3] - 1.0)
-    assert np.all(gap <= turned.error[:30] + curve.error[::-3])
+    gap = np.abs(turned.maximum[:20] / curve.maximum[::-3] - 1.0)
+    assert np.all(gap <= turned.error[:20] + curve.error[::-3])
 
 
 @pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.LinearRangeWarning")
 def test_it_agrees_with_stress_of_a_steady_state(system, curve):
     """Another solver of the motion, and the recovery itself: maxima, places and angles."""
-    for k in (3, 77):
+    for k in (3, 50):
         found = stress(system, el.steady_state(system, float(SPEEDS[k])), stations=5)
         for n, link in enumerate(curve.links):
             peak = found.maxima[link]
@@ -62,8 +63,9 @@ def test_stability_is_that_of_the_multipliers(system):
 
 
 @pytest.mark.slow
-def test_more_modes_change_it_by_less_than_its_error(system, curve):
-    more = stress_curve(system, SPEEDS, stations=5, modes=8)
+def test_more_modes_change_it_by_less_than_its_error(system):
+    curve = stress_curve(system, WIDE, stations=5)
+    more = stress_curve(system, WIDE, stations=5, modes=8)
     assert np.all(np.abs(more.maximum / curve.maximum - 1.0) <= curve.error + more.error)
 
 
@@ -114,4 +116,4 @@ def test_it_draws_itself_and_leaves_as_csv(curve, tmp_path):
     assert len(ax.lines) == 3
     text = curve.save(tmp_path / "curve.csv").read_text()
     assert text.startswith("link,")
-    assert len(text.splitlines()) > 270
+    assert len(text.splitlines()) > 180

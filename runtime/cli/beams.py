@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from ..scenes import Scene
 
 _EXAMPLE = "aannaque_1996_table_4_1"
-_ROWS = 25
 _METHODS = ("mean_frequency", "running_mean", "response", "multipliers", "meissner")
 
 
@@ -281,7 +280,7 @@ def _curve_lines(curve: StressCurve) -> list[str]:
     worst = np.max(curve.maximum, axis=1)
     rows = [
         (f"{curve.speed[i]:.5g}", *(f"{value / 1e6:.5g}" for value in curve.maximum[i]))
-        for i in opt.highest(worst, _ROWS)
+        for i in opt.highest(worst)
     ]
     title = f"{len(curve.speed)} speeds; largest stress [MPa] where it is higher than beside:"
     if not rows:

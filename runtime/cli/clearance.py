@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from ..linkages.clearance import ClearanceRange
 
 _JOINTS = ("12", "23", "34", "41")
-_ROWS = 13
 
 
 def add(commands: Any) -> None:
@@ -146,7 +145,7 @@ def _table(found: ClearanceRange) -> list[str]:
 
     unit = "m" if found.unit == "m" else "deg"
     shown = np.asarray if found.unit == "m" else np.degrees
-    chosen = opt.even_rows(found.theta2.size, _ROWS)
+    chosen = opt.even_rows(found.theta2.size)
     names = {"nominal": "nominal", "lower": "lower", "upper": "upper", "width": "width"}
     names["small"] = "first order"
     columns = [[format(float(angle), "z.4f") for angle in np.degrees(found.theta2[chosen])]]

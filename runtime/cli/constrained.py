@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from ..scenes import Scene
     from ..systems.rod import FreeFreeRod
 
-# Times per revolution.
-_SAMPLES = 360
-
 
 def is_constrained(scene: Scene) -> bool:
     """Return True where the scene's formulation leads to a constrained system."""
@@ -97,7 +94,7 @@ def simulate(options: argparse.Namespace, scene: Scene) -> int:
     result = constrained_motion(
         rod,
         span=revolutions * (2.0 * pi / abs(rod.speed)),
-        samples=max(1, round(_SAMPLES * revolutions)),
+        samples=max(1, round(360 * revolutions)),
         progress=opt.progress(options),
     )
     norms = [

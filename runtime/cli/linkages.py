@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..linkages import Motion
     from ..scenes import Scene
 
-_ROWS = 13
-
 
 def add(commands: Any) -> None:
     """Add the two subcommands."""
@@ -111,7 +109,7 @@ def _table(motion: Motion) -> list[str]:
     import numpy as np
 
     count = motion.theta2.size
-    chosen = opt.even_rows(count, _ROWS)
+    chosen = opt.even_rows(count)
     header, columns = [], []
     for name in ("theta2", *motion.places, *motion.rates):
         unit = "rad" if name == "theta2" else motion.unit(name)

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from ..core.results import Check, Result
     from ..scenes import Scene
 
-_SELF_CHECK_FAILED = 1
+# Rows of a table of maxima at the most.
+MOST_ROWS = 25
 _COUNT = re.compile(r"\s*(\d{1,7})\s*(.*)")
 
 
@@ -247,7 +248,7 @@ def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]
     for name, check in failed:
         text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
         print(f"elastolink {options.command}: {text}", file=sys.stderr)
-    return _SELF_CHECK_FAILED if failed else 0
+    return int(bool(failed))
 
 
 def save(figure: Figure, path: Path) -> None:
@@ -262,14 +263,14 @@ def print_json(content: Any) -> None:
     print(json.dumps(_finite(content), sort_keys=True, indent=1, allow_nan=False))
 
 
-def even_rows(count: int, most: int) -> NDArray[np.intp]:
-    """Return places among ``count``, evenly spread, the ends included, not more than ``most``."""
+def even_rows(count: int) -> NDArray[np.intp]:
+    """Return at most 13 places among ``count``, evenly spread, the ends included."""
     import numpy as np
 
-    return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
+    return np.unique(np.linspace(0, count - 1, min(13, count)).round().astype(int))
 
 
-def highest(values: NDArray[np.float64], most: int) -> NDArray[np.intp]:
+def highest(values: NDArray[np.float64], most: int = MOST_ROWS) -> NDArray[np.intp]:
     """Return the places of the local maxima inside a row, rising, the highest ``most`` of them."""
     import numpy as np
 

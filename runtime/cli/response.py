@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ..core.families import Array, LinearPeriodic
     from ..periodic import SteadyState
 
-_PLACES = 41
-_ROWS = 25
 # Of the coordinates of beams, by the end of their names; all others are rotations.
 _UNITS = {**dict.fromkeys(("x", "y", "along", "across"), "m"), "curvature": "1/m"}
 _HEADER = ("speed [rad/s]", "deflection [m]", "at x/length", "multiplier from 1", "motion")
@@ -69,7 +67,7 @@ def _steady_state(options: argparse.Namespace) -> int:
     if system.structure is not None:
         return _of_beams(options, system, np.array(speeds))
     result = _solved(options, system, np.array(speeds))
-    places = np.linspace(0.0, 1.0, _PLACES) if options.at is None else np.array([options.at])
+    places = np.linspace(0.0, 1.0, 41) if options.at is None else np.array([options.at])
     reached = result.peak(places)
     largest, place = np.max(reached, axis=1), places[np.argmax(reached, axis=1)]
     more = {"peak_deflection": largest.tolist()}
@@ -107,8 +105,8 @@ def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:
     speeds = found.speed
     chosen = np.arange(len(speeds))
     title: list[str] = []
-    if len(speeds) > _ROWS:
-        chosen = opt.highest(peaks, _ROWS)
+    if len(speeds) > opt.MOST_ROWS:
+        chosen = opt.highest(peaks)
         title = [f"{len(speeds)} speeds; where the deflection is larger than beside:", ""]
     rows = [
         (

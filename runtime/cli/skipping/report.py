@@ -29,7 +29,6 @@ from .explanation import EmittedUse, Explanation, Stage
 # What must not load, whatever is asked of a scene; reading units takes pint, which takes Jinja2.
 _UNWANTED = ("sympy", "jinja2", "mpmath", "matplotlib")
 _BROUGHT = {"jinja2": "pint"}
-_PATIENCE = 600.0
 
 
 def explain(
@@ -114,7 +113,7 @@ def _counted(request: Mapping[str, Any]) -> list[dict[str, Any]]:
         [sys.executable, "-c", code],
         input=pickle.dumps(dict(request)),
         capture_output=True,
-        timeout=_PATIENCE,
+        timeout=600.0,
         check=False,
     )
     if done.returncode:

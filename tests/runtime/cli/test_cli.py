@@ -145,7 +145,10 @@ def test_pictures_are_whole_and_the_same_bytes_each_time(capsys, tmp_path, endin
     assert sorted(tmp_path.iterdir()) == files
 
 
-@pytest.mark.parametrize("arguments", [["scenes"], ["show", RIG], ["show", "mathieu"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [pytest.param(["scenes"], marks=pytest.mark.slow), ["show", RIG], ["show", "mathieu"]],
+)
 def test_scenes_are_drawn(capsys, tmp_path, arguments):
     file = tmp_path / "scene.png"
     status, _, _ = run(capsys, *arguments, "--plot", file)

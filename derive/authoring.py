@@ -16,8 +16,7 @@ from .driven import DrivenMotion, driven_motion
 from .entries import ConstrainedSystem, MatrixForm, TranscendentalSystem
 from .integrals import antiderivative, definite
 from .ir import Argument, Description, Result
-from .lagrange import euler_lagrange, quadratic_form, variational_equations
-from .linear import linear_periodic
+from .lagrange import euler_lagrange, linear_periodic, quadratic_form, variational_equations
 from .pipeline import Model
 from .projection.assumed_modes import assumed_modes, assumed_shapes
 from .projection.bases import FiniteBasis, IndexedBasis, sine_basis

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 85e401d693af9096c5f19b22a8217694; derived with SymPy 1.14.0.
+Content hash 65c8b07bf548aaf8c6a740b406160b11; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "85e401d693af9096c5f19b22a8217694"
+CONTENT = "65c8b07bf548aaf8c6a740b406160b11"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -10,7 +10,7 @@ import sympy as sp
 from ..arrays import CrankMotion
 from ..bloch import HIGHEST_ORDER, LISTED_ORDER, Recursion
 from ..ir import Argument, Description
-from ..linear import linear_periodic
+from ..lagrange import linear_periodic
 from ..pipeline import Model
 from ..records import EquationsOfMotion, Lagrangian
 from ..separation import StagedSystem

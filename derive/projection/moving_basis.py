@@ -22,8 +22,7 @@ from ..jets import linear_jets, quadratic_jets
 from ..lagrange import NotRepresentable
 from ..records import ActionDensity, PointTerm
 from ..variational import drag_by_order
-from .galerkin import tidy
-from .sums import ArraySum, vanishes
+from .galerkin import ArraySum, tidy, vanishes
 
 _Orders: TypeAlias = tuple[int, int]
 # A jet of the field in the shapes: whether it goes with a rate, derivatives by eta and xi, factor.

@@ -5,8 +5,12 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion
-from elastolink.derive.lagrange import NotRepresentable, euler_lagrange, quadratic_form
-from elastolink.derive.linear import linear_periodic
+from elastolink.derive.lagrange import (
+    NotRepresentable,
+    euler_lagrange,
+    linear_periodic,
+    quadratic_form,
+)
 from elastolink.derive.projection.assumed_modes import assumed_modes
 from elastolink.derive.projection.bases import FiniteBasis, sine_basis
 from elastolink.derive.projection.galerkin import project

@@ -5,8 +5,12 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion, DiscreteSystem
-from elastolink.derive.lagrange import NotRepresentable, euler_lagrange, quadratic_form
-from elastolink.derive.linear import linear_periodic
+from elastolink.derive.lagrange import (
+    NotRepresentable,
+    euler_lagrange,
+    linear_periodic,
+    quadratic_form,
+)
 from elastolink.derive.records import EquationsOfMotion, Lagrangian
 
 t = sp.Symbol("t", real=True)

@@ -116,7 +116,6 @@ ALL = sorted(spec.name() for entry in CATALOGUE for spec in entry.specs)
     ("names", "jobs", "seed"),
     [
         (FEW, 2, "4711"),
-        pytest.param(ALL, 1, "1", marks=pytest.mark.slow, id="all-1-1"),
         pytest.param(ALL, 2, "4711", marks=pytest.mark.slow, id="all-2-4711"),
     ],
 )

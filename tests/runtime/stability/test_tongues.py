@@ -124,7 +124,7 @@ def _series(system, label, order, damping, eps=EPS):
     )
 
 
-@pytest.mark.parametrize("name", ["principal", "periodic mass, sum, damped", *slow(*REST)])
+@pytest.mark.parametrize("name", ["principal", *slow("periodic mass, sum, damped", *REST)])
 def test_the_error_falls_with_the_first_power_left_out(name):
     system, label, damping = CASES[name]
     changed = {key: value * EPS for key, value in damping.items()}
@@ -143,7 +143,7 @@ def test_the_error_falls_with_the_first_power_left_out(name):
         assert np.all(found.error <= 1e3 * worst + 1e-11)
 
 
-@pytest.mark.parametrize("name", ["sum", "periodic mass, sum, damped"])
+@pytest.mark.parametrize("name", ["periodic mass, sum, damped"])
 def test_checks_pass_and_say_what_was_compared(name):
     system, label, damping = CASES[name]
     found = _series(system, label, 2, damping)
@@ -694,11 +694,11 @@ def test_which_resonances_of_the_rig_there_are(rig):
     ("label", "most"),
     [
         # The largest errors at order 4 [rad/s].
-        ("2 w1 = 8 w", 0.003),
         ("2 w1 = 6 w", 0.08),
         ("w1 + w2 = 12 w", 0.04),
-        ("2 w2 = 16 w", 0.002),
-        ("w1 + w2 = 9 w", 0.3),
+        pytest.param("2 w1 = 8 w", 0.003, marks=pytest.mark.slow),
+        pytest.param("2 w2 = 16 w", 0.002, marks=pytest.mark.slow),
+        pytest.param("w1 + w2 = 9 w", 0.3, marks=pytest.mark.slow),
     ],
 )
 def test_tongues_of_the_rig(rig, label, most):

@@ -258,7 +258,14 @@ def _whirl(pull) -> LinearPeriodic:
 
 
 @pytest.mark.parametrize(
-    "system", [_random(1, 0.5), _random(2, 2.0), _random(6, 3.0), _whirl(0.3), _whirl(1.0)]
+    "system",
+    [
+        _random(6, 3.0),
+        *(
+            pytest.param(system, marks=pytest.mark.slow)
+            for system in (_random(1, 0.5), _random(2, 2.0), _whirl(0.3), _whirl(1.0))
+        ),
+    ],
 )
 def test_every_unstable_speed_is_in_a_region_and_no_other(system):
     found = stability_edges(system, (1.2, 9.0))

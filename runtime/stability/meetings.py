@@ -112,10 +112,7 @@ class MeanSystem:
             factor = 1.0 if term.scale is None else scales[term.scale]
             factor = factor * speed ** float(SPEED_POWER[term.array] + term.power)
             total["K" if term.array == "Kg" else term.array] += factor[:, None, None] * mean
-        flexibility, gyro = np.linalg.inv(total["M"]), total["A"]
-        back = np.swapaxes(gyro, -1, -2) @ flexibility
-        lower = total["B"] - total["K"] - back @ gyro
-        return np.block([[-flexibility @ gyro, flexibility], [lower, back]])
+        return generator(total)
 
     def frequencies(self, at: Array) -> Array:
         """Return frequencies in radians per radian of crank angle, rising; ``(nb, n)``.
@@ -192,6 +189,14 @@ class MeanSystem:
             signatures=(int(signs[i]), second) if conservative else (0, 0),
             detuning=self.detuning,
         )
+
+
+def generator(mean: Mapping[str, Array]) -> Array:
+    """Return L of y' = L y, y = (q, p), of mean M, A, B and K; shape ``(nb, 2n, 2n)``."""
+    flexibility, gyro = np.linalg.inv(mean["M"]), mean["A"]
+    back = np.swapaxes(gyro, -1, -2) @ flexibility
+    lower = mean["B"] - mean["K"] - back @ gyro
+    return np.block([[-flexibility @ gyro, flexibility], [lower, back]])
 
 
 def _turning(values: NDArray[np.complex128]) -> NDArray[np.bool_]:

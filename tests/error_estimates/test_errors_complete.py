@@ -17,7 +17,6 @@ DELEGATED = {
     "shaking_force": "rigid_forces",
     "shaking_moment": "rigid_forces",
     "sweep": "stability_chart",
-    "trace_tongue": "stability_edges",
     "balance": "with_crank_counterweight",  # a helper of its test, which calls it
 }
 # Whole numbers, classes, or an approximation whose error is another function's.
@@ -32,7 +31,7 @@ OF_ROOMS = {
     "design": ("damping_effect", "length_effect", "screen"),
     "frequencies": ("link_frequencies",),
     "periodic": ("reduced_system", "steady_peaks"),
-    "stability": ("krein_signatures", "tongue", "tongue_curves", "trace_tongue", "unstable_bands"),
+    "stability": ("tongue", "tongue_curves"),
 }
 SOURCES = [path.read_text() for path in Path(__file__).parent.glob("test_*_errors.py")]
 

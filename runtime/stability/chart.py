@@ -146,11 +146,6 @@ class StabilityChart(Result):
         "invariants": ("y", "x", "invariant"),
     }
 
-    @property
-    def first_order(self) -> BoundaryCurves | None:
-        """The boundaries by perturbation where they are of first order."""
-        return self.perturbation if self.order == 1 else None
-
     def plot(self, ax: Axes | None = None) -> Axes:
         """Shade the unstable regions by kind and draw the boundaries; speeds in rpm."""
         from .chart_picture import draw_chart

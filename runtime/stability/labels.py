@@ -19,6 +19,7 @@ from ..periodic import floquet_multipliers
 from ..periodic.first_order import canonical_form
 from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
+from .meetings import generator
 from .over_speed import MatricesOverSpeed
 
 Array = NDArray[np.float64]
@@ -65,12 +66,7 @@ def averaged_modes(
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
     form = canonical_form(system, speed, parameters)
     mean = form.mean
-    flexibility = np.linalg.inv(mean["M"])
-    across = np.swapaxes(mean["A"], -1, -2)
-    rate = np.zeros((len(form.speed), 2 * n, 2 * n))
-    rate[:, :n, :n], rate[:, :n, n:] = -flexibility @ mean["A"], flexibility
-    rate[:, n:, :n] = mean["B"] - mean["K"] - across @ flexibility @ mean["A"]
-    rate[:, n:, n:] = across @ flexibility
+    rate = generator(mean)
     values, vectors = np.linalg.eig(rate)
     values, vectors = values.astype(complex), vectors.astype(complex)
     sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))

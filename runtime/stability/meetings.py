@@ -19,6 +19,8 @@ from ..periodic.signatures import form_matrix
 
 Array = NDArray[np.float64]
 Kind = Literal["principal", "sum", "difference"]
+# Kind, modes from 1, and harmonic.
+Condition = tuple[Kind, tuple[int, int], int]
 
 _GRID = 400
 _ARRAYS = ("M", "A", "B", "K", "Kg")
@@ -110,10 +112,7 @@ class MeanSystem:
             factor = 1.0 if term.scale is None else scales[term.scale]
             factor = factor * speed ** float(SPEED_POWER[term.array] + term.power)
             total["K" if term.array == "Kg" else term.array] += factor[:, None, None] * mean
-        flexibility, gyro = np.linalg.inv(total["M"]), total["A"]
-        back = np.swapaxes(gyro, -1, -2) @ flexibility
-        lower = total["B"] - total["K"] - back @ gyro
-        return np.block([[-flexibility @ gyro, flexibility], [lower, back]])
+        return generator(total)
 
     def frequencies(self, at: Array) -> Array:
         """Return frequencies in radians per radian of crank angle, rising; ``(nb, n)``.
@@ -137,30 +136,41 @@ class MeanSystem:
         nu[n - len(kept) :], signs[n - len(kept) :] = values.imag[kept], np.sign(form)
         return nu, signs
 
-    def meetings(
-        self, span: tuple[float, float], kind: Kind, modes: tuple[int, int], harmonic: int
-    ) -> Array:
-        """Return all values in a span at which the two exponents meet, rising."""
+    def meetings(self, span: tuple[float, float], conditions: Sequence[Condition]) -> list[Array]:
+        """Return all values in a span at which the two exponents of each condition meet, rising."""
+        first, second, minus, turns = (
+            np.array(column)
+            for column in zip(
+                *(
+                    (i - 1, j - 1, kind == "difference", harmonic * 2 * np.pi / self.system.period)
+                    for kind, (i, j), harmonic in conditions
+                ),
+                strict=True,
+            )
+        )
 
-        def distance(at: Array) -> Array:
-            nu = self.frequencies(at)
-            first, second = nu[:, modes[0] - 1], nu[:, modes[1] - 1]
-            both = first - second if kind == "difference" else first + second
-            return np.asarray(both - harmonic * 2.0 * np.pi / self.system.period)
+        def distance(at: Array, which: NDArray[np.intp]) -> Array:
+            nu, rows = self.frequencies(at), np.arange(len(at))
+            other = nu[rows, second[which]]
+            both = nu[rows, first[which]] + np.where(minus[which], -other, other)
+            return np.asarray(both - turns[which])
 
         grid = np.geomspace(*span, _GRID) if span[0] > 0 else np.linspace(*span, _GRID)
-        value = distance(grid)
+        nu = self.frequencies(grid)
+        value = nu[:, first] + np.where(minus, -1.0, 1.0) * nu[:, second] - turns
         with np.errstate(invalid="ignore"):
-            change = np.flatnonzero((value[:-1] * value[1:] <= 0) & (value[1:] != 0))
+            passing = (value[:-1] * value[1:] <= 0) & (value[1:] != 0)
+        which, change = np.nonzero(passing.T)
         low, high = grid[change], grid[change + 1]
-        sign = np.sign(value[change + 1])
+        sign = np.sign(value[change + 1, which])
         for _ in range(60):
             middle = (low + high) / 2
-            above = np.sign(distance(middle)) == sign
+            above = np.sign(distance(middle, which)) == sign
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         places: Array = (low + high) / 2
-        # Distance at a meeting; where a mode ends, at a divergence, the numbers of the others jump.
-        return places[np.abs(distance(places)) < 1e-7]
+        # Where a mode ends, at a divergence, the numbers of the others jump.
+        met = np.abs(distance(places, which)) < 1e-7
+        return [places[met & (which == k)] for k in range(len(conditions))]
 
     def described(
         self, kind: Kind, modes: tuple[int, int], harmonic: int, at: float, conservative: bool
@@ -179,6 +189,14 @@ class MeanSystem:
             signatures=(int(signs[i]), second) if conservative else (0, 0),
             detuning=self.detuning,
         )
+
+
+def generator(mean: Mapping[str, Array]) -> Array:
+    """Return L of y' = L y, y = (q, p), of mean M, A, B and K; shape ``(nb, 2n, 2n)``."""
+    flexibility, gyro = np.linalg.inv(mean["M"]), mean["A"]
+    back = np.swapaxes(gyro, -1, -2) @ flexibility
+    lower = mean["B"] - mean["K"] - back @ gyro
+    return np.block([[-flexibility @ gyro, flexibility], [lower, back]])
 
 
 def _turning(values: NDArray[np.complex128]) -> NDArray[np.bool_]:
@@ -243,18 +261,20 @@ def resonances(
     canonical_form(system, where, {**parameters, **varied})
     mean = MeanSystem(system, parameters, detuning, speed)
     undamped = conservative(system, where, {**parameters, **varied})
-    out: list[Resonance] = []
-    for i in range(1, system.size + 1):
-        for j in range(1, i + 1):
-            for kind in kinds:
-                if (kind == "principal") != (i == j):
-                    continue
-                pair = (i, j) if kind == "difference" else (j, i)
-                for n in range(1, highest + 1):
-                    out += [
-                        mean.described(kind, pair, n, float(at), undamped)
-                        for at in mean.meetings(span, kind, pair, n)
-                    ]
+    conditions: list[Condition] = [
+        (kind, (i, j) if kind == "difference" else (j, i), n)
+        for i in range(1, system.size + 1)
+        for j in range(1, i + 1)
+        for kind in kinds
+        if (kind == "principal") == (i == j)
+        for n in range(1, highest + 1)
+    ]
+    places = mean.meetings(span, conditions) if conditions else []
+    out = [
+        mean.described(*condition, float(at), undamped)
+        for condition, met in zip(conditions, places, strict=True)
+        for at in met
+    ]
     out.sort(key=lambda item: (-item.speed, item.modes, item.kind))
     return out
 

@@ -311,7 +311,7 @@ class _Problem:
         """Return where the exponents of the resonance meet, not too far from where they did."""
         item = self.resonance
         mean = MeanSystem(self.system, parameters, item.detuning, self.speed)
-        return mean.meetings(self._span, item.kind, item.modes, item.harmonic)
+        return mean.meetings(self._span, [(item.kind, item.modes, item.harmonic)])[0]
 
     @property
     def _span(self) -> tuple[float, float]:

@@ -11,7 +11,6 @@ from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill.boundaries import hill_boundaries
 from elastolink.runtime.hill.form import hill_form
 from elastolink.runtime.hill.perturbation import perturbation_boundaries
-from elastolink.runtime.stability.chart import _edge_curves as edge_curves
 from elastolink.runtime.stability.invariants import characteristic, instability_kind
 
 RIG = "smith_1972_5152_sixteenth_inch"
@@ -42,13 +41,6 @@ def test_error_of_the_overlay_falls_with_the_order(order):
     assert chart.order == order
 
 
-def test_order_one_is_called_first_order():
-    axes = ("lam2", np.linspace(0.1, 0.6, 5)), ("mu", np.array([0.01, 0.02]))
-    first, second = (el.stability_chart(mathieu(), *axes, order=order) for order in (1, 2))
-    assert first.first_order is first.perturbation
-    assert second.first_order is None
-
-
 @pytest.mark.parametrize("order", [1, 4])
 def test_overlay_along_the_speed_is_that_of_each_row(order):
     """All rows at once against one function a row, the speed from lam2 = k / w^2."""
@@ -73,7 +65,7 @@ def test_overlay_along_the_speed_is_that_of_each_row(order):
     assert known > 20
 
 
-@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("order", [1, 4])
 def test_damped_overlay_along_the_speed_belongs_to_its_own_damping(order):
     """At a drawn end, lam2 and K of that very speed: the perturbation gives this lam2 again."""
     system = rig(**{"coupler.damping_ratio": 0.0004})
@@ -234,19 +226,6 @@ def test_picture_labels_combinations(traced):
     assert "sum" in table["edges"]["kind"]
 
 
-def test_rows_of_a_long_axis_are_nine(monkeypatch):
-    seen = []
-
-    def fake(system, span, **parameters):
-        seen.append(parameters["b"])
-        raise el.BadInput("enough")
-
-    monkeypatch.setattr("elastolink.runtime.stability.edges.stability_edges", fake)
-    with pytest.raises(el.BadInput, match="enough"):
-        edge_curves(None, ("speed", "b"), (np.array([1.0, 2.0]), np.linspace(0.0, 1.0, 500)))
-    assert seen == [0.0]
-
-
 @pytest.mark.parametrize(
     ("options", "word"),
     [
@@ -263,6 +242,11 @@ def test_bad_options_are_one_clear_line(options, word):
     with pytest.raises(el.BadInput, match=word) as caught:
         el.stability_chart(mathieu(), *axes, **options)
     assert "\n" not in str(caught.value)
+
+
+def test_order_of_several_modes_is_refused():
+    with pytest.raises(el.BadInput, match="order"):
+        el.stability_chart(rig(**{"model.modes": 2}), SPEEDS, INERTIAS, order=3)
 
 
 # Command line ------------------------------------------------------------------------------------

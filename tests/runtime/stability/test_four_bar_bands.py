@@ -8,7 +8,7 @@ from elastolink.runtime.periodic import floquet_multipliers, monodromy, reduced_
 from elastolink.runtime.periodic.decoupled import characteristic_exponents, slow_system
 from elastolink.runtime.stability import stability_edges
 
-SPAN = (71.0, 74.0)
+SPAN = (72.0, 73.0)
 # The widest band below 75 rad/s: the first mode with itself.
 INSIDE, OUTSIDE = 72.5964, 72.9
 
@@ -24,27 +24,27 @@ def four_bar(ratio=0.0):
 
 @pytest.fixture(scope="module")
 def slow():
-    return slow_system(four_bar(), (SPAN[0] / 1.05, SPAN[1] * 1.05), 5)
+    return slow_system(four_bar(), (SPAN[0] / 1.02, SPAN[1] * 1.02), 5)
 
 
 @pytest.fixture(scope="module")
 def bands(slow):
-    return stability_edges(slow, SPAN)
+    return stability_edges(slow, SPAN, margin=1.02)
 
 
 def test_multipliers_are_on_the_circle_outside_the_bands(slow, bands):
-    speeds = np.linspace(*SPAN, 240)
+    speeds = np.linspace(*SPAN, 80)
     margin = 1e-3
     near = (speeds[:, None] > bands.lower - margin) & (speeds[:, None] < bands.upper + margin)
-    outside = speeds[~np.any(near, axis=1)][:60]
-    assert len(outside) == 60
+    outside = speeds[~np.any(near, axis=1)][:40]
+    assert len(outside) == 40
     found = floquet_multipliers(slow.system, outside)
     assert np.max(np.abs(np.abs(found.multipliers) - 1.0)) <= 1e-10
 
 
 def test_multipliers_grow_inside_every_open_band(slow, bands):
     wide = np.flatnonzero(bands.width > 1e-4)
-    assert len(wide) >= 5
+    assert len(wide) >= 3
     middle = 0.5 * (bands.lower + bands.upper)[wide]
     found = floquet_multipliers(slow.system, middle)
     assert np.all(np.max(np.abs(found.multipliers), axis=-1) > 1.0 + 1e-8)

@@ -69,7 +69,7 @@ def rig():
     return el.load_scene(RIG, overrides={"model.modes": 2}).system()
 
 
-@pytest.mark.parametrize("inertia", [6.55e-4, 2.1467e-3])
+@pytest.mark.parametrize("inertia", [pytest.param(6.55e-4, marks=pytest.mark.slow), 2.1467e-3])
 def test_regions_of_a_rig_agree_with_multipliers_and_boundaries(rig, inertia):
     """Least and greatest measured follower inertia of Smith's rig, the complete equation."""
     found = stability_edges(rig, (60.0, 82.0), follower_inertia=inertia)

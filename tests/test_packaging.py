@@ -207,7 +207,7 @@ def test_the_wheel_holds_the_packages_and_their_data_and_nothing_else(wheel):
         for path in TRACKED:
             if path.parent.as_posix() == folder and path.suffix != ".pyc":
                 expected.add("/".join([*package.split("."), path.name]))
-    data = [path for path in TRACKED if path.parts[:3] == ("runtime", "scenes", "data")]
+    data = [path for path in TRACKED if path.parts[0] == "runtime" and path.parts[2:3] == ("data",)]
     expected |= {"/".join(["elastolink", *path.parts]) for path in data}
     assert names == expected
     for name in ("py.typed", "generated/manifest.json", "templates/module.py.j2"):

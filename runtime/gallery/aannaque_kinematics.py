@@ -413,11 +413,11 @@ def free_body(axes: Sequence[Axes], link: str) -> Drawn:
 def figure_7_12(axes: Sequence[Axes]) -> Drawn:
     """Draw the follower's acceleration for several distances of the pivots."""
     ax, speed = axes[0], load_scene(_SCENE)["operation"]["speed"]
-    for frame, colour in zip(FRAMES, COLOURS, strict=False):
+    for frame in FRAMES:
         motion = cycle(frame)
         greatest = degrees(float(np.max(motion.transmission_angle)))
         label = rf"$L_4$ = {frame:.3f} m, $\gamma_{{\max}}$ = {greatest:.0f}°"
-        ax.plot(np.degrees(motion.theta2), speed**2 * motion.alpha4, color=colour, label=label)
+        ax.plot(np.degrees(motion.theta2), speed**2 * motion.alpha4, label=label)
     _input_axes(ax, "acceleration of the follower [rad/s$^2$]")
     legend_below([ax], columns=3)
     pulses = np.array([pulses_of(frame) for frame in FRAMES])

@@ -209,10 +209,10 @@ def figure_6_5(axes: Sequence[Axes]) -> Drawn:
     axes[0].plot(cycles, 1e3 * values.ravel(), color=COLOURS[0], lw=0.6)
     axes[0].set_ylabel("follower's midpoint [mm]")
     panel_title(axes[0], "from rest, the thesis' form")
-    for (drop, label), colour in zip(_FORMS, COLOURS, strict=False):
+    for drop, label in _FORMS:
         change = changes(march(drop)[0])
         counted = np.arange(2, len(change) + 2)
-        axes[1].semilogy(counted, change, "o-", color=colour, ms=3, label=label)
+        axes[1].semilogy(counted, change, "o-", ms=3, label=label)
     axes[1].axhline(1e-4, color="0.4", lw=0.8, ls="--", label=r"$10^{-4}$")
     axes[1].axvline(31, color="0.4", lw=0.8, ls=":", label="31 cycles")
     axes[1].set_ylabel("change in a cycle\nover the peak")
@@ -312,9 +312,9 @@ def table_6_1(axes: Sequence[Axes]) -> Drawn:
     rows = []
     for ax, storage in zip(axes, (True, False), strict=True):
         words = "stored" if storage else "no storage"
-        for (name, label), colour in zip(_NAMES.items(), COLOURS, strict=False):
+        for name, label in _NAMES.items():
             ratios = [ratio(name, int(n), storage) for n in freedoms]
-            ax.semilogx(freedoms, ratios, color=colour, label=label)
+            ax.semilogx(freedoms, ratios, label=label)
             rows.append((label, words, *(f"{ratio(name, n, storage):.3f}" for n in (9, 27, 300))))
         ax.axhline(1.0, color="0.5", lw=0.8)
         ax.set_xlabel("freedoms $n$")

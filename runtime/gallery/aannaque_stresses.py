@@ -171,8 +171,8 @@ def _response(frame: float) -> tuple[Array, Array]:
 
 
 def _six_frames(ax: Axes, speed: Array, curves: Sequence[Array], scale: float, label: str) -> None:
-    for frame, colour, values in zip(FRAMES, COLOURS, curves, strict=False):
-        ax.semilogy(speed, scale * values, color=colour, label=f"$L_4$ = {frame:.3f} m")
+    for frame, values in zip(FRAMES, curves, strict=True):
+        ax.semilogy(speed, scale * values, label=f"$L_4$ = {frame:.3f} m")
     _speed_axis(ax, speed, label)
     legend_below([ax], columns=3)
 
@@ -258,9 +258,9 @@ def figure_7_8(axes: Sequence[Axes]) -> Drawn:
     """Draw the largest stress over the speed for one, two and three elements, and "exact"."""
     ax, counts = axes[0], (1, 2, 3)
     largest = [np.max(_curve(count), axis=1) for count in counts]
-    for count, values, colour in zip(counts, largest, COLOURS, strict=False):
+    for count, values in zip(counts, largest, strict=True):
         label = f"{count} element{'s' if count > 1 else ''}"
-        ax.semilogy(_WIDE, 1e-6 * values, color=colour, label=label)
+        ax.semilogy(_WIDE, 1e-6 * values, label=label)
     ax.semilogy(_FEWER, 1e-6 * _hybrid_curve(), "--", color="0.2", label='"exact"')
     _speed_axis(ax, _WIDE, "largest stress of all links [MPa]")
     ax.set_ylim(bottom=0.3)
@@ -325,10 +325,10 @@ def midpoint_stress(frame: float) -> tuple[Array, Array]:
 def figure_7_13(axes: Sequence[Axes]) -> Drawn:
     """Draw the stress at the follower's midpoint over the cycle, six frames."""
     ax, pulses = axes[0], []
-    for frame, colour in zip(FRAMES, COLOURS, strict=False):
+    for frame in FRAMES:
         theta, values = midpoint_stress(frame)
         turned, size = np.degrees(theta), np.abs(values)
-        ax.plot(turned, 1e-6 * values, color=colour, label=f"$L_4$ = {frame:.3f} m")
+        ax.plot(turned, 1e-6 * values, label=f"$L_4$ = {frame:.3f} m")
         # Before a quarter turn with the response after it, and about half a turn.
         later = (turned > 150.0) & (turned < 300.0)
         pulses.append((float(np.max(size[~later])), float(np.max(size[later]))))

@@ -134,10 +134,9 @@ def figure_resonances(axes: Sequence[Axes]) -> Drawn:
     """Draw the largest steady tip deflection against the crank speed, for three crank ratios."""
     ax = axes[0]
     values: list[float] = []
-    for ratio, colour in zip((0.05, 0.1, _RATIO), COLOURS, strict=False):
+    for ratio in (0.05, 0.1, _RATIO):
         curve = resonances(ratio)
-        ax.semilogy(*curve.joined, color=colour, label=f"crank ratio {ratio:g}")
-        ax.plot(curve.maxima, curve.maxima_peak, "o", color=colour, ms=3)
+        curve.plot(ax).lines[-1].set_label(f"crank ratio {ratio:g}")
         mean, first = float(curve.mean_frequency[0]), curve.mode == 1
         at = zip(curve.order[first], curve.maxima[first], strict=True)
         values += [order * speed / mean for order, speed in at if order <= 4]

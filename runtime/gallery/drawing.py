@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 COLOURS = ("#1f5a8c", "#c8641e", "#3a7d44", "#7a4a9c", "#5c5c5c", "#8c2d04", "#2a9d9d", "#b8a000")
 
 SETTINGS: dict[str, Any] = {
+    "axes.prop_cycle": f"cycler(color={list(COLOURS)})",
     "font.size": 9.0,
     "axes.titlesize": 10.0,
     "axes.labelsize": 9.0,

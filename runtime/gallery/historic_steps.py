@@ -25,22 +25,9 @@ def de_vogelaere_maps(generator: Generator, theta: Array, half_step: float) -> A
         y(2h)  = y(0) + 2h y'(0) + h^2/3 (2 f(0) + 4 f(h)),
         y'(2h) = y'(0) + h/3 (f(0) + 4 f(h) + f(2h)),
 
-    and f(h) serves the next step as its f(-h).
-
-    Parameters
-    ----------
-    generator : callable
-        From angles ``(nt,)`` to P, ``(nt, n, n)``.  Forcing enters as a last component of y that
-        stays 1.
-    theta : ndarray
-        Left ends of the steps [rad], ``(ns,)``.
-    half_step : float
-        h, half of the distance between the ends of a step [rad].
-
-    Returns
-    -------
-    ndarray
-        ``(ns, 3 n, 3 n)``, acting on (y, h y', h^2 f(-h)).
+    and f(h) serves the next step as its f(-h).  From P ``(nt, n, n)`` at angles, the left ends
+    ``(ns,)`` of the steps and h to matrices ``(ns, 3 n, 3 n)`` on (y, h y', h^2 f(-h)); forcing
+    enters as a last component of y that stays 1.
     """
     angles = theta[:, None] + half_step * np.arange(3.0)
     values = half_step**2 * generator(angles.ravel())
@@ -69,15 +56,7 @@ def de_vogelaere_start(
 
 @dataclass(frozen=True)
 class MersonRun:
-    """States of a Kutta-Merson run at the angles of its output, and the number of its steps.
-
-    Attributes
-    ----------
-    states : ndarray
-        Shape ``(nt, m)``.
-    accepted, rejected : int
-        Number of steps.
-    """
+    """States ``(nt, m)`` of a Kutta-Merson run at the angles of its output, and counts of steps."""
 
     states: Array
     accepted: int
@@ -89,20 +68,8 @@ def kutta_merson(
 ) -> MersonRun:
     """Integrate ``y' = L(theta) y`` with steps chosen by Merson's estimate of the local error.
 
-    Parameters
-    ----------
-    generator : callable
-        From angles ``(nt,)`` to L, ``(nt, m, m)``.
-    theta : ndarray
-        Angles of the output [rad], increasing, ``(nt,)``; steps start on the first and end on all.
-    state : ndarray
-        State at the start, ``(m,)``.
-    rtol : float
-        Relative tolerance of one step.
-    atol : ndarray
-        Absolute tolerance of one step, ``(m,)``.
-    first : float
-        First step to try [rad].
+    From a state ``(m,)`` at the first of the output's angles, on all of which steps end; with the
+    relative and absolute tolerance ``(m,)`` of one step, and the first step to try.
     """
     states = [state]
     accepted = rejected = 0
@@ -165,23 +132,8 @@ def newmark_matrices(
 
         q+ = q + h v + h^2 ((1/2 - beta) a + beta a+),   v+ = v + h ((1 - gamma) a + gamma a+).
 
-    Parameters
-    ----------
-    mass, rate, stiffness : ndarray
-        M, G, H at the ends of the steps, shape ``(N + 1, n, n)``.
-    force : ndarray
-        F there, shape ``(N + 1, n)``.
-    step : float
-        Length h of a step.
-    gamma, beta : float
-        Weights of the new acceleration in velocity and displacement.
-
-    Returns
-    -------
-    maps : ndarray
-        Matrices on the state (q, q'), ``(N, 2n, 2n)``.
-    loads : ndarray
-        What the force adds in a step, ``(N, 2n)``.
+    From M, G, H ``(N + 1, n, n)`` and F ``(N + 1, n)`` at the ends of the steps to matrices
+    ``(N, 2n, 2n)`` on the state (q, q') and what the force adds, ``(N, 2n)``.
     """
     n, count = mass.shape[-1], len(mass) - 1
     # Columns: what multiplies q, q' and 1 at the start of a step.

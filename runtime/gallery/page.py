@@ -40,15 +40,7 @@ _HEADER = (
 
 
 def page(title: str, shown: Sequence[Shown]) -> str:
-    """Return the whole page.
-
-    Parameters
-    ----------
-    title : str
-        Heading.
-    shown : sequence of Shown
-        The figures in order.
-    """
+    """Return the whole page under a heading, figures in order."""
     rows = [row for item in shown for row in item.quoted]
     agree = sum(row.agrees for row in rows)
     known = sum(bool(row.differs) and not row.agrees for row in rows)
@@ -125,19 +117,8 @@ def _table(table: Table) -> str:
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
     """Write files into a folder; on an error or an interrupt it is left as it was.
 
-    The files are written beside the folder first, then moved.  Other files in the folder stay.
-
-    Parameters
-    ----------
-    folder : Path
-        Made where it does not exist.
-    contents : mapping of str to bytes
-        By file name.
-
-    Raises
-    ------
-    BadInput
-        If the folder cannot be made or written.
+    The files are written beside the folder first, then moved.  Other files in the folder stay.  A
+    folder that cannot be made or written is refused.
     """
     made = _missing(folder)
     try:

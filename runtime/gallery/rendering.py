@@ -111,20 +111,7 @@ def reproduce(
 
 
 def render(entry: FigureEntry, *, picture: bool = True) -> tuple[Shown, bytes | None]:
-    """Draw one figure.
-
-    Parameters
-    ----------
-    entry : FigureEntry
-        Which one.
-    picture : bool
-        Whether the picture is wanted, not the numbers alone.
-
-    Returns
-    -------
-    tuple
-        The numbers, and the PNG file's bytes or None.
-    """
+    """Draw one figure; return it with its numbers, and the PNG file's bytes where wanted."""
     import matplotlib as mpl
 
     from ..core.plotting import new_figure

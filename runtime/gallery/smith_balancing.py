@@ -172,9 +172,9 @@ def figure_21(axes: Sequence[Axes]) -> Drawn:
 def figure_22(axes: Sequence[Axes]) -> Drawn:
     """Draw the moment on the frame in the four cases, by (4.13) and complete."""
     for ax, title in zip(axes, ("(4.13): $l_1 Y_{41}$", "with the drive's reaction"), strict=True):
-        for case, colour in zip(CASES, COLOURS, strict=False):
+        for case in CASES:
             label = f"({case}) {_NAMES[case]}"
-            ax.plot(np.degrees(TURN), _moment(case, ax is axes[1]), color=colour, label=label)
+            ax.plot(np.degrees(TURN), _moment(case, ax is axes[1]), label=label)
         ax.axhline(0.0, color="0.6", lw=0.8, zorder=1)
         crank_axis(ax)
         ax.set_ylabel("moment on the frame about A [N m]")

@@ -55,9 +55,9 @@ def _family(ax: Axes, value: Callable[[FourBarMotion], Array], label: str) -> No
     # Closer angles where the follower turns back within a few degrees.
     near = np.concatenate([np.linspace(0.0, 0.35, 701), np.linspace(0.35, 2 * pi - 0.35, 721)])
     theta = np.unique(np.concatenate([near, 2 * pi - near]))
-    for crank, colour in zip(_CRANKS, COLOURS, strict=False):
+    for crank in _CRANKS:
         motion = _follower(crank, theta)
-        ax.plot(np.degrees(theta), value(motion), color=colour, label=f"crank {crank:g}")
+        ax.plot(np.degrees(theta), value(motion), label=f"crank {crank:g}")
     crank_axis(ax)
     ax.set_ylabel(label)
 
@@ -127,7 +127,7 @@ def figure_7(axes: Sequence[Axes]) -> Drawn:
     b = np.degrees([padded(f.b) for f in series])
     for ax, values, name in ((axes[0], a, "cosine $a_m$"), (axes[1], b, "sine $b_m$")):
         for m in range(1, 6):
-            ax.plot(cranks, values[:, m], color=COLOURS[m - 1], label=f"m = {m}")
+            ax.plot(cranks, values[:, m], label=f"m = {m}")
         ax.set(xlim=(0.0, 10.0), ylim=(-60.0, 4.0), xlabel="crank length (other links 10)")
         ax.set_ylabel(f"{name} of $\\theta_4$ [deg]")
     legend_below(axes[:1], columns=5)

@@ -351,9 +351,9 @@ def figure_54(axes: Sequence[Axes]) -> Drawn:
 def figure_55(axes: Sequence[Axes]) -> Drawn:
     """Draw the wave-form at one speed for several follower inertias."""
     ax, sizes = axes[0], []
-    for inertia, colour in zip((_LEAST, 0.0079, 0.0109), COLOURS, strict=False):
+    for inertia in (_LEAST, 0.0079, 0.0109):
         theta, bent = wave("82", inertia, 230.0 * RPM)
-        ax.plot(np.degrees(theta), bent, color=colour, label=f"I4 = {inertia:g} lbf in s2")
+        ax.plot(np.degrees(theta), bent, label=f"I4 = {inertia:g} lbf in s2")
         sizes.append(float(np.ptp(bent)))
     crank_axis(ax)
     ax.set_ylabel("deflection of the middle [mm]")

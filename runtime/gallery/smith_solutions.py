@@ -223,8 +223,8 @@ def figure_32(axes: Sequence[Axes]) -> Drawn:
     """Draw the forcing of the first and the second mode."""
     ax, theta = axes[0], np.linspace(0.0, 2 * pi, 721)
     forcing = _system(3).array("f", theta)
-    for m, colour in zip((1, 2), COLOURS, strict=False):
-        ax.plot(np.degrees(theta), forcing[:, m - 1], color=colour, label=f"mode {m}: $g_{m}$")
+    for m in (1, 2):
+        ax.plot(np.degrees(theta), forcing[:, m - 1], label=f"mode {m}: $g_{m}$")
     crank_axis(ax)
     ax.set_ylabel(r"forcing $g_m(\theta_2)$")
     legend_below([ax])

@@ -266,9 +266,9 @@ def _claims(rig: Rig) -> list[float]:
 def equations_table(axes: Sequence[Axes]) -> Drawn:
     """Draw the deviation of each equation from each quoted speed; give the tables."""
     ax, places = axes[0], np.arange(len(_COMPARED))
-    for equation, marker, colour in zip(EQUATIONS, "os^", COLOURS, strict=False):
+    for equation, marker in zip(EQUATIONS, "os^", strict=True):
         values = [one.percent(equation) for one in _COMPARED]
-        ax.plot(values, places, marker, color=colour, ms=5, label=_NAMES[equation])
+        ax.plot(values, places, marker, ms=5, label=_NAMES[equation])
     ax.axvline(0.0, color="0.4", lw=0.8)
     names = [
         f"{one.rig.name}, I {one.inertia:.4f}, {region_name(one.region)}: "
@@ -398,7 +398,6 @@ def two_modes(rig: Rig, inertia: float, n: int) -> Array:
         rig.system("complete", 2),
         1 if n % 2 == 0 else -1,
         speed_range=(0.985 * float(alone[0]), 1.015 * float(alone[1])),
-        harmonics=16,
         follower_inertia=inertia,
     )
     share = np.sum(ends.cosine[..., 0] ** 2 + ends.sine[..., 0] ** 2, axis=-1)

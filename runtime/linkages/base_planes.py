@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..core.inputs import require_whole
+from ..core.inputs import is_finite, require_whole
 from ..core.results import Result, provenance
 from .classification import SYMBOLS, classify, number_of_signs
 from .linkage import Array
@@ -120,8 +119,7 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
         If no linkage lies in the plane, or there are too few points.
     """
     least = 3.0**-0.5
-    number = isinstance(lam, Real) and not isinstance(lam, bool)
-    if not (number and least < lam < 1e100):
+    if not (is_finite(lam) and least < lam < 1e100):
         raise bad("lam", repr(lam), f"a finite number above {least:.6g}", "no linkage lies there")
     require_whole("points", points, 2, 5000)
     total = float(lam) * 3.0**0.5

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import BadInput, Problem, bad
+from ..core.inputs import is_finite
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from . import joint_play
 from .four_bar import FourBar
@@ -356,8 +356,7 @@ def _checked(
         if name not in _JOINTS:
             fix = "name the joint by its two links"
             problems.append(Problem(where, repr(name)[:60], f"one of {', '.join(_JOINTS)}", fix))
-        usable = isinstance(value, Real) and not isinstance(value, bool)
-        if not (usable and 0.0 <= float(value) <= longest):
+        if not (is_finite(value) and 0.0 <= value <= longest):
             expected = f"a clearance from 0 to the longest length, {longest:g}"
             problems.append(Problem(where, repr(value)[:60], expected, "correct it"))
     if problems:

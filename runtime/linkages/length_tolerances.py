@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.errors import BadInput, Problem, bad
-from ..core.inputs import is_whole
+from ..core.inputs import is_finite, is_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .linkage import EPS, Array, Linkage, drive_of
 from .parametric import ANGLE, Parametric
@@ -354,7 +354,7 @@ def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
         if name not in known:
             fix = "correct the name; masses need a Machine"
             problems.append(Problem(where, repr(name), f"one of {', '.join(known)}", fix))
-        elif not _is_width(width):
+        elif not (is_finite(width) and width >= 0.0):
             problems.append(Problem(where, repr(width)[:60], "zero or more", "correct it"))
         elif width >= limits.get(name, math.inf):
             what = "a quarter turn" if name == ANGLE else "the length"
@@ -363,11 +363,6 @@ def _checked(model: Parametric, tolerance: object) -> dict[str, float]:
     if problems:
         raise BadInput(*problems)
     return {str(name): float(width) for name, width in tolerance.items()}
-
-
-def _is_width(width: Any) -> bool:
-    number = isinstance(width, (int, float, np.integer, np.floating))
-    return number and not isinstance(width, bool) and bool(0 <= width < math.inf)
 
 
 def _require_reach(linkage: Linkage, sizes: Mapping[str, float], theta: Array) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
+from ..core.inputs import is_finite
 from ..core.trigonometric import even_angles, interpolated, tail
 from ..linkages.linkage import TURN, Array
 from .evaluation import Evaluation
@@ -42,8 +42,7 @@ class OneFreedom:
     """
 
     def __init__(self, machine: Machine, flywheel: float = 0.0) -> None:
-        real = isinstance(flywheel, Real) and not isinstance(flywheel, bool)
-        if not (real and np.isfinite(flywheel) and flywheel >= 0):
+        if not (is_finite(flywheel) and flywheel >= 0):
             given = repr(flywheel)[:60]
             raise bad("flywheel", given, "a finite inertia, zero or more", "correct it")
         self.machine, self.flywheel = machine, float(flywheel)

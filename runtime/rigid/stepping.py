@@ -245,30 +245,25 @@ class _Events:
         """Return the first event in a step, if there is one: its time, status and message."""
         if self.direction == 0.0:
             self.direction = float(np.sign(state[1]))
-        events: list[tuple[float, Status, str]] = []
         low, high = self.range
         # So near to an end of the crank's range the reduced inertia grows beyond all bounds.
-        margin = 1e-6
-        watched: list[tuple[Callable[[Array], float], Status, str]] = [
-            (
-                lambda y: abs(float(y[0]) - self.theta) - self.goal,
-                "finished",
-                "the revolutions are made",
+        fold = 1e-6
+        watched: dict[tuple[Status, str], Callable[[Array], float]] = {
+            ("finished", "the revolutions are made"): (
+                lambda y: abs(float(y[0]) - self.theta) - self.goal
             ),
-            (
-                lambda y: max(float(y[0]) - high, low - float(y[0])) + margin,
-                "fold",
-                "the crank came to an end of its range",
+            ("fold", "the crank came to an end of its range"): (
+                lambda y: max(float(y[0]) - high, low - float(y[0])) + fold
             ),
-        ]
+        }
         if not self.reversals:
-            watched.append(
-                (lambda y: -self.direction * float(y[1]), "stalled", "the crank stalled")
-            )
-        for rule, status, message in watched:
-            if np.isfinite(rule(state)) and rule(state) > 0:
-                events.append((_root(rule, piece, begin, end), status, message))
-        return min(events, key=lambda item: item[0]) if events else None
+            watched["stalled", "the crank stalled"] = lambda y: -self.direction * float(y[1])
+        events = [
+            (_root(rule, piece, begin, end), *words)
+            for words, rule in watched.items()
+            if np.isfinite(rule(state)) and rule(state) > 0
+        ]
+        return min(events, key=lambda item: item[0], default=None)
 
 
 def _root(rule: Callable[[Array], float], piece: Any, begin: float, end: float) -> float:

@@ -22,15 +22,12 @@ SLIDER = SliderCrank(1.0, 3.0, 0.3)
 ROD = QuickReturn(2.0, 1.0, 4.0)
 ALL = [
     (CRANK_ROCKER, "coupler"),
-    (CRANK_ROCKER, "crank"),
     (DRAG_LINK, "follower"),
     (TRIPLE_ROCKER, "coupler"),
     (DOUBLE_ROCKER, "coupler"),
-    (INWARD_ROCKER, "follower"),
     (TWO_RANGES, "coupler"),
     (SLIDER, "slider"),
     (SliderCrank(2.0, 1.0, 0.3), "coupler"),
-    (SliderCrank(2.0, 2.2, 1.5), "coupler"),
     (ROD, "rod"),
     (QuickReturn(1.0, 2.0, 4.0), "block"),
 ]

@@ -195,17 +195,17 @@ def linkage() -> FourBar:
 
 def cycle(frame: float | None = None) -> FourBarMotion:
     """Return one turn, a tenth of a degree apart, of the linkage or one with another frame."""
-    own = linkage()
-    chosen = own if frame is None else FourBar(frame, own.crank, own.coupler, own.follower)
+    bars = linkage()
+    chosen = bars if frame is None else FourBar(frame, bars.crank, bars.coupler, bars.follower)
     return chosen.motion(np.linspace(0.0, 2.0 * pi, 3601))
 
 
 def figure_3_6(axes: Sequence[Axes]) -> Drawn:
     """Draw both assemblies at one crank angle."""
-    ax, own = axes[0], linkage()
+    ax, bars = axes[0], linkage()
     canvas(ax)
-    other = FourBar(own.frame, own.crank, own.coupler, own.follower, assembly="crossed")
-    both = [item.motion(_INPUT) for item in (own, other)]
+    other = FourBar(bars.frame, bars.crank, bars.coupler, bars.follower, assembly="crossed")
+    both = [item.motion(_INPUT) for item in (bars, other)]
     a, b, d = (np.asarray(both[0].joints[name]) for name in "ABD")
     ax.plot(*np.transpose([b, d]), ":", color="0.4", lw=1.0)
     for motion, name, style in zip(both, ("B", "B'"), ("-", (0, (3, 1.2))), strict=True):
@@ -216,12 +216,12 @@ def figure_3_6(axes: Sequence[Axes]) -> Drawn:
         write(ax, c, name, (12.0, 10.0 if name == "B" else -10.0), style="italic")
     bar(ax, a, b, LINK_COLOURS["crank"], zorder=4)
     for place, name, shift in ((a, "O", -16.0), (d, "C", 16.0)):
-        pivot(ax, place, 0.1 * own.frame)
+        pivot(ax, place, 0.1 * bars.frame)
         write(ax, place, name, (shift, 4.0), style="italic")
     pin(ax, b)
     write(ax, b, "A", (-10.0, 10.0), style="italic")
-    ax.plot([0.0, 0.12 * own.frame], [0.0, 0.0], color="0.35", lw=0.8)
-    arc(ax, a, 0.07 * own.frame, (0.0, _INPUT), "$t_1$")
+    ax.plot([0.0, 0.12 * bars.frame], [0.0, 0.0], color="0.35", lw=0.8)
+    arc(ax, a, 0.07 * bars.frame, (0.0, _INPUT), "$t_1$")
     follower, coupler = _printed_angles(_INPUT)
     gammas = [degrees(float(m.transmission_angle)) for m in both]
 
@@ -235,8 +235,8 @@ def figure_3_6(axes: Sequence[Axes]) -> Drawn:
 
 def _printed_angles(theta: float) -> list[list[float]]:
     """Return t3 by (3.6) and t2 by (3.8), as printed, with either sign of the root."""
-    own = linkage()
-    r2, r3, r4 = (part / own.crank for part in (own.coupler, own.follower, own.frame))
+    bars = linkage()
+    r2, r3, r4 = (part / bars.crank for part in (bars.coupler, bars.follower, bars.frame))
     k1, k2, k4 = r4, r4 / r3, r4 / r2
     k3 = (1.0 - r2**2 + r3**2 + r4**2) / (2.0 * r3)
     k5 = (r3**2 - r4**2 - 1.0 - r2**2) / (2.0 * r2)
@@ -274,28 +274,28 @@ def _input_axes(ax: Axes, label: str) -> None:
 
 def figure_3_7(axes: Sequence[Axes]) -> Drawn:
     """Draw speeds of coupler and follower over the crank's."""
-    motion, own = cycle(), linkage()
+    motion, bars = cycle(), linkage()
     t1, t2, t3 = motion.theta2, motion.theta3, motion.theta4
     gaps = _rates(
         axes[0],
         "omega",
         "relative angular velocity",
-        -own.crank * np.sin(t3 - t1) / (own.coupler * np.sin(t3 - t2)),
-        -own.crank * np.sin(t2 - t1) / (own.follower * np.sin(t3 - t2)),
+        -bars.crank * np.sin(t3 - t1) / (bars.coupler * np.sin(t3 - t2)),
+        -bars.crank * np.sin(t2 - t1) / (bars.follower * np.sin(t3 - t2)),
     )
     # (3.1) at the input angle of Fig. 3.6, as printed, with the frame, and as it must be.
-    here = own.motion(_INPUT)
+    here = bars.motion(_INPUT)
     sines = abs(sin(float(here.transmission_angle)) / sin(float(here.theta3 - here.theta2)))
     ratio = abs(1.0 / float(here.omega4))
-    advantage = (own.follower * sines / length - ratio for length in (own.frame, own.crank))
+    advantage = (bars.follower * sines / length - ratio for length in (bars.frame, bars.crank))
     return Drawn([*gaps, *advantage])
 
 
 def figure_3_8(axes: Sequence[Axes]) -> Drawn:
     """Draw accelerations of coupler and follower over the crank's speed squared."""
-    motion, own = cycle(), linkage()
+    motion, bars = cycle(), linkage()
     t1, t2, t3 = motion.theta2, motion.theta3, motion.theta4
-    l1, l2, l3 = own.crank, own.coupler, own.follower
+    l1, l2, l3 = bars.crank, bars.coupler, bars.follower
     w2, w3 = motion.omega3**2, motion.omega4**2
     coupler = l1 * np.cos(t3 - t1) + l2 * w2 * np.cos(t3 - t2) - l3 * w3
     follower = l1 * np.cos(t2 - t1) - l3 * w3 * np.cos(t2 - t3) + l2 * w2
@@ -315,8 +315,8 @@ def figure_3_8(axes: Sequence[Axes]) -> Drawn:
 
 def figure_3_9(axes: Sequence[Axes]) -> Drawn:
     """Draw the transmission angle over one cycle with the recommended band."""
-    ax, own, theta = axes[0], linkage(), np.linspace(0.0, 2.0 * pi, 721)
-    mu = transmission_angle(own)
+    ax, bars, theta = axes[0], linkage(), np.linspace(0.0, 2.0 * pi, 721)
+    mu = transmission_angle(bars)
     ax.axhspan(*np.degrees(mu.band), color=COLOURS[2], alpha=0.10, label="recommended band")
     ax.plot(np.degrees(theta), np.degrees(mu.angle(theta)), color=COLOURS[0])
     for angles, value, name, shift in (
@@ -335,21 +335,21 @@ def figure_3_9(axes: Sequence[Axes]) -> Drawn:
         (mu.at_greatest, mu.greatest, -1.0),
     ):
         cosine = (
-            own.coupler**2
-            + own.follower**2
-            + sign * 2.0 * own.crank * own.frame
-            - own.crank**2
-            - own.frame**2
-        ) / (2.0 * own.coupler * own.follower)
+            bars.coupler**2
+            + bars.follower**2
+            + sign * 2.0 * bars.crank * bars.frame
+            - bars.crank**2
+            - bars.frame**2
+        ) / (2.0 * bars.coupler * bars.follower)
         values += [degrees(abs(float(angle[0]))), (degrees(value), degrees(np.arccos(cosine)))]
     return Drawn([*values, degrees(mu.least), degrees(mu.greatest)])
 
 
 def figure_3_10(axes: Sequence[Axes]) -> Drawn:
     """Draw the mechanism at several positions, and the paths of some points of its coupler."""
-    ax, own = axes[0], linkage()
+    ax, bars = axes[0], linkage()
     canvas(ax)
-    length, start = own.coupler, radians(70.0)
+    length, start = bars.coupler, radians(70.0)
     points = {
         "A": (0.0, 0.0),
         "B": (length, 0.0),
@@ -358,16 +358,16 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
         "R": (0.5 * length, 0.6 * length),
         "S": (1.3 * length, 0.5 * length),
     }
-    curves = {name: coupler_curve(own, *place) for name, place in points.items()}
+    curves = {name: coupler_curve(bars, *place) for name, place in points.items()}
     for k in range(1, 8):
-        joints = own.motion(start + k * pi / 4.0).joints
+        joints = bars.motion(start + k * pi / 4.0).joints
         for ends, link in (("AB", "crank"), ("BC", "coupler"), ("DC", "follower")):
             colour = LINK_COLOURS[link]
             bar(ax, joints[ends[0]], joints[ends[1]], colour, lw=1.6, alpha=0.22, zorder=2)
     for (name, curve), colour in zip(curves.items(), ("0.35", "0.35", *COLOURS[3:]), strict=False):
         closed = np.vstack([curve.position, curve.position[:1]])
         ax.plot(*closed.T, color=colour, lw=1.4, ls="--" if name in "AB" else "-", zorder=4)
-    now = own.motion(start)
+    now = bars.motion(start)
     joints = now.joints
     for name in "PQRS":
         at = now.point("coupler", *points[name]).position
@@ -376,12 +376,12 @@ def figure_3_10(axes: Sequence[Axes]) -> Drawn:
             ax.plot(*lines.T, color=LINK_COLOURS["coupler"], lw=1.0, zorder=4)
         ax.plot(*at, "o", color="0.15", ms=4.0, zorder=8)
         write(ax, at, name, (8.0, 8.0), style="italic")
-    four_bar(ax, joints, 0.07 * own.frame, "OABC")
-    swing = transmission_angle(own).swing or 0.0
-    pins = (("A", np.zeros(2), own.crank), ("B", np.array([own.frame, 0.0]), own.follower))
+    four_bar(ax, joints, 0.07 * bars.frame, "OABC")
+    swing = transmission_angle(bars).swing or 0.0
+    pins = (("A", np.zeros(2), bars.crank), ("B", np.array([bars.frame, 0.0]), bars.follower))
     off = [np.abs(np.hypot(*(curves[n].position - at).T) - r).max() for n, at, r in pins]
-    around = curves["A"].length / (2.0 * pi * own.crank)
-    return Drawn([max(off), around, curves["B"].length / (2.0 * own.follower * swing)])
+    around = curves["A"].length / (2.0 * pi * bars.crank)
+    return Drawn([max(off), around, curves["B"].length / (2.0 * bars.follower * swing)])
 
 
 def free_body(axes: Sequence[Axes], link: str) -> Drawn:

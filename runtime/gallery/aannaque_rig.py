@@ -205,9 +205,9 @@ def mean_frequency(scene: str, frame: float, mode: int = 1) -> float:
     return float(_held(scene).mean[FRAMES.index(frame), mode - 1])
 
 
-def _critical(found: StressCurve, link: str) -> Array:
+def _critical(over: StressCurve, link: str) -> Array:
     """Return the speeds of maxima beside which the stress falls by 5 % at least."""
-    return maxima(found.speed, found.of(link), -np.log1p(-0.05))
+    return maxima(over.speed, over.of(link), -np.log1p(-0.05))
 
 
 def long_frame(axes: Sequence[Axes], frame: float) -> Drawn:

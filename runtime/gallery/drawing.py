@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# Blue, orange, green, purple, grey, brown: told apart in print and by the colour-blind.
+# Blue, orange, green, purple, grey, brown: distinct in print and by the colour-blind.
 COLOURS = ("#1f5a8c", "#c8641e", "#3a7d44", "#7a4a9c", "#5c5c5c", "#8c2d04", "#2a9d9d", "#b8a000")
 
 SETTINGS: dict[str, Any] = {

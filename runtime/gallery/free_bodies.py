@@ -66,13 +66,13 @@ def free_bodies(
     forces = rigid_forces(machine, theta, speed, acceleration, ("pins", "torque"))
     motion = machine.linkage.motion(theta, speed, acceleration)
     joints = motion.joints
-    found = {}
+    bodies = {}
     for link, ends in _PINS.items():
         mass = machine.mass(link)
         centre = motion.point(link, *mass.centre)
         spin = motion.link(link).angular_acceleration
         torque = forces.torque if link == "crank" else np.zeros_like(forces.torque)
-        found[link] = Body(
+        bodies[link] = Body(
             link,
             (joints[ends[0][0]], joints[ends[1][0]], centre.position),
             (
@@ -82,7 +82,7 @@ def free_bodies(
             -mass.inertia_about_centre * spin,
             torque,
         )
-    return found, forces
+    return bodies, forces
 
 
 def draw_body(
@@ -107,9 +107,9 @@ def draw_body(
     ax.plot(*centre, "o", color="0.15", ms=4.0, zorder=6)
     normal = np.array([first[1] - second[1], second[0] - first[0]]) / length
     # The centre's letter goes to one side of the link, the inertia force's name to its own side.
-    own = normal if normal @ body.forces[2] > 0 else -normal
+    aside = normal if normal @ body.forces[2] > 0 else -normal
     for place, letter in zip(places, letters, strict=True):
-        shift = -12.0 * (own if letter == "G" else normal)
+        shift = -12.0 * (aside if letter == "G" else normal)
         if "torque" in names and place is first:
             # In the gap of the arrow that stands for the torque.
             shift = np.array([-13.0, 5.0])
@@ -119,8 +119,8 @@ def draw_body(
         name = names.get(letter, "")
         arrow(ax, place, scale * force, colour, "" if letter == "G" else name)
         if letter == "G" and name:
-            side = "left" if own[0] > 0 else "right"
-            write(ax, place + scale * force, name, 8.0 * own, color=colour, ha=side)
+            side = "left" if aside[0] > 0 else "right"
+            write(ax, place + scale * force, name, 8.0 * aside, color=colour, ha=side)
     if "torque" in names:
         value = float(body.torque)
         turning_arrow(ax, first, 0.19 * length, value, names["torque"], COUPLE_COLOUR)

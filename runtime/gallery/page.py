@@ -167,11 +167,11 @@ def _stage_and_move(folder: Path, staging: Path, contents: Mapping[str, bytes]) 
 
 def _missing(folder: Path) -> list[Path]:
     """Return the folders that would have to be made, the innermost first."""
-    found = []
+    missing = []
     while not folder.exists():
-        found.append(folder)
+        missing.append(folder)
         folder = folder.parent
-    return found
+    return missing
 
 
 def _remove(folders: list[Path]) -> None:

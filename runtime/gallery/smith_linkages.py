@@ -127,8 +127,8 @@ class Rig:
         values = np.atleast_1d(np.asarray(inertia, dtype=float))
         if equation == "reduced":
             # Its coefficient is proportional to the inertia.
-            found = hill_boundaries(self.function(equation, 1.0), values, regions)
-            lam2 = np.stack([found.upper, found.lower])
+            bounds = hill_boundaries(self.function(equation, 1.0), values, regions)
+            lam2 = np.stack([bounds.upper, bounds.lower])
         else:
             each = [hill_boundaries(self.function(equation, v), 1.0, regions) for v in values]
             upper = np.stack([one.upper for one in each], axis=-1)

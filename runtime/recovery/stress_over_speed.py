@@ -39,6 +39,8 @@ _ELSEWHERE = 8.0
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.
 _FINER, _NEAR = 8, 0.6
+# Half a fine step beside its top the highest harmonic has cos(pi/16) of it.
+_TIED = 0.98
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -480,20 +482,23 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
         rows_of = np.flatnonzero(link == k)
         rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
         fine = np.abs(resampled(values[:, rows_of[rows], columns], _FINER * count)).T
-        place = np.argmax(fine, axis=1)
-        each = np.arange(len(place))
-        before = fine[each, place - 1]
-        at, after = fine[each, place], fine[each, (place + 1) % fine.shape[1]]
+        # Of several tops almost equal at the angles another may be the largest between them.
+        which, place = np.nonzero(fine >= _TIED * np.max(fine, axis=1, keepdims=True))
+        before, after = fine[which, place - 1], fine[which, (place + 1) % fine.shape[1]]
+        at = fine[which, place]
+        top = (at >= before) & (at >= after)
+        which, place, before, at, after = (v[top] for v in (which, place, before, at, after))
         bend = np.minimum(before - 2.0 * at + after, -np.finfo(float).tiny)
         shift = np.clip(0.5 * (before - after) / bend, -0.5, 0.5)
-        top = at - 0.25 * (before - after) * shift
-        # Of each speed the largest row, the first of equal ones.
-        order = np.lexsort((rows, -top, columns))
-        first = order[np.unique(columns[order], return_index=True)[1]]
-        size[k] = top[first]
+        height = at - 0.25 * (before - after) * shift
+        # Of each speed the highest, the first row of equal ones.
+        speed = columns[which]
+        order = np.lexsort((rows[which], -height, speed))
+        first = order[np.unique(speed[order], return_index=True)[1]]
+        size[k] = height[first]
         theta[k] = (place[first] + shift[first]) % fine.shape[1] * (period / fine.shape[1])
-        row[k] = rows_of[rows[first]]
-        error[k] = _missed(fine[first], place[first]) / size[k]
+        row[k] = rows_of[rows[which[first]]]
+        error[k] = _missed(fine[which[first]], place[first]) / size[k]
     return Peaks(size, theta, row, error)
 
 

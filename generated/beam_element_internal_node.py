@@ -17,7 +17,7 @@ per length along and across the element, linear between.
 
 Cost per evaluation:
     element: 202 operations
-Content hash 73cb62505784df3afa741892dd92a4a2; derived with SymPy 1.14.0.
+Content hash be591ad04c295c4dff8a6f1a8af4629a; derived with SymPy 1.14.0.
 """
 
 __all__ = ["element"]
@@ -26,7 +26,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"internal_node","mechanism":"beam_elemen'
     't","modes":null,"outputs":[]}'
 )
-CONTENT = "73cb62505784df3afa741892dd92a4a2"
+CONTENT = "be591ad04c295c4dff8a6f1a8af4629a"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

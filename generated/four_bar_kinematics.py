@@ -13,7 +13,7 @@ At theta2 = 0 both angles lie between -pi and pi.
 
 Cost per evaluation:
     motion: 158 operations
-Content hash 851b05c6f9e8c15f39ba88189ee78608; derived with SymPy 1.14.0.
+Content hash a7d9e3d39bed6b8a605b510515a6e18d; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"kinematics","mechanism":"four_bar","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "851b05c6f9e8c15f39ba88189ee78608"
+CONTENT = "a7d9e3d39bed6b8a605b510515a6e18d"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -9,7 +9,7 @@ The caller supplies f as a function of the angle, by the name 'f'.
 
 Cost per evaluation:
     scales: 0 operations
-Content hash 65c8b07bf548aaf8c6a740b406160b11; derived with SymPy 1.14.0.
+Content hash c266d728332e61bee6d6a2e054f483ea; derived with SymPy 1.14.0.
 """
 
 __all__ = ["scales"]
@@ -18,7 +18,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"plain","mechanism":"hill","modes":null,'
     '"outputs":[]}'
 )
-CONTENT = "65c8b07bf548aaf8c6a740b406160b11"
+CONTENT = "c266d728332e61bee6d6a2e054f483ea"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

@@ -16,7 +16,7 @@ Cost per evaluation:
     shaking_force: 115 operations
     shaking_moment: 137 operations
     load_forces: 75 operations
-Content hash c180e752de5dd0d6af313d194fb5dad5; derived with SymPy 1.14.0.
+Content hash 469d08d8f59d6a54958b9810214b7ad0; derived with SymPy 1.14.0.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ SPEC = (
     '{"balanced":[],"drop":[],"flexible":[],"formulation":"forces","mechanism":"slider_crank","mod'
     'es":null,"outputs":[]}'
 )
-CONTENT = "c180e752de5dd0d6af313d194fb5dad5"
+CONTENT = "469d08d8f59d6a54958b9810214b7ad0"
 
 # Unit and meaning of arguments and results.
 QUANTITIES = {

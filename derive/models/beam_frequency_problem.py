@@ -70,15 +70,9 @@ def end_forces(equations: FieldEquations, frequency: sp.Expr, shape: sp.Expr) ->
 class HalfProblem:
     """One half of the problem: shapes of one parity about the middle.
 
-    Attributes
-    ----------
-    shapes : tuple of Expr
-        Numerators of the shapes that have a unit generalised displacement at the right end: the
-        value, and in bending the slope.
-    forces : Matrix
-        Numerators of the forces at that end: row force and moment, column displacement.
-    divisor : Expr
-        What divides all of them.
+    ``shapes``: numerators of the shapes that have a unit generalised displacement at the right end:
+    the value, and in bending the slope; ``forces``: numerators of the forces at that end: row force
+    and moment, column displacement; ``divisor``: what divides all of them.
     """
 
     shapes: tuple[sp.Expr, ...]

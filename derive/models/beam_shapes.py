@@ -35,16 +35,8 @@ u, v, psi = (sp.Function(name)(x, t) for name in ("u", "v", "psi"))
 class Condition:
     """A nodal value: a field, or one of its derivatives by x, at a fraction of the length.
 
-    Attributes
-    ----------
-    label : str
-        Name of the nodal value.
-    field : Expr
-        Field that it belongs to.
-    order : int
-        Number of derivatives.
-    place : Rational
-        Fraction of the length, 0 to 1.
+    ``label``: name of the nodal value; ``field``: field that it belongs to; ``order``: number of
+    derivatives; ``place``: fraction of the length, 0 to 1.
     """
 
     label: str

@@ -101,12 +101,9 @@ def tension_in(equations: FieldEquations) -> sp.Expr:
 class FloatingFrame:
     """Buckens' frame of the rod, by integrals of the deflection from the line DB.
 
-    Attributes
-    ----------
-    weights : mapping
-        Symbol to the power of x that weighs the deflection in the integral it stands for.
-    rotation, offset : Expr
-        Small angle of the frame from the line DB, and deflection of the pin from the frame.
+    ``weights``: symbol to the power of x that weighs the deflection in the integral it stands for;
+    ``rotation``, ``offset``: small angle of the frame from the line DB, and deflection of the pin
+    from the frame.
     """
 
     weights: dict[sp.Symbol, sp.Expr]

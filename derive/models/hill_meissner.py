@@ -43,12 +43,8 @@ def level(i: int) -> sp.Symbol:
 class Parts:
     """A matrix ``[[h + d, upper], [lower, h - d]]`` by its four parts.
 
-    Attributes
-    ----------
-    half_trace, half_difference : Expr
-        h and d: half the sum and half the difference of the diagonal.
-    upper, lower : Expr
-        The entries off the diagonal.
+    ``half_trace``, ``half_difference``: h and d: half the sum and half the difference of the
+    diagonal; ``upper``, ``lower``: the entries off the diagonal.
     """
 
     half_trace: sp.Expr

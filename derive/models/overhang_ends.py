@@ -45,12 +45,8 @@ LEAN, LEAN_SLOPE = sp.symbols("lean lean_slope", real=True)
 class Bay:
     """The shape between two supports but for a factor, stable.
 
-    Attributes
-    ----------
-    shape : tuple of Expr
-        Shape and three derivatives by the phase of the point.
-    moved : tuple of Expr
-        The same of its derivative by the phase of the support.
+    ``shape``: shape and three derivatives by the phase of the point; ``moved``: the same of its
+    derivative by the phase of the support.
     """
 
     shape: tuple[sp.Expr, ...]

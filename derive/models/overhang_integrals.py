@@ -36,13 +36,8 @@ Square = tuple[Factor, Factor]
 class Ends:
     """Values of one mode and of its drift where the conditions leave them open.
 
-    Attributes
-    ----------
-    beta : Symbol
-        Fourth root of B.
-    values : mapping
-        Symbol by place, kind (``"e"`` or ``"f"``) and order of the derivative by eta.  After the
-        support, the jump of the third derivative there.
+    ``beta``: fourth root of B; ``values``: symbol by place, kind (``"e"`` or ``"f"``) and order of
+    the derivative by eta. After the support, the jump of the third derivative there.
     """
 
     beta: sp.Symbol

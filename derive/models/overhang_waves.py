@@ -19,18 +19,9 @@ _TERMS = 5  # of it; what is left out is below 1e-18 of the first
 class Wave:
     """A phase v, and functions of it that keep their digits at any v.
 
-    Attributes
-    ----------
-    phase : Symbol
-        v.
-    sine, cosine : Symbol
-        Of v.
-    fade : Symbol
-        ``exp(-v)``.
-    odd, even : Symbol
-        ``2 exp(-v) sinh v`` and ``2 exp(-v) cosh v``.
-    excess, spread : Symbol
-        ``2 exp(-v) (sinh v - sin v)`` and ``2 exp(-v) (cosh v - cos v)``.
+    ``phase``: v; ``sine``, ``cosine``: of v; ``fade``: ``exp(-v)``; ``odd``, ``even``: ``2 exp(-v)
+    sinh v`` and ``2 exp(-v) cosh v``; ``excess``, ``spread``: ``2 exp(-v) (sinh v - sin v)`` and
+    ``2 exp(-v) (cosh v - cos v)``.
     """
 
     phase: sp.Symbol

@@ -46,20 +46,10 @@ _RESULTS = {
 class Kinematics(SolvedLoop):
     """The solved linkage: its symbols, and the steps that define them.
 
-    Attributes
-    ----------
-    near, far : Symbol
-        ``frame - crank`` and ``frame + crank``.
-    sin4, cos4 : Symbol
-        Sine and cosine of the rod angle.
-    sin24, cos24 : Symbol
-        Of ``theta2 - theta4``.
-    slide2, slide : Symbol
-        Square of DB, and DB.
-    w4, a4 : Symbol
-        First and second derivative of ``theta4`` by the crank angle.
-    v3, a3 : Symbol
-        First and second derivative of ``slide`` by the crank angle.
+    ``near``, ``far``: ``frame - crank`` and ``frame + crank``; ``sin4``, ``cos4``: sine and cosine
+    of the rod angle; ``sin24``, ``cos24``: of ``theta2 - theta4``; ``slide2``, ``slide``: square of
+    DB, and DB; ``w4``, ``a4``: first and second derivative of ``theta4`` by the crank angle;
+    ``v3``, ``a3``: first and second derivative of ``slide`` by the crank angle.
     """
 
     near: sp.Symbol

@@ -48,25 +48,13 @@ _RESULTS = {
 class Kinematics(SolvedLoop):
     """The solved linkage: its symbols, and the steps that define them.
 
-    Attributes
-    ----------
-    reach, total : Symbol
-        ``l3 - l2`` and ``l3 + l2``.
-    sin3, cos3 : Symbol
-        Sine and cosine of the coupler angle.
-    sin23, cos23 : Symbol
-        Of ``theta2 - theta3``.
-    raised, lowered : Symbol
-        ``(1 + sin2) / 2`` and ``(1 - sin2) / 2``.
-    above, below : Symbol
-        ``l3 + offset - l2 sin2`` and ``l3 - offset + l2 sin2``: by how much the coupler is longer
-        than what it must bridge across the guide, from either side.
-    root : Symbol
-        ``sqrt(above below)``, the coupler's length along the guide.
-    w3, a3 : Symbol
-        First and second derivative of ``theta3`` by the crank angle.
-    position, v4, a4 : Symbol
-        Place of C along the guide, and its first and second derivative by the crank angle.
+    ``reach``, ``total``: ``l3 - l2`` and ``l3 + l2``; ``sin3``, ``cos3``: sine and cosine of the
+    coupler angle; ``sin23``, ``cos23``: of ``theta2 - theta3``; ``raised``, ``lowered``: ``(1 +
+    sin2) / 2`` and ``(1 - sin2) / 2``; ``above``, ``below``: ``l3 + offset - l2 sin2`` and ``l3 -
+    offset + l2 sin2``: by how much the coupler is longer than what it must bridge across the guide,
+    from either side; ``root``: ``sqrt(above below)``, the coupler's length along the guide; ``w3``,
+    ``a3``: first and second derivative of ``theta3`` by the crank angle; ``position``, ``v4``,
+    ``a4``: place of C along the guide, and its first and second derivative by the crank angle.
     """
 
     reach: sp.Symbol

@@ -15,14 +15,8 @@ from ..staged import Steps
 class SolvedLoop:
     """A solved linkage: its symbols, and the steps that define them.
 
-    Attributes
-    ----------
-    steps : Steps
-        Definitions, in order.
-    half_sine, half_cosine : Symbol
-        Of half the crank angle.
-    sin2, cos2 : Symbol
-        Of the crank angle.
+    ``steps``: definitions, in order; ``half_sine``, ``half_cosine``: of half the crank angle;
+    ``sin2``, ``cos2``: of the crank angle.
     """
 
     steps: Steps

@@ -49,26 +49,14 @@ def moments_of(number: int, spec: ModelSpec) -> MassMoments:
 class SolvedMotion:
     """Kinematics of a linkage in closed form, as its forces use them.
 
-    Attributes
-    ----------
-    geometry : tuple of Argument
-        Arguments behind the crank angle.
-    steps : Steps
-        Sines, cosines, derivatives by the crank angle.
-    theta2 : Symbol
-        Crank angle.
-    names : mapping of Expr to Expr
-        Sines, cosines and places of the coordinates, functions of time, by the steps' symbols.
-    rates : mapping of Expr to (Expr, Expr)
-        First and second derivative of each coordinate by the crank angle.
-    differences : mapping of Expr to Expr
-        Products of sines and cosines by those of differences of angles, where steps have these.
-    reciprocals : mapping of Expr to Expr
-        Quantities whose reciprocal the steps hold, and the reciprocal.
-    groups : tuple of Symbol
-        Products of vectors; power and moment of momentum are collected by these.
-    slips : mapping of Expr to Expr
-        Derivatives w by the crank angle, and the steps for ``1 - w`` that do not cancel.
+    ``geometry``: arguments behind the crank angle; ``steps``: sines, cosines, derivatives by the
+    crank angle; ``theta2``: crank angle; ``names``: sines, cosines and places of the coordinates,
+    functions of time, by the steps' symbols; ``rates``: first and second derivative of each
+    coordinate by the crank angle; ``differences``: products of sines and cosines by those of
+    differences of angles, where steps have these; ``reciprocals``: quantities whose reciprocal the
+    steps hold, and the reciprocal; ``groups``: products of vectors; power and moment of momentum
+    are collected by these; ``slips``: derivatives w by the crank angle, and the steps for ``1 - w``
+    that do not cancel.
     """
 
     geometry: tuple[Argument, ...]

@@ -25,16 +25,8 @@ Named = Callable[[sp.Expr], sp.Expr]
 class Reaction:
     """What one joint transmits from its first link to its second.
 
-    Attributes
-    ----------
-    joint : Pin or Slide
-        Which joint.
-    x, y : Expr
-        Components of the force; a frictionless slide has one unknown, along its normal.
-    couple : Expr
-        0 for a pin.
-    unknowns : tuple of Symbol
-        The unknowns in these.
+    ``joint``: which joint; ``x``, ``y``: components of the force; a frictionless slide has one
+    unknown, along its normal; ``couple``: 0 for a pin; ``unknowns``: the unknowns in these.
     """
 
     joint: Joint

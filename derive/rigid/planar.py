@@ -23,14 +23,8 @@ STRAIGHT = "across"  # what specs drop where masses lie along the links
 class MassMoments:
     """Mass of a body and its moments in the body's own frame.
 
-    Attributes
-    ----------
-    mass : Symbol
-        [kg].
-    along, across : Expr
-        First moments along and across the link [kg m]; ``across`` is 0 for a straight link.
-    inertia : Symbol
-        About the first joint [kg m^2].
+    ``mass``: [kg]; ``along``, ``across``: first moments along and across the link [kg m];
+    ``across`` is 0 for a straight link; ``inertia``: about the first joint [kg m^2].
     """
 
     mass: sp.Expr
@@ -70,16 +64,8 @@ def _on_circle(expression: sp.Expr) -> sp.Expr:
 class Body:
     """One moving link.
 
-    Attributes
-    ----------
-    name : str
-        Of the link.
-    angle : Expr
-        From the fixed x axis to the link's own, a function of time.
-    origin : pair of Expr
-        Place of the first joint, functions of time.
-    moments : MassMoments
-        Distribution of mass.
+    ``name``: of the link; ``angle``: from the fixed x axis to the link's own, a function of time;
+    ``origin``: place of the first joint, functions of time; ``moments``: distribution of mass.
     """
 
     name: str
@@ -100,12 +86,8 @@ class Body:
 class Pin:
     """A pin joint: a point of one link stays on a point of another.
 
-    Attributes
-    ----------
-    first, second : int
-        Numbers of the links, 1 for the frame; the reaction is the force of the first on the second.
-    on_first, on_second : pair of Expr
-        The joint in the frame of either link.
+    ``first``, ``second``: numbers of the links, 1 for the frame; the reaction is the force of the
+    first on the second; ``on_first``, ``on_second``: the joint in the frame of either link.
     """
 
     first: int
@@ -118,16 +100,10 @@ class Pin:
 class Slide:
     """A sliding joint: a link slides without turning along the x axis of another.
 
-    Attributes
-    ----------
-    first, second : int
-        Numbers of the links; force and couple are those of the first on the second.
-    slider, guide : int
-        Which of the two is the one that slides, and which holds the guide.
-    through : pair of Expr
-        A point of the guide in its own frame.
-    distance : Expr
-        From there to the slider's origin, where the reaction acts; a function of time.
+    ``first``, ``second``: numbers of the links; force and couple are those of the first on the
+    second; ``slider``, ``guide``: which of the two is the one that slides, and which holds the
+    guide; ``through``: a point of the guide in its own frame; ``distance``: from there to the
+    slider's origin, where the reaction acts; a function of time.
     """
 
     first: int
@@ -145,16 +121,9 @@ Joint = Pin | Slide
 class PlanarLinkage:
     """A mechanism of rigid links with one drive.
 
-    Attributes
-    ----------
-    t : Symbol
-        Time.
-    bodies : tuple of Body
-        Moving links 2, 3, ... in order.
-    joints : tuple of Pin or Slide
-        In the order of their reactions.
-    driven : int
-        Number of the link on which the drive's torque acts; its angle is the crank angle.
+    ``t``: time; ``bodies``: moving links 2, 3, ... in order; ``joints``: in the order of their
+    reactions; ``driven``: number of the link on which the drive's torque acts; its angle is the
+    crank angle.
     """
 
     t: sp.Symbol

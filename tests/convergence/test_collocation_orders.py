@@ -55,7 +55,8 @@ def _slope(stages, system, counts):
     exact = end(10, 512)
     errors = [np.linalg.norm(end(stages, n) - exact) / np.linalg.norm(exact) for n in counts]
     errors = np.array(errors)
-    kept = (errors < 1e-2) & (errors > 1e-13)
+    # The reference rounds to 4e-15, which has to be below some percent of an error.
+    kept = (errors < 1e-2) & (errors > 2e-13)
     assert np.sum(kept) >= 3
     # The finest three that round-off leaves alone.
     x, y = np.log(np.array(counts))[kept][-3:], np.log(errors[kept][-3:])
@@ -70,6 +71,6 @@ def test_gauss_legendre_is_of_order_twice_its_stages(stages):
         3: [48, 64, 96, 128, 192],
         4: [32, 40, 48, 64, 80],
         5: [16, 18, 20, 22],
-        6: [14, 16, 18, 20],
+        6: [12, 14, 16, 18],
     }[stages]
     assert abs(_slope(stages, _system(), counts) - 2 * stages) < 0.1

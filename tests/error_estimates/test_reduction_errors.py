@@ -8,13 +8,11 @@ evaluated in long doubles at angles of their own.
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import reduced_system
-from honesty import verdict
+from honesty import SCENES, verdict
 
-SCENES = 200
 ANGLES = 40
 
 
@@ -128,20 +126,12 @@ def ratios(rng):
     return np.array([small.error / max(worst, 1e-17)]), np.array([allowed / max(off, 1e-17)])
 
 
-def both(seed, scenes):
-    rng = np.random.default_rng(seed)
+@SCENES
+def test_arrays_and_squared_frequencies(scenes):
+    rng = np.random.default_rng(9100)
     arrays, squares = zip(*(ratios(rng) for _ in range(scenes)), strict=True)
     verdict(arrays, scenes)
     verdict(squares, scenes)
-
-
-def test_some_reductions():
-    both(9100, 20)
-
-
-@pytest.mark.slow
-def test_many_reductions():
-    both(9200, SCENES)
 
 
 def test_the_estimate_sees_arrays_that_no_series_resolves():

@@ -1,19 +1,18 @@
-"""What a user would take instead of this package: SciPy, SUNDIALS, heyoka, a loop by numba.
+"""What a user would take instead of this package: SciPy, heyoka, a loop compiled by numba.
 
-All solve ``y' = L(theta) y``, and get L as a Fourier series that is made beforehand.  What is not
-installed is left out.  A peer takes the equation and a setting, a tolerance or a number of steps a
-revolution, and returns a function from a start ``(m, columns)`` and rising angles to the states
-``(angles, m, columns)``; what is compiled, is compiled then.
+All solve ``y' = L(theta) y``, and get L as a Fourier series that is made beforehand.  A peer takes
+the equation and a setting, a tolerance or a number of steps a revolution, and returns a function
+from a start ``(m, columns)`` and rising angles to the states ``(angles, m, columns)``; what is
+compiled, is compiled then.  What is not installed is left out.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -25,43 +24,23 @@ from scipy.integrate import solve_ivp
 sys.path.insert(0, str(Path(__file__).parents[1] / "convergence"))
 from taylor_truth import Equation
 
+Solve = Callable[[Any, Any], Any]
+
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
-# Seconds after which a run is broken off.
-PATIENCE = 20.0
-# Largest rate of the state [1/rad] from which an equation counts as stiff.
-STIFF = 100.0
 # Entries of the series beyond which heyoka's compilation takes minutes.
 _MOST_TERMS = 20_000
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-
-class TooLongError(Exception):
-    """A run took longer than ``PATIENCE``."""
 
 
 def one_thread() -> None:
     """Start the script anew with one thread for BLAS, which reads the number when it is loaded."""
-    if any(os.environ.get(name) != "1" for name in _THREADS):
-        environment = {**os.environ, **dict.fromkeys(_THREADS, "1")}
-        os.execve(sys.executable, [sys.executable, *sys.argv], environment)
-
-
-def patient(rate: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that raises TooLongError once ``PATIENCE`` has passed."""
-    end = time.process_time() + PATIENCE
-
-    def limited(*arguments: Any) -> Any:
-        if time.process_time() > end:
-            raise TooLongError
-        return rate(*arguments)
-
-    return limited
+    one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    if not one.items() <= os.environ.items():
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **one})
 
 
 def equation(system: Any, speed: float, *, forced: bool) -> Equation:
     """Return the equation of a system in the scaled state of the solvers."""
-    samples = 512
-    exact = Equation.of(system, speed, forced=forced, samples=samples, cut=1e-14)
+    exact = Equation.of(system, speed, forced=forced, samples=512, cut=1e-14)
     unit = equation_of(system, speed, forcing=forced).scale[0]
     scale = np.concatenate([unit, 1.0 / unit, np.ones(int(forced))])
     turn = (scale / exact.scale) / (scale / exact.scale)[:, None]
@@ -76,85 +55,49 @@ def shortened(whole: Equation) -> Equation:
     return replace(whole, a=a[:count], b=b[:count])
 
 
-def by_scipy(method: str, equation: Equation, tolerance: float) -> Callable[..., Any]:
-    """Return ``solve_ivp`` with a method."""
+def by_scipy(equation: Equation, tolerance: float) -> Solve:
+    """Return ``solve_ivp`` by DOP853; LSODA, Radau and CVODE take longer on these systems."""
 
     def solve(start: Any, angles: Any) -> Any:
-        shape = start.shape
-        rate = patient(lambda theta, flat: (equation.at(theta) @ flat.reshape(shape)).ravel())
-        jacobian = {}
-        if shape[1] == 1 and method in ("Radau", "LSODA"):
-            jacobian["jac"] = lambda theta, _: equation.at(theta)
         done = solve_ivp(
-            rate,
+            lambda theta, flat: (equation.at(theta) @ flat.reshape(start.shape)).ravel(),
             (angles[0], angles[-1]),
             start.ravel(),
-            method=method,
+            method="DOP853",
             t_eval=angles,
             rtol=max(tolerance, 3e-14),
             atol=0.01 * tolerance,
-            **jacobian,
         )
-        return done.y.T.reshape(-1, *shape)
+        return done.y.T.reshape(-1, *start.shape)
 
     return solve
 
 
-def by_cvode(equation: Equation, tolerance: float) -> Callable[..., Any]:
-    """Return CVODE of scikit-sundae: Adams, BDF where the system is stiff."""
-
-    def solve(start: Any, angles: Any) -> Any:
-        shape = start.shape
-        method = "BDF" if equation.rate > STIFF else "Adams"
-        rate = patient(lambda theta, flat: (equation.at(theta) @ flat.reshape(shape)).ravel())
-        return cvode(rate, start.ravel(), angles, method, tolerance, 0.01 * tolerance).reshape(
-            -1, *shape
-        )
-
-    return solve
-
-
-def cvode(
-    rate: Callable[..., Any], start: Any, places: Any, method: str, rtol: float, atol: Any
-) -> Any:
-    """Return the states at places, ``(places, m)``."""
-    from sksundae.cvode import CVODE
-
-    def into(place: float, state: Any, out: Any) -> None:
-        out[:] = rate(place, state)
-
-    solver = CVODE(into, method=method, rtol=max(rtol, 1e-15), atol=atol, max_num_steps=10**7)
-    return np.asarray(solver.solve(places, start).y)
-
-
-def by_heyoka(equation: Equation, tolerance: float) -> Callable[..., Any]:
-    """Return heyoka's Taylor method: a batch with a column in each lane, or one column."""
+def by_heyoka(equation: Equation, tolerance: float) -> Solve:
+    """Return heyoka's Taylor method: one column, or a batch with a column in each lane."""
     import heyoka as hy
 
     m, lanes = equation.states, int(hy.recommended_simd_size())
     names = hy.make_vars(*(f"y{i}" for i in range(m)))
     angle = 2.0 * np.pi / equation.period * hy.time
     waves = [(hy.cos(k * angle), hy.sin(k * angle)) for k in range(len(equation.a))]
+
+    def series(i: int, j: int) -> list[Any]:
+        a, b = equation.a[:, i, j].tolist(), equation.b[:, i, j].tolist()
+        terms = [hy.expression(a[0])] if a[0] else []
+        for k in range(1, len(a)):
+            terms += [a[k] * waves[k][0]] if a[k] else []
+            terms += [b[k] * waves[k][1]] if b[k] else []
+        return terms
+
     system = []
     for i in range(m):
-        products = []
-        for j in range(m):
-            a, b = equation.a[:, i, j], equation.b[:, i, j]
-            terms = [hy.expression(float(a[0]))] if a[0] else []
-            terms += [float(a[k]) * waves[k][0] for k in range(1, len(a)) if a[k]]
-            terms += [float(b[k]) * waves[k][1] for k in range(1, len(b)) if b[k]]
-            if terms:
-                products.append(hy.sum(terms) * names[j])
+        entries = [(series(i, j), names[j]) for j in range(m)]
+        products = [hy.sum(terms) * name for terms, name in entries if terms]
         system.append((names[i], hy.sum(products) if products else hy.expression(0.0)))
     options = {"tol": tolerance, "fast_math": True, "compact_mode": m > 6}
-
-    @cache
-    def single() -> Any:
-        return hy.taylor_adaptive(system, [0.0] * m, **options)
-
-    @cache
-    def batch() -> Any:
-        return hy.taylor_adaptive_batch(system, np.zeros((m, lanes)), **options)
+    single = cache(lambda: hy.taylor_adaptive(system, [0.0] * m, **options))
+    batch = cache(lambda: hy.taylor_adaptive_batch(system, np.zeros((m, lanes)), **options))
 
     def solve(start: Any, angles: Any) -> Any:
         if start.shape[1] == 1:
@@ -180,7 +123,7 @@ def by_heyoka(equation: Equation, tolerance: float) -> Callable[..., Any]:
     return solve
 
 
-def by_loop(equation: Equation, steps: float) -> Callable[..., Any]:
+def by_loop(equation: Equation, steps: float) -> Solve:
     """Return a loop by hand, compiled by numba: fixed steps of Dormand & Prince's order 8."""
     run = compiled_loop()
     rows, columns = np.nonzero(np.any((equation.a != 0.0) | (equation.b != 0.0), axis=0))
@@ -240,28 +183,23 @@ def compiled_loop() -> Callable[..., Any]:
                             slopes[s, rows[e], c] += values[e] * trial[columns[e], c]
                 for i in range(m):
                     for c in range(count):
-                        total = 0.0
                         for s in range(stages):
-                            total += weight[s] * slopes[s, i, c]
-                        state[i, c] += h * total
+                            state[i, c] += h * weight[s] * slopes[s, i, c]
             out[k] = state
         return out
 
     return loop
 
 
-def peers_of(equation: Equation) -> dict[str, tuple[Callable[..., Any], tuple[float, ...]]]:
+def peers_of(
+    equation: Equation,
+) -> dict[str, tuple[Callable[[Equation, float], Solve], tuple[float, ...]]]:
     """Return the peers that suit an equation and are installed, with settings, loose to tight."""
+    out = {"SciPy DOP853": (by_scipy, TOLERANCES)}
     terms = np.count_nonzero(equation.a) + np.count_nonzero(equation.b)
-    steps = [round(2.0 * np.pi * max(equation.rate, 1.0) * s) for s in (2, 4, 8, 16, 32, 64)]
-    out: dict[str, tuple[Callable[..., Any], tuple[float, ...]]] = {
-        f"SciPy {name}": (partial(by_scipy, name), TOLERANCES)
-        for name in ("DOP853", "LSODA", *(["Radau"] if equation.rate > STIFF else []))
-    }
-    if find_spec("sksundae"):
-        out["CVODE"] = by_cvode, TOLERANCES
     if find_spec("heyoka") and terms <= _MOST_TERMS:
         out["heyoka"] = by_heyoka, TOLERANCES
     if find_spec("numba"):
-        out["numba loop"] = by_loop, tuple(float(s) for s in steps)
+        turn = 2.0 * np.pi * max(equation.rate, 1.0)
+        out["numba loop"] = by_loop, tuple(float(round(turn * 2**k)) for k in range(1, 7))
     return out

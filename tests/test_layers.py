@@ -13,7 +13,6 @@ ROOT = Path(__file__).resolve().parents[1]
 # From bottom to top; `docs/architecture.md` shows the same.
 LAYERS = (
     "core",
-    "integrators",
     "linkages",
     "rigid",
     "beams",

@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..core.collocation import gauss_tableau
 from ..core.errors import bad
-from ..integrators import gauss_tableau
 from .equations import (
     SMALL,
     Array,

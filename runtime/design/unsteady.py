@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..core.collocation import CollocationTableau, gauss_tableau
 from ..core.families import DAMPING, LinearPeriodic
-from ..integrators import CollocationTableau, gauss_tableau
 from .speed_profile import Array, SpeedProfile
 
 # Floats of the stage equations of a block of steps that are solved together.

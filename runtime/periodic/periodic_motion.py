@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.collocation import legendre_integrals
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import LINEAR_RANGE, bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.progress import bar
 from ..core.results import Check, DeferredChecks, Result, provenance
-from ..integrators import legendre_integrals
 from .equation import Equation, equation_of
 from .harmonic_balance import balanced_motion
 from .multipliers import floquet_multipliers

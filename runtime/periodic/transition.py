@@ -26,8 +26,8 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.collocation import gauss_tableau, radau_tableau
 from ..core.errors import bad
-from ..integrators import gauss_tableau, radau_tableau
 from .equation import Equation, segment_waves, waves
 
 Array = NDArray[np.float64]

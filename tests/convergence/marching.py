@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from elastolink.runtime.integrators import gauss_maps
+from elastolink.runtime.core.collocation import gauss_maps
 from elastolink.runtime.periodic.equation import equation_of
 
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_system
+from elastolink.runtime.core.collocation import gauss_maps
 from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.design import SpeedProfile, run_through
 from elastolink.runtime.design.shape_stress import largest_by_shape
-from elastolink.runtime.integrators import gauss_maps
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.periodic import steady_state
 from honesty import verdict

@@ -9,11 +9,11 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.collocation import gauss_maps
 from ...core.errors import BadInput, bad
 from ...core.families import LinearPeriodic
 from ...core.results import Check, provenance
 from ...core.trigonometric import even_angles
-from ...integrators import gauss_maps
 from .. import FloquetMultipliers
 from ..equation import at_geometry
 from ..first_order import CanonicalForm, canonical_form

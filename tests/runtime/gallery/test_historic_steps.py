@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.linalg
+from elastolink.runtime.core.collocation import gauss_maps
 from elastolink.runtime.gallery.aannaque_algorithms import newmark_limit, newmark_regions
 from elastolink.runtime.gallery.historic_steps import (
     de_vogelaere_maps,
@@ -11,7 +12,6 @@ from elastolink.runtime.gallery.historic_steps import (
     merson_step,
     newmark_matrices,
 )
-from elastolink.runtime.integrators import gauss_maps
 from seed_listings import de_vogelaere
 
 START = np.array([0.3, -1.0, 0.7])

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import SelfCheckFailed
+from .errors import SelfCheckFailed
 
 Array = NDArray[np.float64]
 Generator = Callable[[Array], Array]

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 import scipy.linalg
-from elastolink.runtime.core.errors import SelfCheckFailed
-from elastolink.runtime.integrators import (
+from elastolink.runtime.core.collocation import (
     CollocationTableau,
     gauss_maps,
     gauss_tableau,
     legendre_integrals,
     radau_tableau,
 )
+from elastolink.runtime.core.errors import SelfCheckFailed
 
 
 def wavy(theta):

@@ -37,7 +37,7 @@ _EDGES = {"principal": "#8c2d04", "sum": "#5b2d8c", "difference": "#1f6f6b"}
 
 
 def draw_chart(chart: StabilityChart, ax: Axes | None) -> Axes:
-    """Shade unstable regions, draw boundaries, mark values, print the error figure."""
+    """Shade unstable regions, draw boundaries, mark values, print the error."""
     ax = axes_or_new(ax)
     x, y = (_shown(n, v) for n, v in ((chart.x_name, chart.x), (chart.y_name, chart.y)))
     _shade(ax, chart, x, y)

@@ -19,7 +19,7 @@ from honesty import verdict
 pytestmark = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
-SOME = [pytest.param(4, id="some"), pytest.param(42, marks=pytest.mark.slow, id="all")]
+SOME = [pytest.param(4, id="some"), pytest.param(24, marks=pytest.mark.slow, id="all")]
 POINTS = 5  # of each curve: 210 estimates in all
 
 

@@ -324,10 +324,9 @@ def _stop(
     """Return where and why a step stops the motion; None where it goes on."""
     if not guards and np.all(step.reach <= limit):
         return None
-    inner = [
-        equations.state(float(t), x, v)
-        for t, x, v in zip(step.inner, *step.at(step.inner), strict=True)
-    ]
+    x, v = equations.nearest(step.inner, *step.at(step.inner))
+    a, _ = equations.accelerations(step.inner, x, v)
+    inner = [State(float(t), *at) for t, *at in zip(step.inner, x, v, a, strict=True)]
     for before, after in pairwise([step.before, *inner, step.after]):
         met = [guard for guard in guards if not _margin(equations, guard, after) > 0.0]
         stops = [(_crossing(equations, step, guard, before, after), guard) for guard in met]

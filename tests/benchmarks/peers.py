@@ -23,6 +23,7 @@ from scipy.integrate import solve_ivp
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "convergence"))
 from taylor_truth import Equation
+from taylor_truth import flows as flows
 
 Solve = Callable[[Any, Any], Any]
 

@@ -33,9 +33,8 @@ from typing import Any
 import elastolink as el
 import numpy as np
 from elastolink.runtime.stability.invariants import characteristic
-from peers import TOLERANCES, Solve, equation, one_thread, peers_of, shortened
+from peers import TOLERANCES, Solve, equation, flows, one_thread, peers_of, shortened
 from scipy.integrate import solve_ivp
-from taylor_truth import flows
 
 LEVELS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 ROUNDS = 5

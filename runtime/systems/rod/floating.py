@@ -128,7 +128,11 @@ class FreeFreeRod(Constrained):
         if np.shape(q)[-1:] != (self.size,):
             raise bad("q", f"shape {np.shape(q)}", f"(..., {self.size})", "give all coordinates")
         length = self.linkage.rod
-        line = np.asarray(self.linkage.motion(self.speed * np.asarray(t, dtype=float)).theta4)
+        theta = self.speed * np.asarray(t, dtype=float)
+        linkage = self.linkage
+        line = np.arctan2(
+            linkage.crank * np.sin(theta), linkage.frame + linkage.crank * np.cos(theta)
+        )
         lean = q[..., 2] - line
         centre = q[..., 1] * np.cos(line) - q[..., 0] * np.sin(line)
         bent = length * q[..., 3:] @ self.modes(eta)[0].T

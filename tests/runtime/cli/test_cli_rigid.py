@@ -35,7 +35,7 @@ def test_text_json_and_picture_of_each(capsys, tmp_path, arguments):
     assert status == 0 and err == ""
     assert "method:" in text and "nan" not in text.lower()
     assert picture.stat().st_size > 5000
-    status, out, _ = run(capsys, *arguments, "--json")
+    status, out, _ = run(capsys, *arguments, "--plot", picture, "--json")
     told = json.loads(out)
     assert status == 0 and told["passed"] is True
 

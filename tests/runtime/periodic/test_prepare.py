@@ -120,6 +120,7 @@ def test_figures_do_not_depend_on_the_size_of_the_force(size) -> None:
         assert np.max(two.error) <= 4.0 * np.max(one.error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("modes", [1, 3])
 def test_compiled_answers_are_the_same_to_round_off(modes) -> None:
     """The same sums in loops: to 1e-13 of the largest value, with the same figures."""

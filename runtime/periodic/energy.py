@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,8 +12,10 @@ from .equation import Equation
 
 Array = NDArray[np.float64]
 
-# Phase of the fastest living mode between given angles from which they do not tell an integral.
+# Phase of a mode between given angles from which they do not tell its part of an integral.
 _MOST_PHASE = 0.5
+# Decay of the amplitude, as a power of e, from which a mode is dead.
+_DEAD = 20.0
 
 
 def energy_balance(
@@ -33,14 +37,19 @@ def energy_balance(
     error : float
         Error of the motion over its peak.
     """
-    even = 4 * ((len(theta) - 2) // 4) + 1
-    if even < 9 or equation.harmonics < 0:
+    if len(theta) < 10 or equation.harmonics < 0:
         return None
-    theta, q, slope = theta[:even], q[:even], slope[:even]
     step = float(theta[1] - theta[0])
-    living = np.where(equation.decay[0] < 20.0, equation.frequency[0], 0.0)
-    if step * float(np.max(living, initial=0.0)) > _MOST_PHASE:
+    # Modes too fast for the angles have to be dead: the balance begins where the last of them is.
+    fast = step * equation.frequency[0] > _MOST_PHASE
+    decay = float(np.min(equation.decay[0], initial=np.inf, where=fast))
+    dead = _DEAD / max(decay, 1e-300) * equation.period / step
+    begin = ceil(min(dead, len(theta)))
+    even = 4 * ((len(theta) - 2 - begin) // 4) + 1
+    if even < 9:
         return None
+    part = slice(begin, begin + even)
+    theta, q, slope = theta[part], q[part], slope[part]
     unit = equation.scale[0]
     place, rate = q / unit, slope / unit
     power = np.zeros(even)

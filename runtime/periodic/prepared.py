@@ -19,7 +19,7 @@ from ..core.inputs import numbers
 from ..core.results import Check, DeferredChecks, provenance
 from .compiled import CompiledTable, require_numba
 from .equation import SPEED_POWER, Equation, SampledSystem, at_geometry, equation_of, sampled
-from .motion import Trajectory
+from .motion import Trajectory, simulate
 from .multipliers import Monodromy, conditions, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 # Ratio of the speeds of one table.
 _RATIO = 1.5
+# Error of a motion over its peak, from which it is integrated step by step.
+_TRANSIENT = 1e-6
 # Places of each table at which other segments tell its error, and the margin.
 _TRIED, _MARGIN = (0.0, 0.29, 0.618, 1.0), 4.0
 # Largest state for which compiled loops win over NumPy's products.
@@ -129,6 +131,9 @@ class Prepared:
     ) -> Trajectory:
         """Return the motion from a start at angle 0 over whole periods.
 
+        The tables hold what is alive after a period.  A start that shakes modes which die within
+        it is followed by :func:`~.motion.simulate` instead, at its default accuracy.
+
         Parameters
         ----------
         speed : float
@@ -160,6 +165,16 @@ class Prepared:
         theta = (self.system.period * np.arange(count)[:, None] + self.theta).reshape(-1)
         theta = np.append(theta, self.system.period * count)
         error = (count + 2) * (self.flow_error @ sizes) * self.scale[:n] / peaks(q[None])[0]
+        if not np.max(error) <= _TRANSIENT:
+            turn = 2 * np.pi / self.system.period
+            return simulate(
+                self.system,
+                given,
+                count / turn,
+                initial=initial,
+                samples=round(len(self.theta) * turn),
+                forcing=self.forced,
+            )
         return Trajectory(
             method=_METHOD,
             error=error,

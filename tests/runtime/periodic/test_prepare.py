@@ -9,6 +9,7 @@ import elastolink as el
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
+from elastolink.runtime.core.families import LinearPeriodic, Term
 
 pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 
@@ -204,3 +205,24 @@ def test_inertia_that_depends_on_the_speed_is_refused() -> None:
     terms = (el.Term("M", None, np.eye(1), power=1), el.Term("K", None, np.eye(1)))
     with pytest.raises(BadInput, match="power of the speed"):
         el.prepare(el.LinearPeriodic(1, terms, {}, lambda values: {}), (1.0, 2.0))
+
+
+def test_a_start_that_shakes_a_dying_mode_is_followed_too() -> None:
+    """Two oscillators by themselves; the fast one dies within a sixth of a revolution."""
+    rate, drag = np.array([30.0, 3e4]), np.array([1.0, 4e3])
+    terms = (
+        Term("M", None, np.eye(2)),
+        Term("C", None, np.diag(drag)),
+        Term("K", None, np.diag(rate**2)),
+        Term("Kg", None, lambda t: 1e-9 * np.cos(t)[:, None, None] * np.eye(2)),
+    )
+    ready = el.prepare(LinearPeriodic(2, terms, {}, lambda values: {}), 60.0, samples=16)
+    found = ready.simulate(60.0, 2, (1.0, 0.0))
+    turning = np.sqrt(rate**2 - drag**2 / 4)
+    time = found.time[:, None]
+    exact = np.exp(-drag / 2 * time) * (
+        np.cos(turning * time) + drag / 2 / turning * np.sin(turning * time)
+    )
+    assert found.passed and np.max(found.error) < 1e-6
+    assert np.all(np.max(np.abs(found.q - exact), axis=0) <= found.error)
+    assert ready.monodromy(60.0).error <= 1e-9

@@ -42,8 +42,8 @@ _ROUGH_SEGMENTS = 2**14
 # difference that is taken for the error of the finer one: over 200 springs seen in wavy coordinates
 # and five tolerances 99 of 100 errors are covered, the worst by half (five and 0.01 cover 96).
 _MARGIN, _LEAST = 12.0, 0.025
-# The same over the ratio of the segments to the power of the stages, where modes that no segment
-# resolves count: with that order at least they converge.
+# The same over the ratio of the segments to the power of the order that was seen, at most the
+# stages, where modes that no segment resolves count; half the stages before an order is seen.
 _STIFF = 3.0
 # Floats of the collocation matrices that are solved in one batch.
 _BLOCK = 4_000_000
@@ -300,14 +300,17 @@ def predicted_error(equation: Equation, way: Method, segments: NDArray[Any]) -> 
     return value
 
 
-def least_share(way: Method, coarse: Any, fine: Any) -> Any:
-    """Return the least part of the difference of two rungs that the finer one's error may be."""
+def least_share(way: Method, coarse: Any, fine: Any, order: Any) -> Any:
+    """Return the least part of the difference of two rungs that the finer one's error may be.
+
+    ``order`` is that with which differences fall.
+    """
     if not way.ends:
         return _LEAST
-    return np.minimum(_STIFF * (coarse / fine) ** way.stages, 1.0)
+    return np.minimum(_STIFF * (coarse / fine) ** order, 1.0)
 
 
-def share(equation: Equation, way: Method, coarse: int, fine: int) -> Array:
+def share(equation: Equation, way: Method, coarse: int, fine: int, order: Array) -> Array:
     """Return which part of the difference of two rungs the error of the finer one is, ``(nb,)``.
 
     Twelve times what is predicted, between the least and one; of coefficients that are not smooth
@@ -319,7 +322,7 @@ def share(equation: Equation, way: Method, coarse: int, fine: int) -> Array:
     first, second = (
         predicted_error(equation, way, np.full(count, number)) for number in (coarse, fine)
     )
-    least = least_share(way, coarse, fine)
+    least = least_share(way, coarse, fine, order)
     return np.clip(_MARGIN * second / np.maximum(first, 1e-300), least, 1.0)
 
 
@@ -336,7 +339,7 @@ def levels_for(
     counts = np.array([rung(level) for level in range(_RUNGS)])
     errors = predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
     enough = _MARGIN * errors[:, 1:] <= rtol
-    part = least_share(way, counts[:-1], counts[1:]) if least is None else least
+    part = least_share(way, counts[:-1], counts[1:], 0.5 * way.stages) if least is None else least
     enough &= part * errors[:, :-1] <= rtol
     enough &= counts[1:] <= _MOST_SEGMENTS
     # The nodes of the rung below too have to see every wave of the coefficients twice.
@@ -402,13 +405,18 @@ def refined(
             part = equation if len(members) == nb else equation.take(members)
             coarse, at = solve(part, rung(int(first) - 1)), int(first)
             before = np.full(len(members), np.inf)
+            order = np.full(len(members), 0.5 * way.stages)
             while len(members):
                 fine = solve(part, rung(at))
-                gaps = distance(coarse, fine, share(part, way, rung(at - 1), rung(at)))
+                whole = np.max(distance(coarse, fine, np.ones(len(members))), axis=1)
+                if at > first:
+                    fall = np.log(before / whole) / np.log(rung(at - 1) / rung(at - 2))
+                    order = np.clip(fall, 0.0, way.stages)
+                gaps = distance(coarse, fine, share(part, way, rung(at - 1), rung(at), order))
                 gap = np.max(gaps, axis=1)
                 # Round-off, where all modes are resolved and nothing is gained any more.
                 likely = predicted_error(part, way, np.full(len(gap), rung(at)))
-                stuck = (gap > 0.5 * before) & (likely < rtol)
+                stuck = (whole > 0.5 * before) & (likely < rtol)
                 done = (gap <= rtol) | (stuck & (equation.harmonics >= 0))
                 done |= at + 1 >= _RUNGS or rung(at + 1) > most
                 for i in np.flatnonzero(done):
@@ -418,7 +426,7 @@ def refined(
                 if tick is not None:
                     tick(finished)
                 keep = np.flatnonzero(~done)
-                members, before, at = members[keep], gap[keep], at + 1
+                members, before, order, at = members[keep], whole[keep], order[keep], at + 1
                 if len(members):
                     part = part.take(keep)
                     coarse = tuple(array[keep] for array in fine)

@@ -112,24 +112,19 @@ def own(tmp_path):
 ALL = sorted(spec.name() for entry in CATALOGUE for spec in entry.specs)
 
 
-@pytest.mark.parametrize(
-    ("names", "jobs", "seed"),
-    [
-        (FEW, 2, "4711"),
-        pytest.param(ALL, 2, "4711", marks=pytest.mark.slow, id="all-2-4711"),
-    ],
-)
-def test_the_packaged_modules_are_as_derived_now(names, jobs, seed, emitted, tmp_path):
-    """The same bytes whatever the seed of hashes and the number of processes."""
+def test_the_packaged_modules_are_as_derived_now(emitted, tmp_path):
+    """The same bytes whatever the seed of hashes and the number of processes.
+
+    The rest of the modules is derived anew by ``regenerate-equations --check`` in each run of CI.
+    """
     packaged = texts(emitted)
     assert len(packaged) == 1 + len(ALL)
     if b"SymPy " + sympy.__version__.encode() not in packaged[f"{QUICK}.py"]:
         pytest.skip("bytes are compared under the locked SymPy only")
-    found = derived(tmp_path / "found", names, jobs, seed)
-    assert len(found) == 1 + len(names)
-    manifests = found.pop(MANIFEST), packaged[MANIFEST]
+    found = derived(tmp_path / "found", FEW, 2, "4711")
+    assert len(found) == 1 + len(FEW)
+    found.pop(MANIFEST)
     assert all(packaged[name] == text for name, text in found.items())
-    assert names is not ALL or manifests[0] == manifests[1]
 
 
 def test_nothing_to_do_imports_nothing_but_the_standard_library(copy, tmp_path):

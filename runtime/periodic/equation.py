@@ -192,11 +192,6 @@ class Equation:
             decay=self.decay[members],
         )
 
-    def without_force(self) -> Equation:
-        """Return the equation of free motion."""
-        fields = {name: field for name, field in self.fields.items() if name != "force"}
-        return replace(self, fields=fields)
-
     def with_force_unit(self, unit: float) -> Equation:
         """Return the equation whose state has 1/unit for the 1 that the force acts on."""
         if not self.forced:

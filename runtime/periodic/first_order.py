@@ -105,13 +105,6 @@ class CanonicalForm:
             for value in found
         )
 
-    @property
-    def constant(self) -> bool:
-        """True where nothing depends on the crank angle."""
-        used = "MABCD" + ("fhp" if self.forced else "")
-        names = (*used, "K", "Kg")
-        return all(term.constant for term in self.system.terms if term.array in names)
-
     def take(self, index: slice | NDArray[np.intp]) -> CanonicalForm:
         """Return the form for a part of the flat batch."""
         factors = self.factors[:, index]
@@ -222,33 +215,6 @@ class CanonicalForm:
         same = len(self.speed) > 0 and all(np.all(row == row[0]) for row in rows)
         return self.take(slice(0, 1)) if same else self
 
-    def trace(self, theta: Array) -> Array:
-        """Return the trace of L, ``-trace(M^-1 C)/speed``; shape ``(nb, nt)``."""
-        damping = self.assemble("C", theta)
-        if damping is None:
-            return np.zeros((len(self.speed), len(theta)))
-        product = np.einsum("...ij,...ji->...", self._inverse_mass(theta), damping)
-        return -np.broadcast_to(product, (len(self.speed), len(theta)))
-
-    def momentum(self, theta: float, q: Array, slope: Array) -> Array:
-        """Return p = M q' + A q at one angle for the first member of the batch."""
-        at = np.array([theta])
-        mass = self.assemble("M", at)
-        gyro = self.assemble("A", at)
-        value: Array = self.require_mass(mass)[0, 0] @ slope
-        return value if gyro is None else value + gyro[0, 0] @ q
-
-    def slope(self, theta: Array, q: Array, p: Array) -> Array:
-        """Return q' = M^-1 (p - A q) along a motion of the first member of the batch.
-
-        Shapes: ``theta (nt,)``, ``q``, ``p`` and the result ``(nt, n)``.
-        """
-        gyro = self.assemble("A", theta)
-        if gyro is not None:
-            p = p - (gyro[0] @ q[:, :, None])[:, :, 0]
-        value: Array = (self._inverse_mass(theta)[0] @ p[:, :, None])[:, :, 0]
-        return value
-
     def require_mass(self, mass: Array | None) -> Array:
         """Return the mass matrix; raise :class:`BadInput` where the system has none."""
         if mass is None:
@@ -282,49 +248,11 @@ class CanonicalForm:
         return found
 
     @cached_property
-    def frequency(self) -> Array:
-        """Highest natural frequency over the speed, from mean K + Kg and M; shape ``(nb,)``."""
-        highest: Array = np.sqrt(self._spectral("K"))
-        return highest
-
-    @cached_property
     def rate(self) -> Array:
         """Largest rate of change of the state per radian, to choose a step; shape ``(nb,)``."""
         turning = 2 * np.pi / self.system.period
         own = np.sqrt(self._spectral("K") + self._spectral("B") + self._spectral("D"))
         return np.maximum(turning, own + self._spectral("C") + self._spectral("A"))
-
-    @cached_property
-    def activity(self) -> Array:
-        """Mean size of the generator over the period, which scales round-off; shape ``(nb,)``."""
-        values = self.generator(even_angles(self.system.period, 16))
-        n = 2 * self.system.size
-        sizes = np.linalg.norm(values[..., :n, :n], axis=(-2, -1))
-        mean: Array = np.mean(sizes, axis=1)
-        return mean
-
-    @cached_property
-    def needed_rate(self) -> Array:
-        """Rate [1/rad] that A-stable steps have to resolve, shape ``(nb,)``.
-
-        Strong damping is not in it: an overdamped mode dies, or follows its load, after a time that
-        is short beside a step.  Whether that was right is told by halving the steps.
-        """
-        if not self.damped or not self._dissipative:
-            return self.rate
-        factors = self.factors.copy()
-        factors[[term.array in DAMPING for term in self.system.terms]] = 0.0
-        calm = replace(self, factors=factors).rate
-        return np.minimum(self.rate, np.maximum(calm, self.rate / _DECAY))
-
-    @property
-    def _dissipative(self) -> bool:
-        """True where the mean damping matrix neither feeds a motion nor turns it."""
-        mean = self.mean["C"]
-        size = np.max(np.abs(mean), axis=(-2, -1), initial=0.0)
-        turned = np.max(np.abs(mean - np.swapaxes(mean, -1, -2)), axis=(-2, -1), initial=0.0)
-        lowest = np.linalg.eigvalsh(mean)[:, 0]
-        return bool(np.all((turned <= 1e-9 * size) & (lowest >= -1e-9 * size)))
 
     def _spectral(self, name: str) -> Array:
         """Return the spectral norm of a mean matrix in coordinates of unit mass."""

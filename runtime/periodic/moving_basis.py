@@ -128,17 +128,6 @@ def moving_basis(system: LinearPeriodic, modes: int, *, angles: int | None = Non
     return found
 
 
-def basis_of(system: LinearPeriodic, modes: int, still: StillModes) -> MovingBasis:
-    """Return the smooth periodic basis of the lowest of modes that are known.
-
-    Raises
-    ------
-    BadInput
-        If their subspace is not periodic.
-    """
-    return carried_basis(system.period, modes, still)
-
-
 def _fixed_basis(system: LinearPeriodic, modes: int) -> MovingBasis:
     theta = np.zeros(1)
     squares, shapes = _lowest(system, theta)[:2]

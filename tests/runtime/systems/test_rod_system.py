@@ -12,7 +12,6 @@ from elastolink.runtime.core.families import DAMPING, Term
 from elastolink.runtime.hill.form import is_hill
 from elastolink.runtime.periodic.energy import energy_balance
 from elastolink.runtime.periodic.equation import equation_of
-from elastolink.runtime.periodic.first_order import canonical_form
 from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss
@@ -166,7 +165,7 @@ def test_a_rigid_turn_sees_the_frame_alone(drop):
     [("damping", 500.0), ("internal_damping", 1.0)],
 )
 @pytest.mark.slow
-def test_canonical_form_with_d_is_the_second_order_form(name, value):
+def test_the_equation_with_d_is_the_second_order_form(name, value):
     numbers = {**NUMBERS, "damping": 0.0, "internal_damping": 0.0, name: value}
     system, speed = rod_system(PlainBasis(2), **numbers), 100.0
     start = np.array([1e-3, -2e-3, 0.0, 0.0])
@@ -179,18 +178,16 @@ def test_canonical_form_with_d_is_the_second_order_form(name, value):
 
     span = (1.2, 1.7)  # where the block slides fast
     truth = solve_ivp(rates, span, start, method="DOP853", rtol=1e-9, atol=1e-12).y[:2, -1]
-    form = canonical_form(system, [speed], forcing=True)
-    momentum = form.momentum(span[0], start[:2], start[2:])
-    scale = form.scale[0]
+    equation = equation_of(system, speed, {}, forcing=True)
 
     def canonical(theta, state):
-        return form.generator(np.array([theta]))[0, 0] @ state
+        return equation.generator(np.array([theta]))[0, 0] @ state
 
-    first = np.concatenate([start[:2], momentum, [1.0]]) / scale
+    first = np.append(equation.state(span[0], start[:2], start[2:]), 1.0)
     found = solve_ivp(canonical, span, first, method="DOP853", rtol=1e-9, atol=1e-12)
-    found = found.y[:2, -1] * scale[:2]
+    found = found.y[:2, -1] * equation.scale[0]
     np.testing.assert_allclose(found, truth, rtol=1e-7)
-    without = canonical_form(system.without("D"), [speed], forcing=True)
+    without = equation_of(system.without("D"), speed, {}, forcing=True)
     other = solve_ivp(
         lambda theta, state: without.generator(np.array([theta]))[0, 0] @ state,
         span,
@@ -198,7 +195,7 @@ def test_canonical_form_with_d_is_the_second_order_form(name, value):
         method="DOP853",
         rtol=1e-6,
     )
-    assert np.max(np.abs(other.y[:2, -1] * scale[:2] - truth)) > 1e-4 * np.max(np.abs(truth))
+    assert np.max(np.abs(other.y[:2, -1] * without.scale[0] - truth)) > 1e-4 * np.max(np.abs(truth))
 
 
 @pytest.mark.slow
@@ -218,8 +215,7 @@ def test_damping_through_d_alone_counts_as_damping():
     system = rod_system(PlainBasis(2), **{**FLEXIBLE, "damping": 1.0}).without("C")
     assert system.is_damped()
     assert not system.without(*DAMPING).is_damped()
-    assert canonical_form(system, 100.0).damped
-    assert not canonical_form(system, 100.0).conservative
+    assert equation_of(system, 100.0).damped
     one = rod_system(PlainBasis(1), **{**FLEXIBLE, "damping": 1.0}).without("A")
     constant = Term("M", None, np.ones((1, 1)))
     still = replace(one.without("A", "M", "C", "K"), terms=(constant, *one.without("M").terms))

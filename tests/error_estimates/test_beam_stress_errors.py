@@ -136,11 +136,11 @@ def pairs_along(system, steady, true, motion, every):
     return out
 
 
-@pytest.mark.parametrize("share", [0.03, pytest.param(1.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("share", [0.03, pytest.param(0.6, marks=pytest.mark.slow)])
 def test_actual_errors_stay_within_their_estimates(share):
     rng = np.random.default_rng(1996)
     bars = int(share * BARS)
-    kinds = [None] * bars + ([SliderCrank] * SLIDER_CRANKS + [FourBar] * FOUR_BARS) * (share == 1.0)
+    kinds = [None] * bars + ([SliderCrank] * SLIDER_CRANKS + [FourBar] * FOUR_BARS) * (share > 0.5)
     pairs = {}
     with warnings.catch_warnings():
         # Stiffness and speed are drawn without regard to the linear range.

@@ -180,7 +180,7 @@ def test_stresses_of_many_bars(name):
     verdict([CURVES[name](rng) for _ in range(BARS)], SCENES)
 
 
-@pytest.mark.parametrize("scenes", [2, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [2, pytest.param(10, marks=pytest.mark.slow)])
 def test_running_and_quiet_speeds(scenes):
     rng = np.random.default_rng(7250)
     found = [ratios_of_running_speed(rng) for _ in range(scenes)]

@@ -167,7 +167,7 @@ def test_at_constant_speed_the_steady_motion_stays():
 def test_fast_run_ups_stress_less_than_steady_running_at_a_critical_speed():
     # The fifth part of the first mean frequency, 36.8 rad/s, with one element per link.
     system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
-    slow = run_through(system, SpeedProfile.ramp(34.0, 39.0, 4.0))
+    slow = run_through(system, SpeedProfile.ramp(34.0, 39.0, 2.0))
     fast = run_through(system, SpeedProfile.ramp(34.0, 39.0, 0.4))
     assert slow.checks["converged"].passed and fast.checks["converged"].passed
     assert fast.largest["follower"] < slow.largest["follower"]
@@ -258,7 +258,7 @@ def test_a_length_of_a_beam_is_refused_and_so_are_other_profiles():
 def test_the_figure_of_a_run_covers_a_far_finer_one():
     system = load_scene("aannaque_1996_table_4_1", overrides=SCENE).system()
     profile = SpeedProfile(times=(0.0, 0.1, 0.4), speeds=(25.0, 33.0, 40.0))
-    fine = np.array(list(run_through(system, profile, modes=None, rtol=1e-5).largest.values()))
+    fine = np.array(list(run_through(system, profile, modes=None, rtol=1e-4).largest.values()))
     for modes, rtol in ((None, 0.1), (5, 0.05)):
         found = run_through(system, profile, modes=modes, rtol=rtol)
         actual = np.abs(np.array(list(found.largest.values())) / fine - 1.0)

@@ -40,7 +40,7 @@ class Sweep(Result):
     store : Path or None
         Where it is kept.
     error : float
-        Largest error figure of the pieces, in the norm of what was worked out; NaN where that has
+        Largest error estimate of the pieces, in the norm of what was worked out; NaN where that has
         none.
     """
 

@@ -32,7 +32,7 @@ class Piece:
     method, error_norm : str
         As of the result that they are from.
     error : float
-        Largest error figure of the points; NaN where there is none.
+        Largest error estimate of the points; NaN where there is none.
     checks : mapping of str to Check
         The worst of each self-check.
     """
@@ -123,7 +123,7 @@ def _share(check: Check) -> float:
 
 
 def _largest(error: object) -> float:
-    """Return the largest error figure that is a number; NaN where there is none."""
+    """Return the largest error estimate that is a number; NaN where there is none."""
     values = np.asarray(error, dtype=float)
     values = values[~np.isnan(values)]
     return float(np.max(values)) if values.size else float("nan")

@@ -23,3 +23,15 @@ def marched(stages, system, speed, steps, turns, *, start=0.0, q=None, slope=Non
         for one in maps:
             states.append(one @ states[-1])
     return np.array(states)[:, :n] * equation.scale[0]
+
+
+def wavy(theta):
+    """A smooth 3 x 3 generator without any symmetry."""
+    c, s = np.cos(theta), np.sin(2 * theta)
+    out = np.zeros((len(theta), 3, 3))
+    out[:, 0, 1] = 1.0 + 0.3 * c
+    out[:, 1, 0] = -2.0 + s
+    out[:, 1, 2] = c
+    out[:, 2, 0] = 0.5 * s
+    out[:, 2, 2] = -0.4 + 0.1 * c
+    return out

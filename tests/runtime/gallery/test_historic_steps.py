@@ -12,21 +12,10 @@ from elastolink.runtime.gallery.historic_steps import (
     merson_step,
     newmark_matrices,
 )
+from marching import wavy
 from seed_listings import de_vogelaere
 
 START = np.array([0.3, -1.0, 0.7])
-
-
-def wavy(theta):
-    """A smooth 3 x 3 generator without any symmetry."""
-    c, s = np.cos(theta), np.sin(2 * theta)
-    out = np.zeros((len(theta), 3, 3))
-    out[:, 0, 1] = 1.0 + 0.3 * c
-    out[:, 1, 0] = -2.0 + s
-    out[:, 1, 2] = c
-    out[:, 2, 0] = 0.5 * s
-    out[:, 2, 2] = -0.4 + 0.1 * c
-    return out
 
 
 def constant(theta):

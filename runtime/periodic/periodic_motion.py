@@ -40,7 +40,8 @@ _MOST_FLOATS = 2**26
 _LIKELY = 12.0
 # Errors of rates over their peaks that are allowed, over those of the coordinates.
 _RATES = 10.0
-# Angles at which the motions of two rungs are compared, at the least.
+# Angles at which the motions of two rungs are compared, at the least: 16 of them lay where a rung
+# happened to be exact, and the error was fifteen times the estimate.
 _COMPARED = 128
 # Round-off over the unit of round-off times the sensitivity: near resonances up to 26 was seen.
 _ROUNDED = 48.0

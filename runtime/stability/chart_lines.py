@@ -19,7 +19,7 @@ from .invariants import from_sum, sum_weights_back, weighed_characteristic
 
 # Wanted error of the matrices, and what mirrored coefficients may differ, over the largest.
 _RTOL, _ALIKE = 1e-12, 1e-13
-# Chebyshev nodes of a line to begin with.
+# Chebyshev nodes of a line to begin with: at most lines of the scenes' charts they are enough.
 _NODES = 12
 _EPS = float(np.finfo(float).eps)
 # Nodes to begin with on a line, and lines across it.

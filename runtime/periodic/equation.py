@@ -383,8 +383,11 @@ def sampled(system: LinearPeriodic, *, forcing: bool = False) -> SampledSystem:
 
 
 def _sampled(system: LinearPeriodic, forcing: bool, varying: Sequence[int]) -> SampledSystem:
-    terms = [system.terms[place] for place in varying]
-    series, harmonics, reach = fourier_series(system, terms)
+    """Return a system with some of its terms sampled; the next call at other speeds finds them."""
+    key = ("Fourier series", *varying)
+    if key not in system.kept:
+        system.kept[key] = fourier_series(system, [system.terms[place] for place in varying])
+    series, harmonics, reach = system.kept[key]
     return SampledSystem(system, forcing, dict(zip(varying, series, strict=True)), harmonics, reach)
 
 

@@ -405,7 +405,7 @@ def refined(
             members = group[begin : begin + together]
             part = equation if len(members) == nb else equation.take(members)
             coarse, at = solve(part, rung(int(first) - 1)), int(first)
-            before = np.full(len(members), np.inf)
+            before = earlier = np.full(len(members), np.inf)
             order = np.full(len(members), 0.5 * way.stages)
             while len(members):
                 fine = solve(part, rung(at))
@@ -415,9 +415,10 @@ def refined(
                     order = np.clip(fall, 0.0, way.stages)
                 gaps = distance(coarse, fine, share(part, way, rung(at - 1), rung(at), order))
                 gap = np.max(gaps, axis=1)
-                # Round-off, where all modes are resolved and nothing is gained any more.
+                # Round-off, where all modes are resolved and two rungs gained nothing.
                 likely = predicted_error(part, way, np.full(len(gap), rung(at)))
-                stuck = (whole > 0.5 * before) & (likely < rtol)
+                stuck = (whole > 0.5 * np.minimum(before, earlier)) & (likely < rtol)
+                stuck &= before > 0.5 * earlier
                 done = (gap <= rtol) | (stuck & (equation.harmonics >= 0))
                 done |= at + 1 >= _RUNGS or rung(at + 1) > most
                 for i in np.flatnonzero(done):
@@ -427,7 +428,8 @@ def refined(
                 if tick is not None:
                     tick(finished)
                 keep = np.flatnonzero(~done)
-                members, before, order, at = members[keep], whole[keep], order[keep], at + 1
+                members, before, earlier = members[keep], whole[keep], before[keep]
+                order, at = order[keep], at + 1
                 if len(members):
                     part = part.take(keep)
                     coarse = tuple(array[keep] for array in fine)

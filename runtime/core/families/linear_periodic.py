@@ -249,7 +249,7 @@ class LinearPeriodic:
         return {name: value for name, value in vars(self).items() if name != "kept"}
 
     @cached_property
-    def kept(self) -> dict[object, tuple[Array, ...]]:
+    def kept(self) -> dict[object, Any]:
         """Samples of the terms that one solver leaves for the next, by what they are for."""
         return {}
 

@@ -23,7 +23,7 @@ from .motion import Trajectory, simulate
 from .multipliers import Monodromy, conditions, rounding_error
 from .periodic_motion import SteadyState, peaks
 from .tables import Table, flows_at, next_rung, table_of
-from .transition import Method, levels_for, method, rung
+from .transition import cheapest
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ _RATIO = 1.5
 # Error of a motion over its peak, from which it is integrated step by step.
 _TRANSIENT = 1e-6
 # Places of each table at which other segments tell its error, and the margin.
-_TRIED, _MARGIN = (0.0, 0.29, 0.618, 1.0), 4.0
+_TRIED, _MARGIN = (0.0, 0.382, 1.0), 4.0
 # Largest state for which compiled loops win over NumPy's products.
 _COMPILED = 12
 # Error of a coordinate over its peak with which an answer still passes.
@@ -460,7 +460,7 @@ class TableMaker:
         """
         slowest = self.equation(np.array([high]))
         n = slowest.size
-        way, segments = self.cheapest(slowest, samples, 0.1 * rtol)
+        way, segments = cheapest(slowest, rtol / _MARGIN, samples)
         span = low, high
         table = table_of(
             self.equation, span, segments, way, 0.1 * rtol, samples=samples, nodes=nodes
@@ -472,8 +472,8 @@ class TableMaker:
         count = next_rung(segments)
         ours = table.flows(tried)
         theirs = flows_at(self.equation(tried), count, way, samples)
-        gap = np.max(np.abs(ours[1] - theirs[1]), axis=(1, 2))
-        size = np.maximum(np.max(np.abs(theirs[1]), axis=(1, 2)), 1.0)
+        gap = np.max(np.abs(ours[1] - theirs[1])[:, : 2 * n, : 2 * n], axis=(1, 2))
+        size = np.maximum(np.max(np.abs(theirs[1][:, : 2 * n, : 2 * n]), axis=(1, 2)), 1.0)
         whole = max(whole, _MARGIN * float(np.max(gap / size)))
         gaps = np.max(np.abs(ours[0] - theirs[0])[:, :, :n], axis=(0, 1))
         flow = np.maximum(flow, _MARGIN * gaps)
@@ -484,17 +484,6 @@ class TableMaker:
             gaps = np.max(np.abs(states - wanted)[:, :, :n], axis=1) / size[:, None]
             motion = np.maximum(motion, _MARGIN * np.max(gaps, axis=0))
         return table, whole, flow, motion
-
-    def cheapest(self, slowest: Equation, samples: int, rtol: float) -> tuple[Method, int]:
-        """Return method and number of segments, a multiple of the angles, with the least work."""
-        kind, stages = ("radau" if slowest.damped else "gauss"), (4, 5, 6, 8, 10)
-        ways = [method(kind, count) for count in stages]
-        counts = [rung(int(levels_for(slowest, way, rtol, 1.0)[0])) for way in ways]
-        counts = [samples * -(-count // samples) for count in counts]
-        # Solving the stages of a segment: between the square and the cube of their number.
-        work = [count * way.stages**2.5 for count, way in zip(counts, ways, strict=True)]
-        best = int(np.argmin(work))
-        return ways[best], counts[best]
 
     def readout(self, theta: Array) -> Array:
         """Return the matrices from the scaled state to dq/dtheta at angles, ``(nt, n, m)``."""

@@ -23,6 +23,7 @@ from .moving_basis import still_modes
 from .multipliers import conditions
 from .prepared import TableMaker, closed
 from .tables import Table, flows_at
+from .transition import cheapest
 from .truncation import TruncatedSystem, arrays_at, modes_offered, smooth_basis, truncated_on
 
 Array = NDArray[np.float64]
@@ -193,7 +194,7 @@ class Truncations:
         """Return motions and growth at a few speeds, rising."""
         truncated, known = self._required(modes, angles)
         maker = TableMaker(known, float(speeds[-1]), {})
-        way, count = maker.cheapest(maker.equation(1.0 / speeds[:1]), angles, rtol)
+        way, count = cheapest(maker.equation(1.0 / speeds[:1]), rtol, angles)
         flows = flows_at(maker.equation(1.0 / speeds), count, way, angles)
         z, _ = reduced(truncated, flows, maker.scale)
         waves = np.max(np.abs(np.fft.rfft(z, axis=1)), axis=2)

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.collocation import gauss_tableau, radau_tableau
-from ..core.errors import bad
+from ..core.errors import BadInput, bad
 from .equation import Equation, segment_waves, waves
 
 Array = NDArray[np.float64]
@@ -46,8 +46,9 @@ _MARGIN, _LEAST = 12.0, 0.025
 # stages, where modes that no segment resolves count; half the stages before an order is seen.
 # Of 1800 coordinates of a four-bar at five tolerances 99.7 % are covered, ten times in the middle.
 _STIFF = 3.0
-# Floats of the collocation matrices that are solved in one batch.
-_BLOCK = 4_000_000
+# Floats of the collocation matrices that are solved in one batch: they stay in the cache.  With
+# eight times as many, nine and 27 freedoms take a fifth longer.
+_BLOCK = 500_000
 
 
 def rung(level: int) -> int:
@@ -327,9 +328,7 @@ def share(equation: Equation, way: Method, coarse: int, fine: int, order: Array)
     return np.clip(_MARGIN * second / np.maximum(first, 1e-300), least, 1.0)
 
 
-def levels_for(
-    equation: Equation, way: Method, rtol: float, least: float | None = None
-) -> NDArray[np.intp]:
+def levels_for(equation: Equation, way: Method, rtol: float) -> NDArray[np.intp]:
     """Return the rung on which each member is likely solved, and known to be, to a wanted error.
 
     Raises
@@ -340,22 +339,66 @@ def levels_for(
     counts = np.array([rung(level) for level in range(_RUNGS)])
     errors = predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
     enough = _MARGIN * errors[:, 1:] <= rtol
-    part = least_share(way, counts[:-1], counts[1:], 0.5 * way.stages) if least is None else least
+    part = least_share(way, counts[:-1], counts[1:], 0.5 * way.stages)
     enough &= part * errors[:, :-1] <= rtol
     enough &= counts[1:] <= _MOST_SEGMENTS
     # The nodes of the rung below too have to see every wave of the coefficients twice.
     enough &= way.stages * counts[:-1] >= 2 * equation.reach
     if not np.all(np.any(enough, axis=1)):
-        worst = int(np.argmin(np.any(enough, axis=1)))
-        turned = float(np.max(equation.frequency[worst])) * equation.period
-        raise bad(
-            "speed",
-            f"{equation.speed[worst]:.6g} rad/s, where the highest mode turns through "
-            f"{turned:.3g} rad in a period",
-            f"at most about {4.0 * _MOST_SEGMENTS:.3g} rad",
-            "raise the speed or leave out the highest modes",
-        )
+        raise _too_fast(equation, int(np.argmin(np.any(enough, axis=1))))
     return np.asarray(1 + np.argmax(enough, axis=1), dtype=np.intp)
+
+
+def cheapest(equation: Equation, rtol: float, multiple: int) -> tuple[Method, int]:
+    """Return method and number of segments that likely solve all members with the least work.
+
+    Modes that no segment resolves follow what the polynomial through the s nodes makes of their
+    load: of its highest wave R that misses ``2 (R h/4)^s / s!``.
+
+    Parameters
+    ----------
+    equation : Equation
+        The members.
+    rtol : float
+        Wanted error.
+    multiple : int
+        What the number of segments has to be a multiple of.
+
+    Raises
+    ------
+    BadInput
+        If a mode asks for more than a million segments.
+    """
+    kind = "radau" if equation.damped else "gauss"
+    counts = multiple * np.array([1, *(rung(level) // 4 for level in range(_RUNGS))])
+    counts = counts[counts <= max(_MOST_SEGMENTS, multiple)]
+    best, least = None, np.inf
+    for stages in range(4, 13):
+        way = method(kind, stages)
+        errors = predicted_error(equation, way, np.tile(counts, (len(equation.speed), 1)))
+        wave = 0.25 * equation.reach * equation.period / counts
+        missed = 2.0 * np.exp(stages * np.log(np.maximum(wave, 1e-9)) - lgamma(stages + 1))
+        enough = np.all(_MARGIN * errors <= rtol, axis=0) & (missed <= rtol)
+        enough &= stages * counts >= 2 * equation.reach
+        if np.any(enough):
+            # Solving the stages of a segment: between the square and the cube of their number.
+            count = int(counts[np.argmax(enough)])
+            if count * stages**2.5 < least:
+                best, least = (way, count), count * stages**2.5
+    if best is None:
+        raise _too_fast(equation, int(np.argmax(np.max(equation.frequency, axis=1))))
+    return best
+
+
+def _too_fast(equation: Equation, member: int) -> BadInput:
+    turned = float(np.max(equation.frequency[member])) * equation.period
+    return bad(
+        "speed",
+        f"{equation.speed[member]:.6g} rad/s, where the highest mode turns through "
+        f"{turned:.3g} rad in a period",
+        f"at most about {4.0 * _MOST_SEGMENTS:.3g} rad",
+        "raise the speed or leave out the highest modes",
+    )
 
 
 def refined(
@@ -397,7 +440,7 @@ def refined(
     solutions: list[tuple[Array, ...]] = [()] * nb
     error: list[Array] = [np.zeros(0)] * nb
     segments, level = np.zeros(nb, dtype=np.int64), levels_for(equation, way, rtol)
-    together = max(1, _BLOCK // (way.stages * equation.size) ** 2 // 8)
+    together = max(1, _BLOCK // (way.stages * equation.size) ** 2)
     finished, most = 0, _MOST_SEGMENTS if equation.harmonics >= 0 else _ROUGH_SEGMENTS
     for first in np.unique(level):
         group = np.flatnonzero(level == first)

@@ -22,11 +22,16 @@ def _rod():
     return el.load_scene("beale_1992_flexible_rod", overrides=overrides).linear_system()
 
 
-@pytest.fixture(scope="module", params=[1, 2, 3, "rod"])
+@pytest.fixture(scope="module", params=[1, 2, 3, "rod", "beams"])
 def pair(request):
-    """A system and its prepared form, 50 to 200 rad/s (the rod 500 to 2000)."""
+    """A system and its prepared form, 50 to 200 rad/s (the rod 500 to 2000, beams 20 to 30)."""
     if request.param == "rod":
         system, span = _rod(), (500.0, 2000.0)
+    elif request.param == "beams":
+        # Modes that no segment resolves; a force that is large in the units of the state.
+        overrides = {"mesh.elements": 1}
+        system = el.load_scene("aannaque_1996_table_4_1", overrides=overrides).system()
+        span = (20.0, 30.0)
     else:
         system = el.load_scene(SCENE, overrides={"model.modes": request.param}).system()
         span = (50.0, 200.0)
@@ -48,7 +53,7 @@ def test_monodromy_matrices_are_within_their_figure(pair) -> None:
     size = np.max(np.abs(truth), axis=(1, 2))
     gap = np.max(np.abs(found.scaled - truth), axis=(1, 2)) / size
     assert np.all(gap <= found.error + exact.error)
-    assert np.all(found.error <= 1e-10)
+    assert np.all(found.error <= (1e-10 if system.size < 4 else 5e-10))
     assert found.passed
 
 

@@ -11,8 +11,6 @@ from elastolink.runtime.periodic import reduced_system, steady_state
 from elastolink.runtime.periodic.moving_basis import moving_basis
 from elastolink.runtime.periodic.truncation import modal_truncation
 
-# Enough for subspaces whose next frequency comes within a tenth.
-ANGLES = 512
 SCENE = "aannaque_1996_table_4_1"
 
 

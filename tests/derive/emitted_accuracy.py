@@ -61,7 +61,7 @@ def emitted_functions() -> dict[str, dict[str, tuple[str, ...]]]:
 
     Without the recursions: their functions take an algebra, not numbers.  What they compute in
     double precision is compared with exact fractions in
-    ``tests/runtime/hill/test_hill_effective.py``.
+    ``tests/convergence/test_boundary_orders_in_doubles.py``.
     """
     entries = json.loads(MANIFEST.read_text())["modules"].values()
     names = sorted(entry["module"] for entry in entries)
@@ -167,7 +167,7 @@ def _page(found: dict[str, tuple[Row, ...]]) -> str:
         "`hill_recursion` is generic: its functions take the operations of an algebra.  With words",
         "for an algebra they return the derived words; with doubles, the coefficients of Hill's",
         "equation are within 8 u of exact fractions, relative to the sum of the sizes of the terms",
-        "(`tests/derive/test_bloch_emission.py`, `tests/runtime/hill/test_hill_effective.py`).",
+        "(`tests/derive/test_bloch_emission.py`, `tests/convergence/test_boundary_orders_in_doubles.py`).",
     ]
     return "\n".join(lines) + "\n"
 

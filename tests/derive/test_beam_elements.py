@@ -126,42 +126,6 @@ def test_matrices_are_the_integrals_of_the_shapes(kind):
 # ---------------------------------------------------------------- rigid motions and patches
 
 
-@pytest.mark.parametrize("kind", quick("cubic"))
-def test_rigid_motions(kind):
-    found = arrays(kind)
-    along_x, across, turn = (
-        linear(kind, *pair) for pair in ((1, sp.S.Zero), (0, sp.S.One), (0, x))
-    )
-    for motion in (along_x, across, turn):
-        assert same(found["stiffness"] * motion, sp.zeros(len(motion), 1))
-    for motion in (along_x, across):
-        for k in range(3):
-            assert same(found[f"geometric_{k}"] * motion, sp.zeros(len(motion), 1))
-        assert sp.simplify((motion.T * found["mass"] * motion)[0] - mass * L) == 0
-    inertia = mass * L**3 / 3 + (rotary * L if kind == "timoshenko" else 0)
-    assert sp.simplify((turn.T * found["mass"] * turn)[0] - inertia) == 0
-    assert sp.simplify((across.T * found["coupling"] * along_x)[0] - mass * L) == 0
-    assert sp.simplify((turn.T * found["coupling"] * along_x)[0] - mass * L**2 / 2) == 0
-    force = along_x.T * found["load"], across.T * found["load"], turn.T * found["load"]
-    assert same(force[0], [[L / 2, L / 2, 0, 0]])
-    assert same(force[1], [[0, 0, L / 2, L / 2]])
-    assert same(force[2], [[0, 0, L**2 / 6, L**2 / 3]])
-    # The axial force on the rotated element: work P (L alpha^2)/2.
-    rotated = [(turn.T * found[f"geometric_{k}"] * turn)[0] for k in range(3)]
-    assert same([rotated], [[L, L / 2, L / 3]])
-
-
-@pytest.mark.parametrize("kind", quick("cubic")[:3])
-@pytest.mark.parametrize("power", [2, 3])
-def test_patches_of_constant_and_of_linear_bending_moment(kind, power):
-    """Only the ends carry force: shear -EI v''' and moment EI v'' at the ends, nothing inside."""
-    v = x**power
-    forces = arrays(kind)["stiffness"] * linear(kind, sp.S.Zero, v)
-    moment, shear = EI * sp.diff(v, x, 2), -EI * sp.diff(v, x, 3)
-    ends = [0, -shear.subs(x, 0), -moment.subs(x, 0), 0, shear.subs(x, L), moment.subs(x, L)]
-    assert same(forces, sp.Matrix(ends + [0] * (len(forces) - 6)))
-
-
 @pytest.mark.slow
 def test_cantilever_of_timoshenko_is_exact_and_free_of_locking():
     """One element: tip deflection ``P L^3/(3 EI) + P L/(k G A)``, whatever the slenderness."""
@@ -237,17 +201,6 @@ def test_a_tip_mass_in_the_action_moves_the_mass_matrix():
     turning[3, 4], turning[4, 3] = -tip, tip
     assert same(loaded.matrix("A") - plain["coupling"], turning)
     assert same(loaded.matrix("K"), plain["stiffness"])
-
-
-def test_a_mass_that_varies_along_the_beam_moves_the_mass_matrix():
-    action = be.beam_action("cubic")
-    tapered = action.with_(density=action.density.subs(mass, mass * (2 - x / L)))
-    found = be.element_system(tapered, "cubic").matrix("M")
-    # By hand: int (2 - s) (1 - s)^2 ds = 2/3 - 1/12, int (2 - s) s^2 ds = 2/3 - 1/4.
-    assert found[0, 0] == mass * L * sp.Rational(7, 12)
-    assert found[3, 3] == mass * L * sp.Rational(5, 12)
-    across = linear("cubic", 0, sp.S.One)
-    assert sp.simplify((across.T * found * across)[0] - mass * L * sp.Rational(3, 2)) == 0
 
 
 def test_without_foreshortening_there_is_no_geometric_stiffness():

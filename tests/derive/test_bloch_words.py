@@ -20,21 +20,6 @@ def test_the_words_solve_the_equation_of_their_order(order):
     assert wave_words(order) @ P == wave_words(order)
 
 
-@pytest.mark.parametrize("order", [2, 3, 4])
-def test_no_other_sign_of_a_word_would_do(order):
-    """The guard of the test above: each word is needed with just its coefficient."""
-    for kind, right in (("O", wave_words(order)), ("h", effective_words(order))):
-        for word, value in right.terms.items():
-            spoiled = Element({**right.terms, word: -value})
-
-            def values(letter, kind=kind, spoiled=spoiled):
-                if letter == (kind, order):
-                    return spoiled
-                return bloch._earlier(letter)
-
-            assert bloch.equation(order).put(values)
-
-
 @pytest.mark.parametrize("order", range(1, 9))
 def test_there_are_catalans_number_of_words(order):
     found = effective_words(order)

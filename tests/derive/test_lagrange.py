@@ -9,7 +9,6 @@ from elastolink.derive.lagrange import (
     NotRepresentable,
     euler_lagrange,
     quadratic_form,
-    variational_equations,
 )
 from elastolink.derive.records import Lagrangian
 
@@ -43,58 +42,6 @@ def test_double_pendulum_against_the_textbook():
     assert sp.simplify(found.mass - mass) == sp.zeros(2, 2)
     assert sp.simplify(found.rest - rest) == sp.zeros(2, 1)
     assert found.constraints.shape == (0, 1)
-
-
-def sliding_pendulum(with_multiplier: bool) -> Lagrangian:
-    """Block m1 on a spring, bob m2 on a rod l2; friction on the block."""
-    if not with_multiplier:
-        s, a = functions("s a")
-        px, py = s + l2 * sp.sin(a), -l2 * sp.cos(a)
-        energy = m1 / 2 * s.diff(t) ** 2 + m2 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
-        energy += -k / 2 * s**2 - m2 * g * py
-        return Lagrangian((s, a), t, energy, forces={s: -c * s.diff(t)})
-    s, px, py = functions("s px py")
-    energy = m1 / 2 * s.diff(t) ** 2 + m2 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
-    energy += -k / 2 * s**2 - m2 * g * py
-    rod = (px - s) ** 2 + py**2 - l2**2
-    return Lagrangian((s, px, py), t, energy, (rod,), forces={s: -c * s.diff(t)})
-
-
-VALUES = {m1: 1.3, m2: 0.7, l2: 0.9, g: 9.81, k: 12.0, c: 0.4}
-
-
-def test_sliding_pendulum_with_and_without_multiplier():
-    short = euler_lagrange(sliding_pendulum(False))
-    state = dict(zip((*short.coordinates, *short.velocities), (0.2, 0.7, -0.5, 1.9), strict=True))
-    numbers = {**VALUES, **state}
-    right = (short.forces - short.rest).subs(numbers)
-    sdd, add = short.mass.subs(numbers).LUsolve(right)
-    s, a, sd, ad = (state[q] for q in (*short.coordinates, *short.velocities))
-
-    full = euler_lagrange(sliding_pendulum(True))
-    l = VALUES[l2]  # noqa: E741
-    sin, cos = sp.sin(a), sp.cos(a)
-    place = (s, s + l * sin, -l * cos)
-    speed = (sd, sd + l * cos * ad, l * sin * ad)
-    names = (*full.coordinates, *full.velocities)
-    numbers = {**VALUES, **dict(zip(names, (*place, *speed), strict=True))}
-    assert abs(full.constraints.subs(numbers)[0]) < 1e-14
-    jacobian = full.jacobian.subs(numbers)
-    assert abs((jacobian * sp.Matrix(speed) - full.velocity_rhs.subs(numbers))[0]) < 1e-14
-    saddle = sp.Matrix(
-        sp.BlockMatrix(
-            [[full.mass.subs(numbers), -jacobian.T], [jacobian, sp.zeros(1, 1)]]
-        ).as_explicit()
-    )
-    right = sp.Matrix.vstack((full.forces - full.rest).subs(numbers), full.gamma.subs(numbers))
-    solution = saddle.LUsolve(right)
-    expected = (
-        sdd,
-        sdd + l * (cos * add - sin * ad**2),
-        l * (sin * add + cos * ad**2),
-    )
-    for found, wanted in zip(solution, expected, strict=False):
-        assert abs(found - wanted) < 1e-12 * max(1, abs(wanted))
 
 
 def test_explicit_time_dependence_of_a_constraint():
@@ -132,30 +79,6 @@ def test_prescribed_motion_is_differentiated():
     given = euler_lagrange(Lagrangian((a,), t, energy, prescribed={z: sp.cos(w * t)}))
     by_hand = m1 * l1 * (g - w**2 * sp.cos(w * t)) * sp.sin(q)
     assert sp.simplify(given.rest[0] - by_hand) == 0
-
-
-def test_variational_equations_are_the_derivative_of_the_residual():
-    found = euler_lagrange(sliding_pendulum(True))
-    varied = variational_equations(found)
-    qdd = sp.Matrix(varied.accelerations)
-    lam = sp.Matrix(found.multipliers)
-    residual = found.mass * qdd + found.rest - found.forces - found.jacobian.T * lam
-    for j, q in enumerate(found.coordinates):
-        column = residual.diff(q)
-        assert sp.expand(column - varied.stiffness[:, j]) == sp.zeros(3, 1)
-    assert varied.damping == sp.diag(c, 0, 0)
-    # the rod's force stiffens: its multiplier stands in the stiffness
-    assert varied.stiffness.has(*found.multipliers)
-    rates = dict(zip(found.coordinates, found.velocities, strict=True))
-    pushes = dict(zip(found.velocities, varied.accelerations, strict=True))
-
-    def along(matrix):
-        chain = [matrix.diff(one) * rate for one, rate in {**rates, **pushes}.items()]
-        return sum(chain, matrix.diff(found.t))
-
-    once = along(found.jacobian)
-    assert sp.expand(once - varied.jacobian_rate) == sp.zeros(1, 3)
-    assert sp.expand(along(once) - varied.jacobian_acceleration) == sp.zeros(1, 3)
 
 
 def test_terms_outside_the_family_are_reported():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mpmath
 import pytest
 import sympy as sp
 from coupler_action import EI, PINNED, Fx, N, coupler, l2, l3, mu, t, tension, th2, th3, u, x, y
@@ -32,13 +31,6 @@ def reduced_coupler() -> ActionDensity:
     return quadratic_action(action, {N: force}, (u,))
 
 
-@pytest.fixture(scope="module")
-def system() -> DiscreteSystem:
-    basis = sine_basis(x, l3)
-    options = {"followers": FOLLOWERS, "geometric": (load,)}
-    return mass_normalised(project(hamilton(reduced_coupler()), y, basis, CRANK, **options))
-
-
 def expanded(action: ActionDensity, basis: FiniteBasis, followers=FOLLOWERS) -> DiscreteSystem:
     """Return the arrays by the other route: the expansion put into the action, and read off."""
     found = assumed_modes(action, {y: basis})
@@ -64,53 +56,6 @@ def second_order(system: DiscreteSystem, modes: int) -> dict[str, sp.Matrix]:
 def same(first: DiscreteSystem, second: DiscreteSystem, modes: int) -> bool:
     one, other = second_order(first, modes), second_order(second, modes)
     return all(sp.simplify(one[name] - other[name]).is_zero_matrix for name in one)
-
-
-VALUES = {l2: 0.3, l3: 1.7, mu: 2.1, EI: 5.0, c: 0.2, push: 0.8, load: 0.4}
-VALUES |= {theta: 0.6, theta3: 1.9, omega3: -0.7, alpha3: 0.35}
-
-
-def quadrature_entries(i: int, j: int) -> dict[str, mpmath.mpf]:
-    """Integrals of the complete equation for mode numbers i, j, by quadrature."""
-    span, mass, spin = VALUES[l3], VALUES[mu], VALUES[omega3]
-    psi = VALUES[theta] - VALUES[theta3]
-
-    def mode(number: int, order: int = 0):
-        return lambda s: mpmath.diff(lambda r: mpmath.sin(number * mpmath.pi * r / span), s, order)
-
-    def n_speed(s):
-        pull = VALUES[l2] * (span - s) * mpmath.cos(psi) + (span**2 - s**2) * spin**2 / 2
-        return VALUES[push] + mass * pull
-
-    def n_acceleration(s):
-        return mass * VALUES[l2] * (span - s) * mpmath.sin(psi)
-
-    def integral(function):
-        return 2 / (mass * span) * mpmath.quad(function, mpmath.linspace(0, span, 4))
-
-    p, q, dp, dq, ddp, ddq = (mode(number, order) for order in (0, 1, 2) for number in (i, j))
-    sine, cosine = VALUES[l2] * mpmath.sin(psi), VALUES[l2] * mpmath.cos(psi)
-    return {
-        "M": integral(lambda s: mass * p(s) * q(s)),
-        "B": integral(lambda s: mass * spin**2 * p(s) * q(s) - n_speed(s) * dp(s) * dq(s)),
-        "S": integral(lambda s: -n_acceleration(s) * dp(s) * dq(s)),
-        "K": integral(lambda s: VALUES[EI] * ddp(s) * ddq(s)),
-        "Kg": integral(lambda s: VALUES[load] * dp(s) * dq(s)),
-        "C": integral(lambda s: VALUES[c] * p(s) * q(s)),
-        "f": integral(lambda s: mass * (sine - s * VALUES[alpha3]) * p(s) / span),
-        "g": integral(lambda s: mass * (-cosine - s * spin) * p(s) / span),
-    }
-
-
-def test_coupler_arrays_by_hand(system):
-    assert system.modes is None
-    assert list(system.arrays) == ["M", "B", "S", "C", "K", "Kg", "f", "g"]
-    arrays = {name: system.matrix(name, 3) for name in quadrature_entries(1, 1)}
-    for i, j in ((1, 1), (2, 1), (2, 3)):
-        for name, value in quadrature_entries(i, j).items():
-            array = arrays[name]
-            entry = array[i - 1] if array.shape[1] == 1 else array[i - 1, j - 1]
-            assert abs(sp.N(entry.subs(VALUES)) - value) < 1e-9 * (1 + abs(value)), name
 
 
 def test_a_finite_basis_gives_the_entries_of_the_indexed_one():

@@ -51,16 +51,6 @@ def test_the_basis_spans_the_lowest_modes_where_they_cross_or_not(damped):
 
 
 @pytest.mark.slow
-def test_all_modes_are_the_system_itself(damped):
-    full = el.floquet_multipliers(damped, 62.0)
-    whole = el.floquet_multipliers(reduced_system(damped, 9), 62.0)
-    large = np.abs(full.multipliers) > 1e-6
-    wanted = np.sort_complex(full.multipliers[large])
-    found = np.sort_complex(whole.multipliers[np.abs(whole.multipliers) > 1e-6])
-    assert np.max(np.abs(found - wanted)) < 1e-8
-
-
-@pytest.mark.slow
 def test_multipliers_of_fewer_modes_approach_those_of_the_full_system(damped):
     """What a mode more changes falls; with 8 of 9 the rest is of the size of its own coupling."""
     wanted = np.sort(np.abs(el.floquet_multipliers(damped, 62.0).multipliers))[::-1][:8]
@@ -112,9 +102,3 @@ def test_what_follows_in_equilibrium_is_lifted(elements, modes, speed, most):
     gap = np.max(np.abs(q[0] - truth), axis=0) / np.max(np.abs(truth), axis=0)
     assert np.max(gap) < most
     assert change[0] < 1e-2
-
-
-def test_multipliers_of_a_truncated_system_are_those_of_the_whole_one(damped):
-    few = el.floquet_multipliers(modal_truncation(damped, 4), 40.0).multipliers
-    whole = el.floquet_multipliers(damped, 40.0).multipliers
-    assert np.max(np.min(np.abs(few[:, None] - whole), axis=1)) < 1e-4

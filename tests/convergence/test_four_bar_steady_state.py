@@ -4,12 +4,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from beam_motions import FOUR_BAR, JOINT_MASSES, SECTIONS
-from elastolink.runtime.beams import linkage_system
+from beam_motions import damped_four_bar
 from elastolink.runtime.gallery.aannaque_algorithms import newmark_maps
 from elastolink.runtime.periodic import steady_state
 from elastolink.runtime.periodic.ring import solve_ring
-from elastolink.runtime.systems import with_modal_damping
 from periodic_systems import peak_gap
 
 # Deflections leave the linear range at these speeds; the methods solve the linear equations.
@@ -17,13 +15,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::elastolink.runtime.core.errors.
 SPEED = 62.0
 
 
-@cache
-def four_bar(elements=1, kind="cubic"):
-    """Return the linkage of Aannaque's Table 4.1, all links beams, damped alike in all modes."""
-    system = linkage_system(
-        FOUR_BAR, SECTIONS, elements=elements, kind=kind, joint_masses=JOINT_MASSES
-    )
-    return with_modal_damping(system, 0.02)
+four_bar = cache(damped_four_bar)
 
 
 def newmark(system, speed, intervals):

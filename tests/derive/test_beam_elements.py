@@ -1,4 +1,4 @@
-"""Beam elements: exact matrices, rigid motions, patch tests, d'Alembert by hand."""
+"""Beam elements: shapes, exact matrices, a change of the action alone."""
 
 from __future__ import annotations
 
@@ -66,17 +66,6 @@ def gram(rows, others=None, weight=1):
     return sp.Matrix([[along(factor * a * b) for b in others] for a in rows])
 
 
-def linear(kind, u, v):
-    """Return the nodal values of displacements u(x), v(x); the section turns with v'."""
-    by_field = {bs.u: u, bs.v: v, bs.psi: sp.diff(v, x)}
-    return sp.Matrix(
-        [
-            sp.diff(by_field[value.field], x, value.order).subs(x, value.place * L)
-            for value in bs.nodal_values(kind)
-        ]
-    )
-
-
 # ---------------------------------------------------------------- shapes and integrals
 
 
@@ -136,44 +125,6 @@ def test_cantilever_of_timoshenko_is_exact_and_free_of_locking():
     # A distributed load is nodally exact too: p L^4/(8 EI) + p L^2/(2 k G A).
     load = arrays("timoshenko")["load"][4:6, 2:4] * sp.ones(2, 1)
     assert sp.simplify(stiffness.LUsolve(load)[0] - L**4 / (8 * EI) - L**2 / (2 * GA)) == 0
-
-
-# ---------------------------------------------------------------- d'Alembert by hand
-
-
-@pytest.mark.parametrize("kind", quick("cubic")[::3])
-def test_dalemberts_principle_of_a_beam_on_a_moving_frame(kind):
-    """Origin and angle move in any way; positions, as complex numbers, are differentiated twice.
-
-    Expected: M qdd + 2 w W qd + (wd W - w^2 B) q = -M a, a the nodal values of the rigid
-    acceleration in local axes, with the angular acceleration at the rotations.
-    """
-    t = sp.Symbol("t", real=True)
-    origin, angle = sp.Function("origin")(t), sp.Function("angle")(t)
-    u, v, turn = ([sp.sympify(e).subs(CHOSEN) for e in row] for row in shapes(kind))
-    q = sp.Matrix([sp.Function(f"q{i}")(t) for i in range(len(v))])
-    local = x + sum((a + sp.I * b) * c for a, b, c in zip(u, v, q, strict=True))
-    place = origin + sp.exp(sp.I * angle) * local
-    w, wd, ax, ay = sp.symbols("w wd ax ay", real=True)
-    states = [sp.symbols(f"{name}0:{len(v)}", real=True) for name in ("q", "qd", "qdd")]
-    plain = {angle.diff(t, 2): wd, angle.diff(t): w}
-    plain |= {c.diff(t, k): s for k in (2, 1) for c, s in zip(q, states[k], strict=True)}
-    plain |= dict(zip(q, states[0], strict=True))
-    turned = sp.expand(place.diff(t, 2).subs(origin.diff(t, 2), 0) * sp.exp(-sp.I * angle))
-    acceleration = sp.expand(turned.subs(plain)) + ax + sp.I * ay
-    real, imaginary = (sp.expand(part) for part in acceleration.as_real_imag())
-    spinning = wd + sum(a * b for a, b in zip(turn, states[2], strict=True))
-    found = {name: matrix.subs(CHOSEN) for name, matrix in arrays(kind).items()}
-    # The slope of the acceleration across is the angular acceleration.
-    rigid = linear(kind, ax - w**2 * x, ay + wd * x).subs(CHOSEN)
-    q, qd, qdd = (sp.Matrix(state) for state in states)
-    expected = found["mass"] * (qdd + rigid) + 2 * w * found["coupling"] * qd
-    expected += (wd * found["coupling"] - w**2 * found["centripetal"]) * q
-    for i in range(len(v)):
-        work = CHOSEN[mass] * (u[i] * real + v[i] * imaginary)
-        if kind == "timoshenko":
-            work += CHOSEN[rotary] * turn[i] * spinning
-        assert sp.expand(expected[i] - along(sp.Poly(sp.expand(work), x))) == 0, i
 
 
 # ---------------------------------------------------------------- metamorphic

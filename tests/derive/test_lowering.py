@@ -182,19 +182,6 @@ def call(made, **values):
     return [eval(text, scope) for text in made.returns]
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
-@given(st.lists(st.recursive(LEAVES, _grow, max_leaves=8), min_size=1, max_size=4))
-def test_common_subexpressions_change_no_value(expressions):
-    assume(not any(e.has(sp.zoo, sp.nan, sp.oo) for e in expressions))
-    values = {"x": 0.73, "y": 1.9, "z": 3.1}
-    with np.errstate(all="ignore"):
-        plain = [run(to_line(e), **values) for e in expressions]
-        assume(all(np.isfinite(v) and abs(v) < 1e12 for v in plain))
-        together = call(kernel(expressions), **values)
-    for one, other in zip(plain, together, strict=True):
-        assert abs(one - other) <= 1e-9 * (1 + abs(one))
-
-
 def test_steps_that_no_output_needs_are_pruned_and_the_rest_stands_in_order():
     a, b, c = sp.symbols("a b c")
     steps = Steps(((a, x + y), (b, sp.sin(a)), (c, sp.cos(x))))

@@ -111,6 +111,7 @@ def test_what_a_change_adds(name):
         added = case.conditions.get(condition.order, 0) if condition.position == l3 else 0
         found = after.condition(condition.position, y, condition.order) - condition.expression
         assert zero(found - added)
+    assert bool(after.jumps) == (case.jump != 0)
     for jump in after.jumps:
         applied = case.jump if jump.order == 0 else 0
         assert jump.position == a and zero(jump.applied - applied)

@@ -123,11 +123,6 @@ def condition(basis, place: float) -> float:
     return float(np.linalg.cond(mass * scale * scale[:, None]))
 
 
-def order(counts, errors) -> float:
-    """Return the exponent k of the fit error ~ n^-k."""
-    return float(-np.polyfit(np.log(counts), np.log(errors), 1)[0])
-
-
 def tongue(basis, around: float, ratio: float = 0.05, growth: float = 1.01) -> tuple[float, float]:
     """Return the crank speeds between which the flexible rod grows by more than a factor a turn.
 

@@ -7,6 +7,7 @@ from functools import cache, partial
 
 import numpy as np
 from documented_tables import table
+from orders import slope
 from rod_bases import (
     BASES,
     REFERENCE,
@@ -14,7 +15,6 @@ from rod_bases import (
     condition,
     deflection_error,
     frequency_error,
-    order,
     tongue,
 )
 
@@ -45,7 +45,7 @@ def _order(errors: Iterable[float], floor: float) -> str:
     known = [(n, e) for n, e in zip(COUNTS, errors, strict=True) if n >= 4 and e > floor]
     if len(known) < 3:
         return "-"
-    fitted = order(*zip(*known, strict=True))
+    fitted = -slope(*zip(*known, strict=True))
     return "spectral" if fitted > 8 else f"{fitted:.1f}"
 
 

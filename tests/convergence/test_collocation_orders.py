@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 from manufactured import manufactured
 from marching import marched
+from orders import slope
 
 
 def _slope(stages, counts):
     """Return the order of marching two turns along a periodic motion that is known exactly."""
     system, speed, motion = manufactured(5)  # three coordinates, eight harmonics
     start = np.array([0.3])
-    q, slope = motion(start)[0], motion.derivative(start)[0]
-    ends = [marched(stages, system, speed, n, 2, start=0.3, q=q, slope=slope)[-1] for n in counts]
+    q, rate = motion(start)[0], motion.derivative(start)[0]
+    ends = [marched(stages, system, speed, n, 2, start=0.3, q=q, slope=rate)[-1] for n in counts]
     errors = np.linalg.norm(np.array(ends) - q, axis=1) / np.linalg.norm(q)
     # Rounding is some 1e-15 of it.
     assert errors[0] < 1e-2 and errors[-1] > 2e-13
-    return -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    return -slope(counts, errors)
 
 
 @pytest.mark.parametrize(

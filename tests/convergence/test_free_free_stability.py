@@ -14,9 +14,9 @@ from free_free_loads import (
     loaded,
     part_of_inertia,
     rod,
-    slope,
 )
 from free_free_table import TABLES
+from orders import slope
 
 SPEED = 150.0
 PHYSICS = [(), ("tension",)]

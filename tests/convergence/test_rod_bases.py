@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from documented_tables import DOCS, compare, filled
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, TwoSegmentBasis
+from orders import slope
 from rod_bases import (
     BASES,
     RODS,
     deflection_error,
     frequency_error,
-    order,
     tongue,
 )
 from rod_convergence_tables import PLACES, TABLES
@@ -22,7 +22,7 @@ def test_orders_of_the_frozen_frequencies(place):
     """Over three doublings: 1/n for one polynomial, n^-3 for modes whose shear cannot jump."""
     counts = (6, 12, 24, 48)
     found = {
-        name: order(counts, [frequency_error(BASES[name](n), place, 1) for n in counts])
+        name: -slope(counts, [frequency_error(BASES[name](n), place, 1) for n in counts])
         for name in ("polynomial", "free_free_linear")
     }
     assert found["polynomial"] == pytest.approx(1.0, abs=0.15)
@@ -36,9 +36,9 @@ def test_two_segments_converge_spectrally(place, mode):
     errors = [frequency_error(TwoSegmentBasis(n), place, mode) for n in counts]
     assert errors[2] < 1e-6
     if errors[2] > 1e-8:
-        assert order(counts[1:], errors[1:]) > order(counts[:2], errors[:2]) > 6
+        assert -slope(counts[1:], errors[1:]) > -slope(counts[:2], errors[:2]) > 6
     else:
-        assert order(counts[:2], errors[:2]) > 6
+        assert -slope(counts[:2], errors[:2]) > 6
 
 
 def test_overhang_modes_are_the_frozen_modes():
@@ -60,7 +60,7 @@ def test_all_bases_have_one_limit(rod):
 def test_three_polynomial_modes_are_far_from_it(rod):
     assert 0.1 < deflection_error(rod, PolynomialBasis(3), "steady") < 0.2
     errors = [deflection_error(rod, PolynomialBasis(n), "steady") for n in (4, 8, 16)]
-    assert order((4, 8, 16), errors) == pytest.approx(1.1, abs=0.25)
+    assert -slope((4, 8, 16), errors) == pytest.approx(1.1, abs=0.25)
 
 
 @pytest.mark.slow

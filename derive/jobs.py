@@ -189,7 +189,9 @@ def _load_file(file: Path) -> ModuleType:
     except (SyntaxError, ImportError, NameError, AttributeError, TypeError, ValueError) as problem:
         del sys.modules[name]
         kind = type(problem).__name__
-        message = f"model file {file}: {kind}: {_one_line(problem)}{_where(problem, str(file))}"
+        message = (
+            f"model file {file}: {kind}: {_one_line(problem)}{_where(problem, str(spec.origin))}"
+        )
         raise UsageError(message) from problem
     return module
 

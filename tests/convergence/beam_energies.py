@@ -32,13 +32,13 @@ def scaled(found, expected, mass):
     return distance(found * np.outer(size, size), expected * np.outer(size, size))
 
 
-def slope(function, theta):
+def slope(function, theta, step=STEP):
     """Return the derivative of a function by central differences."""
     total = sum(
-        weight * (function(theta + k * STEP) - function(theta - k * STEP))
+        weight * (function(theta + k * step) - function(theta - k * step))
         for k, weight in enumerate(DIFFERENCES, start=1)
     )
-    return total / STEP
+    return total / step
 
 
 def array_gaps(system, energies, theta):

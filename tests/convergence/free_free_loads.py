@@ -96,8 +96,3 @@ def phases(multipliers: np.ndarray) -> np.ndarray:
 def difference(found: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Differences of the phases of two sets of multipliers, signed."""
     return phases(found) - phases(other)
-
-
-def slope(x: np.ndarray, y: np.ndarray) -> float:
-    """Slope of a log-log line."""
-    return float(np.polyfit(np.log(x), np.log(np.abs(y)), 1)[0])

@@ -1,21 +1,12 @@
-"""The tables of docs/free_free_stability.md; run as a script it writes them into the document."""
+"""The tables of docs/free_free_stability.md."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
-from pathlib import Path
-
 import numpy as np
+from documented_tables import table
 from free_free_loads import about, difference, linear, loaded, part_of_inertia, phases, rod
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "free_free_stability.md"
 SPEED = 150.0
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]
-    return "\n".join(lines)
 
 
 def _short(value: float) -> str:
@@ -35,7 +26,7 @@ def undeformed() -> str:
         told = ", ".join(f"{phase:.6f}" for phase in phases(found.physical))
         rows.append([f"{modes}", told, "below 1e-12", _short(away[1])])
     head = ["modes", "phases of the multipliers [rad]", "with frame term", "without"]
-    return _table(head, rows)
+    return table(head, rows)
 
 
 def orbits() -> str:
@@ -46,7 +37,7 @@ def orbits() -> str:
         away = np.max(np.abs(difference(found.physical, linear(1, ratio, SPEED).multipliers)))
         bent = orbit.deflection
         rows.append([f"{ratio}", _short(bent), _short(away), f"{away / bent**2:.2f}"])
-    return _table(["ε", "deflection over L", "difference [rad]", "over its square"], rows)
+    return table(["ε", "deflection over L", "difference [rad]", "over its square"], rows)
 
 
 def loads() -> str:
@@ -57,7 +48,7 @@ def loads() -> str:
         found = about(loaded(rod(1, 0.1, SPEED), part_of_inertia(part)))[1]
         away = [np.max(np.abs(difference(found.physical, form))) for form in forms]
         rows.append([f"{part}", *map(_short, away)])
-    return _table(["part of the inertia load", "with frame term [rad]", "without [rad]"], rows)
+    return table(["part of the inertia load", "with frame term [rad]", "without [rad]"], rows)
 
 
 def tongue() -> str:
@@ -68,21 +59,7 @@ def tongue() -> str:
         growth = np.max(np.abs(linear(2, ratio, 1725.0).multipliers))
         rows.append([f"{ratio}", _short(orbit.deflection), f"{found.largest:.5f}", f"{growth:.5f}"])
     head = ["ε", "deflection over L", "largest, constrained", "largest, linear"]
-    return _table(head, rows)
+    return table(head, rows)
 
 
 TABLES = {"undeformed": undeformed, "orbits": orbits, "loads": loads, "tongue": tongue}
-
-
-def filled(text: str) -> str:
-    """Return the document with its tables computed anew."""
-    for name, table in TABLES.items():
-        pattern = rf"(<!-- {name} -->\n).*?(\n<!-- end -->)"
-        text, count = re.subn(pattern, lambda m, t=table: m[1] + t() + m[2], text, flags=re.S)
-        if count != 1:
-            raise ValueError(f"no place for table {name}")
-    return text
-
-
-if __name__ == "__main__":
-    DOCUMENT.write_text(filled(DOCUMENT.read_text()))

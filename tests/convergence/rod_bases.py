@@ -37,7 +37,7 @@ RODS: Mapping[str, Callable[[], Rod]] = {
 }
 # Angles of the steady motion, and steps of the one from rest: twice as many change nothing here.
 _SAMPLES = 64
-_STEPS = 512
+STEPS = 512
 REFERENCE = 16
 
 
@@ -80,10 +80,10 @@ def steady_tip(rod: Rod, basis) -> np.ndarray:
     return found.deflection(1.0) / rod.length
 
 
-def transient_tip(rod: Rod, basis) -> np.ndarray:
-    """Return the tip deflection from rest over the first turn, at the end of each step."""
-    q = marched(6, made(rod, basis), rod.speed, _STEPS, 1)
-    return _tip(rod, basis, 2 * np.pi / _STEPS * np.arange(_STEPS + 1), q)
+def transient_tip(rod: Rod, basis, turns: int = 1) -> np.ndarray:
+    """Return the tip deflection from rest, at the end of each step."""
+    q = marched(6, made(rod, basis), rod.speed, STEPS, turns)
+    return _tip(rod, basis, 2 * np.pi / STEPS * np.arange(len(q)), q)
 
 
 @lru_cache(maxsize=8)
@@ -121,11 +121,6 @@ def condition(basis, place: float) -> float:
     mass = basis.array("overlap", np.array([place]))[0]
     scale = 1 / np.sqrt(np.diag(mass))
     return float(np.linalg.cond(mass * scale * scale[:, None]))
-
-
-def order(counts, errors) -> float:
-    """Return the exponent k of the fit error ~ n^-k."""
-    return float(-np.polyfit(np.log(counts), np.log(errors), 1)[0])
 
 
 def tongue(basis, around: float, ratio: float = 0.05, growth: float = 1.01) -> tuple[float, float]:

@@ -110,11 +110,6 @@ def flows(equation: Equation, turn: float, count: int) -> Reals:
         Multiple of its period at which the angles end.
     count : int
         Intervals between them.
-
-    Notes
-    -----
-    On machines whose long double has 64 bits of fraction they are good to about 1e-18 times the
-    length of the way that the state goes.
     """
     length = np.longdouble(equation.period) * np.longdouble(turn)
     wave = 2.0 * np.pi * equation.harmonics / equation.period

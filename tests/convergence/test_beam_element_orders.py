@@ -9,6 +9,7 @@ import pytest
 import scipy.linalg
 from beam_reference import cantilever, pinned, rotating, timoshenko
 from elastolink.runtime.beams.elements import NODAL_VALUES, element_arrays
+from orders import slopes
 
 HELD = {"pinned": ("u0", "v0", "vn"), "cantilever": ("u0", "v0", "r0"), "free": ()}
 
@@ -59,10 +60,6 @@ def whirling(kind, count, speed, **changes):
     return np.sort(roots.imag[roots.imag > 0])
 
 
-def slopes(counts, errors):
-    return np.diff(np.log(errors)) / -np.diff(np.log(counts))
-
-
 # The square of a frequency errs by the square of the curvature's error: 2 (p - 1) with degree p.
 CASES = [
     ("cubic", 4, 2, (8, 16, 32), 0.1),
@@ -78,7 +75,7 @@ def test_order_of_the_squared_frequency(kind, order, mode, counts, margin, suppo
     found = np.array([frequencies(kind, n, support)[mode - 1] ** 2 for n in counts])
     errors = found / exact - 1.0
     assert np.all(errors > 0)  # Rayleigh: from above
-    np.testing.assert_allclose(slopes(counts, errors), order, atol=margin)
+    np.testing.assert_allclose(-slopes(counts, errors), order, atol=margin)
 
 
 def test_both_quintic_elements_give_the_same_frequencies_where_nothing_else_is_held():
@@ -98,15 +95,6 @@ def test_the_limit_is_the_exact_frequency(support, reference):
     assert found == pytest.approx(reference(1), rel=1e-10)
 
 
-@pytest.mark.parametrize("kind", ["cubic", "internal_node", "curvature", "timoshenko"])
-def test_free_beam_has_three_rigid_motions(kind):
-    more = {"shear_stiffness": 1e3, "rotary_inertia": 1e-3} if kind == "timoshenko" else {}
-    mass, _, _, stiffness = assembled(kind, 3, "free", **more)
-    values = scipy.linalg.eigvalsh(stiffness, mass)
-    assert np.all(np.abs(values[:3]) < 1e-9 * values[-1])
-    assert values[3] > 100.0
-
-
 # ---------------------------------------------------------------- shear and rotary inertia
 
 
@@ -118,7 +106,7 @@ def test_timoshenkos_beam_does_not_lock(ratio, slimness, order):
     changes = {"shear_stiffness": 1.0 / ratio, "rotary_inertia": slimness}
     found = [frequencies("timoshenko", n, "pinned", **changes)[0] ** 2 for n in counts]
     errors = np.array(found) / exact - 1.0
-    np.testing.assert_allclose(slopes(counts, errors), order, atol=0.1)
+    np.testing.assert_allclose(-slopes(counts, errors), order, atol=0.1)
     assert 0 < errors[0] < ratio / 10 + 1e-4
 
 
@@ -145,7 +133,7 @@ def test_turning_beam_converges_with_fourth_order_while_stretch_is_stiff():
     speed, counts = 6.0, (8, 16, 32)
     exact = reference(speed, 1e10, 4.3) ** 2
     found = np.array([whirling("cubic", n, speed, axial_stiffness=1e10)[0] ** 2 for n in counts])
-    np.testing.assert_allclose(slopes(counts, np.abs(found / exact - 1)), 4.0, atol=0.1)
+    np.testing.assert_allclose(-slopes(counts, np.abs(found / exact - 1)), 4.0, atol=0.1)
 
 
 def test_a_soft_stretch_brings_the_axial_elements_second_order():
@@ -155,12 +143,4 @@ def test_a_soft_stretch_brings_the_axial_elements_second_order():
     exact = reference(speed, 200.0, float(guess)) ** 2
     found = [whirling("curvature", n, speed, axial_stiffness=200.0)[0] ** 2 for n in counts]
     errors = np.abs(np.array(found) / exact - 1)
-    np.testing.assert_allclose(slopes(counts, errors), 2.0, atol=0.1)
-
-
-def test_without_tension_the_turning_beam_loses_its_stiffness():
-    """What the geometric stiffness is for: 6 rad/s without it is beyond the critical speed."""
-    mass, _, centripetal, stiffness = assembled("cubic", 8)
-    bare = scipy.linalg.eigvalsh(stiffness - 6.0**2 * centripetal, mass)[0]
-    assert bare == pytest.approx(cantilever(1) ** 2 - 36.0, rel=1e-4)
-    assert bare < 0 < whirling("cubic", 8, 6.0)[0]
+    np.testing.assert_allclose(-slopes(counts, errors), 2.0, atol=0.1)

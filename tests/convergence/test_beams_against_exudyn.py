@@ -7,12 +7,14 @@ periodic motion; after a few revolutions what is left of the start has died away
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from functools import cache
 
+import beam_motions
 import numpy as np
 import pytest
-from elastolink.runtime.beams import Section, beam_linkage, linear_system
-from elastolink.runtime.linkages import FourBar
+from beam_motions import FOUR_BAR, JOINT_MASSES
+from elastolink.runtime.beams import beam_linkage, linear_system
 from elastolink.runtime.periodic import steady_state
 from exudyn_beams import displacements, simulate, start_of
 
@@ -21,29 +23,16 @@ pytestmark = pytest.mark.slow
 # Aannaque's Table 4.1; the lowest mode has a damping ratio of about 4 %.
 RETARDATION = 5e-4
 SECTIONS = {
-    link: Section(
-        area=area * 1e-6,
-        second_moment=second * 1e-12,
-        modulus=210e9,
-        density=7850.0,
-        retardation=RETARDATION,
-    )
-    for link, area, second in (
-        ("crank", 157.5, 520.47),
-        ("coupler", 85.5, 83.34),
-        ("follower", 78.75, 65.12),
-    )
+    name: replace(section, retardation=RETARDATION)
+    for name, section in beam_motions.SECTIONS.items()
 }
-FOUR_BAR = FourBar(crank=0.170, coupler=0.328, follower=0.525, frame=0.547)
 # Elements per link of the linear equations and, at most, of the cables.
 ELEMENTS = 4
 
 
 @cache
 def _structure():
-    return beam_linkage(
-        FOUR_BAR, SECTIONS, elements=ELEMENTS, joint_masses={"B": 0.174, "C": 0.174}
-    )
+    return beam_linkage(FOUR_BAR, SECTIONS, elements=ELEMENTS, joint_masses=JOINT_MASSES)
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,6 @@ from elastolink.runtime.periodic import reduced_system, steady_state
 from elastolink.runtime.periodic.moving_basis import moving_basis
 from elastolink.runtime.periodic.truncation import modal_truncation
 
-# Enough for subspaces whose next frequency comes within a tenth.
-ANGLES = 512
 SCENE = "aannaque_1996_table_4_1"
 
 
@@ -50,16 +48,6 @@ def test_the_basis_spans_the_lowest_modes_where_they_cross_or_not(damped):
     for k in range(3):
         wanted = np.sort(np.linalg.eigvals(np.linalg.solve(mass[k], stiffness[k])).real)[:4]
         assert np.linalg.eigvalsh(small[k]) == pytest.approx(wanted, rel=1e-8)
-
-
-@pytest.mark.slow
-def test_all_modes_are_the_system_itself(damped):
-    full = el.floquet_multipliers(damped, 62.0)
-    whole = el.floquet_multipliers(reduced_system(damped, 9), 62.0)
-    large = np.abs(full.multipliers) > 1e-6
-    wanted = np.sort_complex(full.multipliers[large])
-    found = np.sort_complex(whole.multipliers[np.abs(whole.multipliers) > 1e-6])
-    assert np.max(np.abs(found - wanted)) < 1e-8
 
 
 @pytest.mark.slow
@@ -114,9 +102,3 @@ def test_what_follows_in_equilibrium_is_lifted(elements, modes, speed, most):
     gap = np.max(np.abs(q[0] - truth), axis=0) / np.max(np.abs(truth), axis=0)
     assert np.max(gap) < most
     assert change[0] < 1e-2
-
-
-def test_multipliers_of_a_truncated_system_are_those_of_the_whole_one(damped):
-    few = el.floquet_multipliers(modal_truncation(damped, 4), 40.0).multipliers
-    whole = el.floquet_multipliers(damped, 40.0).multipliers
-    assert np.max(np.min(np.abs(few[:, None] - whole), axis=1)) < 1e-4

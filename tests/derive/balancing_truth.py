@@ -7,6 +7,7 @@ of any mass distribution, one 9 x 9 system for each crank angle.
 from __future__ import annotations
 
 import numpy as np
+from elastolink.runtime.linkages import FourBar
 
 INCH = 0.0254
 # One pound-force [N]; the weights of Smith's example become masses with g = 384 in/s^2, the value
@@ -25,35 +26,6 @@ def _turned(angle, along, across):
     return np.stack([c * along - s * across, s * along + c * across], axis=-1)
 
 
-def angles(lengths, theta2, branch=1.0):
-    """Return theta3, theta4 by the cosine rule in the triangle BCD."""
-    l1, l2, l3, l4 = lengths
-    bd = np.stack([l1 - l2 * np.cos(theta2), -l2 * np.sin(theta2)], axis=-1)
-    reach = np.hypot(bd[..., 0], bd[..., 1])
-    direction = np.arctan2(bd[..., 1], bd[..., 0])
-    inner = np.arccos((l3**2 + reach**2 - l4**2) / (2 * l3 * reach))
-    theta3 = direction + branch * inner
-    c = _turned(theta2, l2, 0.0) + _turned(theta3, l3, 0.0)
-    return theta3, np.arctan2(c[..., 1], c[..., 0] - l1)
-
-
-def rates(lengths, theta2, speed, acceleration, branch=1.0):
-    """Return angles, speeds and accelerations of the three links from the closure equations."""
-    _, l2, l3, l4 = lengths
-    theta3, theta4 = angles(lengths, theta2, branch)
-    columns = [_turned(theta3, 0.0, l3), -_turned(theta4, 0.0, l4)]
-    matrix = np.stack(columns, axis=-1)
-    known = -_turned(theta2, 0.0, l2) * speed
-    omega = np.linalg.solve(matrix, known[..., None])[..., 0]
-    known = (
-        -_turned(theta2, -l2 * speed**2, l2 * acceleration)
-        - _turned(theta3, -l3 * omega[..., :1].T.ravel() ** 2, 0.0)
-        + _turned(theta4, -l4 * omega[..., 1:].T.ravel() ** 2, 0.0)
-    )
-    alpha = np.linalg.solve(matrix, known[..., None])[..., 0]
-    return (theta3, theta4), (omega[:, 0], omega[:, 1]), (alpha[:, 0], alpha[:, 1])
-
-
 def forces(lengths, masses, theta2, speed, acceleration=0.0, branch=1.0):
     """Return all forces by name, for masses (mass, along, across, inertia) of the three links.
 
@@ -61,7 +33,11 @@ def forces(lengths, masses, theta2, speed, acceleration=0.0, branch=1.0):
     """
     l1, l2, l3, l4 = lengths
     theta2 = np.asarray(theta2, dtype=float)
-    (t3, t4), (w3, w4), (a3, a4) = rates(lengths, theta2, speed, acceleration, branch)
+    linkage = FourBar(*lengths, assembly="open" if branch > 0 else "crossed")
+    moved = linkage.motion(theta2, speed, acceleration)
+    t3, w3, a3, t4, w4, a4 = (
+        getattr(moved, f"{name}{link}") for link in (3, 4) for name in ("theta", "omega", "alpha")
+    )
     one = np.ones_like(theta2)
     zero = np.zeros((*theta2.shape, 2))
     ab = _turned(theta2, l2, 0.0)

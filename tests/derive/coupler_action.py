@@ -1,15 +1,24 @@
-"""The rotating, translating, inextensible pinned beam with an end load."""
+"""The rotating, translating, inextensible beam with an end load, in variants."""
 
 from __future__ import annotations
 
 import sympy as sp
-from elastolink.derive.records import ActionDensity, EndForce, Essential
-from elastolink.derive.variational import order_part, solve_end_value, solve_tension
+from elastolink.derive.arrays import CrankMotion
+from elastolink.derive.records import ActionDensity, EndForce, Essential, FieldEquations
+from elastolink.derive.variational import (
+    hamilton,
+    order_part,
+    quadratic_action,
+    solve_end_value,
+    solve_tension,
+)
 
 x, t = sp.symbols("x t")
-l2, l3, mu, EI = sp.symbols("l2 l3 mu EI", positive=True)
+l2, l3, mu, EI, g = sp.symbols("l2 l3 mu EI g", positive=True)
 y, u, N = (sp.Function(name)(x, t) for name in ("y", "u", "N"))
 th2, th3, Fx = (sp.Function(name)(t) for name in ("th2", "th3", "Fx"))
+theta, theta3, omega3, alpha3, td, tdd = sp.symbols("theta theta3 omega3 alpha3 td tdd")
+CRANK = CrankMotion(theta, td, tdd, {theta3: omega3, omega3: alpha3})
 PINNED = (Essential(0, y, 0), Essential(l3, y, 0))
 
 
@@ -18,31 +27,45 @@ def zero(expression: sp.Expr) -> bool:
     return sp.expand(expression.doit()) == 0
 
 
-def coupler(**changes: object) -> ActionDensity:
+def coupler(
+    *,
+    crank: sp.Expr = l2,
+    foreshortening: bool = True,
+    gravity: sp.Expr = sp.S.Zero,
+    essential: tuple[Essential, ...] = PINNED,
+    out_of_plane: bool = False,
+    **changes: object,
+) -> ActionDensity:
     """Return the action with the end load Fx; N keeps the beam from stretching."""
     w2, w3 = th2.diff(t), th3.diff(t)
-    along = l2 * w2 * sp.sin(th3 - th2) + u.diff(t) - w3 * y
-    across = l2 * w2 * sp.cos(th3 - th2) + y.diff(t) + w3 * (x + u)
-    density = (
-        mu / 2 * (along**2 + across**2)
-        - EI / 2 * y.diff(x, 2) ** 2
-        - N * (u.diff(x) + y.diff(x) ** 2 / 2)
-    )
+    along = crank * w2 * sp.sin(th3 - th2) + u.diff(t)
+    across = crank * w2 * sp.cos(th3 - th2) + w3 * (x + u)
+    if not out_of_plane:
+        along, across = along - w3 * y, across + y.diff(t)
+    kinetic = along**2 + across**2 + (y.diff(t) ** 2 if out_of_plane else 0)
+    height = (x + u) * sp.sin(th3) + y * sp.cos(th3)
+    shortening = y.diff(x) ** 2 / 2 if foreshortening else 0
+    density = mu / 2 * kinetic - mu * gravity * height - EI / 2 * y.diff(x, 2) ** 2
     action = ActionDensity(
         x,
         t,
         l3,
         (u, y, N),
-        density,
+        density - N * (u.diff(x) + shortening),
         end_forces=(EndForce(l3, u, 0, Fx),),
-        essential=(Essential(0, u, 0), *PINNED),
+        essential=(Essential(0, u, 0), *essential),
         orders={u: 2, y: 1, N: 0},
     )
     return action.with_(**changes)
 
 
-def tension(equations) -> sp.Expr:
+def tension(equations: FieldEquations) -> sp.Expr:
     """Return N of the undeformed beam."""
     end = solve_end_value(equations.condition(l3, u, 0), N)
     leading = order_part(equations.equations[u], equations.action.orders, 0)
     return solve_tension(leading, N, x, l3, end)
+
+
+def reduced(action: ActionDensity) -> ActionDensity:
+    """Return the quadratic action in y alone."""
+    return quadratic_action(action, {N: tension(hamilton(action))}, (u,))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import mpmath
@@ -18,6 +18,7 @@ from elastolink import generated
 from elastolink.derive.external import external_values
 from elastolink.derive.lagrange import euler_lagrange, variational_equations
 from elastolink.derive.models import free_free_rod as rod
+from elastolink.runtime.core.families import Constrained
 from judging import Exact, Point, reference_of
 
 MODES_MODULE = "beam_free_free_modes"
@@ -211,20 +212,26 @@ _VARIED = ("damping", "stiffness", "jacobian_rate", "jacobian_acceleration")
 
 
 class WithModes:
-    """A function of the emitted rod for a number of modes, in scalars: entry by entry."""
+    """A function of the rod's equations, as its family evaluates it for so many modes.
+
+    Its arguments and what it returns are scalars: each entry that is not zero by form.
+    """
 
     def __init__(self, function: str, count: int) -> None:
         self.module = importlib.import_module(f"{generated.__name__}.{ROD_MODULE}")
-        self.function, self.count = getattr(self.module, function), count
-        self.arrays = self.module.ARRAYS[function]
-        names = self._scalars(inspect.signature(self.function).parameters)
+        self.function, self.count = function, count
+        self.scalars = self._scalars(inspect.signature(self.module.variations).parameters)
         kind = inspect.Parameter.KEYWORD_ONLY
-        self.__signature__ = inspect.Signature([inspect.Parameter(n, kind) for n in names])
-        made = self(**dict.fromkeys(names, 1.0))
-        self.names = tuple(name for name, _ in self._entries(self._called))
-        assert len(made) == len(self.names)
+        self.__signature__ = inspect.Signature([inspect.Parameter(n, kind) for n in self.scalars])
+        generic = self._entries({name: 1.0 + 0.1 * k for k, name in enumerate(self.scalars)})
+        self.names = tuple(name for name, value in generic.items() if value != 0.0)
+
+    def __call__(self, **given: float) -> tuple[float, ...]:
+        entries = self._entries(given)
+        return tuple(entries[name] for name in self.names)
 
     def _scalars(self, parameters) -> list[str]:
+        """Return the names of the components of parameters of the emitted function."""
         every = range(1, self.count + 1)
         names = []
         for name in parameters:
@@ -240,56 +247,40 @@ class WithModes:
                 names.append(name)
         return names
 
-    def __call__(self, **given: float) -> tuple[float, ...]:
-        every = range(1, self.count + 1)
-        taken = {}
-        for name in inspect.signature(self.function).parameters:
-            own = self._scalars([name])
-            values = [given.get(n, 0.0) for n in own]
-            if name in ("inward", "retreat"):
-                pairs = dict(zip(own, values, strict=True))
-                taken[name] = [
-                    [pairs["_".join([name, *map(str, sorted((i, j)))])] for j in every]
-                    for i in every
-                ]
-            else:
-                taken[name] = values if own != [name] else values[0]
-        self._taken = taken
-        self._called = self.function(**taken)
-        return tuple(value for _, value in self._entries(self._called))
+    def _entries(self, given: Mapping[str, float]) -> dict[str, float]:
+        every, rod_ = range(1, self.count + 1), self.module
 
-    def _entries(self, returned):
-        """Yield the name and the value of each entry that is not zero by form."""
-        last = len(self.module.COORDINATES) - 1
-        every = range(self.count)
-        for array, (shape, filled) in self.arrays.items():
-            block: dict[tuple[int, int], float] = {}
-            for i, j, at, *kind in filled:
-                value = returned[at]
-                if kind:
-                    matrix = self._taken.get(kind[0])
-                    for k, m in itertools.product(every, every):
-                        factor = float(k == m)
-                        if kind[0] in ("inward", "retreat"):
-                            factor = matrix[k][m]
-                        elif kind[0] != "identity":
-                            factor *= matrix[k]
-                        place = (last + k, last + m)
-                        block[place] = block.get(place, 0.0) + value * factor
-                elif isinstance(value, list):
-                    for k, entry in enumerate(value):
-                        moved = (i + k, j) if i == last < shape[0] else (i, j + k)
-                        yield f"{array}_{moved[0] + 1}_{moved[1] + 1}", entry
-                else:
-                    yield f"{array}_{i + 1}_{j + 1}", value
-            for (i, j), value in block.items():
-                if i == j or array == "stiffness":
-                    yield f"{array}_{i + 1}_{j + 1}", value
+        def row(*names: str) -> np.ndarray:
+            return np.array([given[name] for name in self._scalars(names)])
+
+        pairs = {
+            name: [[given[f"{name}_{min(i, j)}_{max(i, j)}"] for j in every] for i in every]
+            for name in ("inward", "retreat")
+        }
+        system = Constrained.from_module(
+            rod_,
+            {name: given[name] for name in rod_.PARAMETERS},
+            external={name: lambda q, t, name=name: row(name) for name in rod_.EXTERNAL},
+            modes={"left": row("left"), "stiffness": row("stiffness"), **pairs},
+        )
+        state = [
+            row(*(f"{name}{order}" for name in rod_.COORDINATES)) for order in ("", "_dot", "_ddot")
+        ]
+        called, vectors = {
+            "constraints": (system.violation, state[:1]),
+            "dynamics": (system.dynamics, state[:2]),
+            "variations": (system.variations, [*state, row(*rod_.MULTIPLIERS)]),
+        }[self.function]
+        return {
+            f"{array}_{i + 1}_{j + 1}": float(value)
+            for array, matrix in called(*vectors, given["t"]).items()
+            for (i, j), value in np.ndenumerate(matrix)
+        }
 
 
 @lru_cache(maxsize=4)
 def _rod_points(count: int) -> tuple[tuple[Point, dict], ...]:
-    names = inspect.signature(WithModes("variations", count)).parameters
+    names = WithModes("variations", count).scalars
     parameters = importlib.import_module(f"{generated.__name__}.{ROD_MODULE}").PARAMETERS
     random = np.random.default_rng(57 + count)
     made = []

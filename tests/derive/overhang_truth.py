@@ -1,8 +1,4 @@
-"""Modes of the beam with an overhang in many digits, by cosh and sinh as they stand.
-
-With 320 digits the textbook's shapes lose nothing; derivatives along the support's place are
-differences.  And the points at which the emitted functions are judged.
-"""
+"""Roots of the beam with an overhang in many digits, and the points where its modes are judged."""
 
 from __future__ import annotations
 
@@ -13,79 +9,13 @@ from functools import lru_cache
 
 import mpmath
 import numpy as np
+import overhang_reference
 from elastolink.generated import quick_return_overhang_modes as emitted
+from elastolink.runtime.systems.rod import overhang_roots
 from judging import Point
 
+# Of the hyperbolic functions of the 60th root determinants lose some 250.
 DIGITS = 320
-_STEP = mpmath.mpf(10) ** -60
-_TRIG = (mpmath.sin, mpmath.cos, lambda v: -mpmath.sin(v), lambda v: -mpmath.cos(v))
-_HYP = (mpmath.sinh, mpmath.cosh)
-
-
-def near(a, x, order):
-    """Return a derivative of ``sin x - (sin a / sinh a) sinh x``."""
-    return _TRIG[order](x) - mpmath.sin(a) / mpmath.sinh(a) * _HYP[order % 2](x)
-
-
-def far(b, y, order):
-    """Return a derivative by y of the free bay's shape, times ``2 exp(-b)``."""
-    first = mpmath.sin(b) + mpmath.sinh(b)
-    second = mpmath.cos(b) + mpmath.cosh(b)
-    cosines = _TRIG[(order + 1) % 4](y) + _HYP[(order + 1) % 2](y)
-    sines = _TRIG[order](y) + _HYP[order % 2](y)
-    return 2 * mpmath.exp(-b) * (first * cosines - second * sines)
-
-
-def determinant(xi, beta):
-    """Return the characteristic function over growing factors."""
-    a, b = beta * xi, beta * (1 - xi)
-    ours = (near(a, a, 1), near(a, a, 2))
-    theirs = (-far(b, b, 1), far(b, b, 2))
-    return 2 * mpmath.exp(-a) * mpmath.sinh(a) * (ours[0] * theirs[1] - ours[1] * theirs[0])
-
-
-def slope_of(function, at):
-    """Return a central difference that keeps hundreds of digits."""
-    return (function(at + _STEP) - function(at - _STEP)) / (2 * _STEP)
-
-
-@lru_cache(maxsize=256)
-def amplitudes(xi, beta):
-    """Return both amplitudes of a mode of unit square."""
-    a, b = beta * xi, beta * (1 - xi)
-    ours, theirs = (near(a, a, 1), near(a, a, 2)), (-far(b, b, 1), far(b, b, 2))
-    left = ours[0] * theirs[0] + ours[1] * theirs[1]
-    right = ours[0] ** 2 + ours[1] ** 2
-    square = (1 - xi) * (right * far(b, mpmath.mpf(0), 0)) ** 2 / 4
-    square -= xi * left**2 * near(a, mpmath.mpf(0), 1) * near(a, mpmath.mpf(0), 3) / 2
-    return left / mpmath.sqrt(square), right / mpmath.sqrt(square)
-
-
-@lru_cache(maxsize=256)
-def root_rate(xi, beta):
-    """Return the relative rate of a root: a quarter of slope times reaction over beta^4."""
-    a, b = beta * xi, beta * (1 - xi)
-    left, right = amplitudes(xi, beta)
-    return (right * far(b, mpmath.mpf(0), 0)) ** 2 / 4 + (
-        left**2 * near(a, mpmath.mpf(0), 1) * near(a, mpmath.mpf(0), 3) / 2
-    )
-
-
-def shape(xi, beta, eta, order, side):
-    """Return a derivative by eta of the mode on one side of the support."""
-    left, right = amplitudes(xi, beta)
-    if side == "before":
-        return left * beta**order * near(beta * xi, beta * eta, order)
-    return right * (-beta) ** order * far(beta * (1 - xi), beta * (1 - eta), order)
-
-
-def drift(xi, beta, eta, order, side):
-    """Return a derivative by eta of the mode's derivative along xi, the root moving with it."""
-    rate = root_rate(xi, beta)
-    return slope_of(lambda h: shape(xi + h, beta * (1 + rate * h), eta, order, side), mpmath.mpf(0))
-
-
-# ---------------------------------------------------------------- places and points
 
 HELD_PINNED = (3.926602312047919, 7.068582745628732, 10.210176122813031)  # tan a = tanh a
 HELD_FREE = (1.8751040687119611, 4.694091132974175, 7.854757438237613)  # 1 + cos b cosh b = 0
@@ -105,16 +35,10 @@ NAMED = {
 
 
 def exact_root(place, mode):
-    """Return a root to many digits, from the emitted residual's bracket of a double."""
-    from elastolink.runtime.systems.rod import overhang_roots
-
+    """Return a root to many digits, next to the computed one."""
     start = overhang_roots(place, mode)[0, -1]
     with mpmath.workdps(DIGITS):
-        root = mpmath.mpf(float(start))
-        xi = mpmath.mpf(place)
-        for _ in range(4):
-            root -= determinant(xi, root) / slope_of(lambda at: determinant(xi, at), root)
-        return root
+        return overhang_reference.root(mpmath.mpf(place), float(start))
 
 
 def _cases():

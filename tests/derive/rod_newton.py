@@ -7,10 +7,13 @@ d'Alembert's principle with accelerations by finite differences.  Nothing is tak
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import mpmath
 import numpy as np
+from beam_energies import slope as derivative
 from numpy.polynomial.legendre import leggauss
+from sympy.integrals.quadrature import gauss_legendre
 
 DIGITS = 80
 
@@ -165,22 +168,11 @@ def _shape(k, eta, xi, derivative):
     return first - xi * second
 
 
-_NODES = {}
-
-
+@cache
 def _gauss(count):
     """Return Gauss nodes and weights on [0, 1] in many digits."""
-    if count not in _NODES:
-        start, _ = leggauss(count)
-        nodes, weights = [], []
-        for guess in start:
-            x = mpmath.findroot(lambda z: mpmath.legendre(count, z), mpmath.mpf(float(guess)))
-            slope = count * (x * mpmath.legendre(count, x) - mpmath.legendre(count - 1, x))
-            slope /= x**2 - 1
-            nodes.append((x + 1) / 2)
-            weights.append(1 / ((1 - x**2) * slope**2))
-        _NODES[count] = nodes, weights
-    return _NODES[count]
+    nodes, weights = gauss_legendre(count, DIGITS)
+    return [(1 + mpmath.mpf(x)) / 2 for x in nodes], [mpmath.mpf(w) / 2 for w in weights]
 
 
 def _first(values, step):
@@ -232,12 +224,7 @@ def second_order(system, theta, rate, acceleration):
 
     def slope(name):
         # Nine points: truncation and rounding are both below 1e-12 at this step.
-        step = 0.005
-        weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5])
-        pairs = zip((-4, -3, -2, -1), weights, strict=True)
-        return sum(
-            w * (at(name, theta + k * step) - at(name, theta - k * step)) / step for k, w in pairs
-        )
+        return derivative(lambda angle: at(name, angle), theta, 0.005)
 
     a = at("A", theta)
     gyroscopic = slope("M") + a - a.T

@@ -16,7 +16,6 @@ from linkage_truth import LENGTHS, motion, nasty_points, random_points
 
 QUANTITIES = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 INPUTS = (*LENGTHS, "theta2")
-NAMES = tuple(f"{quantity}_by_{by}" for quantity in QUANTITIES for by in INPUTS)
 _DIGITS = 200
 
 

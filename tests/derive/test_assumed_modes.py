@@ -53,27 +53,6 @@ def test_turning_arm_by_hand():
     assert found.matrix("p") == sp.Matrix([0, push * length**2])
 
 
-def test_one_field_agrees_with_the_projection():
-    shapes = au.FiniteBasis(x, length, (x**2, x**3, x**2 * sp.sin(x / length)), amplitude=length)
-    energy = mu / 2 * (v.diff(t) + spin * x) ** 2 - ei / 2 * v.diff(x, 2) ** 2
-    action = au.ActionDensity(
-        x,
-        t,
-        length,
-        (v,),
-        energy + mu / 2 * spin**2 * v**2,
-        force_density={v: -c * v.diff(t)},
-        essential=(au.Essential(0, v, 0), au.Essential(0, v, 1)),
-    )
-    one = arrays(action, {v: shapes})
-    followers = {sp.Function("turn")(t): theta}
-    other = au.project(au.hamilton(action), v, shapes, CRANK, followers=followers)
-    assert set(one.arrays) == set(other.arrays)
-    for name in one.arrays:
-        difference = one.matrix(name) - other.matrix(name)
-        assert difference.applyfunc(sp.simplify) == sp.zeros(*difference.shape), name
-
-
 def test_bases_that_do_not_fit_are_refused():
     with pytest.raises(ValueError, match=r"no basis for the fields \['v\(x, t\)'\]"):
         au.assumed_modes(arm(), {u: BASES[u]})

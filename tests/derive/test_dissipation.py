@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
 import sympy as sp
 from elastolink.derive.arrays import CrankMotion
 from elastolink.derive.lagrange import (
-    NotRepresentable,
     euler_lagrange,
     linear_periodic,
     quadratic_form,
@@ -70,27 +68,3 @@ def test_drag_of_what_stands_still_goes_to_c_and_d_in_turning_axes():
     for system in (from_equations, from_energy):
         assert system.matrix("C") == c * sp.eye(2)
         assert system.matrix("D") == c * sp.Matrix([[0, -1], [1, 0]])
-
-
-def test_drag_along_a_link_goes_to_d():
-    """Air at rest around a link that slides along itself: force -c (y_t + td y_x)."""
-    moving = BEAM.with_(
-        dissipation=sp.S.Zero, force_density={y: -c * (y.diff(t) + turn.diff(t) * y.diff(x))}
-    )
-    basis, followers = sine_basis(x, L, sp.Integer(1)), {turn: theta}
-    system = project(hamilton(moving), y, basis, CRANK, followers=followers)
-    found = system.matrix("D", 2)
-    by_hand = sp.Matrix(
-        2,
-        2,
-        lambda i, j: sp.integrate(
-            c * sp.sin((i + 1) * sp.pi * x / L) * sp.diff(sp.sin((j + 1) * sp.pi * x / L), x),
-            (x, 0, L),
-        ),
-    )
-    assert (found - by_hand).applyfunc(sp.simplify) == sp.zeros(2, 2)
-
-
-def test_an_energy_with_one_power_of_the_rate_has_no_place():
-    with pytest.raises(NotRepresentable):
-        quadratic_form(td * q1**2, (q1,), CRANK, t)

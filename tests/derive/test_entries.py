@@ -14,7 +14,6 @@ from elastolink.derive.entries import (
     TranscendentalSystem,
     lower_constrained,
     lower_matrices,
-    lower_transcendental,
 )
 from elastolink.derive.external import external_values
 from elastolink.derive.ir import ModuleSpec
@@ -89,20 +88,6 @@ def test_an_undeclared_symbol_is_refused():
 # Constrained ---------------------------------------------------------------------------------
 
 
-def test_oscillator_has_constant_arrays_and_no_constraint():
-    x = coordinate("x")
-    equations = motion(m / 2 * x.diff(t) ** 2 - k / 2 * x**2, x)
-    module = emitted(lower_constrained(SPEC, ConstrainedSystem(equations), WORDS))
-    assert module.COORDINATES == ("x",)
-    assert module.MULTIPLIERS == ()
-    assert module.EXTERNAL == ()
-    assert not hasattr(module, "constraints")
-    found = array_function(module, "dynamics")(np.array([0.5, 2.0]), 0.0, 0.0, m=3.0, k=7.0)
-    np.testing.assert_array_equal(found["mass"], [[[3.0]], [[3.0]]])
-    np.testing.assert_array_equal(found["rest"], [[[3.5]], [[14.0]]])
-    assert found["jacobian"].shape == (2, 0, 1)
-
-
 def test_open_functions_are_passed_in():
     """A bead on a wire y = shape(x) that is lifted by y0(t)."""
     x, lift = coordinate("x"), sp.Function("lift")(t)
@@ -127,42 +112,7 @@ def test_one_open_function_has_one_argument():
         external_values([sp.Function("g")(x, t)])
 
 
-def test_variations_are_emitted_only_when_wanted():
-    x, y = coordinate("x"), coordinate("y")
-    lagrangian = au.Lagrangian(
-        (x, y), t, m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) - k * y, (x**2 + y**2 - 1,)
-    )
-    model = Model(
-        "some",
-        ("thing",),
-        lambda spec: lagrangian,
-        lambda spec: WORDS,
-        lambda spec, e: ConstrainedSystem(e, au.variational_equations(e)),
-    )
-    whole = module_text(SPEC, model, "0")
-    lean = module_text(SPEC.with_(outputs=("motion",)), model, "0")
-    assert "def variations(" in whole
-    assert "def variations(" not in lean
-    with pytest.raises(ValueError, match="forcing"):
-        module_text(SPEC.with_(outputs=("forcing",)), model, "0")
-
-
 # Transcendental ------------------------------------------------------------------------------
-
-
-def test_fixed_fixed_string():
-    """One segment of a string from wall to node: D = T/c Omega cot(Omega l/c), poles at n pi."""
-    frequency = sp.Symbol("frequency", positive=True)
-    system = TranscendentalSystem(
-        frequency,
-        sp.ImmutableDenseMatrix([[frequency * sp.cos(frequency) / sp.sin(frequency)]]),
-        sp.floor(frequency / sp.pi),
-    )
-    module = emitted(lower_transcendental(SPEC, system, WORDS))
-    assert module.SIZE == 1
-    found = array_function(module, "dynamic_stiffness")(np.array([1.0, 4.0]), m=1.0, k=1.0)
-    np.testing.assert_allclose(found["stiffness"][:, 0, 0], [1 / np.tan(1), 4 / np.tan(4)])
-    np.testing.assert_array_equal(found["poles"][:, 0, 0], [0, 1])
 
 
 def test_dynamic_stiffness_is_square():

@@ -143,17 +143,3 @@ def _by_quadrature(q, qd, tension, mass, length):
     second = length * (np.outer(along, rate) + np.outer(across, qd[2] * a))
     squared = np.sum((rigid + first) ** 2 + 2 * rigid * second, axis=0)
     return mass * length / 2 * np.sum(weights * squared) / 2
-
-
-def test_dropping_the_tension_leaves_the_printed_energy():
-    """Beale & Scott (37) in lengths: L^3 (f f gd^2 + fd fd) and L^3 gd^2 / 12."""
-    moments = rod.Moments(2, tension=False)
-    energy = rod.kinetic_energy(moments)
-    t = rod._T
-    rates = [n.diff(t) for n in (rod._R1, rod._R2, rod._GAMMA, *moments.f)]
-    m, length = rod._MASS, rod._LENGTH
-    f = moments.f
-    turning = length**3 * rates[2] ** 2 * (f[0] ** 2 + f[1] ** 2 + sp.Rational(1, 12))
-    printed = length * (rates[0] ** 2 + rates[1] ** 2) + turning
-    printed += length**3 * (rates[3] ** 2 + rates[4] ** 2)
-    assert sp.expand(energy - m / 2 * printed) == 0

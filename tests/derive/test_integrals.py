@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import random
 
 import mpmath
 import pytest
@@ -59,19 +58,6 @@ def test_table_against_quadrature(integrand):
         assert close(definite(integrand, x, b, L), reference)
         primitive = antiderivative(integrand, x)
         assert close(primitive.subs(x, L) - primitive.subs(x, b), reference)
-
-
-def test_random_products_against_quadrature():
-    draw = random.Random(20240611)
-    waves = [sp.sin, sp.cos, sp.sinh, sp.cosh, sp.exp]
-    with mpmath.workdps(40):
-        for _ in range(10):
-            integrand = sp.Integer(1)
-            for _ in range(draw.randint(1, 3)):
-                slope = sp.Rational(draw.randint(-9, 9), 4)
-                integrand *= draw.choice(waves)(slope * x + draw.randint(-1, 1))
-            integrand *= (x + draw.randint(-2, 2)) ** draw.randint(0, 4)
-            assert close(definite(integrand, x, 0, b), quadrature(integrand, sp.S.Zero, b))
 
 
 MODAL = [

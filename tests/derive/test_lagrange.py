@@ -8,14 +8,17 @@ from elastolink.derive.arrays import CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import (
     NotRepresentable,
     euler_lagrange,
+    linear_periodic,
     quadratic_form,
-    variational_equations,
 )
-from elastolink.derive.records import Lagrangian
+from elastolink.derive.records import EquationsOfMotion, Lagrangian
 
-t = sp.Symbol("t")
+t = sp.Symbol("t", real=True)
 m1, m2, l1, l2, g, k, w, c = sp.symbols("m1 m2 l1 l2 g k w c", positive=True)
-theta, td, tdd = sp.symbols("theta td tdd")
+m, p, load = sp.symbols("m p load", positive=True)
+x, y = (sp.Function(name)(t) for name in ("x", "y"))
+turn = sp.Function("turn")(t)
+theta, td, tdd = sp.symbols("theta td tdd", real=True)
 CRANK = CrankMotion(theta, td, tdd)
 
 
@@ -43,58 +46,6 @@ def test_double_pendulum_against_the_textbook():
     assert sp.simplify(found.mass - mass) == sp.zeros(2, 2)
     assert sp.simplify(found.rest - rest) == sp.zeros(2, 1)
     assert found.constraints.shape == (0, 1)
-
-
-def sliding_pendulum(with_multiplier: bool) -> Lagrangian:
-    """Block m1 on a spring, bob m2 on a rod l2; friction on the block."""
-    if not with_multiplier:
-        s, a = functions("s a")
-        px, py = s + l2 * sp.sin(a), -l2 * sp.cos(a)
-        energy = m1 / 2 * s.diff(t) ** 2 + m2 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
-        energy += -k / 2 * s**2 - m2 * g * py
-        return Lagrangian((s, a), t, energy, forces={s: -c * s.diff(t)})
-    s, px, py = functions("s px py")
-    energy = m1 / 2 * s.diff(t) ** 2 + m2 / 2 * (px.diff(t) ** 2 + py.diff(t) ** 2)
-    energy += -k / 2 * s**2 - m2 * g * py
-    rod = (px - s) ** 2 + py**2 - l2**2
-    return Lagrangian((s, px, py), t, energy, (rod,), forces={s: -c * s.diff(t)})
-
-
-VALUES = {m1: 1.3, m2: 0.7, l2: 0.9, g: 9.81, k: 12.0, c: 0.4}
-
-
-def test_sliding_pendulum_with_and_without_multiplier():
-    short = euler_lagrange(sliding_pendulum(False))
-    state = dict(zip((*short.coordinates, *short.velocities), (0.2, 0.7, -0.5, 1.9), strict=True))
-    numbers = {**VALUES, **state}
-    right = (short.forces - short.rest).subs(numbers)
-    sdd, add = short.mass.subs(numbers).LUsolve(right)
-    s, a, sd, ad = (state[q] for q in (*short.coordinates, *short.velocities))
-
-    full = euler_lagrange(sliding_pendulum(True))
-    l = VALUES[l2]  # noqa: E741
-    sin, cos = sp.sin(a), sp.cos(a)
-    place = (s, s + l * sin, -l * cos)
-    speed = (sd, sd + l * cos * ad, l * sin * ad)
-    names = (*full.coordinates, *full.velocities)
-    numbers = {**VALUES, **dict(zip(names, (*place, *speed), strict=True))}
-    assert abs(full.constraints.subs(numbers)[0]) < 1e-14
-    jacobian = full.jacobian.subs(numbers)
-    assert abs((jacobian * sp.Matrix(speed) - full.velocity_rhs.subs(numbers))[0]) < 1e-14
-    saddle = sp.Matrix(
-        sp.BlockMatrix(
-            [[full.mass.subs(numbers), -jacobian.T], [jacobian, sp.zeros(1, 1)]]
-        ).as_explicit()
-    )
-    right = sp.Matrix.vstack((full.forces - full.rest).subs(numbers), full.gamma.subs(numbers))
-    solution = saddle.LUsolve(right)
-    expected = (
-        sdd,
-        sdd + l * (cos * add - sin * ad**2),
-        l * (sin * add + cos * ad**2),
-    )
-    for found, wanted in zip(solution, expected, strict=False):
-        assert abs(found - wanted) < 1e-12 * max(1, abs(wanted))
 
 
 def test_explicit_time_dependence_of_a_constraint():
@@ -132,30 +83,6 @@ def test_prescribed_motion_is_differentiated():
     given = euler_lagrange(Lagrangian((a,), t, energy, prescribed={z: sp.cos(w * t)}))
     by_hand = m1 * l1 * (g - w**2 * sp.cos(w * t)) * sp.sin(q)
     assert sp.simplify(given.rest[0] - by_hand) == 0
-
-
-def test_variational_equations_are_the_derivative_of_the_residual():
-    found = euler_lagrange(sliding_pendulum(True))
-    varied = variational_equations(found)
-    qdd = sp.Matrix(varied.accelerations)
-    lam = sp.Matrix(found.multipliers)
-    residual = found.mass * qdd + found.rest - found.forces - found.jacobian.T * lam
-    for j, q in enumerate(found.coordinates):
-        column = residual.diff(q)
-        assert sp.expand(column - varied.stiffness[:, j]) == sp.zeros(3, 1)
-    assert varied.damping == sp.diag(c, 0, 0)
-    # the rod's force stiffens: its multiplier stands in the stiffness
-    assert varied.stiffness.has(*found.multipliers)
-    rates = dict(zip(found.coordinates, found.velocities, strict=True))
-    pushes = dict(zip(found.velocities, varied.accelerations, strict=True))
-
-    def along(matrix):
-        chain = [matrix.diff(one) * rate for one, rate in {**rates, **pushes}.items()]
-        return sum(chain, matrix.diff(found.t))
-
-    once = along(found.jacobian)
-    assert sp.expand(once - varied.jacobian_rate) == sp.zeros(1, 3)
-    assert sp.expand(along(once) - varied.jacobian_acceleration) == sp.zeros(1, 3)
 
 
 def test_terms_outside_the_family_are_reported():
@@ -198,3 +125,70 @@ def test_system_records_refuse_nonsense():
         system.matrix("M", 2)
     with pytest.raises(ValueError, match="no derivative"):
         CrankMotion(theta, td, tdd, {k: w}).derivative(w * theta)
+
+
+# ---------------------------------------------------------------- linear periodic arrays
+
+
+def equations(energy: sp.Expr, coordinates=(x, y), forces=None) -> EquationsOfMotion:
+    return euler_lagrange(Lagrangian(coordinates, t, energy, forces=forces or {}))
+
+
+def second_order(system: DiscreteSystem) -> dict[str, sp.Matrix]:
+    """M, C + td G, and everything that multiplies q, and the force."""
+    slope = CRANK.derivative
+    arrays = {name: system.matrix(name) for name in ("M", "A", "B", "S", "C", "K", "Kg")}
+    gyro = arrays["M"].applyfunc(slope) + arrays["A"] - arrays["A"].T
+    stiffness = arrays["K"] + arrays["Kg"]
+    stiffness += td**2 * (arrays["A"].applyfunc(slope) - arrays["B"])
+    stiffness += tdd * (arrays["A"] - arrays["S"])
+    force = td**2 * system.matrix("f") + td * system.matrix("h") + tdd * system.matrix("g")
+    return {
+        "M": arrays["M"],
+        "first": arrays["C"] + td * gyro,
+        "zeroth": stiffness,
+        "force": force + system.matrix("p"),
+    }
+
+
+def energy(th: sp.Expr, rate: sp.Expr, acceleration: sp.Expr) -> sp.Expr:
+    """Every kind of term that the family has, its arrays varying with the angle."""
+    xd, yd = x.diff(t), y.diff(t)
+    kinetic = m / 2 * (2 + sp.cos(th)) * xd**2 + m * sp.sin(th) * xd * yd + 3 * m * yd**2
+    gyro = rate * (sp.cos(th) * xd * y + 2 * sp.sin(2 * th) * yd * y + xd * x)
+    frame = rate**2 * (sp.sin(th) * x**2 + x * y) + acceleration * sp.cos(th) * y**2
+    linear = rate * sp.sin(th) * xd + rate**2 * sp.cos(th) * y + acceleration * p * x
+    linear += sp.cos(3 * th) * yd + rate * load * y + p * sp.sin(th) * x
+    return kinetic + gyro + frame + linear - k / 2 * (x - sp.cos(th) * y) ** 2
+
+
+def test_equations_and_the_quadratic_lagrangian_give_the_same_arrays():
+    """Two routes: read off the derived equations, and off the energy."""
+    rate = turn.diff(t)
+    forces = {x: -c * x.diff(t) + k * y * rate**2 + p, y: turn.diff(t, 2) * sp.sin(turn) * x}
+    derived = equations(energy(turn, rate, turn.diff(t, 2)), forces=forces)
+    one = second_order(linear_periodic(derived, CRANK, followers={turn: theta}))
+    plain = {turn.diff(t, 2): tdd, turn.diff(t): td, turn: theta}
+    plain_forces = {item: force.subs(plain) for item, force in forces.items()}
+    found = quadratic_form(energy(theta, td, tdd), (x, y), CRANK, t, forces=plain_forces)
+    for name, matrix in second_order(found).items():
+        assert (matrix - one[name]).applyfunc(sp.expand) == sp.zeros(*matrix.shape), name
+
+
+def test_constrained_equations_are_no_linear_system():
+    found = euler_lagrange(Lagrangian((x, y), t, m * x.diff(t) ** 2 / 2, (x - y,)))
+    with pytest.raises(NotRepresentable, match="constrained"):
+        linear_periodic(found, CRANK)
+
+
+@pytest.mark.parametrize(
+    ("term", "shown"),
+    [
+        (x**3, "x"),
+        (td**3 * x, "td"),
+        (x.diff(t) ** 2 * y, "x_dot"),
+    ],
+)
+def test_what_has_no_place_is_refused(term, shown):
+    with pytest.raises(NotRepresentable, match=shown):
+        linear_periodic(equations(m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) + term), CRANK)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from pathlib import Path
 from types import SimpleNamespace
 
 import array_api_strict
@@ -11,7 +10,6 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from elastolink import generated
 from elastolink.derive.ir import Argument, Result
 from elastolink.derive.lowering import CannotPrint, count_operations, lower_kernel, to_line
 from elastolink.derive.staged import Steps
@@ -20,7 +18,6 @@ from hypothesis import strategies as st
 
 x, y, z = sp.symbols("x y z", positive=True)
 m, n = sp.symbols("m n", integer=True, positive=True)
-HERE = Path(generated.__path__[0])
 
 # ---------------------------------------------------------------- round trip
 
@@ -185,19 +182,6 @@ def call(made, **values):
     return [eval(text, scope) for text in made.returns]
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
-@given(st.lists(st.recursive(LEAVES, _grow, max_leaves=8), min_size=1, max_size=4))
-def test_common_subexpressions_change_no_value(expressions):
-    assume(not any(e.has(sp.zoo, sp.nan, sp.oo) for e in expressions))
-    values = {"x": 0.73, "y": 1.9, "z": 3.1}
-    with np.errstate(all="ignore"):
-        plain = [run(to_line(e), **values) for e in expressions]
-        assume(all(np.isfinite(v) and abs(v) < 1e12 for v in plain))
-        together = call(kernel(expressions), **values)
-    for one, other in zip(plain, together, strict=True):
-        assert abs(one - other) <= 1e-9 * (1 + abs(one))
-
-
 def test_steps_that_no_output_needs_are_pruned_and_the_rest_stands_in_order():
     a, b, c = sp.symbols("a b c")
     steps = Steps(((a, x + y), (b, sp.sin(a)), (c, sp.cos(x))))
@@ -216,33 +200,6 @@ def test_a_sign_that_alternates_needs_an_integer():
     assert call(made, m=2.0, n=3.0, x=5.0) == [-5.0]
     with pytest.raises(CannotPrint, match="for integers alone"):
         kernel([(-1) ** x])
-
-
-def test_every_name_is_defined_before_it_is_used_and_used_once_defined():
-    """All emitted modules: straight-line code without idle statements."""
-    for path in sorted(HERE.glob("*.py")):
-        tree = ast.parse(path.read_text())
-        functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-        earlier: set[str] = set()
-        for function in functions:
-            earlier.add(function.name)
-            if function.name.startswith("_"):  # written in the template
-                continue
-            # A function may call those before it, as the orders of a recursion do.
-            known = {a.arg for a in function.args.args} | {"xp"}
-            known |= earlier - {function.name}
-            used: set[str] = set()
-            for statement in function.body:
-                names = [node for node in ast.walk(statement) if isinstance(node, ast.Name)]
-                loops = [n for n in ast.walk(statement) if isinstance(n, ast.comprehension)]
-                inner = {n.id for loop in loops for n in ast.walk(loop.target) if hasattr(n, "id")}
-                names = [node for node in names if node.id not in {*inner, "zip"}]
-                loaded = {node.id for node in names if isinstance(node.ctx, ast.Load)}
-                assert loaded <= known, (path.name, function.name, loaded - known)
-                used |= loaded
-                known |= {node.id for node in names if isinstance(node.ctx, ast.Store)}
-            idle = known - used - {a.arg for a in function.args.args} - earlier - {"xp"}
-            assert not idle, (path.name, function.name, idle)
 
 
 def test_operations_are_counted_by_what_is_evaluated():

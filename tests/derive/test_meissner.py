@@ -1,4 +1,4 @@
-"""Meissner's half traces: the words, the printed forms, the recursion, and their digits."""
+"""Meissner's half traces: the digits next to coexistence, and half turns."""
 
 from __future__ import annotations
 
@@ -10,23 +10,6 @@ from elastolink.derive.models import hill_meissner as model
 from elastolink.derive.safe import UnsafeRewriting
 from elastolink.generated import hill_meissner
 from meissner_truth import interval
-
-
-def test_two_and_three_intervals_are_the_printed_functions():
-    """Aannaque (7.11), s_i = S_i / v_i and V_ik = (v_i / v_k + v_k / v_i) / 2."""
-    v, c, s = (sp.symbols(f"{letter}1:4", positive=True) for letter in "vCS")
-    letters = {model.cosine(i + 1): c[i] for i in range(3)}
-    letters |= {model.sine(i + 1): s[i] / v[i] for i in range(3)}
-    letters |= {model.level(i + 1): v[i] ** 2 for i in range(3)}
-    pairs = {
-        (i, k): (v[i] / v[k] + v[k] / v[i]) / 2 * s[i] * s[k] for i, k in ((0, 1), (0, 2), (1, 2))
-    }
-    printed = {
-        2: c[0] * c[1] - pairs[0, 1],
-        3: c[0] * c[1] * c[2] - sum(pairs[i, k] * c[3 - i - k] for i, k in pairs),
-    }
-    for count, form in printed.items():
-        assert sp.expand(model.monodromy(count).half_trace.xreplace(letters) - form) == 0
 
 
 def test_a_half_turn_that_is_wrong_is_refused(monkeypatch):

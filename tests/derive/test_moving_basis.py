@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import sympy as sp
 from derivations import loaded
-from elastolink.derive.arrays import BasisIntegral, BasisProduct, CrankMotion, DiscreteSystem
+from elastolink.derive.arrays import BasisProduct, CrankMotion, DiscreteSystem
 from elastolink.derive.lagrange import NotRepresentable
 from elastolink.derive.models import flexible_rod as rod
 from elastolink.derive.pipeline import module_text
 from elastolink.derive.projection.moving_basis import Moments, MovingShapes, project_moving
 from elastolink.derive.records import EndForce, Essential, PointTerm, Support
 from elastolink.derive.spec import ModelSpec
-from elastolink.derive.variational import hamilton, quadratic_action
+from elastolink.derive.variational import hamilton
 from elastolink.runtime.systems import assemble
 from numpy.polynomial.legendre import leggauss
 from rod_newton import PlainBasis, Rod, linear_forces, second_order
@@ -95,58 +95,6 @@ def test_frame_part_is_the_difference_of_two_works():
 
 
 # ---------------------------------------------------------------- projection
-
-
-@pytest.mark.slow
-def test_every_array_follows_from_the_chain_rule():
-    """By hand: expand v = L (q1 e1 + q2 e2) in shapes of x and s, and differentiate in time."""
-    base = undamped(SPEC)
-    given = quadratic_action(base, {rod.tension: rod.tension_in(hamilton(base))}, (rod.u,))
-    found = projected(given)
-    s, l = sp.Symbol("s"), length  # noqa: E741
-    shapes = (x * (x - s) / l**2, x**2 * (x - s) / l**3)
-    q = [sp.Function(f"q{i}")(t) for i in range(2)]
-    place = sp.Function("place")(t)
-    deflection = l * sum(a * e for a, e in zip(q, shapes, strict=True))
-    density = given.density.subs(v, deflection.subs(s, l * place)).doit()
-    energy = sp.integrate(sp.expand(density), (x, 0, length))
-    rate, drift = sp.symbols("rate drift")
-    plain = {place.diff(t): drift * rate, phi.diff(t): turn * rate}
-    energy = energy.subs(plain).subs(place, rod.place).expand()
-    names = {"M": (1, 1, 0), "A": (1, 0, 1), "B": (0, 0, 2), "K": (0, 0, 0)}
-    for array, (left, right, power) in names.items():
-        total = sp.zeros(2, 2)
-        for value, what in found.arrays[array].terms:
-            total += value * integral(what, shapes, s)
-        for i in range(2):
-            for j in range(2):
-                one = q[i].diff(t) if left else q[i]
-                two = q[j].diff(t) if right else q[j]
-                by_hand = sp.diff(energy, one, two).coeff(rate, power)
-                by_hand = by_hand.subs({f: 0 for f in (*q, *(c.diff(t) for c in q))})
-                if array == "K":
-                    by_hand = -by_hand
-                difference = total[i, j] - by_hand.subs(drift, sliding)
-                assert sp.simplify(difference) == 0, (array, i, j)
-
-
-def integral(what: BasisIntegral, shapes, s):
-    """Return the matrix of an integral over explicit shapes, xi put in."""
-
-    def derived(shape, orders):
-        # By eta = x/L and xi = s/L.
-        scaled = shape * length ** (orders[0] + orders[1])
-        return sp.diff(scaled, (x, orders[0]), (s, orders[1]))
-
-    weight = what.weight.subs(rod.eta, x / length)
-    rows = [derived(e, what.row) for e in shapes]
-    columns = [derived(e, what.column) for e in shapes]
-    values = sp.Matrix(2, 2, lambda i, j: sp.expand(weight * rows[i] * columns[j]))
-    if what.at is None:
-        values = values.applyfunc(lambda e: sp.integrate(e, (x, 0, length)) / length)
-    else:
-        values = values.subs(x, what.at * length)
-    return values.subs(s, length * rod.place)
 
 
 def test_points_stand_at_fixed_places():

@@ -321,18 +321,6 @@ BAD_MODEL = {
 }
 
 
-@pytest.mark.parametrize("case", BAD_MODEL)
-def test_a_bad_model_file_is_refused_in_one_line(case, tmp_path, capsys):
-    text, expected = BAD_MODEL[case]
-    file = tmp_path / "pair.py"
-    file.write_text(text)
-    assert main(["--model", str(file), "--out", str(tmp_path / "out")]) == 2
-    told = capsys.readouterr()
-    assert expected in told.err
-    assert told.err.count("\n") == 1
-    assert not list(tmp_path.glob("out/*.py"))
-
-
 def spec(**changes):
     table = {"mechanism": "four_bar", "formulation": "complete", "flexible": ["coupler"]}
     return json.dumps({k: v for k, v in (table | changes).items() if v is not None})
@@ -360,42 +348,38 @@ BAD_ARGUMENTS = {
 }
 
 
-@pytest.mark.parametrize("case", BAD_ARGUMENTS)
+BAD_SCENE = {
+    "no TOML": ("model = [", "scene file mine.toml: "),
+    "no text": (b"\xff\xfe", "scene file mine.toml: "),
+    "no model": ("[links]\ncrank = 1\n", "has no [model] table"),
+    "no name": ("[model]\nmechanism = 3\nformulation = 'x'\n", "mechanism: found 3"),
+    "no table": ("model = 3\n", "expected a table"),
+}
+REFUSALS = {
+    **{f"model, {k}": ("pair.py", text, ["--model"], e) for k, (text, e) in BAD_MODEL.items()},
+    **{f"scene, {k}": ("mine.toml", text, ["--scene"], e) for k, (text, e) in BAD_SCENE.items()},
+    **{k: ("file.txt", "kept", arguments, e) for k, (arguments, e) in BAD_ARGUMENTS.items()},
+}
+
+
+@pytest.mark.parametrize("case", REFUSALS)
 def test_misuse_is_refused_in_one_line(case, tmp_path, monkeypatch, capsys):
-    arguments, expected = BAD_ARGUMENTS[case]
+    name, content, arguments, expected = REFUSALS[case]
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    (tmp_path / "file.txt").write_text("kept")
+    content = content if isinstance(content, bytes) else content.encode()
+    (tmp_path / name).write_bytes(content)
     try:
-        status = main(arguments)
+        status = main(arguments if name == "file.txt" else [*arguments, name])
     except SystemExit as stop:  # argparse leaves this way
         status = stop.code
-    told = capsys.readouterr()
+    error = capsys.readouterr().err
     assert status == 2
-    assert told.err.startswith("regenerate-equations: ")
-    assert expected in told.err
-    assert told.err.count("\n") == 1
-    assert (tmp_path / "file.txt").read_text() == "kept"
+    assert error.startswith("regenerate-equations: ")
+    assert expected in error
+    assert error.count("\n") == 1
+    assert (tmp_path / name).read_bytes() == content
     assert not list(tmp_path.glob("cache/**/*.py"))
-
-
-@pytest.mark.parametrize(
-    ("content", "expected"),
-    [
-        (b"model = [", "scene file mine.toml: "),
-        (b"\xff\xfe", "scene file mine.toml: "),
-        (b"[links]\ncrank = 1\n", "has no [model] table"),
-        (b"[model]\nmechanism = 3\nformulation = 'x'\n", "mechanism: found 3"),
-        (b"model = 3\n", "expected a table"),
-    ],
-)
-def test_a_bad_scene_is_refused_in_one_line(content, expected, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.toml").write_bytes(content)
-    assert main(["--scene", "mine.toml"]) == 2
-    told = capsys.readouterr().err
-    assert expected in told
-    assert told.count("\n") == 1
 
 
 def test_a_refusal_in_a_worker_is_one_line_too(own, tmp_path):

@@ -31,7 +31,7 @@ from force_machines import (
     random_machine,
     state_of,
 )
-from forces_truth import LOADS, MECHANISMS, MOMENTS, forces, loads
+from forces_truth import LOADS, MECHANISMS, forces, loads
 
 STRAIGHT = ModelSpec("four_bar", "forces", drop=("across",))
 FULL = ModelSpec("four_bar", "forces")
@@ -128,21 +128,6 @@ def test_the_free_linkage_follows_its_torque(mechanism):
         assert abs(found[2] - numbers["acceleration"]) < 1e-9 * (200 + numbers["speed"] ** 2)
 
 
-@pytest.mark.parametrize("mechanism", MECHANISMS)
-def test_forces_are_linear_in_the_moments(mechanism):
-    """At unit values of one moment the function returns the derivatives by it."""
-    module = emitted(f"{mechanism}_forces")
-    numbers = random_machine(mechanism, np.random.default_rng(13))
-    whole = call(module, "forces", numbers)
-    total = dict.fromkeys(whole, 0.0)
-    for moment in MOMENTS:
-        unit = numbers | dict.fromkeys(MOMENTS, 0.0) | {moment: 1.0}
-        for name, value in call(module, "forces", unit).items():
-            total[name] += numbers[moment] * value
-    size = max(abs(value) for value in whole.values())
-    assert all(abs(total[name] - value) < 1e-11 * size for name, value in whole.items())
-
-
 # ---------------------------------------------------------------- derived means derived
 
 
@@ -168,27 +153,6 @@ def test_a_point_mass_in_the_energies_moves_the_forces_as_its_moments_do():
     expected = call(emitted("four_bar_forces"), "forces", numbers)
     for name, value in found.items():
         assert value == pytest.approx(expected[name], rel=1e-11), name
-
-
-def test_a_spring_in_the_energies_acts_as_the_load_that_it_is():
-    """A spring of stiffness k from the crank pin B to the origin: force -k AB on the coupler."""
-    stiffness = 3.0
-    plain = lagrangian(FULL, four_bar_forces.linkage(FULL))
-    x3, y3 = (sp.Function(name)(plain.t) for name in ("x3", "y3"))
-    sprung = replace(plain, expression=plain.expression - stiffness * (x3**2 + y3**2) / 2)
-    found = _multipliers(euler_lagrange(sprung))
-    numbers = _hand_machine()
-    pin = numbers["crank"] * np.exp(1j * numbers["theta2"])
-    numbers |= dict.fromkeys(LOADS, 0.0)
-    numbers |= {"fx3": -stiffness * pin.real, "fy3": -stiffness * pin.imag}
-    module = emitted("four_bar_forces")
-    inertia, load = (call(module, name, numbers) for name in ("forces", "load_forces"))
-    for name, value in found.items():
-        assert value == pytest.approx(inertia[name] + load[name], rel=1e-11), name
-    # By hand: the spring pulls along the crank, so that nothing but pin 23 and 12 feels it.
-    assert load["x34"] == pytest.approx(0, abs=1e-13)
-    assert load["x12"] == pytest.approx(stiffness * pin.real, rel=1e-12)
-    assert load["torque"] == pytest.approx(0, abs=1e-12)
 
 
 def _hand_machine():

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 import sympy as sp
 from elastolink.derive.models.rod_polynomials import MODEL
 from elastolink.derive.spec import ModelSpec
-from elastolink.generated import quick_return_rod_polynomials as emitted
 
 eta, xi = sp.symbols("eta xi", positive=True)
 SPEC = ModelSpec("quick_return", "rod_polynomials")
@@ -47,27 +45,3 @@ def test_kernels_are_the_derivatives_of_the_shape(name):
     for output, formula in KERNELS[name].outputs:
         chosen = {symbol: arguments[symbol.name] for symbol in formula.free_symbols}
         assert sp.simplify(formula.subs(chosen, simultaneous=True) - expected[output]) == 0
-
-
-def test_sides_meet_at_the_block_with_one_slope():
-    one, rates = np.array(1.0), (np.array(-3.0), np.array(7.0), np.array(2.0))
-    zero, place = np.array(0.0), np.array(0.6)
-    pairs = (
-        (
-            emitted.through_bay(place, zero, one, *rates),
-            emitted.through_tail(zero, place, one, *rates),
-        ),
-        (
-            emitted.turn_bay(one, place, one, *rates),
-            emitted.turn_tail(zero, 1 - place, one, *rates),
-        ),
-        (
-            emitted.bubble_bay(one, place, one, *rates),
-            emitted.bubble_tail(zero, 1 - place, one, *rates),
-        ),
-    )
-    for bay, tail in pairs:
-        left, right = (dict(zip(emitted.RETURNS["turn_bay"], s, strict=True)) for s in (bay, tail))
-        assert left["value"] == right["value"] == 0.0
-        assert left["slope"] == right["slope"]
-        assert left["drift"] == right["drift"] == -left["slope"]

@@ -50,12 +50,6 @@ def test_end_values_keep_the_digits_of_a_nearly_vanishing_length():
         assert abs(plain - exact) > 1e-2 * exact
 
 
-def test_end_values_in_given_sums():
-    sums = {a: (s + d) / 2, b: (s - d) / 2}
-    form = bernstein_in_cosine(a**2 + b**2 + 2 * a * b * cosine, cosine, upper, lower, sums)
-    assert form == s**2 * upper + d**2 * lower
-
-
 def test_a_factor_that_is_not_linear_is_refused():
     with pytest.raises(UnsafeRewriting, match="is not linear in cosine"):
         bernstein_in_cosine(a + b * cosine**2, cosine, upper, lower)
@@ -69,17 +63,6 @@ def test_the_solution_satisfies_equation_and_circle():
     assert sp.cancel(a * cos + b * sin - c) == 0
     circle = sp.expand(sp.numer(sp.together(cos**2 + sin**2 - 1)))
     assert sp.rem(circle, root**2 - discriminant, root) == 0
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_both_roots_are_found(sign):
-    cos, sin, discriminant = solve_cosine_sine(a, b, c, root)
-    values = {a: 0.3, b: -1.1, c: 0.6}
-    values[root] = sign * sp.sqrt(discriminant.subs(values))
-    x = sp.atan2(sin.subs(values), cos.subs(values))
-    assert float(0.3 * sp.cos(x) - 1.1 * sp.sin(x)) == pytest.approx(0.6, rel=1e-14)
-    # The root tells the two apart: a sin x - b cos x.
-    assert sp.sign(0.3 * sp.sin(x) + 1.1 * sp.cos(x)) == sign
 
 
 # ---------------------------------------------------------------- parts of a known sum

@@ -25,7 +25,6 @@ from meissner_truth import meissner_points
 from overhang_truth import overhang_points
 from sliding_truth import nasty_rods, random_rods
 
-KINDS = ("cubic", "internal_node", "curvature", "timoshenko")
 SANDWICH, ROD_POLYNOMIALS = "beam_section_sandwich", "quick_return_rod_polynomials"
 MOVING_ROD = "quick_return_rod_moving_basis"
 MODES = (*range(1, 13), 30, 59, 60)

@@ -13,13 +13,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial, pi, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from .linkage import Array
+from .linkage import Array, Limits, Linkage
 
 Complex = NDArray[np.complex128]
 
@@ -106,16 +105,6 @@ def cosine_sine(s: Array, order: int, rate: float = 1.0) -> tuple[Taylor, Taylor
 
 
 @dataclass(frozen=True)
-class Limits:
-    """Where the loop can close: ``q1 <= q <= q2``, each with its exact complement to 1."""
-
-    q1: float
-    one_less_q1: float
-    q2: float
-    one_less_q2: float
-
-
-@dataclass(frozen=True)
 class Placed:
     """A moving link along the circuit: place of its first joint and the unit vector along it."""
 
@@ -139,42 +128,29 @@ class Circuit:
         one.  Where it swings in one range there is one circuit, through both assemblies.
     """
 
-    linkage: Any
+    linkage: Linkage
     number: int = 0
 
-    @cached_property
+    @property
     def kind(self) -> str:
         """The mechanism: four_bar, slider_crank or quick_return."""
-        names = tuple(self.linkage.names)
-        kinds = {"follower": "four_bar", "rod": "quick_return", "offset": "slider_crank"}
-        return next(kind for name, kind in kinds.items() if name in names)
+        return str(self.linkage.mechanism)
 
-    @cached_property
+    @property
     def scale(self) -> float:
         """The power of two by which the lengths are divided."""
-        return float(2.0 ** np.frexp(max(abs(v) for v in self.linkage.lengths.values()))[1])
+        return float(2.0**-self.linkage.scale)
 
     @cached_property
     def sizes(self) -> Mapping[str, float]:
         """The lengths over ``scale``."""
-        return {name: float(v) / self.scale for name, v in self.linkage.lengths.items()}
+        return dict(self.linkage.unit_lengths)
 
     @cached_property
     def limits(self) -> Limits:
         """Where the loop can close."""
-        size = self.sizes
-        if self.kind == "four_bar":
-            f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
-            near, far, folded, straight = f - c, f + c, m - n, m + n
-            pairs = ((folded, near), (far, folded), (straight, near), (far, straight))
-            low, low_rest, high, high_rest = ((a - b) * (a + b) / (4 * f * c) for a, b in pairs)
-            return Limits(low, low_rest, high, high_rest)
-        c = size["crank"]
-        if self.kind == "slider_crank":
-            m, e = size["coupler"], size["offset"]
-            ends = (c + e - m, c - e + m, c + e + m, c - e - m)
-            return Limits(*(end / (2 * c) for end in ends))
-        return Limits(-1.0, 2.0, 2.0, -1.0)
+        limits: Limits = self.linkage.limits
+        return limits
 
     @cached_property
     def swings(self) -> tuple[bool, bool]:
@@ -210,10 +186,10 @@ class Circuit:
             has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
             raise bad("circuit", self.number, has, "choose another circuit")
 
-    @cached_property
+    @property
     def base(self) -> float:
         """Crank angle at psi = 0 [rad]."""
-        return -pi / 2 if self.kind == "slider_crank" else 0.0
+        return float(self.linkage.fold_axis)
 
     @property
     def _branch(self) -> float:

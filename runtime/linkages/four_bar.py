@@ -17,6 +17,7 @@ from .linkage import (
     ROUND_OFFS,
     Array,
     Assembly,
+    Limits,
     Linkage,
     LinkMotion,
     Motion,
@@ -142,10 +143,19 @@ class FourBar(Linkage):
         return abs(self.coupler - self.follower), self.coupler + self.follower
 
     @property
-    def crank_turns(self) -> bool:
-        """True where the crank can turn fully without passing a change point."""
-        (inner, _), (_, outer) = self._fold_sides
-        return inner < 0.0 and outer < 0.0
+    def limits(self) -> Limits:
+        """Where the loop can close: where coupler and follower come into one line."""
+        f, c, m, n = self.unit_lengths.values()
+
+        def product(one: tuple[float, ...], other: tuple[float, ...]) -> float:
+            return math.fsum(one) / (2.0 * f) * (math.fsum(other) / (2.0 * c))
+
+        return Limits(
+            product((m, -n, c, -f), (m, -n, f, -c)),
+            product((f, c, n, -m), (f, c, m, -n)),
+            product((m, n, c, -f), (m, n, f, -c)),
+            product((f, c, -m, -n), (f, c, m, n)),
+        )
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
@@ -163,40 +173,6 @@ class FourBar(Linkage):
     ) -> FourBarMotion:
         """Return the motion of coupler and follower; see :meth:`Linkage.motion`."""
         return self._moved(FourBarMotion, theta, speed, acceleration)
-
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
-        inner, outer = (self._fold(*sides) for sides in self._fold_sides)
-        if inner is None:
-            high = np.pi if outer is None else outer
-            return ((-high, high),)
-        if outer is None:
-            return ((inner, 2.0 * np.pi - inner),)
-        return ((-outer, -inner), (inner, outer))
-
-    @property
-    def _fold_sides(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """How far the shortest and the longest BD are above its least and below its greatest.
-
-        Those of coupler and follower, those of frame and crank; each sum is correctly rounded, so
-        that no round-off can change its sign.
-        """
-        frame, crank, coupler, follower = self.unit_lengths.values()
-        thick, thin = max(coupler, follower), min(coupler, follower)
-        far, near = max(frame, crank), min(frame, crank)
-        return (
-            (math.fsum((thick, -thin, near, -far)), math.fsum((far, near, thin, -thick))),
-            (math.fsum((thick, thin, near, -far)), math.fsum((far, near, -thin, -thick))),
-        )
-
-    def _fold(self, above: float, below: float) -> float | None:
-        """Return the crank angle between 0 and pi at which BD is so far within its limits."""
-        if above < 0.0 or below < 0.0:
-            return None
-        frame, crank, *_ = self.unit_lengths.values()
-        near, far = abs(frame - crank), frame + crank
-        sine2, cosine2 = above * (above + 2.0 * near), below * (2.0 * far - below)
-        return float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
 
     @property
     def _expected(self) -> str:

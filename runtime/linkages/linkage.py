@@ -272,6 +272,32 @@ class Motion(Result, ABC):
         return LinkMotion(pin.position, pin.velocity, pin.acceleration, angle, speed, change)
 
 
+@dataclass(frozen=True)
+class Limits:
+    """Where the loop can close: ``q1 <= q <= q2``, each with its complement to 1.
+
+    ``q = sin^2(psi/2)``, psi being the crank angle from ``Linkage.fold_axis``.  Every factor is a
+    correctly rounded sum of lengths, so that no round-off can change a sign.
+    """
+
+    q1: float
+    one_less_q1: float
+    q2: float
+    one_less_q2: float
+
+    @property
+    def ends(self) -> tuple[float | None, float | None]:
+        """Angles psi from 0 to pi at which the linkage folds, None where the crank passes."""
+        low, high = (
+            float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2))) if stops >= 0.0 else None
+            for sine2, cosine2, stops in (
+                (self.q1, self.one_less_q1, self.q1),
+                (self.q2, self.one_less_q2, self.one_less_q2),
+            )
+        )
+        return low, high
+
+
 M = TypeVar("M", bound=Motion)
 
 
@@ -290,6 +316,8 @@ class Linkage(ABC):
         The joints between which each moving link is drawn.
     met : mapping of str to str
         The moving link, if any, at whose far end the second joint of a link is.
+    fold_axis : float
+        Crank angle [rad] about which the folds are mirror images.
     """
 
     mechanism: ClassVar[str]
@@ -299,6 +327,7 @@ class Linkage(ABC):
     links: ClassVar[tuple[str, str, str]]
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
     met: ClassVar[Mapping[str, str]] = {}
+    fold_axis: ClassVar[float] = 0.0
 
     @property
     def lengths(self) -> Mapping[str, float]:
@@ -320,10 +349,14 @@ class Linkage(ABC):
 
     @property
     @abstractmethod
+    def limits(self) -> Limits:
+        """Where the loop can close."""
+
+    @property
     def crank_turns(self) -> bool:
         """True where the crank can turn fully without passing a change point."""
+        return self.limits.q1 < 0.0 and self.limits.one_less_q2 < 0.0
 
-    @abstractmethod
     def crank_ranges(self) -> tuple[tuple[float, float], ...]:
         """Return the intervals of crank angle [rad] that one turn offers; their ends are folds.
 
@@ -336,6 +369,15 @@ class Linkage(ABC):
             Without their ends, each up to whole turns; ``((-pi, pi),)`` for a crank that turns
             fully, for which -pi and pi are no folds.
         """
+        axis, (low, high) = self.fold_axis, self.limits.ends
+        if low is None and high is None:
+            return ((-np.pi, np.pi),)
+        if low is None or high is None:
+            first = low or 0.0
+            return ((axis - high, axis + high),) if high else ((axis + first, axis + TURN - first),)
+        if axis:
+            return ((axis + low, axis + high), (axis + TURN - high, axis + TURN - low))
+        return ((-high, -low), (low, high))
 
     @abstractmethod
     def require_full_turn(self) -> None:

@@ -308,8 +308,7 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     s = _Sums.of(frame, crank, coupler, follower)
     inner, outer = s.three * s.four < 0, s.two > 0
     # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
-    fold_0 = _angle((s.three, s.four), (s.less_coupler, s.less_follower)) if inner else 0.0
-    fold_pi = _angle((s.less_frame, s.less_crank), (s.two, s.total)) if outer else pi
+    fold_0, fold_pi = linkage.limits.ends
     centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
     output_range = _follower_range(s, linkage.branch)
     return _result(
@@ -317,8 +316,8 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
         band,
         least=0.0 if inner else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
         greatest=pi if outer else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
-        at_least=_mirrored(fold_0),
-        at_greatest=_mirrored(fold_pi),
+        at_least=_mirrored(fold_0 or 0.0),
+        at_greatest=_mirrored(pi if fold_pi is None else fold_pi),
         dead_centres=centres,
         output_at_dead_centres=outputs,
         output_range=output_range,

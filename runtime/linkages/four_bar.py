@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from types import ModuleType
 from typing import ClassVar
 
@@ -123,15 +124,17 @@ class FourBar(Linkage):
         if not problems:
             longest = max(self.lengths, key=lambda name: self.lengths[name])
             rest = sum(self.lengths.values()) - self.lengths[longest]
-            others = [-size for name, size in self.unit_lengths.items() if name != longest]
-            # Correctly rounded, as the class is: a sum in floats may close what cannot close.
-            if math.fsum([self.unit_lengths[longest], *others]) >= 0.0:
+            # Exact, as the class is: a sum in floats may close what cannot close.
+            exact = {name: Fraction(float(size)) for name, size in self.lengths.items()}
+            excess = 2 * exact[longest] - sum(exact.values())
+            why = "cannot close" if excess > 0 else "is stretched and cannot move"
+            if excess >= 0:
                 problems.append(
                     Problem(
                         f"FourBar.{longest}",
                         f"{self.lengths[longest]:g}",
                         f"less than {rest:g}, the sum of the other three",
-                        "the linkage cannot close; shorten this link or lengthen another",
+                        f"the linkage {why}; shorten this link or lengthen another",
                     )
                 )
         if problems:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from inspect import signature
-from numbers import Real
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 
@@ -15,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import Problem, bad
+from ..core.inputs import is_finite
 from ..core.results import Check, DeferredChecks, Result, provenance
 
 if TYPE_CHECKING:
@@ -636,7 +636,7 @@ def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
     return [
         Problem(f"{owner}.{name}", repr(value), "a positive finite length", "correct it")
         for name, value in lengths.items()
-        if not (isinstance(value, Real) and 0.0 < float(value) < np.inf)
+        if not (is_finite(value) and value > 0.0)
     ]
 
 

@@ -21,6 +21,7 @@ from .linkage import EPS, Array, Linkage, require_linkage
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+# Panels to begin with, and how often they are halved.
 _PANELS, _HALVINGS = 24, 60
 
 
@@ -114,21 +115,6 @@ class CouplerCurve(Result):
         "double_position": ("double_point", "axis"),
         "crossing_angle": ("double_point",),
     }
-
-    @property
-    def tacnodes(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of double points so close that the branches all but touch there.
-
-        Closer than a hundredth of the path's extent, both crossing at less than 0.1 rad.
-        """
-        extent = float(np.max(np.ptp(self.position, axis=0)))
-        flat = np.flatnonzero(self.crossing_angle < 0.1)
-        return tuple(
-            (int(i), int(j))
-            for place, i in enumerate(flat)
-            for j in flat[place + 1 :]
-            if np.linalg.norm(self.double_position[i] - self.double_position[j]) < 0.01 * extent
-        )
 
     def cognates(self) -> tuple[Cognate, Cognate]:
         """Return the two other four-bars that trace the path (Roberts and Chebyshev).
@@ -470,38 +456,22 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
     return checks
 
 
-def _integrate_turn(
-    f: Callable[[Array], Array], breaks: Array, relative: float = 4.0 * EPS
-) -> tuple[Array, Array]:
+def _integrate_turn(f: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:
     """Integrate over 0 to 2 pi, halving the panels on which two Gauss rules differ.
 
-    Parameters
-    ----------
-    f : callable
-        Parameter, shape (n,), to integrands, shape (k, n).
-    breaks : ndarray, shape (b,)
-        Parameters at which an integrand has a kink: panels end there.
-    relative : float
-        A panel is good where the rules differ by no more than this part of the integral of the
-        size of the integrand.
-
-    Returns
-    -------
-    integral, error : ndarray, shape (k,)
-        The error is the sum of the differences of the panels, generous, and round-off.
+    Panels end at the breaks, where an integrand has a kink.  The error is the sum of the
+    differences of the panels, generous, and round-off.
     """
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
     for level in range(_HALVINGS):
-        # Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are
-        # halved.
         few, _ = _panels(f, low, high, 10)
         many, size = _panels(f, low, high, 16)
         difference = np.abs(many - few)
         if level == 0:
             scale = np.sum(size, axis=1)
             total, error, whole = (np.zeros(len(many)) for _ in range(3))
-        good = np.all(difference <= relative * scale[:, None] / 8, axis=0)
+        good = np.all(difference <= 0.5 * EPS * scale[:, None], axis=0)
         # More panels than this at once: what is left is the round-off of the integrands.
         if level == _HALVINGS - 1 or np.count_nonzero(~good) > 2000:
             good[:] = True

@@ -265,8 +265,8 @@ def test_mirror():
     assert mirrored.double_position == pytest.approx(plain.double_position * [1, -1], abs=1e-13)
 
 
-@pytest.mark.parametrize(("detuned", "pairs"), [(-1e-6, ((0, 1),)), (1e-6, ())])
-def test_tacnode_of_a_symmetric_curve(detuned, pairs):
+@pytest.mark.parametrize(("detuned", "crossings"), [(-1e-6, 2), (1e-6, 0)])
+def test_tacnode_of_a_symmetric_curve(detuned, crossings):
     """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
 
     It is 2 l sin((g - mu)/2) from D, g the angle from CB to CP, mu the transmission angle: the same
@@ -279,7 +279,8 @@ def test_tacnode_of_a_symmetric_curve(detuned, pairs):
     place = arm + arm * np.exp(1j * (np.pi + angle))
     curve = coupler_curve(FourBar(frame, crank, arm, arm), place.real, place.imag)
     assert np.linalg.norm(curve.position[0] - curve.position[360]) < 2e-6
-    assert curve.tacnodes == pairs
+    near = np.linalg.norm(curve.double_position - curve.position[0], axis=1) < 0.01
+    assert np.count_nonzero(near & (curve.crossing_angle < 0.1)) == crossings
 
 
 @pytest.mark.parametrize(

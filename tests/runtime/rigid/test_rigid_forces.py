@@ -309,7 +309,7 @@ def test_a_peak_between_the_places_is_looked_at() -> None:
     linkage = FourBar(0.3, 0.25, 0.1, 0.1)
     low, high = linkage.crank_ranges()[0]
     theta = np.full(1000, 0.5 * (low + high))
-    theta[517] = high
+    theta[517] = np.nextafter(high, low)
     coupler = MassDistribution.uniform_bar(1.0, 0.1)
     assert not driving_torque(Machine(linkage, {"coupler": coupler}), theta, 1.0).passed
 

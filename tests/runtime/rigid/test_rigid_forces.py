@@ -149,28 +149,6 @@ def test_each_output_alone_is_the_same(linkage) -> None:
     assert set(two.values) == {"shaking_moment", "torque"}
 
 
-def test_a_crank_alone_is_a_pendulum() -> None:
-    linkage = LINKAGES["crank rocker"]
-    crank = MassDistribution.about_centre(2.0, 0.07, 0.0, 0.01)
-    found = rigid_forces(Machine(linkage, {"crank": crank}, (0.0, -9.81)), THETA, 3.0, 5.0)
-    torque = 2.0 * 9.81 * 0.07 * np.cos(THETA) + crank.inertia * 5.0
-    np.testing.assert_allclose(found.torque, torque, atol=1e-13)
-    x = -0.14 * (9.0 * np.cos(THETA) + 5.0 * np.sin(THETA))
-    y = -0.14 * (9.0 * np.sin(THETA) - 5.0 * np.cos(THETA)) + 2.0 * 9.81
-    np.testing.assert_allclose(found.f12, np.stack([x, y], axis=-1), atol=1e-13)
-    np.testing.assert_array_equal(found.f34, 0.0)
-    np.testing.assert_allclose(found.shaking_moment, -torque, atol=1e-13)
-
-
-@EVERY
-def test_statics_by_virtual_work(linkage) -> None:
-    machine = loaded(linkage)
-    conservative = Machine(linkage, machine.masses, (0.5, -9.81), springs=machine.springs[:2])
-    found = driving_torque(conservative, THETA, 0.0)
-    slope = derivative(conservative.potential_energy(THETA))
-    np.testing.assert_allclose(found.torque, slope, atol=1e-11 * np.max(np.abs(slope)))
-
-
 @EVERY
 @pytest.mark.parametrize(("length", "mass"), [(2.0**-90, 8.0), (1e30, 1e-5)])
 def test_unit_systems(linkage, length, mass) -> None:

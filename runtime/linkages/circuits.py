@@ -132,11 +132,6 @@ class Circuit:
     number: int = 0
 
     @property
-    def kind(self) -> str:
-        """The mechanism: four_bar, slider_crank or quick_return."""
-        return str(self.linkage.mechanism)
-
-    @property
     def scale(self) -> float:
         """The power of two by which the lengths are divided."""
         return float(2.0**-self.linkage.scale)
@@ -165,14 +160,14 @@ class Circuit:
     @property
     def count(self) -> int:
         """How many circuits the linkage has: one or two."""
-        if self.kind == "quick_return":
+        if self.linkage.mechanism == "quick_return":
             return 1
         return 1 if self.swings[0] != self.swings[1] else 2
 
     def check(self) -> None:
         """Raise BadInput for a change point or a circuit that the linkage has not."""
         limits = self.limits
-        if self.kind == "quick_return":
+        if self.linkage.mechanism == "quick_return":
             # A block that leaves the rod has no closed motion.
             self.linkage.require_full_turn()
         if limits.q1 == 0 or limits.one_less_q2 == 0:
@@ -185,11 +180,6 @@ class Circuit:
         if self.number not in range(self.count):
             has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
             raise bad("circuit", self.number, has, "choose another circuit")
-
-    @property
-    def base(self) -> float:
-        """Crank angle at psi = 0 [rad]."""
-        return float(self.linkage.fold_axis)
 
     @property
     def _branch(self) -> float:
@@ -227,9 +217,10 @@ class Circuit:
     def crank_angle(self, s: Array) -> Array:
         """Return the crank angle [rad]; s itself, where the crank turns."""
         if self.turns:
-            return s + self.base
+            return s + self.linkage.fold_axis
         cosine, sine, _ = self._drive(s, 0)
-        return np.asarray(self.base + 2.0 * np.arctan2(sine.c[0].real, cosine.c[0].real))
+        half = np.arctan2(sine.c[0].real, cosine.c[0].real)
+        return np.asarray(self.linkage.fold_axis + 2.0 * half)
 
     def branch(self, s: Array) -> Array:
         """Return +1 where the assembly is open, -1 where it is crossed."""
@@ -241,16 +232,15 @@ class Circuit:
         """Return the moving links along the circuit; lengths are over ``scale``."""
         size = self.sizes
         cosine, sine, root = self._drive(s, order)
-        crank = (cosine + 1j * sine) * (cosine + 1j * sine) * complex(np.exp(1j * self.base))
-        if self.kind == "slider_crank":
-            # exp(-i pi/2) has no exact cosine.
-            crank = (cosine + 1j * sine) * (cosine + 1j * sine) * (-1j)
+        kind, half = self.linkage.mechanism, cosine + 1j * sine
+        # exp(-i pi/2) has no exact cosine.
+        crank = half * half * (-1j if kind == "slider_crank" else 1.0)
         zero = Taylor(np.zeros_like(crank.c))
         pin = size["crank"] * crank
         placed = {"crank": Placed(zero, crank)}
-        if self.kind == "quick_return":
+        if kind == "quick_return":
             return placed | self._rod(cosine, sine, pin)
-        if self.kind == "slider_crank":
+        if kind == "slider_crank":
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
             along = 2.0 * c * root

@@ -135,13 +135,6 @@ _ROWS = np.array(
 )
 
 
-def _class_number(lengths: Sequence[Fraction]) -> int:
-    """Return the row for one linkage, in exact fractions, 0 where it cannot close."""
-    if 2 * max(lengths) >= sum(lengths):
-        return 0
-    return number_of_signs([(value > 0) - (value < 0) for value in exact_sums(lengths)])
-
-
 Input = Literal["crank", "follower"]
 SYMBOLS = ("", *(row.symbol for row in CLASSES))
 
@@ -381,7 +374,9 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
         two, three, four, spare = np.where(certain, np.sign(sums), 0.0).astype(np.int64)
     rows = np.where(spare > 0, _ROWS[9 * (two + 1) + 3 * (three + 1) + four + 1], 0)
     for i in np.flatnonzero(~certain):
-        rows[i] = _class_number([*map(Fraction, flat[i].tolist())])
+        exact = [*map(Fraction, flat[i].tolist())]
+        signs = [(value > 0) - (value < 0) for value in exact_sums(exact)]
+        rows[i] = number_of_signs(signs) if 2 * max(exact) < sum(exact) else 0
     return np.asarray(rows.reshape(array.shape[:-1]), dtype=np.int64)
 
 
@@ -404,6 +399,7 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
     perimeter = sum(exact)
     sums = exact_sums(exact)
     signs, least = _signs(exact, sums, tolerance)
+    shortest, p, q, longest = sorted(exact)
     pairs = turning(signs)
     # Input, coupler and output in this order: the other way round where the follower is driven.
     seen = signs if driven == "crank" else signs[::-1]
@@ -417,12 +413,14 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
         category=row.category,
         name=row.name,
         symbol=row.symbol,
-        also=_pairs_called(signs) if row.symbol == "CP2X" else row.also,
+        also=("parallelogram linkage" if signs[1] else "kite linkage")
+        if row.symbol == "CP2X"
+        else row.also,
         characteristic=row.characteristic,
         turns={link: pairs["frame", link] for link in LINKS[1:]},
         relative_turns={"-".join(pair): turns for pair, turns in sorted(pairs.items())},
         inversions=dict(zip(order, _inversions(seen), strict=True)),
-        distance=float(_grashof_excess(exact) / perimeter),
+        distance=float((shortest + longest - p - q) / perimeter),
         change_distances={
             name: float(value / perimeter) for name, value in zip(_CONDITIONS, sums, strict=True)
         },
@@ -438,12 +436,6 @@ def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classific
         error_kind="bound",
         provenance=provenance({f"links.{k}": repr(v) for k, v in lengths.items()}),
     )
-
-
-def _grashof_excess(exact: Sequence[Fraction]) -> Fraction:
-    """Return s + l - p - q."""
-    s, p, q, longest = sorted(exact)
-    return s + longest - p - q
 
 
 def _signs(
@@ -467,11 +459,6 @@ def _signs(
     if abs(sums[least]) <= tolerance * sum(exact):
         signs[least] = 0
     return signs, least
-
-
-def _pairs_called(signs: Sequence[int]) -> str:
-    """Return the common name of a linkage of two pairs of equal links."""
-    return "parallelogram linkage" if signs[1] else "kite linkage"
 
 
 def _inversions(signs: Sequence[int]) -> tuple[str, str, str, str]:

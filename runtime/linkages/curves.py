@@ -292,7 +292,7 @@ class _Trace:
         at = self.motion.links(s, 0)
         z = at[self.link].origin.c[0] + self.place * at[self.link].direction.c[0]
         ends = [self.motion.sizes["crank"] * at["crank"].direction.c[0]]
-        if self.motion.kind != "quick_return":
+        if self.motion.linkage.mechanism != "quick_return":
             joint = at[self.link]
             ends.append(joint.origin.c[0] + self.motion.sizes["coupler"] * joint.direction.c[0])
         return any(np.max(np.abs(z - end)) <= 64 * EPS * self.size for end in ends)
@@ -390,14 +390,14 @@ class _Trace:
         size, lim = self.motion.sizes, self.motion.limits
         if self.link in ("crank", "slider"):
             return np.ones(s.shape)
-        if self.motion.kind == "quick_return":
+        if self.motion.linkage.mechanism == "quick_return":
             reach = np.abs(self.motion.joints(s)["B"] / self.motion.scale + size["frame"])
             return 2.0 + (size["frame"] + size["crank"]) / reach
-        psi = self.motion.crank_angle(s) - self.motion.base
+        psi = self.motion.crank_angle(s) - self.motion.linkage.fold_axis
         q = np.sin(psi / 2) ** 2
         # The root passes on the round-off of its factors.
         root = _root_blur(q, lim.q1, lim.q2, *self.motion.swings)
-        if self.motion.kind == "slider_crank":
+        if self.motion.linkage.mechanism == "slider_crank":
             return 3.0 + 2.0 * size["crank"] * root / size["coupler"]
         f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
         reach = np.sqrt((f - c) ** 2 + 4 * f * c * q)
@@ -449,7 +449,7 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
                 blur = blur * (1 + np.abs(at.derivative(1)) / trace.size)
             worst = float(np.max(gap / blur))
             checks[f"{name} against the mechanism's motion, over their round-off"] = Check(worst, 1)
-    if motion.kind == "four_bar" and trace.link == "coupler":
+    if motion.linkage.mechanism == "four_bar" and trace.link == "coupler":
         residual = sextic_residual(motion.sizes, trace.place, at.c[0])
         checks["equation of sixth degree, over its terms"] = Check(float(np.max(residual)), 1e-12)
         checks["double points"] = Check(float(crossings), 3.0)

@@ -229,7 +229,7 @@ def test_refusals_name_what_is_wrong(given, named) -> None:
 
 def test_what_was_not_asked_for_is_refused() -> None:
     found = driving_torque(smith(), THETA, 10.0)
-    for name in ("f12", "shaking_force", "sliding_couple"):
+    for name in ("f12", "shaking_force", "shaking_moment"):
         with pytest.raises(BadInput, match="ask for it"):
             getattr(found, name)
     with pytest.raises(BadInput, match="joint"):

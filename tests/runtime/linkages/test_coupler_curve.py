@@ -74,6 +74,7 @@ def test_agrees_with_the_motion_of_each_assembly(linkage, link):
                 assert np.all(np.abs(series - emitted) <= loose * 200 * size**2)
 
 
+@pytest.mark.smoke
 @pytest.mark.parametrize("linkage", [CRANK_ROCKER, DRAG_LINK, SLIDER, ROD])
 def test_the_crank_pin_runs_round_a_circle(linkage):
     crank = linkage.lengths["crank"]
@@ -255,16 +256,6 @@ def test_unit_of_length(unit):
     assert curve.double_position == pytest.approx(plain.double_position * unit, rel=1e-11)
 
 
-@pytest.mark.smoke
-def test_mirror():
-    plain = coupler_curve(CRANK_ROCKER, 1.0, -1.5)
-    mirrored = coupler_curve(CROSSED, 1.0, 1.5)
-    # The mirror reverses the sense of a path, and so does the crank that turns the same way.
-    assert mirrored.length == pytest.approx(plain.length, rel=1e-14)
-    assert mirrored.area == pytest.approx(plain.area, rel=1e-12)
-    assert mirrored.double_position == pytest.approx(plain.double_position * [1, -1], abs=1e-13)
-
-
 @pytest.mark.parametrize(("detuned", "crossings"), [(-1e-6, 2), (1e-6, 0)])
 def test_tacnode_of_a_symmetric_curve(detuned, crossings):
     """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
@@ -312,11 +303,9 @@ def test_refusals_of_cognates():
             coupler_curve(CRANK_ROCKER, along).cognates()
 
 
-@pytest.mark.parametrize("ending", ["json", "csv", "npz"])
-def test_saving(tmp_path, ending):
+def test_saving(tmp_path):
     curve = coupler_curve(INWARD_ROCKER, 0.7, 0.6, points=32)
-    assert curve.save(tmp_path / f"curve.{ending}").stat().st_size > 500
-    saved = json.loads(json.dumps(curve.to_dict()))
+    saved = json.loads(curve.save(tmp_path / "curve.json").read_text())
     assert len(saved["double_position"]) == 2 and saved["passed"]
 
 
@@ -326,11 +315,12 @@ def test_picture_marks_double_points():
     assert labels == ["point of the coupler", "double point"]
 
 
-@pytest.mark.parametrize("linkage", [CRANK_ROCKER])
-def test_frames_and_bytes_of_a_moving_picture(tmp_path, linkage):
-    curve = coupler_curve(linkage, 1.0, 0.5)
-    first = animate(linkage, tmp_path / "one.gif", curves=[curve], frames=4, fps=20)
-    second = animate(linkage, tmp_path / "two.gif", curves=[curve], frames=4, fps=20)
+def test_frames_and_bytes_of_a_moving_picture(tmp_path):
+    curve = coupler_curve(CRANK_ROCKER, 1.0, 0.5)
+    first, second = (
+        animate(CRANK_ROCKER, tmp_path / f"{name}.gif", curves=[curve], frames=4, fps=20)
+        for name in ("one", "two")
+    )
     assert first.read_bytes() == second.read_bytes()
     with Image.open(first) as picture:
         assert picture.n_frames == 4

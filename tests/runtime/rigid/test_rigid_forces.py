@@ -95,29 +95,6 @@ def test_power_balance_with_everything(linkage) -> None:
 
 
 @EVERY
-def test_shaking_force_and_moment_are_lost_momenta(linkage) -> None:
-    machine = Machine(linkage, masses_of(linkage))
-    motion = linkage.motion(THETA, 9.0)
-    momentum, moment = 0.0, 0.0
-    for link, mass in machine.masses.items():
-        along, across = mass.centre
-        centre, turning = motion.point(link, along, across), motion.link(link).speed
-        x, y = centre.position.T
-        vx, vy = centre.velocity.T
-        momentum = momentum + mass.mass * centre.velocity
-        moment = moment + mass.mass * (x * vy - y * vx) + mass.inertia_about_centre * turning
-    found = rigid_forces(machine, THETA, 9.0)
-    force = -9.0 * derivative(momentum)
-    np.testing.assert_allclose(found.shaking_force, force, atol=1e-10 * np.max(np.abs(force)))
-    lost = -9.0 * derivative(moment)
-    np.testing.assert_allclose(found.shaking_moment, lost, atol=1e-10 * np.max(np.abs(lost)))
-    if "couple34" not in found.values and "couple41" not in found.values:
-        # Errata to Smith (4.13): the reaction of the drive belongs to the moment.
-        whole = linkage.lengths["frame"] * found["y41"] - found.torque
-        np.testing.assert_allclose(found.shaking_moment, whole, atol=1e-12 * np.max(np.abs(whole)))
-
-
-@EVERY
 def test_springs_do_not_shake_the_frame(linkage) -> None:
     plain = Machine(linkage, masses_of(linkage))
     sprung = Machine(linkage, plain.masses, springs=loaded(linkage).springs)

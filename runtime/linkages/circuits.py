@@ -222,6 +222,24 @@ class Circuit:
         half = np.arctan2(sine.c[0].real, cosine.c[0].real)
         return np.asarray(self.linkage.fold_axis + 2.0 * half)
 
+    def parameter(self, crank: complex, branch: float) -> float | None:
+        """Return where the crank has a direction on an assembly; None on another circuit."""
+        psi = float(np.angle(crank * (1j if self.linkage.fold_axis else 1.0)))
+        lim, (lower, upper) = self.limits, self.swings
+        if self.turns:
+            return psi if branch == self._branch else None
+        cosine, sine = np.cos(psi / 2), np.sin(psi / 2)
+        if lower and upper:
+            if (sine < 0) != (self.number == 1):
+                return None
+            level = 2.0 * (sine**2 - lim.q1) / (lim.q2 - lim.q1) - 1.0
+        elif lower:
+            level = -cosine * np.sign(sine) / sqrt(lim.one_less_q1)
+        else:
+            level = sine / sqrt(lim.q2)
+        s = float(np.arcsin(np.clip(level, -1.0, 1.0)))
+        return s if branch > 0 else pi - s
+
     def branch(self, s: Array) -> Array:
         """Return +1 where the assembly is open, -1 where it is crossed."""
         if self.turns:

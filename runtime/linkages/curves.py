@@ -14,7 +14,7 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
-from .curve_points import Doubles, Slow, double_points, slowest
+from .curve_points import Doubles, crossings, double_points, slowest
 from .four_bar import FourBar
 from .linkage import EPS, Array, Linkage, require_linkage
 
@@ -205,7 +205,7 @@ def coupler_curve(
     trace = _Trace(motion, link, place / motion.scale)
     trace.require_motion()
     slow = slowest(trace.series, trace.sharp)
-    doubles = trace.doubles(slow)
+    doubles = trace.doubles(slow.stops)
     s = _parameters(motion, int(points))
     at = trace.series(s, 2)
     return CouplerCurve(
@@ -297,10 +297,10 @@ class _Trace:
             ends.append(joint.origin.c[0] + self.motion.sizes["coupler"] * joint.direction.c[0])
         return any(np.max(np.abs(z - end)) <= 64 * EPS * self.size for end in ends)
 
-    def doubles(self, slow: Slow) -> Doubles:
-        if self.runs_back:
-            return Doubles(np.zeros((0, 2)), np.zeros(0, dtype=complex), np.zeros(0))
-        return double_points(self.series, slow, self.sharp, self.size)
+    def doubles(self, stops: Array) -> Doubles:
+        none = np.zeros((0, 2))
+        seeds = none if self.runs_back else crossings(self.motion, self.place)
+        return double_points(self.series, seeds, stops, self.size)
 
     def local(self, s: Array, at: Taylor) -> dict[str, Any]:
         """Return place, velocity, acceleration, curvature and its centre at samples."""

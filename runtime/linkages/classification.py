@@ -59,7 +59,9 @@ def _table() -> tuple[BarkerClass, ...]:
         ("rocker-crank-rocker", "RCR", "double rocker with turning coupler"),
         ("rocker-rocker-crank", "RRC", "rocker crank"),
     )
-    grashof, others, change = [], [], []
+    grashof: list[tuple[Any, ...]] = []
+    others: list[tuple[Any, ...]] = []
+    change: list[tuple[Any, ...]] = []
     for role, (kind, letters, called) in zip(_ROLES, shapes, strict=True):
         i, least = len(others) + 1, f"{role} shortest"
         grashof.append(("Grashof", least, i, f"Grashof {kind}", f"G{letters}", called))
@@ -71,7 +73,7 @@ def _table() -> tuple[BarkerClass, ...]:
     two, three = "parallelogram linkage or kite", "rhombus linkage"
     change.append(("change point", pairs, 5, "Double change point", "CP2X", two))
     change.append(("change point", equal, 6, "Triple change point", "CP3X", three))
-    rows: list[tuple[Any, ...]] = [*grashof, *others, *change]
+    rows = [*grashof, *others, *change]
     return tuple(BarkerClass(number, *row) for number, row in enumerate(rows, start=1))
 
 
@@ -384,7 +386,7 @@ def _four_bar_of(lengths: Iterable[float]) -> FourBar:
     """Return a linkage of four lengths, or raise BadInput."""
     wanted = "4 lengths: frame, crank, coupler, follower"
     try:
-        four = [*lengths]
+        four: list[Any] = [*lengths]
     except TypeError as refusal:
         found = repr(lengths)[:60]
         raise bad("lengths", found, f"a linkage, or {wanted}", "give four lengths") from refusal
@@ -394,7 +396,7 @@ def _four_bar_of(lengths: Iterable[float]) -> FourBar:
 
 
 def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classification:
-    lengths = {link: float(size) for link, size in linkage.lengths.items()}
+    lengths: dict[str, Any] = {link: float(size) for link, size in linkage.lengths.items()}
     exact = [Fraction(value) for value in lengths.values()]
     perimeter = sum(exact)
     sums = exact_sums(exact)

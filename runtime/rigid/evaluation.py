@@ -53,7 +53,7 @@ def pushes(
     parts: tuple[tuple[Part, list[str]], ...] = (("outside", list(names)), ("springs", inner))
     for part, changed in parts:
         by_link = wrenches(machine, motion, speed, part) if changed else {}
-        pushed = {}
+        pushed: dict[str, Any] = {}
         for place, link in enumerate(motion.linkage.links, start=2):
             fx, fy, couple = by_link.get(link, (0.0, 0.0, 0.0))
             pushed |= {f"fx{place}": fx, f"fy{place}": fy, f"couple{place}": couple * unit}

@@ -282,24 +282,12 @@ class _Trace:
                 "along, across", "the pivot of the link", "a point that moves", "choose another"
             )
 
-    @property
-    def runs_back(self) -> bool:
-        """True where the path is a line or an arc, or a circle: nothing crosses on it."""
-        s = np.linspace(0.0, 2.0 * pi, 257)
-        pivoted = {"crank", "follower", "rod", "slider"}
-        if self.link in pivoted:
-            return True
-        at = self.motion.links(s, 0)
-        z = at[self.link].origin.c[0] + self.place * at[self.link].direction.c[0]
-        ends = [self.motion.sizes["crank"] * at["crank"].direction.c[0]]
-        if self.motion.linkage.mechanism != "quick_return":
-            joint = at[self.link]
-            ends.append(joint.origin.c[0] + self.motion.sizes["coupler"] * joint.direction.c[0])
-        return any(np.max(np.abs(z - end)) <= 64 * EPS * self.size for end in ends)
-
     def doubles(self, stops: Array) -> Doubles:
-        none = np.zeros((0, 2))
-        seeds = none if self.runs_back else crossings(self.motion, self.place)
+        """Return the double points; on a line, an arc or a circle about a joint nothing crosses."""
+        joints = (0.0, self.motion.sizes.get("coupler", 0.0))
+        at_joint = min(abs(self.place - joint) for joint in joints) <= 64 * EPS * self.size
+        free = self.link in ("coupler", "block") and not at_joint
+        seeds = crossings(self.motion, self.place) if free else np.zeros((0, 2))
         return double_points(self.series, seeds, stops, self.size)
 
     def local(self, s: Array, at: Taylor) -> dict[str, Any]:

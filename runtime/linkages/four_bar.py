@@ -115,7 +115,6 @@ class FourBar(Linkage):
         "coupler": ("B", "C"),
         "follower": ("D", "C"),
     }
-    met: ClassVar[Mapping[str, str]] = {"coupler": "follower"}
 
     def __post_init__(self) -> None:
         """Check the lengths."""

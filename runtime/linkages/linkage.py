@@ -178,9 +178,6 @@ class Motion(Result, ABC):
     def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
         """Return place, velocity and acceleration of a point of a moving link.
 
-        A point of a link between two moving joints is reached from the nearer one, so that either
-        joint moves with its other link to the last digit.
-
         Parameters
         ----------
         link : str
@@ -202,20 +199,7 @@ class Motion(Result, ABC):
         place = np.asarray(along, dtype=float), np.asarray(across, dtype=float)
         if not all(np.all(np.isfinite(part)) for part in place):
             raise bad("along, across", "a value that is not finite", "finite lengths", "correct it")
-        near, far = self.link(link).point(*place), self._at_far_joint(link)
-        if far is None:
-            return near
-        length: Any = self.linkage.lengths[link]
-        nearer = 2.0 * place[0] > np.real(length)
-        if not np.any(nearer):
-            return near
-        there = far.point(place[0] - length, place[1])
-        chosen = nearer[..., np.newaxis]
-        return PointMotion(
-            np.where(chosen, there.position, near.position),
-            np.where(chosen, there.velocity, near.velocity),
-            np.where(chosen, there.acceleration, near.acceleration),
-        )
+        return self.link(link).point(*place)
 
     @property
     def joints(self) -> Mapping[str, Array]:
@@ -250,15 +234,6 @@ class Motion(Result, ABC):
     @abstractmethod
     def _other_link(self, name: str) -> LinkMotion:
         """Return the motion of a moving link that is not the crank."""
-
-    def _at_far_joint(self, name: str) -> LinkMotion | None:
-        """Return the motion of a link with its origin at its second joint, where that moves too."""
-        if name not in self.linkage.met:
-            return None
-        other, here = self.linkage.met[name], self.link(name)
-        at = self.link(other).point(self.linkage.lengths.get(other, 0.0))
-        turning = (here.angle, here.speed, here.angular_acceleration)
-        return LinkMotion(at.position, at.velocity, at.acceleration, *turning)
 
     def _about(self, pivot: Any, angle: Array, speed: Array, change: Array) -> LinkMotion:
         """Return the motion of a link that turns about a fixed point of the frame line."""
@@ -314,8 +289,6 @@ class Linkage(ABC):
         The moving links, in the order 2, 3, 4.
     bars : mapping of str to tuple of str
         The joints between which each moving link is drawn.
-    met : mapping of str to str
-        The moving link, if any, at whose far end the second joint of a link is.
     fold_axis : float
         Crank angle [rad] about which the folds are mirror images.
     """
@@ -326,7 +299,6 @@ class Linkage(ABC):
     names: ClassVar[tuple[str, ...]]
     links: ClassVar[tuple[str, str, str]]
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
-    met: ClassVar[Mapping[str, str]] = {}
     fold_axis: ClassVar[float] = 0.0
 
     @property

@@ -126,7 +126,6 @@ class SliderCrank(Linkage):
         "coupler": ("B", "C"),
         "slider": ("C",),
     }
-    met: ClassVar[Mapping[str, str]] = {"coupler": "slider"}
     fold_axis: ClassVar[float] = -np.pi / 2.0
 
     def __post_init__(self) -> None:

@@ -174,18 +174,6 @@ def test_joints_are_points_of_both_links_that_they_join(linkage):
     np.testing.assert_array_equal(joints["A"], 0.0)
 
 
-def test_the_coupler_ends_where_its_neighbour_is_to_the_last_digit():
-    angle = np.linspace(0.0, 6.0, 25)
-    bar = FourBar(5.0, 1.0, 4.5, 2.2).motion(angle, 10.0, 3.0)
-    slide = SliderCrank(1.0, 3.5, 0.7).motion(angle, 10.0, 3.0)
-    for one, other in (
-        (bar.point("coupler", 4.5), bar.point("follower", 2.2)),
-        (slide.point("coupler", 3.5), slide.point("slider", 0.0)),
-    ):
-        for name in ("position", "velocity", "acceleration"):
-            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-
-
 @EVERY
 def test_without_a_speed_rates_are_per_crank_angle(linkage):
     here, there = linkage.motion(1.0), linkage.motion(1.0, 7.0, 3.0)

@@ -16,6 +16,7 @@ from ...generated import four_bar_kinematics
 from ..core.errors import BadInput, Problem, bad
 from .linkage import (
     ROUND_OFFS,
+    TINY,
     Array,
     Assembly,
     Limits,
@@ -150,7 +151,8 @@ class FourBar(Linkage):
         f, c, m, n = self.unit_lengths.values()
 
         def product(one: tuple[float, ...], other: tuple[float, ...]) -> float:
-            return math.fsum(one) / (2.0 * f) * (math.fsum(other) / (2.0 * c))
+            frame, crank = (2.0 * max(size, TINY) for size in (f, c))
+            return math.fsum(one) / frame * (math.fsum(other) / crank)
 
         return Limits(
             product((m, -n, c, -f), (m, -n, f, -c)),

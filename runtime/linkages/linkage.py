@@ -26,6 +26,7 @@ Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
 EPS = float(np.finfo(float).eps)
+TINY = float(np.finfo(float).tiny)
 # A round-off of each of the numbers that an expression comes from, three times.
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.

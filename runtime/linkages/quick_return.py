@@ -16,6 +16,7 @@ from ..core.errors import BadInput, Problem, bad
 from .linkage import (
     EPS,
     ROUND_OFFS,
+    TINY,
     UNDECIDED,
     Array,
     Limits,
@@ -145,12 +146,13 @@ class QuickReturn(Linkage):
         """Where block and rod meet: between the rod's tip and, with eps = 1, its pivot."""
         frame, crank, rod = self.unit_lengths.values()
         longer, shorter = self._ends
-        apart = (frame - crank) / (2.0 * frame) * ((frame - crank) / (2.0 * crank))
+        across, along = (2.0 * max(size, TINY) for size in (frame, crank))
+        apart = (frame - crank) / across * ((frame - crank) / along)
         if self._long_enough:
             return Limits(-1.0, 2.0, 1.0 + apart, -apart)
         return Limits(
-            shorter / (2.0 * frame) * ((frame + crank + rod) / (2.0 * crank)),
-            longer / (2.0 * frame) * ((rod + abs(frame - crank)) / (2.0 * crank)),
+            shorter / across * ((frame + crank + rod) / along),
+            longer / across * ((rod + abs(frame - crank)) / along),
             1.0 + apart,
             -apart,
         )

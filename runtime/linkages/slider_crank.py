@@ -16,6 +16,7 @@ from ...generated import slider_crank_kinematics
 from ..core.errors import BadInput, Problem, bad
 from .linkage import (
     ROUND_OFFS,
+    TINY,
     UNDECIDED,
     Array,
     Assembly,
@@ -137,7 +138,8 @@ class SliderCrank(Linkage):
                 Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
             )
         problems += assembly_problems("SliderCrank", self.assembly)
-        if not problems and not self._closes:
+        # Each factor is zero where the links just reach the guide, correctly rounded.
+        if not problems and min(self.limits.one_less_q1, self.limits.q2) <= 0.0:
             problems.append(
                 Problem(
                     "SliderCrank.offset",
@@ -150,16 +152,11 @@ class SliderCrank(Linkage):
             raise BadInput(*problems)
 
     @property
-    def _closes(self) -> bool:
-        crank, coupler, offset = self.unit_lengths.values()
-        return math.fsum((coupler, crank, -abs(offset))) > 0.0
-
-    @property
     def limits(self) -> Limits:
         """Where the loop can close: where the coupler comes to stand across the guide."""
         c, m, e = self.unit_lengths.values()
         factors = ((c, e, -m), (c, m, -e), (c, m, e), (c, -e, -m))
-        return Limits(*(math.fsum(terms) / (2.0 * c) for terms in factors))
+        return Limits(*(math.fsum(terms) / (2.0 * max(c, TINY)) for terms in factors))
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""

@@ -175,7 +175,7 @@ def random_case(rng, kind):
             return QuickReturn(first, second, 1.2 * (first + second)), "block"
 
 
-@pytest.mark.parametrize("scenes", [6, pytest.param(90, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scenes", [6, pytest.param(45, marks=pytest.mark.slow)])
 def test_double_points_are_where_the_path_crosses_itself(scenes):
     found = 0
     for seed in range(scenes):

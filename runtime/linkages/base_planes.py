@@ -1,4 +1,4 @@
-"""Barker's solution space: base planes, the regions of the classes and their straight borders."""
+"""Barker's solution space: base planes and the regions of the classes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from .linkage import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_NAMES = ("coupler/input", "output/input", "frame/input")
 # Of the plane: to the right more output, upwards more frame.
 _AXES = np.array([[-1.0, 1.0, 0.0], [-1.0, -1.0, 2.0]]) / np.sqrt([[2.0], [6.0]])
 # A mark so near the middle of a symbol, over the size of the plane, would cover it; the symbol
@@ -45,8 +44,6 @@ class BasePlane(Result):
         Corners of the region of each class, as ratios; none that rounding cannot tell from empty.
     outline : ndarray, shape (n, 3)
         Corners of all that can close: zero-mobility planes and vanishing links.
-    borders : mapping of str to ndarray, shape (2, 3)
-        Ends of the straight line of change points that each condition gives.
     """
 
     lam: float
@@ -55,7 +52,6 @@ class BasePlane(Result):
     numbers: NDArray[np.int64]
     regions: Mapping[str, Array]
     outline: Array
-    borders: Mapping[str, Array]
 
     @property
     def shares(self) -> dict[str, float]:
@@ -132,18 +128,16 @@ def base_plane(lam: float, points: int = 201) -> BasePlane:
     coupler, output, frame = ratios[inside].T
     numbers[inside] = classify(np.stack([frame, np.ones_like(frame), coupler, output], -1))
     error = 32.0 * np.finfo(float).eps * max(total, 1.0)
-    regions, borders = _regions(outline, total, error), _borders(outline, total)
     return BasePlane(
         lam=float(lam),
         x=x,
         y=y,
         numbers=numbers,
-        regions=regions,
+        regions=_regions(outline, total, error),
         outline=outline,
-        borders=borders,
         method="half-planes of the signs of three sums; exact classes at the points",
         error=error,
-        error_norm="corners of regions and borders, absolute, worst",
+        error_norm="corners of regions and outline, absolute, worst",
         error_kind="bound",
         provenance=provenance({"lam": repr(float(lam))}),
     )
@@ -179,20 +173,6 @@ def _regions(outline: Array, total: float, error: float) -> dict[str, Array]:
         if room > error:
             regions[SYMBOLS[number_of_signs(signs)]] = corners
     return dict(sorted(regions.items()))
-
-
-def _borders(outline: Array, total: float) -> dict[str, Array]:
-    """Return the ends of the change lines lambda_i = (total - 1)/2 within the outline."""
-    half = (total - 1.0) / 2.0
-    borders = {}
-    for i, name in enumerate(_NAMES):
-        part = _clipped(outline, i, half, 1.0)
-        # Clipping puts its own points exactly on the line.
-        ends = part[part[:, i] == half]
-        if len(ends) >= 2:
-            last = ends[np.argmax(np.abs(ends - ends[0]).max(axis=1))]
-            borders[f"{name} = (sum - 1)/2"] = np.stack([ends[0], last])
-    return borders
 
 
 def _clipped(corners: Array, axis: int, at: float, side: float) -> Array:

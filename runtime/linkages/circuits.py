@@ -13,13 +13,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial, pi, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import bad
-from .linkage import Array
+from .linkage import Array, Limits, Linkage
 
 Complex = NDArray[np.complex128]
 
@@ -106,16 +105,6 @@ def cosine_sine(s: Array, order: int, rate: float = 1.0) -> tuple[Taylor, Taylor
 
 
 @dataclass(frozen=True)
-class Limits:
-    """Where the loop can close: ``q1 <= q <= q2``, each with its exact complement to 1."""
-
-    q1: float
-    one_less_q1: float
-    q2: float
-    one_less_q2: float
-
-
-@dataclass(frozen=True)
 class Placed:
     """A moving link along the circuit: place of its first joint and the unit vector along it."""
 
@@ -139,42 +128,24 @@ class Circuit:
         one.  Where it swings in one range there is one circuit, through both assemblies.
     """
 
-    linkage: Any
+    linkage: Linkage
     number: int = 0
 
-    @cached_property
-    def kind(self) -> str:
-        """The mechanism: four_bar, slider_crank or quick_return."""
-        names = tuple(self.linkage.names)
-        kinds = {"follower": "four_bar", "rod": "quick_return", "offset": "slider_crank"}
-        return next(kind for name, kind in kinds.items() if name in names)
-
-    @cached_property
+    @property
     def scale(self) -> float:
         """The power of two by which the lengths are divided."""
-        return float(2.0 ** np.frexp(max(abs(v) for v in self.linkage.lengths.values()))[1])
+        return float(2.0**-self.linkage.scale)
 
     @cached_property
     def sizes(self) -> Mapping[str, float]:
         """The lengths over ``scale``."""
-        return {name: float(v) / self.scale for name, v in self.linkage.lengths.items()}
+        return dict(self.linkage.unit_lengths)
 
     @cached_property
     def limits(self) -> Limits:
         """Where the loop can close."""
-        size = self.sizes
-        if self.kind == "four_bar":
-            f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
-            near, far, folded, straight = f - c, f + c, m - n, m + n
-            pairs = ((folded, near), (far, folded), (straight, near), (far, straight))
-            low, low_rest, high, high_rest = ((a - b) * (a + b) / (4 * f * c) for a, b in pairs)
-            return Limits(low, low_rest, high, high_rest)
-        c = size["crank"]
-        if self.kind == "slider_crank":
-            m, e = size["coupler"], size["offset"]
-            ends = (c + e - m, c - e + m, c + e + m, c - e - m)
-            return Limits(*(end / (2 * c) for end in ends))
-        return Limits(-1.0, 2.0, 2.0, -1.0)
+        limits: Limits = self.linkage.limits
+        return limits
 
     @cached_property
     def swings(self) -> tuple[bool, bool]:
@@ -189,14 +160,14 @@ class Circuit:
     @property
     def count(self) -> int:
         """How many circuits the linkage has: one or two."""
-        if self.kind == "quick_return":
+        if self.linkage.mechanism == "quick_return":
             return 1
         return 1 if self.swings[0] != self.swings[1] else 2
 
     def check(self) -> None:
         """Raise BadInput for a change point or a circuit that the linkage has not."""
         limits = self.limits
-        if self.kind == "quick_return":
+        if self.linkage.mechanism == "quick_return":
             # A block that leaves the rod has no closed motion.
             self.linkage.require_full_turn()
         if limits.q1 == 0 or limits.one_less_q2 == 0:
@@ -209,11 +180,6 @@ class Circuit:
         if self.number not in range(self.count):
             has = f"0 to {self.count - 1}" if self.count > 1 else "0, the only one"
             raise bad("circuit", self.number, has, "choose another circuit")
-
-    @cached_property
-    def base(self) -> float:
-        """Crank angle at psi = 0 [rad]."""
-        return -pi / 2 if self.kind == "slider_crank" else 0.0
 
     @property
     def _branch(self) -> float:
@@ -251,9 +217,28 @@ class Circuit:
     def crank_angle(self, s: Array) -> Array:
         """Return the crank angle [rad]; s itself, where the crank turns."""
         if self.turns:
-            return s + self.base
+            return s + self.linkage.fold_axis
         cosine, sine, _ = self._drive(s, 0)
-        return np.asarray(self.base + 2.0 * np.arctan2(sine.c[0].real, cosine.c[0].real))
+        half = np.arctan2(sine.c[0].real, cosine.c[0].real)
+        return np.asarray(self.linkage.fold_axis + 2.0 * half)
+
+    def parameter(self, crank: complex, branch: float) -> float | None:
+        """Return where the crank has a direction on an assembly; None on another circuit."""
+        psi = float(np.angle(crank * (1j if self.linkage.fold_axis else 1.0)))
+        lim, (lower, upper) = self.limits, self.swings
+        if self.turns:
+            return psi if branch == self._branch else None
+        cosine, sine = np.cos(psi / 2), np.sin(psi / 2)
+        if lower and upper:
+            if (sine < 0) != (self.number == 1):
+                return None
+            level = 2.0 * (sine**2 - lim.q1) / (lim.q2 - lim.q1) - 1.0
+        elif lower:
+            level = -cosine * np.sign(sine) / sqrt(lim.one_less_q1)
+        else:
+            level = sine / sqrt(lim.q2)
+        s = float(np.arcsin(np.clip(level, -1.0, 1.0)))
+        return s if branch > 0 else pi - s
 
     def branch(self, s: Array) -> Array:
         """Return +1 where the assembly is open, -1 where it is crossed."""
@@ -265,16 +250,15 @@ class Circuit:
         """Return the moving links along the circuit; lengths are over ``scale``."""
         size = self.sizes
         cosine, sine, root = self._drive(s, order)
-        crank = (cosine + 1j * sine) * (cosine + 1j * sine) * complex(np.exp(1j * self.base))
-        if self.kind == "slider_crank":
-            # exp(-i pi/2) has no exact cosine.
-            crank = (cosine + 1j * sine) * (cosine + 1j * sine) * (-1j)
+        kind, half = self.linkage.mechanism, cosine + 1j * sine
+        # exp(-i pi/2) has no exact cosine.
+        crank = half * half * (-1j if kind == "slider_crank" else 1.0)
         zero = Taylor(np.zeros_like(crank.c))
         pin = size["crank"] * crank
         placed = {"crank": Placed(zero, crank)}
-        if self.kind == "quick_return":
+        if kind == "quick_return":
             return placed | self._rod(cosine, sine, pin)
-        if self.kind == "slider_crank":
+        if kind == "slider_crank":
             c, m, e = size["crank"], size["coupler"], size["offset"]
             raised = e - c * (sine * sine - cosine * cosine)
             along = 2.0 * c * root

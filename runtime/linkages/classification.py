@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import bad
 from ..core.results import Result, provenance
 from .four_bar import FourBar
-from .linkage import EPS, Array
+from .linkage import EPS
 from .quick_return import QuickReturn
 from .slider_crank import SliderCrank
 
@@ -53,36 +53,27 @@ class BarkerClass:
 
 def _table() -> tuple[BarkerClass, ...]:
     """Return the fourteen rows."""
-    kinds = (
-        "crank-crank-crank",
-        "crank-rocker-rocker",
-        "rocker-crank-rocker",
-        "rocker-rocker-crank",
+    shapes = (
+        ("crank-crank-crank", "CCC", "double crank (drag link)"),
+        ("crank-rocker-rocker", "CRR", "crank rocker"),
+        ("rocker-crank-rocker", "RCR", "double rocker with turning coupler"),
+        ("rocker-rocker-crank", "RRC", "rocker crank"),
     )
-    called = (
-        "double crank (drag link)",
-        "crank rocker",
-        "double rocker with turning coupler",
-        "rocker crank",
-    )
-    letters = ("CCC", "CRR", "RCR", "RRC")
-    rows: list[tuple[Category, str, int, str, str, str]] = []
-    for i in range(4):
-        least = f"{_ROLES[i]} shortest"
-        rows.append(("Grashof", least, i + 1, f"Grashof {kinds[i]}", "G" + letters[i], called[i]))
-    for i in range(4):
-        name = f"Class {i + 1} rocker-rocker-rocker"
-        most = f"{_ROLES[i]} longest"
-        rows.append(("non-Grashof", most, i + 1, name, f"RRR{i + 1}", "triple rocker"))
-    for i in range(4):
-        name, symbol = f"Change point {kinds[i]}", "CP" + letters[i]
-        also = f"{called[i]} at a change point"
-        rows.append(("change point", f"{_ROLES[i]} shortest", i + 1, name, symbol, also))
+    grashof: list[tuple[Any, ...]] = []
+    others: list[tuple[Any, ...]] = []
+    change: list[tuple[Any, ...]] = []
+    for role, (kind, letters, called) in zip(_ROLES, shapes, strict=True):
+        i, least = len(others) + 1, f"{role} shortest"
+        grashof.append(("Grashof", least, i, f"Grashof {kind}", f"G{letters}", called))
+        name = f"Class {i} rocker-rocker-rocker"
+        others.append(("non-Grashof", f"{role} longest", i, name, f"RRR{i}", "triple rocker"))
+        name, also = f"Change point {kind}", f"{called} at a change point"
+        change.append(("change point", least, i, name, f"CP{letters}", also))
     pairs, equal = "two pairs of equal links", "four equal links"
-    rows.append(
-        ("change point", pairs, 5, "Double change point", "CP2X", "parallelogram linkage or kite")
-    )
-    rows.append(("change point", equal, 6, "Triple change point", "CP3X", "rhombus linkage"))
+    two, three = "parallelogram linkage or kite", "rhombus linkage"
+    change.append(("change point", pairs, 5, "Double change point", "CP2X", two))
+    change.append(("change point", equal, 6, "Triple change point", "CP3X", three))
+    rows = [*grashof, *others, *change]
     return tuple(BarkerClass(number, *row) for number, row in enumerate(rows, start=1))
 
 
@@ -144,37 +135,6 @@ def exact_sums(lengths: Sequence[Fraction]) -> tuple[Fraction, Fraction, Fractio
 _ROWS = np.array(
     [number_of_signs(signs) for signs in itertools.product((-1, 0, 1), repeat=3)], dtype=np.int64
 )
-
-
-def class_numbers(lengths: Array) -> NDArray[np.int64]:
-    """Return the rows of Barker's table of positive lengths (..., 4), 0 where they cannot close.
-
-    Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
-    """
-    flat = lengths.reshape(-1, 4)
-    frame, crank, coupler, follower = flat.T
-    with np.errstate(over="ignore", invalid="ignore"):
-        perimeter = np.sum(flat, axis=1)
-        sums = (
-            (frame - coupler) + (crank - follower),
-            (frame - crank) + (coupler - follower),
-            (frame - coupler) + (follower - crank),
-            perimeter - 2.0 * np.max(flat, axis=1),
-        )
-        # Beyond the three roundings of a sum of four; where the perimeter overflows nothing is.
-        certain = np.min(np.abs(sums), axis=0) > 4.0 * EPS * perimeter
-        two, three, four, spare = np.where(certain, np.sign(sums), 0.0).astype(np.int64)
-    rows = np.where(spare > 0, _ROWS[9 * (two + 1) + 3 * (three + 1) + four + 1], 0)
-    for i in np.flatnonzero(~certain):
-        rows[i] = _class_number([*map(Fraction, flat[i].tolist())])
-    return np.asarray(rows.reshape(lengths.shape[:-1]), dtype=np.int64)
-
-
-def _class_number(lengths: Sequence[Fraction]) -> int:
-    """Return the row for one linkage, in exact fractions, 0 where it cannot close."""
-    if 2 * max(lengths) >= sum(lengths):
-        return 0
-    return number_of_signs([(value > 0) - (value < 0) for value in exact_sums(lengths)])
 
 
 Input = Literal["crank", "follower"]
@@ -383,13 +343,16 @@ def classify(
             driven = f"the follower of a {type(linkage).__name__}"
             raise bad("input", driven, "'crank'", "leave it out")
         kind = _slider_crank if isinstance(linkage, SliderCrank) else _quick_return
-        return kind(linkage.lengths, Fraction(tolerance))
-    lengths = linkage.lengths.values() if isinstance(linkage, FourBar) else linkage
-    return _four_bar(_checked(lengths), input, Fraction(tolerance))
+        return kind(linkage, Fraction(tolerance))
+    four_bar = linkage if isinstance(linkage, FourBar) else _four_bar_of(linkage)
+    return _four_bar(four_bar, input, Fraction(tolerance))
 
 
 def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
-    """Return the rows of Barker's table for many four-bar linkages at once, exactly."""
+    """Return the rows of Barker's table of lengths (..., 4), 0 where they cannot close.
+
+    Exact for any doubles: a sum whose sign rounding may have changed is taken in fractions.
+    """
     try:
         array = np.asarray(lengths, dtype=float)
     except (TypeError, ValueError) as refusal:
@@ -398,78 +361,68 @@ def _many(lengths: NDArray[Any]) -> NDArray[np.int64]:
         raise bad("lengths", f"shape {array.shape}", "shape (..., 4)", "put the four links last")
     if not np.all((array > 0) & (array < np.inf)):
         raise bad("lengths", "a value that is none", "positive finite lengths", "correct it")
-    return class_numbers(array)
-
-
-def _checked(lengths: Iterable[float]) -> tuple[float, float, float, float]:
-    """Return four positive doubles that close, or raise BadInput."""
-    try:
-        four = [*lengths]
-    except TypeError as refusal:
-        wanted = "a linkage, or lengths of frame, crank, coupler, follower"
-        raise bad("lengths", repr(lengths)[:60], wanted, "give four lengths") from refusal
-    if len(four) != 4:
-        wanted = "4 lengths: frame, crank, coupler, follower"
-        raise bad("lengths", f"{len(four)} of them", wanted, "give four lengths")
-    values = [_double(value) for value in four]
-    problems = [
-        Problem(name, repr(was)[:60], "a positive finite length", "correct it")
-        for name, was, value in zip(LINKS, four, values, strict=True)
-        if not 0 < value < np.inf
-    ]
-    if problems:
-        raise BadInput(*problems)
-    excess = 2 * max(map(Fraction, values)) - sum(map(Fraction, values))
-    if excess >= 0:
-        longest = values.index(max(values))
-        rest = ", ".join(f"{value:g}" for i, value in enumerate(values) if i != longest)
-        why = "the linkage cannot close" if excess else "the linkage is stretched and cannot move"
-        raise bad(
-            LINKS[longest],
-            f"{values[longest]:g}",
-            f"less than the sum of {rest}",
-            f"{why}; shorten this link or lengthen another",
+    flat = array.reshape(-1, 4)
+    frame, crank, coupler, follower = flat.T
+    with np.errstate(over="ignore", invalid="ignore"):
+        perimeter = np.sum(flat, axis=1)
+        sums = (
+            (frame - coupler) + (crank - follower),
+            (frame - crank) + (coupler - follower),
+            (frame - coupler) + (follower - crank),
+            perimeter - 2.0 * np.max(flat, axis=1),
         )
-    return values[0], values[1], values[2], values[3]
+        # Beyond the three roundings of a sum of four; where the perimeter overflows nothing is.
+        certain = np.min(np.abs(sums), axis=0) > 4.0 * EPS * perimeter
+        two, three, four, spare = np.where(certain, np.sign(sums), 0.0).astype(np.int64)
+    rows = np.where(spare > 0, _ROWS[9 * (two + 1) + 3 * (three + 1) + four + 1], 0)
+    for i in np.flatnonzero(~certain):
+        exact = [*map(Fraction, flat[i].tolist())]
+        signs = [(value > 0) - (value < 0) for value in exact_sums(exact)]
+        rows[i] = number_of_signs(signs) if 2 * max(exact) < sum(exact) else 0
+    return np.asarray(rows.reshape(array.shape[:-1]), dtype=np.int64)
 
 
-def _double(value: object) -> float:
-    """Return a real number as a double, NaN where it is none."""
+def _four_bar_of(lengths: Iterable[float]) -> FourBar:
+    """Return a linkage of four lengths, or raise BadInput."""
+    wanted = "4 lengths: frame, crank, coupler, follower"
     try:
-        return float(value) if isinstance(value, Real) else np.nan
-    except (OverflowError, ValueError):
-        return np.nan
+        four: list[Any] = [*lengths]
+    except TypeError as refusal:
+        found = repr(lengths)[:60]
+        raise bad("lengths", found, f"a linkage, or {wanted}", "give four lengths") from refusal
+    if len(four) != 4:
+        raise bad("lengths", f"{len(four)} of them", wanted, "give four lengths")
+    return FourBar(*four)
 
 
-def _four_bar(
-    lengths: tuple[float, float, float, float], driven: Input, tolerance: Fraction
-) -> Classification:
-    exact = [Fraction(value) for value in lengths]
+def _four_bar(linkage: FourBar, driven: Input, tolerance: Fraction) -> Classification:
+    lengths: dict[str, Any] = {link: float(size) for link, size in linkage.lengths.items()}
+    exact = [Fraction(value) for value in lengths.values()]
     perimeter = sum(exact)
     sums = exact_sums(exact)
     signs, least = _signs(exact, sums, tolerance)
+    shortest, p, q, longest = sorted(exact)
     pairs = turning(signs)
     # Input, coupler and output in this order: the other way round where the follower is driven.
     seen = signs if driven == "crank" else signs[::-1]
     order = LINKS if driven == "crank" else (LINKS[0], *LINKS[:0:-1])
     row = CLASSES[number_of_signs(seen) - 1]
     return Classification(
-        frame=lengths[0],
-        crank=lengths[1],
-        coupler=lengths[2],
-        follower=lengths[3],
+        **lengths,
         input=driven,
         number=row.number,
         class_number=row.class_number,
         category=row.category,
         name=row.name,
         symbol=row.symbol,
-        also=_pairs_called(signs) if row.symbol == "CP2X" else row.also,
+        also=("parallelogram linkage" if signs[1] else "kite linkage")
+        if row.symbol == "CP2X"
+        else row.also,
         characteristic=row.characteristic,
         turns={link: pairs["frame", link] for link in LINKS[1:]},
         relative_turns={"-".join(pair): turns for pair, turns in sorted(pairs.items())},
         inversions=dict(zip(order, _inversions(seen), strict=True)),
-        distance=float(_grashof_excess(exact) / perimeter),
+        distance=float((shortest + longest - p - q) / perimeter),
         change_distances={
             name: float(value / perimeter) for name, value in zip(_CONDITIONS, sums, strict=True)
         },
@@ -483,14 +436,8 @@ def _four_bar(
         error=_ROUNDED,
         error_norm=_NORM,
         error_kind="bound",
-        provenance=provenance({f"links.{k}": repr(v) for k, v in zip(LINKS, lengths, strict=True)}),
+        provenance=provenance({f"links.{k}": repr(v) for k, v in lengths.items()}),
     )
-
-
-def _grashof_excess(exact: Sequence[Fraction]) -> Fraction:
-    """Return s + l - p - q."""
-    s, p, q, longest = sorted(exact)
-    return s + longest - p - q
 
 
 def _signs(
@@ -516,11 +463,6 @@ def _signs(
     return signs, least
 
 
-def _pairs_called(signs: Sequence[int]) -> str:
-    """Return the common name of a linkage of two pairs of equal links."""
-    return "parallelogram linkage" if signs[1] else "kite linkage"
-
-
 def _inversions(signs: Sequence[int]) -> tuple[str, str, str, str]:
     """Return the symbols of the four inversions, the frame going round in the order of the links.
 
@@ -532,71 +474,77 @@ def _inversions(signs: Sequence[int]) -> tuple[str, str, str, str]:
     return one, other, third, last
 
 
-def _slider_crank(sizes: Mapping[str, float], tolerance: Fraction) -> SlidingClassification:
+def _slider_crank(linkage: SliderCrank, tolerance: Fraction) -> SlidingClassification:
     """Classify as a four-bar linkage whose frame and follower are endless, and differ by offset."""
-    crank, coupler, offset = (Fraction(float(sizes[k])) for k in ("crank", "coupler", "offset"))
+    crank, coupler, offset = (Fraction(float(size)) for size in linkage.lengths.values())
     offset = abs(offset)
     total = crank + coupler + offset
     sums = {
         "crank + offset = coupler": crank + offset - coupler,
         "coupler + offset = crank": coupler + offset - crank,
     }
-    nearest = min(sums, key=lambda name: sums[name])
-    reached = abs(sums[nearest]) <= tolerance * total
+    least = min(sums.values())
+    reached = abs(least) <= tolerance * total
     turns = {
         link: excess <= 0 or (reached and excess <= tolerance * total)
         for link, excess in zip(("crank", "coupler"), sums.values(), strict=True)
     }
     who = " and ".join(link for link, full in turns.items() if full)
     kind = "offset" if offset else "in-line"
-    return SlidingClassification(
-        mechanism="slider-crank",
-        lengths={name: float(size) for name, size in sizes.items()},
-        category=_category(sums[nearest], reached),
+    return _sliding(
+        linkage,
+        sums,
+        total,
+        tolerance,
+        category="change point" if reached else "Grashof" if least < 0 else "non-Grashof",
         name=f"{kind} slider-crank, " + (f"{who} turning" if who else "no link turning"),
         turns={**turns, "slider": False},
-        distance=float(sums[nearest] / total),
-        change_distances={name: float(value / total) for name, value in sums.items()},
-        nearest_change=nearest,
         closing_distance=float((offset - crank - coupler) / total),
-        tolerance=float(tolerance),
-        **_SLIDING,
-        provenance=provenance({f"links.{name}": repr(size) for name, size in sizes.items()}),
     )
 
 
-def _quick_return(sizes: Mapping[str, float], tolerance: Fraction) -> SlidingClassification:
+def _quick_return(linkage: QuickReturn, tolerance: Fraction) -> SlidingClassification:
     """Classify by Beale and Scott's eps = crank/frame: the rod turns where it is above 1."""
-    frame, crank = (Fraction(float(sizes[k])) for k in ("frame", "crank"))
+    frame, crank = Fraction(float(linkage.frame)), Fraction(float(linkage.crank))
     excess, total = crank - frame, crank + frame
     reached = abs(excess) <= tolerance * total
     turns = reached or excess > 0
     name = "Whitworth quick return, rod turning" if turns else "quick return, rod oscillating"
-    return SlidingClassification(
-        mechanism="quick-return",
-        lengths={name: float(size) for name, size in sizes.items()},
+    return _sliding(
+        linkage,
+        {"crank = frame": excess},
+        total,
+        tolerance,
         category="change point" if reached else "Grashof",
         name="quick return at its change point" if reached else name,
         turns={"crank": True, "block": turns, "rod": turns},
-        distance=float(excess / total),
-        change_distances={"crank = frame": float(excess / total)},
-        nearest_change="crank = frame",
         closing_distance=None,
-        tolerance=float(tolerance),
-        **_SLIDING,
-        provenance=provenance({f"links.{name}": repr(size) for name, size in sizes.items()}),
     )
 
 
-def _category(excess: Fraction, reached: bool) -> Category:
-    if reached:
-        return "change point"
-    return "Grashof" if excess < 0 else "non-Grashof"
-
-
-_SLIDING: dict[str, Any] = {
-    "method": "signs of sums of lengths, in exact arithmetic",
-    "error": _ROUNDED,
-    "error_norm": _NORM,
-    "error_kind": "bound",
-}
+def _sliding(
+    linkage: SliderCrank | QuickReturn,
+    changes: Mapping[str, Fraction],
+    total: Fraction,
+    tolerance: Fraction,
+    **found: Any,
+) -> SlidingClassification:
+    """Return the result, given how far each change condition is off, in lengths."""
+    distances = {name: float(excess / total) for name, excess in changes.items()}
+    nearest = min(changes, key=lambda name: changes[name])
+    lengths = {name: float(size) for name, size in linkage.lengths.items()}
+    mechanism: Any = linkage.mechanism.replace("_", "-")
+    return SlidingClassification(
+        mechanism=mechanism,
+        lengths=lengths,
+        distance=distances[nearest],
+        change_distances=distances,
+        nearest_change=nearest,
+        tolerance=float(tolerance),
+        **found,
+        method="signs of sums of lengths, in exact arithmetic",
+        error=_ROUNDED,
+        error_norm=_NORM,
+        error_kind="bound",
+        provenance=provenance({f"links.{name}": repr(size) for name, size in lengths.items()}),
+    )

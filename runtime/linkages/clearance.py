@@ -232,7 +232,11 @@ def clearance_range(
     """
     task = Task.of(linkage, clearances, theta, joint, link)
     play = task.play()
-    place = partial(_lengthened, exponent=task.exponent if task.link == "slider" else 0)
+    exponent = task.exponent if task.link == "slider" else 0
+
+    def place(value: Array) -> Array:
+        return np.asarray(np.ldexp(value, exponent))
+
     nominal, below, above = (place(part) for part in (play.nominal, play.below, play.above))
     least, greatest = _extremes(task)
     given = {f"clearances.{name}": repr(c) for name, c in task.clearances.items()}
@@ -323,10 +327,6 @@ class Task:
             reached &= play.place > play.blur
         self.linkage.require(reached, self.theta)
         return play
-
-
-def _lengthened(value: Array, exponent: int) -> Array:
-    return np.asarray(np.ldexp(value, exponent))
 
 
 def _angles(linkage: FourBar | SliderCrank | QuickReturn, theta: ArrayLike | None) -> Array:

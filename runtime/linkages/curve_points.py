@@ -1,14 +1,16 @@
-"""Cusps and double points of a closed path, found from samples and solved to round-off."""
+"""Cusps and double points of a closed path, solved to round-off."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .circuits import Complex, Taylor
+from .circuits import Circuit, Complex, Taylor
 from .linkage import EPS, TURN, Array
 
 # A path: parameters, shape (n,), and order, to the series of the place (x + i y) there.
@@ -17,9 +19,6 @@ Path = Callable[[Array, int], Taylor]
 _UNIFORM = 720
 # Samples draw near a sharp turn by this ratio, down to this distance.
 _GRADING, _NEAREST = 1.6, 1e-9
-_SERIES = 16
-_ODD = range(1, _SERIES, 2)
-_MOST_SEEDS = 3000
 # A point whose speed falls below this part of its largest is said to stop: a cusp.
 _STILL = 1e-11
 
@@ -94,40 +93,107 @@ def _graded(sharp: Array) -> Array:
     return np.unique(places)
 
 
-def double_points(path: Path, slow: Slow, sharp: Array, size: float) -> Doubles:
+def double_points(path: Path, seeds: Array, stops: Array, size: float) -> Doubles:
     """Return the double points of one closed path (crunodes), each once.
 
-    Segments between samples seed Newton's method where their surroundings - boxes wide enough for
-    the arcs - meet.  The equation is ``(z(s1) - z(s2)) / sin((s1 - s2)/2) = 0``, so that the
-    trivial solution s1 = s2 does not draw it in.
-
-    Parameters
-    ----------
-    path : callable
-        The path.
-    slow : Slow
-        Its slowest places: a small loop sits about one of them.
-    sharp : ndarray
-        Parameters about which the path may turn sharply.
-    size : float
-        A length to measure round-off by.
+    By Newton's method from pairs of parameters near them.  The equation is ``(z(s1) - z(s2)) /
+    sin((s1 - s2)/2) = 0``, so that the trivial solution s1 = s2 does not draw it in.  Loops so
+    small that it loses digits stay as they are, but for those that a cusp has swallowed.  Round-off
+    is measured by a length of the given size.
     """
-    loops, reach = _small_loops(path, slow, size)
-    first, second = _seeds(path, _graded(np.concatenate([sharp, slow.parameter])))
-    for _ in range(40 if first.size else 0):
-        first, second = _newton(path, first, second)
-    apart = (second - first + pi) % TURN - pi
-    middle, half = first + 0.5 * apart, np.abs(np.sin(0.5 * apart))
-    about = np.abs(np.sin(0.5 * (middle[:, None] - slow.parameter)))
-    small = np.any((about < reach) & (half[:, None] < 0.5 * reach), axis=1) | (half < 1e-6)
-    first, second = first[~small] % TURN, second[~small] % TURN
-    one, two = path(first, 1), path(second, 1)
+    pairs = seeds.T.copy()
+    wide = np.abs(np.sin(0.5 * (pairs[1] - pairs[0]))) > 1e-2
+    for _ in range(40 if np.any(wide) else 0):
+        stepped = _newton(path, *pairs[:, wide])
+        moved = np.max(np.abs(stepped - pairs[:, wide]))
+        pairs[:, wide] = stepped
+        if moved < 1e-13:
+            break
+    beside = np.abs(np.sin(0.5 * (pairs[:, :, None] - stops)))
+    swallowed = np.any(np.all(beside < 1e-3, axis=0), axis=1)
+    apart = np.abs(np.sin(0.5 * (pairs[1] - pairs[0]))) > 1e-6
+    pairs = pairs[:, apart & ~swallowed] % TURN
+    one, two = (path(s, 1) for s in pairs)
     gap = np.abs(one.c[0] - two.c[0])
     good = (gap <= 64 * EPS * size) & (_crossing_sine(one, two) > 64 * EPS)
     order = np.flatnonzero(good)
-    order = order[np.argsort(gap[order], kind="stable")]
-    pairs = np.column_stack([first, second])[order]
-    return _each_once(path, np.concatenate([loops, pairs]))
+    return _each_once(path, pairs.T[order[np.argsort(gap[order], kind="stable")]])
+
+
+def crossings(motion: Circuit, place: complex) -> Array:
+    """Return pairs of parameters (k, 2) at which a point of coupler or block is in one place.
+
+    Of the direction u of the link the crank demands ``2 Re(a u) = M``, the other joint ``2 Re(b u)
+    = N``.  Two directions satisfy both where the one is a multiple of the other, ``a = r b`` and
+    ``M = r N``: at the real roots r of a polynomial, and at the fixed pivot where r is infinite.
+    """
+    g, kind = place, motion.linkage.mechanism
+    locus = {"four_bar": _four_bar, "slider_crank": _slider_crank, "quick_return": _quick_return}
+    places, other = locus[kind](motion.sizes, g)
+    pairs = []
+    for p in places:
+        crank = p.conjugate() * g, abs(p) ** 2 + abs(g) ** 2 - motion.sizes["crank"] ** 2
+        factor, level = max(crank, other(p), key=lambda equation: abs(equation[0]))
+        cosine = level / (2.0 * abs(factor))
+        if not abs(cosine) < 1.0:
+            continue
+        turns = [complex(cosine, sign * np.sqrt(1.0 - cosine**2)) for sign in (1.0, -1.0)]
+        both = [_parameter(motion, p, g, u * factor.conjugate() / abs(factor)) for u in turns]
+        if None not in both:
+            pairs.append(both)
+    return np.array(pairs, dtype=float).reshape(-1, 2)
+
+
+# Places p at which one equation for u is a multiple of the other, and b, N of the other joint at p.
+Locus: TypeAlias = tuple[list[complex], Callable[[complex], tuple[complex, float]]]
+
+
+def _four_bar(size: Mapping[str, float], g: complex) -> Locus:
+    f, n, d = size["frame"], size["follower"], size["coupler"] - g
+    square = [abs(d) ** 2, -2.0 * (d * g.conjugate()).real, abs(g) ** 2]
+    terms = np.polymul([abs(d) ** 2 - n**2, abs(g) ** 2 - size["crank"] ** 2], square)
+    terms = np.polyadd(terms, [f**2 * abs(d) ** 2, f**2 * abs(g) ** 2, 0.0])
+    places = [f * r / (r - (g / d).conjugate()) for r in _real_roots(terms)]
+    if abs(abs(d) - n) < 1e-6 * n:
+        places.append(complex(f))
+    return places, lambda p: ((p - f).conjugate() * d, n**2 - abs(p - f) ** 2 - abs(d) ** 2)
+
+
+def _slider_crank(size: Mapping[str, float], g: complex) -> Locus:
+    d, e = size["coupler"] - g, size["offset"]
+    ratio = d / g
+    least = abs(g) ** 2 - size["crank"] ** 2
+    roots = _real_roots([abs(ratio) ** 2 + 2.0 * ratio.real, -2.0 * e, least])
+    places = [1j * r * ratio.conjugate() for r in roots]
+    return places, lambda p: (-1j * d, 2.0 * (e - p.imag))
+
+
+def _quick_return(size: Mapping[str, float], g: complex) -> Locus:
+    f, least = size["frame"], abs(g) ** 2 - size["crank"] ** 2
+    terms = np.polymul([2.0 * g.imag, least], [1.0, 2.0 * g.imag, abs(g) ** 2])
+    roots = _real_roots(np.polyadd(terms, [f**2, 0.0, 0.0]))
+    places = [1j * r * f / (g.conjugate() - 1j * r) for r in roots]
+    if abs(g.imag) < 1e-6 * abs(g):
+        places.append(complex(-f))
+    return places, lambda p: (-1j * (p + f).conjugate(), -2.0 * g.imag)
+
+
+def _real_roots(terms: ArrayLike) -> Array:
+    """Return the real roots of a polynomial, and those that may be real."""
+    roots = np.roots(terms)
+    return np.asarray(roots[np.abs(roots.imag) <= 1e-6 * np.abs(roots)].real)
+
+
+def _parameter(motion: Circuit, p: complex, place: complex, u: complex) -> float | None:
+    """Return where on the circuit the link has the direction u with its point at p."""
+    pin = p - place * u
+    if motion.linkage.mechanism == "four_bar":
+        branch = np.sign(((motion.sizes["frame"] - pin).conjugate() * u).imag)
+    elif motion.linkage.mechanism == "slider_crank":
+        branch = np.sign(u.real)
+    else:
+        branch = np.sign((u.conjugate() * (pin + motion.sizes["frame"])).real)
+    return motion.parameter(pin / motion.sizes["crank"], float(branch))
 
 
 def _each_once(path: Path, pairs: Array) -> Doubles:
@@ -152,51 +218,6 @@ def _crossing_sine(one: Taylor, two: Taylor) -> Array:
     return np.asarray(np.where(product > 0, sine, 0.0))
 
 
-def _small_loops(path: Path, slow: Slow, size: float) -> tuple[Array, Array]:
-    """Return the small loops about slowest places, (k, 2), and how far each place's series holds.
-
-    With m the middle and t the half-width of a loop, ``(z(m + t) - z(m - t))/(2 t)`` is a series
-    in t^2 that begins with z'(m): the difference of two near places never has to be taken.
-    """
-    c = path(slow.parameter, _SERIES).c
-    last = np.maximum(np.abs(c[_SERIES - 1]), 1e-300)
-    # Loops up to this half-width in the parameter are solved for as series about their middle.
-    reach = np.minimum(0.02, (EPS * size / last) ** (1.0 / (_SERIES - 2)))
-    widest = reach**2
-    middle, across = slow.parameter, 1j * c[2]
-    lift = (across.conj() * c[3]).real
-    square = -(across.conj() * c[1]).real / np.where(lift != 0, lift, 1.0)
-    for _ in range(12):
-        # Beyond the reach of the series there is no small loop.
-        square = np.clip(square, -widest, widest)
-        value, by_middle, by_square = _loop_series(path(middle, _SERIES).c, square)
-        determinant = (by_middle.conj() * by_square).imag
-        determinant = np.where(determinant == 0, 1e-300, determinant)
-        with np.errstate(over="ignore", invalid="ignore"):
-            x = (by_square.conj() * value).imag / determinant
-            y = -(by_middle.conj() * value).imag / determinant
-        middle = middle + np.clip(np.nan_to_num(x), -reach, reach)
-        square = square + np.clip(np.nan_to_num(y), -widest, widest)
-    square = np.clip(square, -widest, widest)
-    value, _, _ = _loop_series(path(middle, _SERIES).c, square)
-    near = np.abs(np.sin(0.5 * (middle - slow.parameter))) < reach
-    stands = slow.speed <= _STILL * slow.fastest
-    good = (np.abs(value) <= 64 * EPS * size) & (square > 0) & near & ~stands
-    # The outer half is left to the search among samples.
-    good &= square < 0.25 * widest
-    half = np.sqrt(square[good])
-    loops = np.column_stack([middle[good] - half, middle[good] + half]) % TURN
-    return loops.reshape(-1, 2), reach
-
-
-def _loop_series(c: Complex, square: Array) -> tuple[Complex, Complex, Complex]:
-    """Return the series of a loop in the squared half-width, and its two derivatives."""
-    value = sum(c[k] * square ** (k // 2) for k in _ODD)
-    by_middle = sum((k + 1) * c[k + 1] * square ** (k // 2) for k in _ODD)
-    by_square = sum((k // 2) * c[k] * square ** (k // 2 - 1) for k in _ODD[1:])
-    return np.asarray(value), np.asarray(by_middle), np.asarray(by_square)
-
-
 def _distance(first: Array, second: Array, i: int, j: int) -> float:
     """Return how far two pairs of parameters are apart, either way round."""
 
@@ -207,7 +228,8 @@ def _distance(first: Array, second: Array, i: int, j: int) -> float:
     return min(straight, max(turn(first[i] - second[j]), turn(second[i] - first[j])))
 
 
-def _newton(path: Path, first: Array, second: Array) -> tuple[Array, Array]:
+def _newton(path: Path, first: Array, second: Array) -> Array:
+    """Return the next parameters, (2, k)."""
     places, rates = path(np.concatenate([first, second]), 1).c.reshape(2, 2, -1)
     gap = places[0] - places[1]
     half = 0.5 * (first - second)
@@ -222,53 +244,4 @@ def _newton(path: Path, first: Array, second: Array) -> tuple[Array, Array]:
         y = (a.conj() * -gap).imag / determinant
     # The farther the step, the less it can be trusted.
     x, y = (np.clip(np.nan_to_num(step), -0.2, 0.2) for step in (x, y))
-    return first + x, second + y
-
-
-def _seeds(path: Path, s: Array) -> tuple[Array, Array]:
-    """Return pairs of parameters near which the path may meet itself."""
-    at = path(s, 2)
-    z, bend = at.c[0], np.abs(at.derivative(2))
-    ends = np.roll(z, -1)
-    width = np.diff(np.append(s, s[0] + TURN))
-    # Twice the rise of an arc over its chord.
-    rise = np.maximum(bend, np.roll(bend, -1)) * width**2 / 4
-    low_x = np.minimum(z.real, ends.real) - rise
-    high_x = np.maximum(z.real, ends.real) + rise
-    low_y = np.minimum(z.imag, ends.imag) - rise
-    high_y = np.maximum(z.imag, ends.imag) + rise
-    count = len(s)
-    meet = (low_x[:, None] <= high_x) & (low_x <= high_x[:, None])
-    meet &= (low_y[:, None] <= high_y) & (low_y <= high_y[:, None])
-    i, j = np.nonzero(np.triu(meet, k=2))
-    inner = (i > 0) | (j < count - 1)
-    i, j = i[inner], j[inner]
-    gap = _segment_gap(z[i], ends[i], z[j], ends[j])
-    near = gap <= rise[i] + rise[j]
-    if np.count_nonzero(near) > _MOST_SEEDS:
-        # A path that all but retraces itself: the chords that cross say enough.
-        near = gap == 0
-    i, j = i[near][:_MOST_SEEDS], j[near][:_MOST_SEEDS]
-    middle = s + 0.5 * width
-    # The middles, and each end with the other's far end: two close crossings draw in one each.
-    first = np.concatenate([middle[i], s[i], s[i] + width[i]])
-    second = np.concatenate([middle[j], s[j] + width[j], s[j]])
-    return first, second
-
-
-def _segment_gap(a: Complex, b: Complex, c: Complex, d: Complex) -> Array:
-    """Return the distance of segments ab and cd, zero where they cross."""
-
-    def from_line(p: Complex, q: Complex, r: Complex) -> Array:
-        along = q - p
-        square = np.abs(along) ** 2
-        share = ((r - p) * along.conj()).real / np.where(square > 0, square, 1.0)
-        return np.asarray(np.abs(r - p - np.clip(share, 0, 1) * along))
-
-    def side(p: Complex, q: Complex, r: Complex) -> Array:
-        return np.asarray(np.sign(((q - p).conj() * (r - p)).imag))
-
-    ends = (from_line(a, b, c), from_line(a, b, d), from_line(c, d, a), from_line(c, d, b))
-    gap = np.minimum.reduce(ends)
-    cross = (side(a, b, c) != side(a, b, d)) & (side(c, d, a) != side(c, d, b))
-    return np.where(cross, 0.0, gap)
+    return np.stack([first + x, second + y])

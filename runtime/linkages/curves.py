@@ -14,13 +14,14 @@ from ..core.errors import BadInput, bad
 from ..core.inputs import require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .circuits import Circuit, Complex, Taylor, planar
-from .curve_points import Doubles, Slow, double_points, slowest
+from .curve_points import Doubles, crossings, double_points, slowest
 from .four_bar import FourBar
 from .linkage import EPS, Array, Linkage, require_linkage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+# Panels to begin with, and how often they are halved.
 _PANELS, _HALVINGS = 24, 60
 
 
@@ -115,21 +116,6 @@ class CouplerCurve(Result):
         "crossing_angle": ("double_point",),
     }
 
-    @property
-    def tacnodes(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of double points so close that the branches all but touch there.
-
-        Closer than a hundredth of the path's extent, both crossing at less than 0.1 rad.
-        """
-        extent = float(np.max(np.ptp(self.position, axis=0)))
-        flat = np.flatnonzero(self.crossing_angle < 0.1)
-        return tuple(
-            (int(i), int(j))
-            for place, i in enumerate(flat)
-            for j in flat[place + 1 :]
-            if np.linalg.norm(self.double_position[i] - self.double_position[j]) < 0.01 * extent
-        )
-
     def cognates(self) -> tuple[Cognate, Cognate]:
         """Return the two other four-bars that trace the path (Roberts and Chebyshev).
 
@@ -219,7 +205,7 @@ def coupler_curve(
     trace = _Trace(motion, link, place / motion.scale)
     trace.require_motion()
     slow = slowest(trace.series, trace.sharp)
-    doubles = trace.doubles(slow)
+    doubles = trace.doubles(slow.stops)
     s = _parameters(motion, int(points))
     at = trace.series(s, 2)
     return CouplerCurve(
@@ -296,25 +282,13 @@ class _Trace:
                 "along, across", "the pivot of the link", "a point that moves", "choose another"
             )
 
-    @property
-    def runs_back(self) -> bool:
-        """True where the path is a line or an arc, or a circle: nothing crosses on it."""
-        s = np.linspace(0.0, 2.0 * pi, 257)
-        pivoted = {"crank", "follower", "rod", "slider"}
-        if self.link in pivoted:
-            return True
-        at = self.motion.links(s, 0)
-        z = at[self.link].origin.c[0] + self.place * at[self.link].direction.c[0]
-        ends = [self.motion.sizes["crank"] * at["crank"].direction.c[0]]
-        if self.motion.kind != "quick_return":
-            joint = at[self.link]
-            ends.append(joint.origin.c[0] + self.motion.sizes["coupler"] * joint.direction.c[0])
-        return any(np.max(np.abs(z - end)) <= 64 * EPS * self.size for end in ends)
-
-    def doubles(self, slow: Slow) -> Doubles:
-        if self.runs_back:
-            return Doubles(np.zeros((0, 2)), np.zeros(0, dtype=complex), np.zeros(0))
-        return double_points(self.series, slow, self.sharp, self.size)
+    def doubles(self, stops: Array) -> Doubles:
+        """Return the double points; on a line, an arc or a circle about a joint nothing crosses."""
+        joints = (0.0, self.motion.sizes.get("coupler", 0.0))
+        at_joint = min(abs(self.place - joint) for joint in joints) <= 64 * EPS * self.size
+        free = self.link in ("coupler", "block") and not at_joint
+        seeds = crossings(self.motion, self.place) if free else np.zeros((0, 2))
+        return double_points(self.series, seeds, stops, self.size)
 
     def local(self, s: Array, at: Taylor) -> dict[str, Any]:
         """Return place, velocity, acceleration, curvature and its centre at samples."""
@@ -404,14 +378,14 @@ class _Trace:
         size, lim = self.motion.sizes, self.motion.limits
         if self.link in ("crank", "slider"):
             return np.ones(s.shape)
-        if self.motion.kind == "quick_return":
+        if self.motion.linkage.mechanism == "quick_return":
             reach = np.abs(self.motion.joints(s)["B"] / self.motion.scale + size["frame"])
             return 2.0 + (size["frame"] + size["crank"]) / reach
-        psi = self.motion.crank_angle(s) - self.motion.base
+        psi = self.motion.crank_angle(s) - self.motion.linkage.fold_axis
         q = np.sin(psi / 2) ** 2
         # The root passes on the round-off of its factors.
         root = _root_blur(q, lim.q1, lim.q2, *self.motion.swings)
-        if self.motion.kind == "slider_crank":
+        if self.motion.linkage.mechanism == "slider_crank":
             return 3.0 + 2.0 * size["crank"] * root / size["coupler"]
         f, c, m, n = (size[k] for k in ("frame", "crank", "coupler", "follower"))
         reach = np.sqrt((f - c) ** 2 + 4 * f * c * q)
@@ -463,45 +437,29 @@ def _checks(trace: _Trace, s: Array, crossings: int) -> dict[str, Check]:
                 blur = blur * (1 + np.abs(at.derivative(1)) / trace.size)
             worst = float(np.max(gap / blur))
             checks[f"{name} against the mechanism's motion, over their round-off"] = Check(worst, 1)
-    if motion.kind == "four_bar" and trace.link == "coupler":
+    if motion.linkage.mechanism == "four_bar" and trace.link == "coupler":
         residual = sextic_residual(motion.sizes, trace.place, at.c[0])
         checks["equation of sixth degree, over its terms"] = Check(float(np.max(residual)), 1e-12)
         checks["double points"] = Check(float(crossings), 3.0)
     return checks
 
 
-def _integrate_turn(
-    f: Callable[[Array], Array], breaks: Array, relative: float = 4.0 * EPS
-) -> tuple[Array, Array]:
+def _integrate_turn(f: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:
     """Integrate over 0 to 2 pi, halving the panels on which two Gauss rules differ.
 
-    Parameters
-    ----------
-    f : callable
-        Parameter, shape (n,), to integrands, shape (k, n).
-    breaks : ndarray, shape (b,)
-        Parameters at which an integrand has a kink: panels end there.
-    relative : float
-        A panel is good where the rules differ by no more than this part of the integral of the
-        size of the integrand.
-
-    Returns
-    -------
-    integral, error : ndarray, shape (k,)
-        The error is the sum of the differences of the panels, generous, and round-off.
+    Panels end at the breaks, where an integrand has a kink.  The error is the sum of the
+    differences of the panels, generous, and round-off.
     """
     ends = np.unique(np.concatenate([np.linspace(0, 2 * pi, _PANELS + 1), breaks % (2 * pi)]))
     low, high = ends[:-1], ends[1:]
     for level in range(_HALVINGS):
-        # Nodes of the two Gauss rules on a panel, panels to begin with, and how often they are
-        # halved.
         few, _ = _panels(f, low, high, 10)
         many, size = _panels(f, low, high, 16)
         difference = np.abs(many - few)
         if level == 0:
             scale = np.sum(size, axis=1)
             total, error, whole = (np.zeros(len(many)) for _ in range(3))
-        good = np.all(difference <= relative * scale[:, None] / 8, axis=0)
+        good = np.all(difference <= 0.5 * EPS * scale[:, None], axis=0)
         # More panels than this at once: what is left is the round-off of the integrands.
         if level == _HALVINGS - 1 or np.count_nonzero(~good) > 2000:
             good[:] = True

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from types import ModuleType
 from typing import ClassVar
 
@@ -15,8 +16,10 @@ from ...generated import four_bar_kinematics
 from ..core.errors import BadInput, Problem, bad
 from .linkage import (
     ROUND_OFFS,
+    TINY,
     Array,
     Assembly,
+    Limits,
     Linkage,
     LinkMotion,
     Motion,
@@ -113,7 +116,6 @@ class FourBar(Linkage):
         "coupler": ("B", "C"),
         "follower": ("D", "C"),
     }
-    met: ClassVar[Mapping[str, str]] = {"coupler": "follower"}
 
     def __post_init__(self) -> None:
         """Check the lengths."""
@@ -122,15 +124,17 @@ class FourBar(Linkage):
         if not problems:
             longest = max(self.lengths, key=lambda name: self.lengths[name])
             rest = sum(self.lengths.values()) - self.lengths[longest]
-            others = [-size for name, size in self.unit_lengths.items() if name != longest]
-            # Correctly rounded, as the class is: a sum in floats may close what cannot close.
-            if math.fsum([self.unit_lengths[longest], *others]) >= 0.0:
+            # Exact, as the class is: a sum in floats may close what cannot close.
+            exact = {name: Fraction(float(size)) for name, size in self.lengths.items()}
+            excess = 2 * exact[longest] - sum(exact.values())
+            why = "cannot close" if excess > 0 else "is stretched and cannot move"
+            if excess >= 0:
                 problems.append(
                     Problem(
                         f"FourBar.{longest}",
                         f"{self.lengths[longest]:g}",
                         f"less than {rest:g}, the sum of the other three",
-                        "the linkage cannot close; shorten this link or lengthen another",
+                        f"the linkage {why}; shorten this link or lengthen another",
                     )
                 )
         if problems:
@@ -142,10 +146,20 @@ class FourBar(Linkage):
         return abs(self.coupler - self.follower), self.coupler + self.follower
 
     @property
-    def crank_turns(self) -> bool:
-        """True where the crank can turn fully without passing a change point."""
-        (inner, _), (_, outer) = self._fold_sides
-        return inner < 0.0 and outer < 0.0
+    def limits(self) -> Limits:
+        """Where the loop can close: where coupler and follower come into one line."""
+        f, c, m, n = self.unit_lengths.values()
+
+        def product(one: tuple[float, ...], other: tuple[float, ...]) -> float:
+            frame, crank = (2.0 * max(size, TINY) for size in (f, c))
+            return math.fsum(one) / frame * (math.fsum(other) / crank)
+
+        return Limits(
+            product((m, -n, c, -f), (m, -n, f, -c)),
+            product((f, c, n, -m), (f, c, m, -n)),
+            product((m, n, c, -f), (m, n, f, -c)),
+            product((f, c, -m, -n), (f, c, m, n)),
+        )
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
@@ -163,40 +177,6 @@ class FourBar(Linkage):
     ) -> FourBarMotion:
         """Return the motion of coupler and follower; see :meth:`Linkage.motion`."""
         return self._moved(FourBarMotion, theta, speed, acceleration)
-
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
-        inner, outer = (self._fold(*sides) for sides in self._fold_sides)
-        if inner is None:
-            high = np.pi if outer is None else outer
-            return ((-high, high),)
-        if outer is None:
-            return ((inner, 2.0 * np.pi - inner),)
-        return ((-outer, -inner), (inner, outer))
-
-    @property
-    def _fold_sides(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """How far the shortest and the longest BD are above its least and below its greatest.
-
-        Those of coupler and follower, those of frame and crank; each sum is correctly rounded, so
-        that no round-off can change its sign.
-        """
-        frame, crank, coupler, follower = self.unit_lengths.values()
-        thick, thin = max(coupler, follower), min(coupler, follower)
-        far, near = max(frame, crank), min(frame, crank)
-        return (
-            (math.fsum((thick, -thin, near, -far)), math.fsum((far, near, thin, -thick))),
-            (math.fsum((thick, thin, near, -far)), math.fsum((far, near, -thin, -thick))),
-        )
-
-    def _fold(self, above: float, below: float) -> float | None:
-        """Return the crank angle between 0 and pi at which BD is so far within its limits."""
-        if above < 0.0 or below < 0.0:
-            return None
-        frame, crank, *_ = self.unit_lengths.values()
-        near, far = abs(frame - crank), frame + crank
-        sine2, cosine2 = above * (above + 2.0 * near), below * (2.0 * far - below)
-        return float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
 
     @property
     def _expected(self) -> str:

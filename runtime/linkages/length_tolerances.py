@@ -436,16 +436,9 @@ def box_of(lengths: Mapping[str, float], tolerances: Mapping[str, float]) -> dic
 
 
 def margin(box: Box, theta: Array, width: float = 0.0) -> Array:
-    """Return how far the worst linkage of a box is from folding, in lengths.
+    """Return how far the worst linkage of a box of lengths is from folding, in lengths.
 
-    Parameters
-    ----------
-    box : mapping of str to (float, float)
-        Limits of each length; their names tell the mechanism.
-    theta : ndarray
-        Crank angles [rad].
-    width : float
-        Tolerance of the crank angles [rad], less than a quarter turn.
+    The names of the lengths tell the mechanism; ``width`` is the tolerance of the crank angles.
     """
     if width > 0.0:
         start = np.pi / 2 if "offset" in box else 0.0

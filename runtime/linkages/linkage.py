@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from inspect import signature
-from numbers import Real
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 
@@ -15,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.errors import Problem, bad
+from ..core.inputs import is_finite
 from ..core.results import Check, DeferredChecks, Result, provenance
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ Terms: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 TURN = 2.0 * np.pi
 EPS = float(np.finfo(float).eps)
+TINY = float(np.finfo(float).tiny)
 # A round-off of each of the numbers that an expression comes from, three times.
 ROUND_OFFS = 1.5 * EPS
 # A position that a round-off of the lengths moves so far [rad] is a change point.
@@ -178,9 +179,6 @@ class Motion(Result, ABC):
     def point(self, link: str, along: ArrayLike, across: ArrayLike = 0.0) -> PointMotion:
         """Return place, velocity and acceleration of a point of a moving link.
 
-        A point of a link between two moving joints is reached from the nearer one, so that either
-        joint moves with its other link to the last digit.
-
         Parameters
         ----------
         link : str
@@ -202,20 +200,7 @@ class Motion(Result, ABC):
         place = np.asarray(along, dtype=float), np.asarray(across, dtype=float)
         if not all(np.all(np.isfinite(part)) for part in place):
             raise bad("along, across", "a value that is not finite", "finite lengths", "correct it")
-        near, far = self.link(link).point(*place), self._at_far_joint(link)
-        if far is None:
-            return near
-        length: Any = self.linkage.lengths[link]
-        nearer = 2.0 * place[0] > np.real(length)
-        if not np.any(nearer):
-            return near
-        there = far.point(place[0] - length, place[1])
-        chosen = nearer[..., np.newaxis]
-        return PointMotion(
-            np.where(chosen, there.position, near.position),
-            np.where(chosen, there.velocity, near.velocity),
-            np.where(chosen, there.acceleration, near.acceleration),
-        )
+        return self.link(link).point(*place)
 
     @property
     def joints(self) -> Mapping[str, Array]:
@@ -251,15 +236,6 @@ class Motion(Result, ABC):
     def _other_link(self, name: str) -> LinkMotion:
         """Return the motion of a moving link that is not the crank."""
 
-    def _at_far_joint(self, name: str) -> LinkMotion | None:
-        """Return the motion of a link with its origin at its second joint, where that moves too."""
-        if name not in self.linkage.met:
-            return None
-        other, here = self.linkage.met[name], self.link(name)
-        at = self.link(other).point(self.linkage.lengths.get(other, 0.0))
-        turning = (here.angle, here.speed, here.angular_acceleration)
-        return LinkMotion(at.position, at.velocity, at.acceleration, *turning)
-
     def _about(self, pivot: Any, angle: Array, speed: Array, change: Array) -> LinkMotion:
         """Return the motion of a link that turns about a fixed point of the frame line."""
         still = np.zeros((*np.shape(self.theta2), 2))
@@ -270,6 +246,32 @@ class Motion(Result, ABC):
         """Return the motion of a link that begins at B."""
         pin = self.link("crank").point(self.linkage.lengths["crank"])
         return LinkMotion(pin.position, pin.velocity, pin.acceleration, angle, speed, change)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Where the loop can close: ``q1 <= q <= q2``, each with its complement to 1.
+
+    ``q = sin^2(psi/2)``, psi being the crank angle from ``Linkage.fold_axis``.  Every factor is a
+    correctly rounded sum of lengths, so that no round-off can change a sign.
+    """
+
+    q1: float
+    one_less_q1: float
+    q2: float
+    one_less_q2: float
+
+    @property
+    def ends(self) -> tuple[float | None, float | None]:
+        """Angles psi from 0 to pi at which the linkage folds, None where the crank passes."""
+        low, high = (
+            float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2))) if stops >= 0.0 else None
+            for sine2, cosine2, stops in (
+                (self.q1, self.one_less_q1, self.q1),
+                (self.q2, self.one_less_q2, self.one_less_q2),
+            )
+        )
+        return low, high
 
 
 M = TypeVar("M", bound=Motion)
@@ -288,8 +290,8 @@ class Linkage(ABC):
         The moving links, in the order 2, 3, 4.
     bars : mapping of str to tuple of str
         The joints between which each moving link is drawn.
-    met : mapping of str to str
-        The moving link, if any, at whose far end the second joint of a link is.
+    fold_axis : float
+        Crank angle [rad] about which the folds are mirror images.
     """
 
     mechanism: ClassVar[str]
@@ -298,7 +300,7 @@ class Linkage(ABC):
     names: ClassVar[tuple[str, ...]]
     links: ClassVar[tuple[str, str, str]]
     bars: ClassVar[Mapping[str, tuple[str, ...]]]
-    met: ClassVar[Mapping[str, str]] = {}
+    fold_axis: ClassVar[float] = 0.0
 
     @property
     def lengths(self) -> Mapping[str, float]:
@@ -320,10 +322,14 @@ class Linkage(ABC):
 
     @property
     @abstractmethod
+    def limits(self) -> Limits:
+        """Where the loop can close."""
+
+    @property
     def crank_turns(self) -> bool:
         """True where the crank can turn fully without passing a change point."""
+        return self.limits.q1 < 0.0 and self.limits.one_less_q2 < 0.0
 
-    @abstractmethod
     def crank_ranges(self) -> tuple[tuple[float, float], ...]:
         """Return the intervals of crank angle [rad] that one turn offers; their ends are folds.
 
@@ -336,6 +342,15 @@ class Linkage(ABC):
             Without their ends, each up to whole turns; ``((-pi, pi),)`` for a crank that turns
             fully, for which -pi and pi are no folds.
         """
+        axis, (low, high) = self.fold_axis, self.limits.ends
+        if low is None and high is None:
+            return ((-np.pi, np.pi),)
+        if low is None or high is None:
+            first = low or 0.0
+            return ((axis - high, axis + high),) if high else ((axis + first, axis + TURN - first),)
+        if axis:
+            return ((axis + low, axis + high), (axis + TURN - high, axis + TURN - low))
+        return ((-high, -low), (low, high))
 
     @abstractmethod
     def require_full_turn(self) -> None:
@@ -594,7 +609,7 @@ def length_problems(owner: str, lengths: Mapping[str, Any]) -> list[Problem]:
     return [
         Problem(f"{owner}.{name}", repr(value), "a positive finite length", "correct it")
         for name, value in lengths.items()
-        if not (isinstance(value, Real) and 0.0 < float(value) < np.inf)
+        if not (is_finite(value) and value > 0.0)
     ]
 
 

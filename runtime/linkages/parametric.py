@@ -97,7 +97,7 @@ class Parametric:
         """Return what :meth:`_moved` has computed as a motion, for points of the links."""
         lengths = {name: numbers[name] for name in self.linkage.names}
         one = self.linkage
-        linkage: Any = SimpleNamespace(lengths=lengths, links=one.links, met=one.met)
+        linkage: Any = SimpleNamespace(lengths=lengths, links=one.links)
         drive: Any = {"omega2": self.speed, "alpha2": self.acceleration}
         return self.linkage.moves(
             linkage=linkage,

@@ -207,7 +207,7 @@ def _bars(motion: Circuit, s: float) -> dict[str, Complex]:
 def _pins(motion: Circuit, s: float) -> Complex:
     """Return the places of the moving pins."""
     at = motion.joints(np.array([s]))
-    names = ("B",) if motion.kind == "quick_return" else ("B", "C")
+    names = ("B",) if motion.linkage.mechanism == "quick_return" else ("B", "C")
     return np.array([complex(at[name][0]) for name in names])
 
 
@@ -230,7 +230,7 @@ def _draw_frame(ax: Axes, motion: Circuit, places: Iterable[Complex] = ()) -> No
         foot = pivot + unit * np.array([0, -0.6 - 0.9j, 0.6 - 0.9j, 0])
         ax.fill(foot.real, foot.imag, color="0.8", ec=_GREY, lw=1.0, zorder=1)
         ax.plot(pivot.real, pivot.imag, "o", color="w", mec=_GREY, ms=5, zorder=5)
-    if motion.kind == "slider_crank":
+    if motion.linkage.mechanism == "slider_crank":
         travel = joints["C"].real
         ends = np.array([np.min(travel) - 1.6 * unit, np.max(travel) + 1.6 * unit])
         for side in (-0.6, 0.6):

@@ -16,8 +16,10 @@ from ..core.errors import BadInput, Problem, bad
 from .linkage import (
     EPS,
     ROUND_OFFS,
+    TINY,
     UNDECIDED,
     Array,
+    Limits,
     Linkage,
     LinkMotion,
     Motion,
@@ -140,9 +142,20 @@ class QuickReturn(Linkage):
         return self.crank / self.frame
 
     @property
-    def crank_turns(self) -> bool:
-        """True where the crank can turn fully: the rod is long enough and eps is not 1."""
-        return self._long_enough and self.frame != self.crank
+    def limits(self) -> Limits:
+        """Where block and rod meet: between the rod's tip and, with eps = 1, its pivot."""
+        frame, crank, rod = self.unit_lengths.values()
+        longer, shorter = self._ends
+        across, along = (2.0 * max(size, TINY) for size in (frame, crank))
+        apart = (frame - crank) / across * ((frame - crank) / along)
+        if self._long_enough:
+            return Limits(-1.0, 2.0, 1.0 + apart, -apart)
+        return Limits(
+            shorter / across * ((frame + crank + rod) / along),
+            longer / across * ((rod + abs(frame - crank)) / along),
+            1.0 + apart,
+            -apart,
+        )
 
     @property
     def _long_enough(self) -> bool:
@@ -182,19 +195,6 @@ class QuickReturn(Linkage):
     ) -> QuickReturnMotion:
         """Return the motion of rod and block; see :meth:`Linkage.motion`."""
         return self._moved(QuickReturnMotion, theta, speed, acceleration)
-
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
-        frame, crank, rod = self.unit_lengths.values()
-        if self._long_enough:
-            return ((-np.pi, np.pi),)
-        longer, shorter = self._ends
-        cosine2 = longer * (rod + abs(frame - crank))
-        sine2 = shorter * (frame + crank + rod)
-        least = float(2.0 * np.arctan2(np.sqrt(sine2), np.sqrt(cosine2)))
-        if frame == crank:
-            return ((least, np.pi), (np.pi, 2.0 * np.pi - least))
-        return ((least, 2.0 * np.pi - least),)
 
     def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
         rod = self.unit_lengths["rod"]

@@ -16,9 +16,11 @@ from ...generated import slider_crank_kinematics
 from ..core.errors import BadInput, Problem, bad
 from .linkage import (
     ROUND_OFFS,
+    TINY,
     UNDECIDED,
     Array,
     Assembly,
+    Limits,
     Linkage,
     LinkMotion,
     Motion,
@@ -125,7 +127,7 @@ class SliderCrank(Linkage):
         "coupler": ("B", "C"),
         "slider": ("C",),
     }
-    met: ClassVar[Mapping[str, str]] = {"coupler": "slider"}
+    fold_axis: ClassVar[float] = -np.pi / 2.0
 
     def __post_init__(self) -> None:
         """Check the lengths."""
@@ -136,7 +138,8 @@ class SliderCrank(Linkage):
                 Problem("SliderCrank.offset", repr(self.offset), "a finite length", "correct it")
             )
         problems += assembly_problems("SliderCrank", self.assembly)
-        if not problems and self._spare(1.0) <= 0.0:
+        # Each factor is zero where the links just reach the guide, correctly rounded.
+        if not problems and min(self.limits.one_less_q1, self.limits.q2) <= 0.0:
             problems.append(
                 Problem(
                     "SliderCrank.offset",
@@ -149,17 +152,11 @@ class SliderCrank(Linkage):
             raise BadInput(*problems)
 
     @property
-    def crank_turns(self) -> bool:
-        """True where the crank can turn fully without passing a change point."""
-        return self._spare(-1.0) > 0.0
-
-    def _spare(self, side: float) -> float:
-        """Return by how much coupler plus (+1) or minus (-1) crank exceeds the offset.
-
-        Correctly rounded, so that no round-off can change its sign.
-        """
-        crank, coupler, offset = self.unit_lengths.values()
-        return math.fsum((coupler, side * crank, -abs(offset)))
+    def limits(self) -> Limits:
+        """Where the loop can close: where the coupler comes to stand across the guide."""
+        c, m, e = self.unit_lengths.values()
+        factors = ((c, e, -m), (c, m, -e), (c, m, e), (c, -e, -m))
+        return Limits(*(math.fsum(terms) / (2.0 * max(c, TINY)) for terms in factors))
 
     def require_full_turn(self) -> None:
         """Raise BadInput where the crank cannot turn fully."""
@@ -176,33 +173,6 @@ class SliderCrank(Linkage):
     ) -> SliderCrankMotion:
         """Return the motion of coupler and slider; see :meth:`Linkage.motion`."""
         return self._moved(SliderCrankMotion, theta, speed, acceleration)
-
-    def crank_ranges(self) -> tuple[tuple[float, float], ...]:
-        """Return the intervals of crank angle [rad]; see :meth:`Linkage.crank_ranges`."""
-        offset = self.unit_lengths["offset"]
-        upper, lower = self._beyond(offset), self._beyond(-offset)
-        quarter = np.pi / 2.0
-        if upper is None:
-            if lower is None:
-                return ((-np.pi, np.pi),)
-            return ((lower - quarter, 3.0 * quarter - lower),)
-        if lower is None:
-            return ((upper - 3.0 * quarter, quarter - upper),)
-        return (
-            (lower - quarter, quarter - upper),
-            (quarter + upper, 3.0 * quarter - lower),
-        )
-
-    def _beyond(self, offset: float) -> float | None:
-        """Return how far from upright, on the guide's other side, the crank is held up, if it is.
-
-        There ``crank cos(beyond) = coupler + offset``.
-        """
-        crank, coupler, _ = self.unit_lengths.values()
-        least, most = math.fsum((crank, -coupler, -offset)), math.fsum((crank, coupler, offset))
-        if least < 0.0 or most < 0.0:
-            return None
-        return float(2.0 * np.arctan2(np.sqrt(least), np.sqrt(most)))
 
     def _decided(self, m: Mapping[str, Array]) -> NDArray[np.bool_]:
         return np.asarray(self._blur(m) < UNDECIDED)

@@ -224,11 +224,9 @@ def transmission_angle(
     require_linkage(linkage)
     if isinstance(linkage, SliderCrank):
         return _slider_crank(linkage, band)
-    return (
-        _quick_return(linkage, band)
-        if isinstance(linkage, QuickReturn)
-        else _four_bar(linkage, band)
-    )
+    if isinstance(linkage, QuickReturn):
+        return _quick_return(linkage, band)
+    return _four_bar(linkage, band)
 
 
 def _result(
@@ -306,24 +304,25 @@ def _four_bar(linkage: FourBar, band: tuple[float, float]) -> TransmissionAngle:
     """Return the positions of a four-bar linkage (Aannaque 3.9, 3.10, and the triangles ACD)."""
     frame, crank, coupler, follower = linkage.unit_lengths.values()
     s = _Sums.of(frame, crank, coupler, follower)
-    inner, outer = s.three * s.four < 0, s.two > 0
     # Transmission angle 0 or pi at the folds, else from the diagonal frame -+ crank.
-    fold_0 = _angle((s.three, s.four), (s.less_coupler, s.less_follower)) if inner else 0.0
-    fold_pi = _angle((s.less_frame, s.less_crank), (s.two, s.total)) if outer else pi
+    inner, outer = linkage.limits.ends
+    turns = not inner and outer in (None, pi)
     centres, outputs = _four_bar_centres(s, crank, coupler, linkage.branch)
     output_range = _follower_range(s, linkage.branch)
     return _result(
         linkage,
         band,
-        least=0.0 if inner else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
-        greatest=pi if outer else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
-        at_least=_mirrored(fold_0),
-        at_greatest=_mirrored(fold_pi),
+        least=0.0 if inner is not None else _angle((s.three, s.four), (s.less_frame, s.less_crank)),
+        greatest=pi
+        if outer is not None
+        else _angle((s.less_coupler, s.less_follower), (s.two, s.total)),
+        at_least=_mirrored(0.0, -(inner or 0.0)),
+        at_greatest=_mirrored(0.0, -pi if outer is None else -outer),
         dead_centres=centres,
         output_at_dead_centres=outputs,
         output_range=output_range,
         swing=None if output_range is None else output_range[1] - output_range[0],
-        time_ratio=None if inner or outer else _time_ratio(centres),
+        time_ratio=_time_ratio(centres) if turns else None,
         round_off=8.0 * EPS * s.total**2 / (coupler * follower),
     )
 
@@ -367,9 +366,8 @@ def _slider_crank(linkage: SliderCrank, band: tuple[float, float]) -> Transmissi
     crank, coupler, offset = linkage.unit_lengths.values()
     over, under = fsum((coupler, offset, -crank)), fsum((coupler, -offset, -crank))
     reach = fsum((coupler, crank, -offset)), fsum((coupler, crank, offset))
-    upper, lower = over < 0, under < 0
-    high = _arcsine(offset + coupler, over, reach[1]) if upper else pi / 2
-    low = _arcsine(offset - coupler, under, reach[0]) if lower else -pi / 2
+    axis, (lower, upper) = linkage.fold_axis, linkage.limits.ends
+    turns = over > 0 and under > 0
     far = math.sqrt(reach[0]) * math.sqrt(reach[1])
     branch, round_off = linkage.branch, 8.0 * EPS * reach[1 if offset >= 0 else 0] / coupler
     centres, outputs = {"extended": math.atan2(offset, branch * far)}, {"extended": branch * far}
@@ -380,7 +378,6 @@ def _slider_crank(linkage: SliderCrank, band: tuple[float, float]) -> Transmissi
         outputs["folded"] = branch * ahead * folded
     # The circuit ends at the folded position, or goes on to the other side of the crank pivot.
     near = _root(over, under) if over * under > 0 else -far
-    turns = over > 0 and under > 0
     # Far less near, without cancellation where the crank turns.
     stroke = 4.0 * crank * coupler / (far + near) if turns else far - near
 
@@ -390,15 +387,15 @@ def _slider_crank(linkage: SliderCrank, band: tuple[float, float]) -> Transmissi
     return _result(
         linkage,
         band,
-        least=0.0 if lower else _angle((under,), (reach[1],)),
-        greatest=pi if upper else _angle((reach[0],), (over,)),
-        at_least=(low, _turned(pi - low)) if lower else (low,),
-        at_greatest=(high, _turned(pi - high)) if upper else (high,),
+        least=0.0 if lower is not None else _angle((under,), (reach[1],)),
+        greatest=pi if upper is not None else _angle((reach[0],), (over,)),
+        at_least=_mirrored(axis, lower or 0.0),
+        at_greatest=_mirrored(axis, pi if upper is None else upper),
         dead_centres=centres,
         output_at_dead_centres={name: lengthened(value) for name, value in outputs.items()},
         output_range=tuple(map(lengthened, (near, far) if branch > 0 else (-far, -near))),
         swing=lengthened(stroke),
-        time_ratio=None if upper or lower else _time_ratio(centres),
+        time_ratio=_time_ratio(centres) if over >= 0 and under >= 0 else None,
         round_off=round_off,
     )
 
@@ -436,11 +433,6 @@ def _root(*factors: float) -> float:
     return math.prod(math.sqrt(abs(factor)) for factor in factors)
 
 
-def _arcsine(height: float, less: float, plus: float) -> float:
-    """Return the angle of a link that reaches ``height``; link -+ height are given apart."""
-    return math.atan2(height, _root(less, plus))
-
-
 def _turned(angle: float) -> float:
     """Return the angle within (-pi, pi]."""
     if -pi < angle <= pi:
@@ -448,9 +440,10 @@ def _turned(angle: float) -> float:
     return angle - tau if angle > pi else angle + tau
 
 
-def _mirrored(angle: float) -> tuple[float, ...]:
-    """Return the crank angles that are mirror images in the frame; 0 and pi are their own."""
-    return (angle,) if angle in (0.0, pi) else (-angle, angle)
+def _mirrored(axis: float, angle: float) -> tuple[float, ...]:
+    """Return the crank angles on either side of an axis; the axis and its end are their own."""
+    one, other = _turned(axis + angle), _turned(axis - angle)
+    return (one,) if angle == 0.0 or abs(angle) == pi else (one, other)
 
 
 def _time_ratio(centres: Mapping[str, float]) -> float | None:

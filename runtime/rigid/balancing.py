@@ -25,13 +25,12 @@ from .counterweights import (
 )
 from .inputs import finite_number, require_link
 from .machine import Machine, require_machine
-from .masses import MassDistribution
 from .optimum import (
     PER_LINK,
     Candidate,
+    Design,
     ForceBasis,
     Measure,
-    Room,
     Search,
     best_counterweights,
     sizes_of,
@@ -242,7 +241,7 @@ def _searched(
     if not wanted:
         raise bad("weights", "no weight above zero", "at least one", "give --weights torque=1")
     chosen = _links(machine, links)
-    rooms, masses, lengths = _rooms(machine, chosen, bounds)
+    masses, lengths, stiffness = _units(machine, chosen, bounds)
     terms = tuple(term for term in TERMS if term in wanted or term in tops)
     everything = ForceBasis(machine, chosen, speed, acceleration, TERMS, masses, lengths)
     theta, between = _angles(machine, everything, angles)
@@ -255,7 +254,7 @@ def _searched(
     # A mean over the samples has no peaks between them.
     between = between and measure == "peak"
     basis = replace(everything, terms=terms)
-    return Search(basis, theta, between, peaks, rooms, wanted, tops, measure), everything
+    return Search(basis, theta, between, peaks, stiffness, wanted, tops, measure), everything
 
 
 def _described(
@@ -263,7 +262,7 @@ def _described(
 ) -> Balancing:
     """Return the result for the counterweights of a search."""
     added = _counterweights(search, best.x)
-    p = _parameters(search, added)
+    p = Design(search.stiffness).parameters(best.x)
     balanced, where = _sizes(everything, search.theta, p, search.between, search.measure)
     relative = _relative(balanced, search.unbalanced)
     gap = (best.value - best.bound) / search.unit
@@ -327,26 +326,15 @@ def _zero_forces(peaks: Mapping[str, float]) -> set[str]:
 
 def _counterweights(search: Search, x: Array) -> dict[str, Counterweight]:
     """Return the counterweights of design variables; none where the mass is zero."""
-    added = {}
-    for i, (link, room) in enumerate(zip(search.basis.links, search.rooms, strict=True)):
-        m, u, v, q = (float(item) for item in x[PER_LINK * i : PER_LINK * (i + 1)])
-        mass, length = float(search.basis.masses[i]), float(search.basis.lengths[i])
+    basis, added = search.basis, {}
+    units = zip(basis.links, basis.masses, basis.lengths, search.stiffness, strict=True)
+    for (link, mass, length, stiffness), (m, u, v) in zip(units, x.reshape(-1, 3), strict=True):
         # Inertia about the centre over mass is half the square of the radius.
-        radius = length * float(np.sqrt(2.0 * (q + room.stiffness * m)))
+        radius = length * np.sqrt(2.0 * stiffness * m)
+        body = (m * mass, u * length, v * length, radius)
         if m > 0.0:
-            added[link] = Counterweight(link, m * mass, u * length, v * length, radius)
+            added[link] = Counterweight(link, *map(float, body))
     return added
-
-
-def _parameters(search: Search, added: Mapping[str, Counterweight]) -> Array:
-    p: list[float] = []
-    for i, link in enumerate(search.basis.links):
-        body = added[link].distribution if link in added else MassDistribution()
-        mass, length = float(search.basis.masses[i]), float(search.basis.lengths[i])
-        moment = mass * length
-        p += [body.mass / mass, body.along / moment, body.across / moment]
-        p.append(body.inertia / (moment * length))
-    return np.array(p)
 
 
 def _terms(given: Mapping[str, float], where: str, *, zero: bool) -> dict[str, float]:
@@ -375,21 +363,18 @@ def _links(machine: Machine, links: Sequence[str] | None) -> tuple[str, ...]:
     return chosen
 
 
-def _rooms(
+def _units(
     machine: Machine, links: tuple[str, ...], bounds: Bounds | Mapping[str, Bounds] | None
-) -> tuple[list[Room], Array, Array]:
-    rooms, masses, lengths = [], [], []
-    for link, each in bounds_by_link(links, bounds).items():
-        mass, offset = each.completed(machine, link)
-        stiffness = 0.0
+) -> tuple[Array, Array, Array]:
+    """Return greatest masses [kg] and offsets [m], and the stiffness of scaled counterweights."""
+    masses, offsets, stiffness = (np.zeros(len(links)) for _ in range(3))
+    for i, (link, each) in enumerate(bounds_by_link(links, bounds).items()):
+        masses[i], offsets[i] = each.completed(machine, link)
         if each.density is not None and each.thickness is not None:
             # Inertia of a cylinder over the square of its mass: 1/(2 pi h rho).
-            stiffness = mass / (2.0 * np.pi * each.thickness * each.density * offset**2)
-        free = 0.5 * (each.radius / offset) ** 2
-        rooms.append(Room(each.least_offset / offset, stiffness, free))
-        masses.append(mass)
-        lengths.append(offset)
-    return rooms, np.array(masses), np.array(lengths)
+            cylinder = 2.0 * np.pi * each.thickness * each.density
+            stiffness[i] = masses[i] / (cylinder * offsets[i] ** 2)
+    return masses, offsets, stiffness
 
 
 def _angles(machine: Machine, basis: ForceBasis, angles: ArrayLike | None) -> tuple[Array, bool]:

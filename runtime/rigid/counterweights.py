@@ -54,7 +54,11 @@ class Counterweight:
         where = "Counterweight"
         problems = not_finite(where, {"along": self.along, "across": self.across})
         problems += not_finite(where, {"mass": self.mass}, least=0.0)
-        problems += _body_problems(where, self)
+        problems += not_finite(where, {"radius": self.radius}, least=0.0)
+        problems += _cylinder_problems(where, self.density, self.thickness)
+        if not problems and self.radius and self.density is not None:
+            expected = "a radius, or density and thickness"
+            problems.append(Problem(f"{where}.radius", "all three", expected, "leave one out"))
         if problems:
             raise BadInput(*problems)
 
@@ -92,12 +96,8 @@ class Bounds:
     offset : float, optional
         Greatest distance [m] of its centre from the link's first joint; by default the length of
         the link.
-    least_offset : float
-        Least distance [m]; equal to ``offset`` for a counterweight at a given distance.
-    radius : float
-        Greatest radius [m] of a disc whose radius is free; 0 for a point mass.
     density, thickness : float, optional
-        In place of the radius: a cylinder [kg/m^3, m], its radius given by its mass.
+        A cylinder [kg/m^3, m], its radius given by its mass, instead of a point mass.
 
     Raises
     ------
@@ -107,22 +107,13 @@ class Bounds:
 
     mass: float | None = None
     offset: float | None = None
-    least_offset: float = 0.0
-    radius: float = 0.0
     density: float | None = None
     thickness: float | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        where = "Bounds"
-        problems = not_finite(where, {"least_offset": self.least_offset}, least=0.0)
-        problems += _not_positive(where, {"mass": self.mass, "offset": self.offset})
-        problems += _body_problems(where, self)
-        if not problems and self.offset is not None and self.least_offset > self.offset:
-            expected = f"at most the greatest offset {self.offset:g}"
-            problems.append(
-                Problem("Bounds.least_offset", f"{self.least_offset:g}", expected, "correct it")
-            )
+        problems = _not_positive("Bounds", {"mass": self.mass, "offset": self.offset})
+        problems += _cylinder_problems("Bounds", self.density, self.thickness)
         if problems:
             raise BadInput(*problems)
 
@@ -135,9 +126,6 @@ class Bounds:
             raise bad(f"bounds.{link}", "a machine without mass", "a greatest mass", "give mass")
         if offset is None:
             raise bad(f"bounds.{link}", "no offset", "a greatest offset", "give offset")
-        if self.least_offset > offset:
-            least = f"least offset {self.least_offset:g}"
-            raise bad(f"bounds.{link}", least, f"at most {offset:g}", "give offset too")
         return mass, offset
 
 
@@ -189,17 +177,12 @@ def _not_positive(where: str, values: Mapping[str, float | None]) -> list[Proble
     ]
 
 
-def _body_problems(where: str, body: Counterweight | Bounds) -> list[Problem]:
-    """Return what is wrong with a disc of a radius, or a cylinder of density and thickness."""
-    cylinder = {"density": body.density, "thickness": body.thickness}
-    problems = not_finite(where, {"radius": body.radius}, least=0.0)
-    problems += _not_positive(where, cylinder)
-    if not problems and (body.density is None) != (body.thickness is None):
+def _cylinder_problems(where: str, density: float | None, thickness: float | None) -> list[Problem]:
+    """Return what is wrong with density and thickness of a cylinder."""
+    problems = _not_positive(where, {"density": density, "thickness": thickness})
+    if not problems and (density is None) != (thickness is None):
         expected = "both density and thickness, or none"
         problems.append(Problem(f"{where}.density", "one of the two", expected, "give both"))
-    elif not problems and body.radius and body.density is not None:
-        expected = "a radius, or density and thickness"
-        problems.append(Problem(f"{where}.radius", "all three", expected, "leave one out"))
     return problems
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from typing import Any, Literal, TypeAlias
@@ -31,8 +31,6 @@ _NAMES = {
     "shaking_force": FRAME_FORCE,
     "shaking_moment": ("shaking_moment",),
 }
-# What springs and dampers bring to the frame, its pins bring back: they change none of these.
-_FRAME_NAMES = (*FRAME_FORCE, "shaking_moment")
 _MOMENTS = ("torque", "shaking_moment", "couple34", "couple41")
 
 
@@ -41,6 +39,26 @@ def force_kernels(mechanism: str) -> Any:
     """Return the emitted module of a mechanism's forces."""
     name = ModelSpec(mechanism, "forces").name()
     return import_module(f"...generated.{name}", __package__)
+
+
+def pushes(
+    machine: Any, motion: Any, speed: Any, names: Sequence[str], unit: float
+) -> Iterator[tuple[list[str], dict[str, Any]]]:
+    """Yield what loads and springs do to the links, as the emitted ``load_forces`` takes it.
+
+    Each with the names of the forces that it changes; couples are multiplied by ``unit``.
+    """
+    # What springs and dampers bring to the frame, its pins bring back.
+    inner = [name for name in names if not name.startswith("shaking")]
+    parts: tuple[tuple[Part, list[str]], ...] = (("outside", list(names)), ("springs", inner))
+    for part, changed in parts:
+        by_link = wrenches(machine, motion, speed, part) if changed else {}
+        pushed: dict[str, Any] = {}
+        for place, link in enumerate(motion.linkage.links, start=2):
+            fx, fy, couple = by_link.get(link, (0.0, 0.0, 0.0))
+            pushed |= {f"fx{place}": fx, f"fy{place}": fy, f"couple{place}": couple * unit}
+        if by_link:
+            yield changed, pushed
 
 
 class Evaluation:
@@ -106,21 +124,12 @@ class Evaluation:
         return numbers
 
     def _loads(self, out: Array, rows: Mapping[str, int]) -> float:
-        speed = self.numbers["speed"]
-        motion = self.machine.linkage.motion(self.theta, speed)
+        motion = self.machine.linkage.motion(self.theta, self.numbers["speed"])
+        unit = 2.0**-self.exponent
         total = 0.0
-        inner = [name for name in rows if name not in _FRAME_NAMES]
-        parts: tuple[tuple[Part, list[str]], ...] = (("outside", list(rows)), ("springs", inner))
-        for part, names in parts:
-            by_link = wrenches(self.machine, motion, speed, part) if names else {}
-            if not by_link:
-                continue
-            numbers = dict(self.numbers)
-            for place, link in enumerate(self.machine.linkage.links, start=2):
-                fx, fy, couple = by_link.get(link, (0.0, 0.0, 0.0))
-                numbers |= {f"fx{place}": fx, f"fy{place}": fy}
-                numbers[f"couple{place}"] = np.ldexp(couple, -self.exponent)
-            total += self._add("load_forces", numbers, out, rows, names, more=True)
+        for names, pushed in pushes(self.machine, motion, self.numbers["speed"], list(rows), unit):
+            given = self.numbers | pushed
+            total += self._add("load_forces", given, out, rows, names, more=True)
         return total
 
     def _add(

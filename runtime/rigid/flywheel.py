@@ -216,108 +216,88 @@ def flywheel_inertia(machine: Machine, speed: float, fluctuation: float = 0.02) 
         raise bad("fluctuation", given, "a number between 0 and 1", "0.02 is usual")
     steady = torque_fluctuation(machine, speed)
     first_order = steady.energy_fluctuation / (fluctuation * speed**2)
-    balance = _Balance(machine, steady)
-    inertia = balance.inertia_for(fluctuation, first_order)
-    reached, speeds, motor, moved = balance.motion(inertia)
-    slope = (steady.error + 64.0 * EPS * balance.size) / (fluctuation * speed**2)
+    motion = _motion(machine, steady, fluctuation)
+    inertia, speeds = motion.inertia, motion.speeds
+    reached = (_extreme(speeds)[0] + _extreme(-speeds)[0]) / abs(speed)
+    speeds = np.sign(speed) * speeds
+    size = float(np.max(motion.reduced)) * speed**2 + steady.energy_fluctuation
+    slope = (steady.error + 64.0 * EPS * size) / (fluctuation * speed**2)
     # The coefficient is known to some last digits and to what the speeds still move.
-    error = slope + (16.0 * EPS + 8.0 * moved) / fluctuation * inertia
+    error = slope + (16.0 * EPS + 8.0 * motion.moved) / fluctuation * inertia
     # The fluctuation goes with the inverse of the whole inertia; it is off by its error's share.
-    share = error / (inertia + float(np.mean(balance.reduced)))
+    share = error / (inertia + float(np.mean(motion.reduced)))
+    confirmed = (machine, inertia, motion.torque, float(speeds[0]), reached, share, motion.moved)
     return Flywheel(
         machine=machine,
         inertia=inertia,
         first_order=first_order,
         fluctuation=reached,
-        motor_torque=motor,
+        motor_torque=motion.torque,
         theta=steady.theta,
         speeds=speeds,
         torque=steady,
         method="balance of energy",
         error=error,
         error_norm="inertia [kg m^2]",
-        checks=DeferredChecks(
-            partial(_confirmed, machine, inertia, motor, float(speeds[0]), reached, share, moved)
-        ),
+        checks=DeferredChecks(partial(_confirmed, *confirmed)),
         provenance=provenance(machine.provenance),
     )
 
 
-class _Balance:
-    """Speed over a revolution under a constant torque, for any flywheel."""
+@dataclass(frozen=True)
+class _Motion:
+    """A revolution under a constant torque: flywheel, and speeds (n,) that it allows."""
 
-    def __init__(self, machine: Machine, steady: TorqueFluctuation) -> None:
-        self.theta, self.speed = steady.theta, abs(steady.speed)
-        self.sign = np.sign(steady.speed)
-        self.system = OneFreedom(machine)
-        self.reduced = self.system.coefficients(self.theta)[0]
-        self.size = float(np.max(self.reduced)) * self.speed**2 + steady.energy_fluctuation
-        # Where it does not depend on the speed, once and for all.
-        still = None if self.system.hasty else self.system.load(self.theta, steady.speed)
-        self.still = still
+    inertia: float
+    reduced: Array  # inertia of the links [kg m^2]
+    speeds: Array  # sizes
+    torque: float
+    moved: float  # by how much the speeds still move, relative
 
-    def motion(self, flywheel: float) -> tuple[float, Array, float, float]:
-        """Return coefficient of fluctuation, speeds, motor's torque, and the last relative move."""
-        speeds: Array = np.full(self.theta.shape, self.speed)
-        motor, moved, inertia = 0.0, 0.0, self.reduced + flywheel
-        for _ in range(_ITERATIONS):
-            load = self.still
-            if load is None:
-                load = self.system.load(self.theta, self.sign * speeds)
-            motor = float(np.mean(load))
-            changed = self._speeds(inertia, -_integral(load))
-            if changed is None:
-                return 10.0, self.sign * speeds, motor, 0.0
-            moved = float(np.max(np.abs(changed - speeds))) / self.speed
-            speeds = changed
-            if self.still is not None:
-                moved = 0.0
-            if moved <= _SETTLED:
-                break
-        high, low = _extreme(speeds)[0], -_extreme(-speeds)[0]
-        return (high - low) / self.speed, self.sign * speeds, motor, moved
 
-    def _speeds(self, inertia: Array, stored: Array) -> Array | None:
-        """Return speeds for the stored work, their middle as wanted; None where it stalls."""
-        if not np.min(inertia) > 0:
-            return None
-        middle = np.mean(inertia) * self.speed**2 / 2.0
-        for _ in range(_ITERATIONS):
-            square = 2.0 * (middle + stored) / inertia
-            if not np.min(square) > 0:
-                return None
-            speeds = np.sqrt(square)
-            off = self.speed - (_extreme(speeds)[0] - _extreme(-speeds)[0]) / 2.0
-            if abs(off) <= 4.0 * EPS * self.speed:
-                break
-            # d(speed)/d(middle) = 1/(inertia speed), here at the mean of the two extremes.
-            places = [int(np.argmax(speeds)), int(np.argmin(speeds))]
-            middle += off / float(np.mean(1.0 / (inertia[places] * speeds[places])))
-        return np.asarray(speeds)
+def _motion(machine: Machine, steady: TorqueFluctuation, fluctuation: float) -> _Motion:
+    """Return the least flywheel that keeps within a coefficient of fluctuation, and the motion.
 
-    def inertia_for(self, fluctuation: float, guess: float) -> float:
-        """Return the least flywheel that keeps within a coefficient of fluctuation.
+    With S the work stored in the loads, E a constant and I the flywheel, ``omega^2 = 2 (E + S)/(J +
+    I)``.  Its greatest value is ``high^2`` where the greatest of ``2 (E + S) - (J + I) high^2`` is
+    zero, its least ``low^2`` where the least of the same with low is: two linear equations for E
+    and I.  Loads that depend on the speed are taken at the last speeds.
+    """
+    theta, speed = steady.theta, abs(steady.speed)
+    system, sign = OneFreedom(machine), np.sign(steady.speed)
+    reduced = system.coefficients(theta)[0]
+    high, low = (speed * (1.0 + part * fluctuation / 2.0) for part in (1.0, -1.0))
+    speeds: Array = np.full(theta.shape, speed)
+    for _ in range(_ITERATIONS):
+        load = system.load(theta, sign * speeds)
+        stored = -_integral(load)
+        top = _extreme(2.0 * stored - reduced * high**2)[0]
+        bottom = -_extreme(reduced * low**2 - 2.0 * stored)[0]
+        inertia = (top - bottom) / (2.0 * fluctuation * speed**2)
+        energy = (inertia * high**2 - top) / 2.0
+        if inertia <= 0.0:
+            inertia, energy = 0.0, _even_energy(reduced, stored, speed)
+        changed = np.sqrt(2.0 * (energy + stored) / (reduced + inertia))
+        moved = float(np.max(np.abs(changed - speeds))) / speed if system.hasty else 0.0
+        speeds = changed
+        if moved <= _SETTLED:
+            break
+    return _Motion(inertia, reduced, speeds, float(np.mean(load)), moved)
 
-        The coefficient need not fall steadily, for weights and loads may even out what the links
-        store: flywheels are tried from light to heavy, and the first that will do brackets it.
-        """
-        from scipy.optimize import brentq
 
-        def excess(flywheel: float) -> float:
-            return self.motion(flywheel)[0] - fluctuation
+def _even_energy(reduced: Array, stored: Array, speed: float) -> float:
+    """Return the constant energy with which the links alone keep to the mean speed."""
+    from scipy.optimize import brentq
 
-        if excess(0.0) <= 0:
-            return 0.0
-        most = max(guess, float(np.max(self.reduced)))
-        while excess(most) > 0:
-            most *= 2.0
-        light = 0.0
-        # Flywheels tried from the lightest up, so that the least of all that will do is found.
-        for heavy in (*np.geomspace(1e-4 * most, most, 33)[:-1], most):
-            if excess(heavy) <= 0:
-                break
-            light = float(heavy)
-        return float(brentq(excess, light, heavy, xtol=1e-15 * most, rtol=4.0 * EPS))
+    def excess(energy: float) -> float:
+        speeds = np.sqrt(np.maximum(2.0 * (energy + stored) / reduced, 0.0))
+        return (_extreme(speeds)[0] - _extreme(-speeds)[0]) / 2.0 - speed
+
+    # At the ends the greatest and the least speed are the mean one.
+    ends = reduced * speed**2 / 2.0 - stored
+    span = 4.0 * EPS * float(np.max(np.abs(ends)))
+    least, most = float(np.min(ends)) - span, float(np.max(ends)) + span
+    return float(brentq(excess, least, most, xtol=EPS * most, rtol=4.0 * EPS))
 
 
 def _sampled(machine: Machine, speed: float) -> tuple[Array, Array, float]:

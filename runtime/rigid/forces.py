@@ -109,17 +109,6 @@ class RigidForces(Result):
         return self._pair("x41", "y41")
 
     @property
-    def sliding_couple(self) -> Array:
-        """Couple in the sliding joint [N m]: of link 3 on 4 (quick-return), or of 4 on the frame.
-
-        Raises
-        ------
-        BadInput
-            If there is no sliding joint, or the pin forces were not requested.
-        """
-        return self["couple34" if "couple34" in self.values else "couple41"]
-
-    @property
     def torque(self) -> Array:
         """Driving torque on the crank [N m]."""
         return self["torque"]

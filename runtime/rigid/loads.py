@@ -134,7 +134,9 @@ def frozen(load: Load, motion: Any, crank_speed: Array) -> tuple[Array, Array]:
     """Return force components (..., 2) along the load's own axes [N], and couple [N m]."""
     given: Any = motion.theta2
     if load.given == "motion" and (callable(load.force) or callable(load.couple)):
-        given = _state(motion, load.link, load.along, load.across, crank_speed)
+        point = motion.point(load.link, load.along, load.across)
+        link, places = motion.link(load.link), (point.position, point.velocity)
+        given = LoadState(motion.theta2, crank_speed, *places, link.angle, link.speed)
     shape = motion.theta2.shape
     force = evaluated(load.force, given, 2, f"Load.force on {load.link}", shape)
     return force, evaluated(load.couple, given, 0, f"Load.couple on {load.link}", shape)
@@ -340,18 +342,6 @@ def _turning(motion: Any, link: str) -> tuple[Array, Array]:
         return np.zeros(()), np.zeros(())
     moving = motion.link(link)
     return moving.angle, moving.speed
-
-
-def _state(motion: Any, link: str, along: float, across: float, crank_speed: Array) -> LoadState:
-    point, turning = motion.point(link, along, across), motion.link(link)
-    return LoadState(
-        theta=motion.theta2,
-        crank_speed=crank_speed,
-        position=point.position,
-        velocity=point.velocity,
-        angle=turning.angle,
-        speed=turning.speed,
-    )
 
 
 def evaluated(law: Any, given: Any, size: int, where: str, shape: tuple[int, ...]) -> Array:

@@ -86,17 +86,6 @@ class Machine:
         """Return the mass distribution of a link, an empty one where it has no mass."""
         return self.masses.get(link, MassDistribution())
 
-    def with_mass(self, link: str, added: MassDistribution) -> Machine:
-        """Return the machine with something more fixed to a link: a counterweight, a flywheel.
-
-        Raises
-        ------
-        BadInput
-            If the linkage has no such link.
-        """
-        masses = {**self.masses, link: self.mass(link) + added}
-        return Machine(self.linkage, masses, self.gravity, self.loads, self.springs)
-
     @property
     def loaded(self) -> bool:
         """True where something acts on the links beside their inertia."""

@@ -31,7 +31,8 @@ from .peaks import forces_of, highest
 Measure: TypeAlias = Literal["peak", "rms"]
 Peaks: TypeAlias = Mapping[str, tuple[Array, Array]]  # angles (k,) and sizes (k,) of each force
 
-PER_LINK = 4  # mass, two first moments, inertia; of a design: mass, place, inertia over mass
+PER_LINK = 4  # parameters: mass, two first moments, inertia
+_PLACES = 3  # variables of a design: mass, place along and across
 _ROUNDS = 12
 # What a peak may be above its bound: of the hull as Clarabel solves, of the descent near round-off.
 _HULL_EXCESS, _EXCESS = 1e-9, 1e-11
@@ -40,35 +41,23 @@ _GAP = 1e-7  # other starts are tried where more than this is unproved, over the
 _POLISHING, _STEP, _LONGEST_STEP = 4, 1e-5, 1e-3
 
 
-@dataclass(frozen=True)
-class Room:
-    """Where a link's counterweight may be, in scaled lengths: greatest mass and offset are 1."""
+def least(gradient: Array, stiffness: float) -> float:
+    """Return the least of ``gradient . p`` over all counterweights of a link.
 
-    nearest: float = 0.0  # least offset, from 0 to 1
-    # inertia about the centre over mass squared: ``1/(2 pi h rho)`` of a cylinder; 0 for a point
-    stiffness: float = 0.0
-    # greatest inertia about the centre over mass of a disc with free radius: half its square
-    free: float = 0.0
-
-    @property
-    def rigid(self) -> bool:
-        """True where the inertia follows from the mass alone: points at one offset."""
-        return self.nearest >= 1.0 and self.stiffness == 0.0 and self.free == 0.0
-
-    def least(self, gradient: Array) -> float:
-        """Return the least of ``gradient . p`` over the counterweights themselves."""
-        g_mass, g_along, g_across, g_inertia = (float(g) for g in gradient)
-        pull = float(np.hypot(g_along, g_across))
-        offsets = [self.nearest, 1.0]
-        if g_inertia > 0.0:
-            offsets.append(min(max(pull / (2.0 * g_inertia), self.nearest), 1.0))
-        linear = g_mass + min((g_inertia * r - pull) * r for r in offsets)
-        linear += min(g_inertia, 0.0) * self.free
-        square = g_inertia * self.stiffness
-        masses = [0.0, 1.0]
-        if square > 0.0:
-            masses.append(min(max(-linear / (2.0 * square), 0.0), 1.0))
-        return min((linear + square * m) * m for m in masses)
+    ``stiffness`` is the inertia about the centre over mass squared: that of a cylinder is
+    ``1/(2 pi h rho)``, of a point mass zero.
+    """
+    g_mass, g_along, g_across, g_inertia = (float(g) for g in gradient)
+    pull = float(np.hypot(g_along, g_across))
+    offsets = [0.0, 1.0]
+    if g_inertia > 0.0:
+        offsets.append(min(pull / (2.0 * g_inertia), 1.0))
+    linear = g_mass + min((g_inertia * r - pull) * r for r in offsets)
+    square = g_inertia * stiffness
+    masses = [0.0, 1.0]
+    if square > 0.0:
+        masses.append(min(max(-linear / (2.0 * square), 0.0), 1.0))
+    return min((linear + square * m) * m for m in masses)
 
 
 @dataclass(frozen=True)
@@ -95,7 +84,7 @@ class Cones:
 class PeakProblem:
     """Minimise ``cost . t`` over the counterweights of all links, t the bounds of the peaks."""
 
-    rooms: Sequence[Room]  # one per link
+    stiffness: Array  # of each link's counterweight, see :func:`least`
     cones: Sequence[Cones]  # the forces
     # cost, ceilings: weight of each bound t, and its greatest value, ``inf`` where free
     cost: Array
@@ -128,15 +117,12 @@ class PeakProblem:
         tiny = np.finfo(float).tiny
         scale = np.minimum(1.0, (self.cost + prices) / np.maximum(spent, tiny))
         constant = -float(prices[capped] @ self.ceilings[capped])
-        gradient = np.zeros(PER_LINK * len(self.rooms))
+        gradient = np.zeros(PER_LINK * len(self.stiffness))
         for cone, pull in zip(self.cones, pulls, strict=True):
             fair = scale[cone.bound] * pull
             constant += float(np.sum(fair * cone.fixed))
             gradient += np.einsum("nd,ndp->p", fair, cone.basis)
-        parts = np.split(gradient, len(self.rooms))
-        return constant + sum(
-            room.least(part) for room, part in zip(self.rooms, parts, strict=True)
-        )
+        return constant + sum(map(least, gradient.reshape(-1, PER_LINK), self.stiffness))
 
 
 def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
@@ -146,9 +132,9 @@ def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
     """
     import clarabel
 
-    count, bounds = PER_LINK * len(problem.rooms), len(problem.cost)
+    count, bounds = PER_LINK * len(problem.stiffness), len(problem.cost)
     # Variables: p, t, and the square of its mass for each link where that counts.
-    stiff = [i for i, room in enumerate(problem.rooms) if room.stiffness]
+    stiff = np.flatnonzero(problem.stiffness).tolist()
     size = count + bounds + len(stiff)
     rows: list[Array] = []
     right: list[Array] = []
@@ -174,22 +160,16 @@ def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
     if len(capped):
         cone = clarabel.NonnegativeConeT(len(capped))
         add(cone, -unit[count + capped], problem.ceilings[capped])
-    for i, room in enumerate(problem.rooms):
+    for i, stiffness in enumerate(problem.stiffness):
         m, a, b, j = unit[PER_LINK * i : PER_LINK * (i + 1)]
-        square = unit[count + bounds + stiff.index(i)] if room.stiffness else np.zeros(size)
-        reach = j - room.stiffness * square
-        add(
-            clarabel.SecondOrderConeT(4),
-            np.array([m + reach, m - reach, 2 * a, 2 * b]),
-            np.zeros(4),
-        )
+        square = unit[count + bounds + stiff.index(i)] if stiffness else np.zeros(size)
+        reach = j - stiffness * square
+        placed = np.array([m + reach, m - reach, 2 * a, 2 * b])
+        add(clarabel.SecondOrderConeT(4), placed, np.zeros(4))
         add(clarabel.SecondOrderConeT(3), np.array([m, a, b]), np.zeros(3))
-        most = (1.0 + room.stiffness + room.free) * m
-        sides = [-m] if room.rigid else [-m, most - j, reach - room.nearest**2 * m]
-        add(clarabel.NonnegativeConeT(len(sides)), np.array(sides), np.eye(len(sides))[0])
-        if room.rigid:
-            add(clarabel.ZeroConeT(1), np.array([j - m]), np.zeros(1))
-        if room.stiffness:
+        sides = np.array([-m, (1.0 + stiffness) * m - j, reach])
+        add(clarabel.NonnegativeConeT(3), sides, np.eye(3)[0])
+        if stiffness:
             one = np.array([1.0, -1.0, 0.0])
             add(clarabel.SecondOrderConeT(3), np.array([square, square, 2 * m]), one)
     settings = clarabel.DefaultSettings()
@@ -211,83 +191,63 @@ def hull_minimum(problem: PeakProblem) -> tuple[Array, float] | None:
     ceiling_prices = np.zeros(bounds)
     ceiling_prices[capped] = prices[place : place + len(capped)]
     p = np.array(solved.x[:count])
-    return _within(problem.rooms, p), problem.lower_bound(pulls, ceiling_prices)
+    return _within(problem.stiffness, p), problem.lower_bound(pulls, ceiling_prices)
 
 
-def _within(rooms: Sequence[Room], p: Array) -> Array:
+def _within(stiffness: Array, p: Array) -> Array:
     """Return parameters that bodies can have: the solver leaves its cones by round-off."""
     m, a, b, j = p.reshape(-1, PER_LINK).T
     moment = np.hypot(a, b)
     short = np.minimum(1.0, 1.0 / np.maximum(moment, 1.0))
     m = np.clip(np.maximum(m, moment), 0.0, 1.0)
     least = (moment * short) ** 2 / np.where(m > 0.0, m, 1.0)
-    stiffness = np.array([room.stiffness for room in rooms])
     j = np.maximum(j, least + stiffness * m * m)
     return np.stack([m, a * short, b * short, j], axis=1).ravel()
 
 
 @dataclass(frozen=True)
 class Design:
-    """One counterweight on each link: mass, place along and across, free inertia over mass."""
+    """One counterweight on each link: variables x of mass, place along and across."""
 
-    rooms: Sequence[Room]
-
-    @property
-    def box(self) -> tuple[Array, Array]:
-        """Least and greatest value of each variable."""
-        low = [(0.0, -1.0, -1.0, 0.0) for _ in self.rooms]
-        high = [(1.0, 1.0, 1.0, room.free) for room in self.rooms]
-        return np.ravel(low), np.ravel(high)
-
-    @property
-    def _stiffness(self) -> Array:
-        return np.array([room.stiffness for room in self.rooms])
+    stiffness: Array
 
     def parameters(self, x: Array) -> Array:
         """Return p: mass, first moments, inertia of each link's counterweight."""
-        m, u, v, q = x.reshape(-1, PER_LINK).T
-        inertia = m * (u * u + v * v + self._stiffness * m + q)
+        m, u, v = x.reshape(-1, _PLACES).T
+        inertia = m * (u * u + v * v + self.stiffness * m)
         return np.stack([m, m * u, m * v, inertia], axis=1).ravel()
 
     def jacobian(self, x: Array) -> Array:
         """Return dp/dx."""
         blocks = [
             [
-                [1.0, 0.0, 0.0, 0.0],
-                [u, m, 0.0, 0.0],
-                [v, 0.0, m, 0.0],
-                [u * u + v * v + 2.0 * c * m + q, 2.0 * m * u, 2.0 * m * v, m],
+                [1.0, 0.0, 0.0],
+                [u, m, 0.0],
+                [v, 0.0, m],
+                [u * u + v * v + 2.0 * c * m, 2.0 * m * u, 2.0 * m * v],
             ]
-            for (m, u, v, q), c in zip(x.reshape(-1, PER_LINK), self._stiffness, strict=True)
+            for (m, u, v), c in zip(x.reshape(-1, _PLACES), self.stiffness, strict=True)
         ]
         return np.asarray(linalg.block_diag(*blocks))
 
     def conditions(self, x: Array) -> tuple[Array, Array]:
-        """Return how far each counterweight is within its greatest and beyond its least offset."""
-        values, slopes = [], []
-        for i, room in enumerate(self.rooms):
-            u, v = x[PER_LINK * i + 1 : PER_LINK * i + 3]
-            for sign, level in ((-1.0, 1.0), (1.0, room.nearest)):
-                slope = np.zeros(len(x))
-                slope[PER_LINK * i + 1 : PER_LINK * i + 3] = 2.0 * sign * u, 2.0 * sign * v
-                if level > 0.0:
-                    values.append(sign * (u * u + v * v - level * level))
-                    slopes.append(slope)
-        return np.array(values), np.array(slopes)
+        """Return how far each counterweight is within its greatest offset, and the slopes."""
+        places = x.reshape(-1, _PLACES)[:, 1:]
+        links = len(places)
+        slopes = np.zeros((links, links, _PLACES))
+        slopes[range(links), range(links), 1:] = -2.0 * places
+        return 1.0 - np.sum(places**2, axis=1), slopes.reshape(links, -1)
 
     def within(self, x: Array) -> Array:
         """Return variables whose offsets keep their bounds, first moments kept where they can be.
 
         A descent leaves a condition by what it does not feel of it.
         """
-        x = x.copy()
-        for room, part in zip(self.rooms, x.reshape(-1, PER_LINK), strict=True):
-            offset = float(np.hypot(part[1], part[2]))
-            wanted = min(max(offset, room.nearest), 1.0)
-            if offset > 0.0 and wanted != offset:
-                part[0] = min(part[0] * offset / wanted, 1.0)
-                part[1:3] *= wanted / offset
-        return x
+        parts = x.reshape(-1, _PLACES).copy()
+        beyond = np.maximum(np.hypot(parts[:, 1], parts[:, 2]), 1.0)
+        parts[:, 0] = np.minimum(parts[:, 0] * beyond, 1.0)
+        parts[:, 1:] /= beyond[:, np.newaxis]
+        return parts.ravel()
 
     def realised(self, p: Array, unfelt: Sequence[bool]) -> Array:
         """Return counterweights with the mass and first moments p, and the inertia if they can.
@@ -299,19 +259,11 @@ class Design:
         unfelt : sequence of bool
             Links of which only the first moments matter: these get the least mass.
         """
-        x: list[float] = []
-        for room, (m, a, b, j), light in zip(
-            self.rooms, p.reshape(-1, PER_LINK).tolist(), unfelt, strict=True
-        ):
-            moment = float(np.hypot(a, b))
-            mass = min(max(moment if light else m, moment, 0.0), 1.0)
-            u, v = (a / mass, b / mass) if mass > 0.0 else (0.0, 0.0)
-            offset = float(np.hypot(u, v))
-            wanted = min(max(offset, room.nearest), 1.0)
-            u, v = (u * wanted / offset, v * wanted / offset) if offset > 0.0 else (wanted, 0.0)
-            spare = j / mass - (u * u + v * v) - room.stiffness * mass if mass > 0.0 else 0.0
-            x += [mass, u, v, 0.0 if light else min(max(spare, 0.0), room.free)]
-        return np.array(x)
+        m, a, b, _ = p.reshape(-1, PER_LINK).T
+        moment = np.hypot(a, b)
+        mass = np.clip(np.where(unfelt, moment, np.maximum(m, moment)), 0.0, 1.0)
+        place = np.stack([a, b], axis=1) / np.where(mass > 0.0, mass, 1.0)[:, np.newaxis]
+        return self.within(np.column_stack([mass, place]).ravel())
 
 
 @dataclass(frozen=True)
@@ -329,7 +281,8 @@ class _Epigraph:
 
     def __init__(self, problem: PeakProblem, design: Design) -> None:
         self.problem, self.design = problem, design
-        low, high = design.box
+        links = len(design.stiffness)
+        low, high = np.tile([0.0, -1.0, -1.0], links), np.ones(_PLACES * links)
         self.n = len(low)
         self.cost = np.concatenate([np.zeros(self.n), problem.cost])
         self.low = np.concatenate([low, np.zeros(len(problem.cost))])
@@ -510,7 +463,7 @@ class Search:
     theta: Array  # sampled angles
     between: bool  # True where peaks between the samples count
     unbalanced: Mapping[str, float]  # peaks of every force without counterweights [N; N m]
-    rooms: Sequence[Room]  # one for each link of the basis
+    stiffness: Array  # of the counterweight of each link of the basis, see :func:`least`
     # weights, limits: of the relative peaks
     weights: Mapping[str, float]
     limits: Mapping[str, float]
@@ -547,7 +500,7 @@ class Search:
             cone = Cones(k, fixed[term][rows] / size, basis[term][rows] / size)
             cones.append(cone if self.measure == "peak" else _mean_square(cone))
             first += len(theta[term])
-        return PeakProblem(self.rooms, cones, cost, tops)
+        return PeakProblem(self.stiffness, cones, cost, tops)
 
     def start(self) -> PeakProblem:
         """Return the problem with some of the samples, or all that count."""
@@ -623,7 +576,7 @@ def _mean_square(cone: Cones) -> Cones:
 def best_counterweights(search: Search) -> Candidate:
     """Return the best counterweights that are known, and the proof of how good they are."""
     problem, p, bound = _hull(search)
-    design = Design(search.rooms)
+    design = Design(search.stiffness)
     unfelt = _unfelt(problem)
     candidates = [_descended(search, problem, bound, design.realised(p, unfelt))]
     if candidates[0].value - candidates[0].bound > _GAP * search.unit:
@@ -656,8 +609,8 @@ def _out_of_reach(search: Search, problem: PeakProblem) -> BadInput:
         capped = [cone for cone in problem.cones if np.isfinite(problem.ceilings[cone.bound])]
         tops = problem.ceilings[[cone.bound for cone in capped]]
         shared = [Cones(0, c.fixed / t, c.basis / t) for c, t in zip(capped, tops, strict=True)]
-        solved = hull_minimum(PeakProblem(problem.rooms, shared, np.ones(1), free))
-        p = np.zeros(PER_LINK * len(search.rooms)) if solved is None else solved[0]
+        solved = hull_minimum(PeakProblem(problem.stiffness, shared, np.ones(1), free))
+        p = np.zeros(PER_LINK * len(search.stiffness)) if solved is None else solved[0]
         problem, excess = search.exchanged(problem, p)
         if excess < _HULL_EXCESS:
             break
@@ -678,7 +631,7 @@ def _rounded_up(value: float) -> str:
 
 def _starts(design: Design) -> list[Array]:
     """Return further starts, the same ones each time: nothing, and four directions."""
-    links = len(design.rooms)
+    links = len(design.stiffness)
     starts = [design.realised(np.zeros(PER_LINK * links), [False] * links)]
     for u, v in ((-0.7, 0.0), (0.7, 0.0), (0.0, 0.7), (0.0, -0.7)):
         p = np.tile([0.5, 0.5 * u, 0.5 * v, 0.25], links)
@@ -688,7 +641,7 @@ def _starts(design: Design) -> list[Array]:
 
 def _descended(search: Search, problem: PeakProblem, bound: float, start: Array) -> Candidate:
     """Return the local optimum near a start, true peaks included, or that where it is no worse."""
-    design = Design(search.rooms)
+    design = Design(search.stiffness)
     problem, _ = search.exchanged(problem, design.parameters(start))
     x = start
     for _ in range(_ROUNDS):
@@ -719,12 +672,12 @@ def _lightened(
     search: Search, problem: PeakProblem, candidate: Candidate, unfelt: Sequence[bool]
 ) -> Array:
     """Return the design with the least mass that serves as well."""
-    design, x = Design(search.rooms), candidate.x
+    design, x = Design(search.stiffness), candidate.x
     allowed = candidate.value + 1e-12 * search.unit
     lighter = design.realised(design.parameters(x), unfelt)
-    for place in range(0, len(x), PER_LINK):
-        rows = slice(place, place + PER_LINK)
-        for trial in (lighter[rows], np.zeros(PER_LINK)):
+    for place in range(0, len(x), _PLACES):
+        rows = slice(place, place + _PLACES)
+        for trial in (lighter[rows], np.zeros(_PLACES)):
             changed = x.copy()
             changed[rows] = trial
             p = design.parameters(changed)

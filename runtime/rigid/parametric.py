@@ -12,8 +12,8 @@ import numpy as np
 from ..core.errors import bad
 from ..linkages.linkage import Motion, emitted
 from ..linkages.parametric import Parametric
-from .evaluation import force_kernels
-from .machine import Machine, Part, wrenches
+from .evaluation import force_kernels, pushes
+from .machine import Machine
 
 MOMENTS = ("mass", "along", "across", "inertia")
 # How mass, first moments and inertia of a bar grow with its length.
@@ -95,24 +95,16 @@ class ParametricMachine(Parametric):
         motion: Motion,
     ) -> None:
         """Add what weights, loads and springs do; lengths in the unit of the emitted functions."""
-        kernels, links = force_kernels(self.linkage.mechanism), self.linkage.links
-        size = 2.0**self.linkage.scale
+        kernels = force_kernels(self.linkage.mechanism)
         acting: Any = SimpleNamespace(
             masses=masses,
             gravity=self.machine.gravity,
             loads=self.loads or self.machine.loads,
             springs=self.machine.springs,
         )
-        # What springs bring to the frame, its pins bring back.
-        inner = [name for name in forces if not name.startswith("shaking")]
-        parts: tuple[tuple[Part, list[str]], ...] = (("outside", list(forces)), ("springs", inner))
-        for part, names in parts:
-            pushed: dict[str, Any] = dict(lengths)
-            by_link = wrenches(acting, motion, self.speed, part)
-            for place, link in enumerate(links, start=2):
-                fx, fy, couple = by_link.get(link, (0.0, 0.0, 0.0))
-                pushed |= {f"fx{place}": fx, f"fy{place}": fy, f"couple{place}": couple * size}
-            more = emitted(self.linkage, kernels, "load_forces", theta, pushed)
+        unit = 2.0**self.linkage.scale
+        for names, pushed in pushes(acting, motion, self.speed, [*forces], unit):
+            more = emitted(self.linkage, kernels, "load_forces", theta, {**lengths, **pushed})
             forces |= {name: forces[name] + more[name] for name in names}
 
     def _mass(self, link: str, numbers: Mapping[str, Any]) -> dict[str, Any]:

@@ -42,7 +42,7 @@ def meeting_points(conditions, total):
 
 
 def exact_plane(lam):
-    """Return the outline, the regions with an inside, and the ends of the borders."""
+    """Return the outline and the regions with an inside."""
     total = mpmath.mpf(lam) * mpmath.sqrt(3)
     far, half = (1 + total) / 2, (total - 1) / 2
     around = [(i, at, sign) for i in range(3) for at, sign in ((mpmath.mpf(0), 1), (far, -1))]
@@ -54,8 +54,7 @@ def exact_plane(lam):
         middle = [sum(column) / len(corners) for column in zip(*corners, strict=True)]
         inside = min(min(abs(x - half), x, far - x) for x in middle)
         regions[sides] = (corners, middle, float(inside))
-    borders = [meeting_points([*around, (i, half, 1), (i, half, -1)], total) for i in range(3)]
-    return meeting_points(around, total), regions, borders
+    return meeting_points(around, total), regions
 
 
 def apart(ours, exact):
@@ -70,7 +69,7 @@ def apart(ours, exact):
 
 def errors_of(plane):
     """Return the distances of all corners, and how large the exact regions left out are."""
-    outline, regions, borders = exact_plane(plane.lam)
+    outline, regions = exact_plane(plane.lam)
     actual = apart(plane.outline, outline)
     left_out = []
     seen = set()
@@ -83,9 +82,6 @@ def errors_of(plane):
         else:
             left_out.append(inside)
     assert seen == set(plane.regions)
-    for name, ends in plane.borders.items():
-        axis = ("coupler", "output", "frame").index(name.split("/")[0])
-        actual += apart(ends, borders[axis])
     return max(actual), max(left_out, default=0.0)
 
 
@@ -110,7 +106,7 @@ def test_the_least_plane_and_the_largest():
     """Next to the end of the range all but one region are below rounding; nothing is NaN."""
     for lam in (float(np.nextafter(LEAST, 1.0)), MIDDLE, 1e16, 9e99):
         plane = base_plane(lam, 3)
-        for corners in (plane.outline, *plane.regions.values(), *plane.borders.values()):
+        for corners in (plane.outline, *plane.regions.values()):
             assert np.all(np.isfinite(corners))
         assert sum(plane.shares.values()) == pytest.approx(1.0, abs=1e-7)
     with pytest.raises(BadInput, match="lam"):

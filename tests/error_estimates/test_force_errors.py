@@ -175,8 +175,9 @@ def test_the_estimate_covers_known_bad_cases(linkage, theta, speed, acceleration
 def test_exactly_at_a_fold_nothing_is_known() -> None:
     linkage = FourBar(0.3, 0.25, 0.1, 0.1)
     machine = Machine(linkage, {"coupler": MassDistribution.uniform_bar(1.0, 0.1)})
-    inside = 0.5 * sum(linkage.crank_ranges()[0])
-    for theta in (linkage.crank_ranges()[0][1], [inside, linkage.crank_ranges()[0][1], inside]):
+    low, high = linkage.crank_ranges()[0]
+    inside, end = 0.5 * (low + high), np.nextafter(high, low)
+    for theta in (end, [inside, end, inside]):
         found = rigid_forces(machine, theta, 1.0)
         assert np.max(found.error) == np.inf
         assert not found.checks["error over what is added up"].passed

@@ -74,6 +74,7 @@ def test_agrees_with_the_motion_of_each_assembly(linkage, link):
                 assert np.all(np.abs(series - emitted) <= loose * 200 * size**2)
 
 
+@pytest.mark.smoke
 @pytest.mark.parametrize("linkage", [CRANK_ROCKER, DRAG_LINK, SLIDER, ROD])
 def test_the_crank_pin_runs_round_a_circle(linkage):
     crank = linkage.lengths["crank"]
@@ -152,64 +153,51 @@ def test_near_a_cusp_the_path_has_a_loop_or_a_bend(distance):
     assert loops == 1
 
 
-def sextic_nodes(linkage, place):
-    """Double points of both circuits in closed form, and whether a linkage reaches each.
-
-    The two bars demand conj(p) g u + p conj(g) conj(u) = M and conj(w) d u + w conj(d) conj(u) = -N
-    of the coupler's direction u (see `sextic_residual`); both leave u undecided on the circle
-    through A, D and the third singular focus f g/l3, w = r conj(g) d p, at the roots r of a cubic.
-    """
-    frame, crank, coupler, follower = linkage.lengths.values()
-    rest = coupler - place
-    product = np.conj(place) * rest
-    q = np.array([abs(product) ** 2, -2.0 * product.real, 1.0])
-    first = np.polyadd([frame**2], (abs(place) ** 2 - crank**2) * q)
-    second = (abs(rest) ** 2 - follower**2) * q
-    second = np.polyadd([abs(product) ** 2 * frame**2, 0.0, 0.0], second)
-    roots = np.roots(np.polyadd(abs(rest) ** 2 * np.polymul([1.0, 0.0], first), second))
-    real = roots[np.abs(roots.imag) <= 1e-7 * np.abs(roots)].real
-    points = frame / (1.0 - real * product)
-    m = np.abs(points) ** 2 + abs(place) ** 2 - crank**2
-    return points, np.abs(m) < 2.0 * np.abs(points * place)
+def polyline_crossings(z):
+    """Return where the segments between places of a closed path cross."""
+    after = np.roll(z, -1)
+    side = ((after - z).conj()[:, None] * (z[None] - z[:, None])).imag > 0
+    parted = side != np.roll(side, -1, axis=1)
+    i, j = np.nonzero(np.triu(parted & parted.T, k=2))
+    apart = (j - i) % (len(z) - 1) > 0
+    return 0.25 * (z + after)[i[apart]] + 0.25 * (z + after)[j[apart]]
 
 
-def both_passages_alike(linkage, place, p):
-    """Whether the two positions that meet in a double point are of one assembly."""
-    frame, crank, coupler, _ = linkage.lengths.values()
-    size = abs(p) ** 2 + abs(place) ** 2 - crank**2
-    sides = []
-    for u in np.roots([np.conj(p) * place, -size, p * np.conj(place)]):
-        pin = p - place * u
-        sides.append(np.sign((np.conj(frame - pin) * coupler * u).imag))
-    return sides[0] == sides[1]
+def random_case(rng, kind):
+    """Return a linkage and a link whose points may cross their own paths."""
+    while True:
+        first, second, third = rng.uniform(0.3, 3.0, 3)
+        with suppress(BadInput):
+            if kind == 0:
+                return random_four_bar(rng), "coupler"
+            if kind == 1:
+                return SliderCrank(first, second, third - 1.5), "coupler"
+            return QuickReturn(first, second, 1.2 * (first + second)), "block"
 
 
-@pytest.mark.parametrize("scenes", [6, pytest.param(60, marks=pytest.mark.slow)])
-def test_double_points_are_those_of_the_cubic(scenes):
+@pytest.mark.parametrize("scenes", [6, pytest.param(45, marks=pytest.mark.slow)])
+def test_double_points_are_where_the_path_crosses_itself(scenes):
+    found = 0
     for seed in range(scenes):
         rng = np.random.default_rng(seed)
-        linkage = random_four_bar(rng)
-        place = complex(rng.uniform(-2, 3), rng.uniform(-2, 2)) * linkage.coupler
-        everywhere, crossed = sextic_nodes(linkage, place)
-        doubles, count = [], 0
+        linkage, link = random_case(rng, seed % 3)
+        place = rng.uniform((-2, -2), (3, 2)) * linkage.lengths.get(link, 1.0)
         for circuit in (0, 1):
-            with suppress(BadInput):
-                curve = coupler_curve(linkage, place.real, place.imag, circuit=circuit)
-                count += 1
-                curve.require()
-                doubles += list(complex_of(curve.double_position))
-        size = sum(linkage.lengths.values()) + abs(place)
-        for p in doubles:
-            assert np.min(np.abs(everywhere - p)) < 1e-9 * size
-        crossing = everywhere[crossed]
-        if linkage.crank_turns:
-            crossing = [p for p in crossing if both_passages_alike(linkage, place, p)]
-        if linkage.crank_turns or count == 1:
-            assert len(doubles) == len(crossing)
-        # All lie on the circle through A, D and the third singular focus.
-        focus = linkage.frame * place / linkage.coupler
-        ratio = (everywhere / (everywhere - linkage.frame)) / (focus / (focus - linkage.frame))
-        assert np.all(np.abs(ratio.imag) < 1e-9 * np.abs(ratio))
+            try:
+                curve = coupler_curve(linkage, *place, link=link, circuit=circuit, points=1500)
+            except BadInput:
+                continue
+            curve.require()
+            path, doubles = (complex_of(at) for at in (curve.position, curve.double_position))
+            chord, crossed = np.max(np.abs(np.diff(path))), polyline_crossings(path)
+            apart = np.abs(np.sin(np.diff(curve.double_parameter, axis=1)[:, 0] / 2))
+            # Of the smallest loops and the flattest crossings the chords know nothing.
+            for p in doubles[(apart > 0.02) & (curve.crossing_angle > 0.02)]:
+                assert np.min(np.abs(crossed - p), initial=9.0) < 2 * chord
+                found += 1
+            for p in crossed:
+                assert np.min(np.abs(doubles - p), initial=9.0) < 2 * chord
+    assert found >= scenes / 4
 
 
 def test_the_sextic_refuses_other_points():
@@ -255,18 +243,8 @@ def test_unit_of_length(unit):
     assert curve.double_position == pytest.approx(plain.double_position * unit, rel=1e-11)
 
 
-@pytest.mark.smoke
-def test_mirror():
-    plain = coupler_curve(CRANK_ROCKER, 1.0, -1.5)
-    mirrored = coupler_curve(CROSSED, 1.0, 1.5)
-    # The mirror reverses the sense of a path, and so does the crank that turns the same way.
-    assert mirrored.length == pytest.approx(plain.length, rel=1e-14)
-    assert mirrored.area == pytest.approx(plain.area, rel=1e-12)
-    assert mirrored.double_position == pytest.approx(plain.double_position * [1, -1], abs=1e-13)
-
-
-@pytest.mark.parametrize(("detuned", "pairs"), [(-1e-6, ((0, 1),)), (1e-6, ())])
-def test_tacnode_of_a_symmetric_curve(detuned, pairs):
+@pytest.mark.parametrize(("detuned", "crossings"), [(-1e-6, 2), (1e-6, 0)])
+def test_tacnode_of_a_symmetric_curve(detuned, crossings):
     """Coupler, follower and C-P of one length: P stays on a line through D that turns with DB.
 
     It is 2 l sin((g - mu)/2) from D, g the angle from CB to CP, mu the transmission angle: the same
@@ -279,7 +257,8 @@ def test_tacnode_of_a_symmetric_curve(detuned, pairs):
     place = arm + arm * np.exp(1j * (np.pi + angle))
     curve = coupler_curve(FourBar(frame, crank, arm, arm), place.real, place.imag)
     assert np.linalg.norm(curve.position[0] - curve.position[360]) < 2e-6
-    assert curve.tacnodes == pairs
+    near = np.linalg.norm(curve.double_position - curve.position[0], axis=1) < 0.01
+    assert np.count_nonzero(near & (curve.crossing_angle < 0.1)) == crossings
 
 
 @pytest.mark.parametrize(
@@ -311,11 +290,9 @@ def test_refusals_of_cognates():
             coupler_curve(CRANK_ROCKER, along).cognates()
 
 
-@pytest.mark.parametrize("ending", ["json", "csv", "npz"])
-def test_saving(tmp_path, ending):
+def test_saving(tmp_path):
     curve = coupler_curve(INWARD_ROCKER, 0.7, 0.6, points=32)
-    assert curve.save(tmp_path / f"curve.{ending}").stat().st_size > 500
-    saved = json.loads(json.dumps(curve.to_dict()))
+    saved = json.loads(curve.save(tmp_path / "curve.json").read_text())
     assert len(saved["double_position"]) == 2 and saved["passed"]
 
 
@@ -325,11 +302,12 @@ def test_picture_marks_double_points():
     assert labels == ["point of the coupler", "double point"]
 
 
-@pytest.mark.parametrize("linkage", [CRANK_ROCKER])
-def test_frames_and_bytes_of_a_moving_picture(tmp_path, linkage):
-    curve = coupler_curve(linkage, 1.0, 0.5)
-    first = animate(linkage, tmp_path / "one.gif", curves=[curve], frames=4, fps=20)
-    second = animate(linkage, tmp_path / "two.gif", curves=[curve], frames=4, fps=20)
+def test_frames_and_bytes_of_a_moving_picture(tmp_path):
+    curve = coupler_curve(CRANK_ROCKER, 1.0, 0.5)
+    first, second = (
+        animate(CRANK_ROCKER, tmp_path / f"{name}.gif", curves=[curve], frames=4, fps=20)
+        for name in ("one", "two")
+    )
     assert first.read_bytes() == second.read_bytes()
     with Image.open(first) as picture:
         assert picture.n_frames == 4

@@ -158,37 +158,6 @@ def test_mirror_about_the_frame_swaps_the_assemblies(bar):
         np.testing.assert_array_equal(getattr(one, name), sign * getattr(two, name))
 
 
-def test_parallelogram_and_extremes_of_the_rod_by_hand():
-    """Away from its change points theta3 = 0 and theta4 = theta2; 30 degrees to either side."""
-    bar = FourBar(2.0, 1.0, 2.0, 1.0)
-    assert not bar.crank_turns
-    motion = bar.motion([0.3, 1.0, 2.0, 3.0])
-    np.testing.assert_allclose(motion.theta3, 0.0, atol=1e-14)
-    np.testing.assert_allclose(motion.theta4, [0.3, 1.0, 2.0, 3.0], rtol=1e-14)
-    np.testing.assert_allclose(motion.alpha4, 0.0, atol=1e-12)
-    rod = QuickReturn(2.0, 1.0, 4.0)
-    assert rod.eps == 0.5
-    motion = rod.motion([0.0, TURN / 3, -TURN / 3, np.pi])
-    np.testing.assert_allclose(motion.theta4, [0.0, np.pi / 6, -np.pi / 6, 0.0], atol=1e-15)
-    np.testing.assert_allclose(motion.slide, [3.0, np.sqrt(3.0), np.sqrt(3.0), 1.0], rtol=1e-15)
-    np.testing.assert_allclose(motion.omega4, [1 / 3, 0.0, 0.0, -1.0], atol=1e-15)
-
-
-def test_inversions_of_the_quick_return():
-    """Seen from the crank another quick-return; held at the rod, a slider-crank."""
-    angle = np.linspace(-7.0, 7.0, 61)
-    here = QuickReturn(1.0, 2.5, 3.5).motion(angle)
-    there = QuickReturn(2.5, 1.0, 3.5).motion(-angle)
-    np.testing.assert_allclose(angle - here.theta4, -there.theta4, atol=2e-15)
-    np.testing.assert_allclose(here.slide, there.slide, rtol=1e-15)
-    np.testing.assert_allclose(here.omega4, 1 - there.omega4, atol=2e-15)
-    np.testing.assert_allclose(here.alpha4, there.alpha4, atol=2e-15)
-    inverse = SliderCrank(1.0, 2.5).motion(-here.theta4)
-    np.testing.assert_allclose(inverse.position, here.slide, rtol=1e-14)
-    turned = np.exp(1j * inverse.theta3) / np.exp(1j * (here.theta2 - here.theta4))
-    np.testing.assert_allclose(turned, 1.0, atol=6e-15)
-
-
 # ---------------------------------------------------------------- joints, links, drives
 
 
@@ -205,26 +174,10 @@ def test_joints_are_points_of_both_links_that_they_join(linkage):
     np.testing.assert_array_equal(joints["A"], 0.0)
 
 
-def test_the_coupler_ends_where_its_neighbour_is_to_the_last_digit():
-    angle = np.linspace(0.0, 6.0, 25)
-    bar = FourBar(5.0, 1.0, 4.5, 2.2).motion(angle, 10.0, 3.0)
-    slide = SliderCrank(1.0, 3.5, 0.7).motion(angle, 10.0, 3.0)
-    for one, other in (
-        (bar.point("coupler", 4.5), bar.point("follower", 2.2)),
-        (slide.point("coupler", 3.5), slide.point("slider", 0.0)),
-    ):
-        for name in ("position", "velocity", "acceleration"):
-            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-
-
 @EVERY
 def test_without_a_speed_rates_are_per_crank_angle(linkage):
     here, there = linkage.motion(1.0), linkage.motion(1.0, 7.0, 3.0)
     assert here.relative and here.omega2 == 1.0 and here.alpha2 == 0.0 and not there.relative
-    one, other = (m.point(linkage.links[1], 0.3, 0.2) for m in (here, there))
-    np.testing.assert_allclose(other.velocity, 7.0 * one.velocity, rtol=1e-14)
-    expected = 49.0 * one.acceleration + 3.0 * one.velocity
-    np.testing.assert_allclose(other.acceleration, expected, atol=1e-12)
     rates = [name for name in linkage.moves.rates if "velocity" in name]
     assert {here.unit(name) for name in rates} <= {"m/rad"}
     assert {there.unit(name) for name in rates} <= {"m/s"}
@@ -488,13 +441,7 @@ def test_result_carries_error_checks_and_picture(linkage, tmp_path):
     assert {"elastolink", "numpy"} <= set(motion.provenance)
 
 
-def test_error_grows_towards_a_dead_centre_and_with_the_turns():
-    near = [np.pi / 2, np.pi - 1e-3, np.pi]
-    for linkage in (FourBar(3.0, 1.0, 2.0 + 1e-9, 2.0), QuickReturn(1.0, 1.0 - 1e-9, 2.0)):
-        error = linkage.motion(near).error
-        assert error[0] < 1e-14 < 30 * error[0] < error[1] < error[2] < 1e-5
-    early, late = LINKAGES["drag link"].motion([1.0, 1.0 + 1000 * TURN]).error
-    assert late > 50 * early
+def test_the_loop_gapes_at_no_angle_however_large():
     far = FourBar(5.0, 1.0, 5.0, 2.0).motion([1e15])
     assert far.checks["loop closure over longest link"].limit <= 1e-8
 

@@ -199,22 +199,6 @@ def _branch(linkage):
     return {"assembly": linkage.assembly} if hasattr(linkage, "assembly") else {}
 
 
-@pytest.mark.parametrize(
-    ("linkage", "distribution"), [*zip(LINKAGES, ("normal", "uniform") * 2, strict=True)]
-)
-def test_random_linkages_agree(linkage, distribution):
-    widths = {name: 1e-3 * abs(size) for name, size in linkage.lengths.items() if name != "rod"}
-    widths["coupler.mass" if linkage is not SHAPER else "rod.mass"] = 0.01
-    found = tolerances(machine_of(linkage), widths, THETA, 5.0)
-    trial = found.monte_carlo(samples=1500, seed=3, distribution=distribution)
-    assert trial.passed, dict(trial.checks)
-    assert trial.lost == 0
-    row = found.place("omega4" if linkage is not SLIDER else "omega3")
-    ratio = trial.standard_deviation[row] / trial.expected[row]
-    # Standard error of 1500 samples: 1/sqrt(3000) = 1.8 %.
-    assert np.all(np.abs(ratio - 1.0) < 0.1)
-
-
 def test_a_wrong_sensitivity_does_not_pass_the_trial():
     found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
     wrong = replace(found, sensitivity=found.sensitivity * 1.3)
@@ -306,12 +290,12 @@ def test_other_wrong_input_is_refused():
 
 
 def test_results_leave_as_json_and_csv(tmp_path):
-    found = tolerances(FOUR_BAR, {"crank": 1e-4}, THETA)
+    found = tolerances(FOUR_BAR, {"crank": 1e-4})
     saved = json.loads(found.save(tmp_path / "t.json").read_text())
     assert saved["outputs"][1] == "theta4" and saved["units"]["theta4"] == "rad"
     np.testing.assert_array_equal(saved["worst_case"], found.worst_case)
     assert "model" not in saved
-    assert found.save(tmp_path / "t.csv").read_text().count("\n") > 37
+    assert found.save(tmp_path / "t.csv").read_text().count("\n") > 361
     trial = json.loads(found.monte_carlo(20).save(tmp_path / "m.json").read_text())
     assert trial["samples"] == 20
 
@@ -332,10 +316,4 @@ def test_any_shape_of_angles(shape):
     found = tolerances(FOUR_BAR, {"crank": 1e-4}, np.full(shape, 0.4))
     assert found.sensitivity.shape == (7, 5, *shape)
     assert found.worst_case.shape == found.error.shape == (7, *shape)
-    assert found.passed
-
-
-def test_no_angles_leave_nothing_to_compare():
-    found = tolerances(FOUR_BAR, {"crank": 1e-4}, [])
-    assert found.monte_carlo(20).passed
-    assert tolerances(FOUR_BAR, {"crank": 1e-4}).theta2.shape == (361,)
+    assert found.passed and found.monte_carlo(20).passed

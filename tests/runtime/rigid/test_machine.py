@@ -111,16 +111,6 @@ def test_a_load_may_depend_on_the_motion() -> None:
     np.testing.assert_allclose(machine.power(THETA, 5.0), -2.0 * speed**2, atol=1e-13)
 
 
-def test_added_mass() -> None:
-    machine = Machine(LINKAGE, {"coupler": MassDistribution.uniform_bar(1.0, 0.28)})
-    counterweight = MassDistribution.point(0.5, -0.1)
-    both = machine.with_mass("coupler", counterweight).with_mass("crank", counterweight)
-    assert both.mass("coupler").mass == 1.5
-    assert both.mass("crank") == counterweight
-    assert both.mass("follower") == MassDistribution()
-    assert machine.mass("coupler").mass == 1.0
-
-
 def test_every_problem_is_listed_at_once() -> None:
     with pytest.raises(BadInput) as refused:
         Machine(

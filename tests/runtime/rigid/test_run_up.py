@@ -53,13 +53,6 @@ def test_a_disc_approaches_the_no_load_speed_exponentially() -> None:
     assert run.passed
 
 
-def test_the_flywheel_adds_to_the_crank() -> None:
-    one = run_up(disc(0.05), 2.0, duration=1.0, flywheel=0.15)
-    other = run_up(disc(0.2), 2.0, duration=1.0)
-    np.testing.assert_allclose(one.speed, 10.0 * one.time, rtol=1e-8, atol=1e-9)
-    np.testing.assert_allclose(one.angle, other.angle, rtol=1e-9)
-
-
 def test_a_heavy_crank_swings_with_the_period_of_a_pendulum() -> None:
     crank = MassDistribution.about_centre(2.0, 0.08, 0.0, 0.003)
     machine = Machine(ROCKER, {"crank": crank}, gravity=(0.0, -9.81))
@@ -155,14 +148,6 @@ def test_a_load_may_stall_it_on_the_way() -> None:
     assert run.status == "stalled"
     # The jump is met within a step, to its tolerance.
     assert run.angle[-1] == pytest.approx(1.5, abs=1e-5)
-
-
-@pytest.mark.slow
-def test_a_load_may_wake_in_a_later_turn() -> None:
-    brake = Load("crank", couple=lambda t: -3.0 * (t > 10.0))
-    run = run_up(disc(loads=(brake,)), 1.0, revolutions=5, tolerance=1e-9)
-    assert run.status == "stalled"
-    assert run.angle[-1] == pytest.approx(15.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("linkage", LINKAGES, ids=lambda item: type(item).__name__)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
@@ -41,10 +41,8 @@ class StressEffect(Result):
         Crank speeds [rad/s].
     links : tuple of str
         Links.
-    maximum : ndarray, shape (nv, ns, links)
-        Largest stress [Pa].
-    error : ndarray, shape (nv, ns, links)
-        Of each, relative.
+    maximum, error : ndarray, shape (nv, ns, links)
+        Largest stress [Pa], and the error of each, relative.
     transmission : ndarray or None
         Of a four-bar whose length changes: least and greatest transmission angle [rad],
         ``(nv, 2)``.
@@ -70,31 +68,6 @@ class StressEffect(Result):
     def change(self) -> Array:
         """Largest stress over that of the first value, ``(nv, ns, links)``: below 1 it helps."""
         return np.asarray(self.maximum / self.maximum[:1])
-
-    def hurts(self, value: int = -1) -> Array:
-        """Return where a value stresses a link more than the first one does, ``(ns, links)``.
-
-        Parameters
-        ----------
-        value : int
-            Which of the values; the last by default.
-        """
-        doubt = self.error[value] + self.error[0]
-        return np.asarray(self.change[value] > 1.0 + doubt)
-
-    def best(self, limit: float = np.inf) -> Array:
-        """Return at each speed the value with the least largest stress of all links, ``(ns,)``.
-
-        Parameters
-        ----------
-        limit : float
-            The largest value that may be chosen.
-        """
-        allowed = np.flatnonzero(self.values <= limit)
-        if not allowed.size:
-            raise bad("limit", f"{limit:g}", f"at least {np.min(self.values):g}", "raise it")
-        worst = np.max(self.maximum[allowed], axis=2)
-        return np.asarray(self.values[allowed[np.argmin(worst, axis=0)]])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of all links over the speed, a line for each value."""
@@ -183,13 +156,10 @@ def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEff
     """Return the effect of a length with the transmission angles, where there is a four-bar."""
     if not set(_LENGTHS) <= set(system.geometry):
         return effect
-    lengths = {name: system.geometry[name] for name in _LENGTHS}
     angles = []
     for value in effect.values:
-        frame, crank, coupler, follower = (
-            float(value) if name == effect.name else lengths[name] for name in _LENGTHS
-        )
-        angles.append(transmission_angle(FourBar(frame, crank, coupler, follower)))
+        lengths = {name: system.geometry[name] for name in _LENGTHS} | {effect.name: float(value)}
+        angles.append(transmission_angle(FourBar(**lengths)))
     return replace(
         effect, transmission=np.array([[angle.least, angle.greatest] for angle in angles])
     )
@@ -198,8 +168,7 @@ def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEff
 def _values(where: str, values: Sequence[float]) -> Array:
     array = np.atleast_1d(numbers(where, values))
     if array.ndim != 1 or not array.size or not np.all(np.isfinite(array) & (array > 0)):
-        problem = Problem(where, str(values), "positive numbers", "correct them")
-        raise BadInput(problem)
+        raise bad(where, str(values), "positive numbers", "correct them")
     return array
 
 

@@ -498,21 +498,20 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
         size[k] = height[first]
         theta[k] = (place[first] + shift[first]) % fine.shape[1] * (period / fine.shape[1])
         row[k] = rows_of[rows[which[first]]]
-        error[k] = _missed(fine[which[first]], place[first]) / size[k]
+        around = (place[first] + np.arange(-2, 3)[:, None]) % fine.shape[1]
+        error[k] = missed_by_parabolas(*fine[which[first], around]) / size[k]
     return Peaks(size, theta, row, error)
 
 
-def _missed(values: Array, place: NDArray[np.intp]) -> Array:
-    """Return the most by which a parabola misses maxima of rows ``(k, angles)``, ``(k,)``.
+def missed_by_parabolas(first: Array, low: Array, middle: Array, high: Array, last: Array) -> Array:
+    """Return the most by which parabolas through three even samples miss extremes near the middle.
 
-    With s steps from the middle angle to the maximum, at most a half, the third difference counts
+    With s steps from the middle to the extreme, at most a half, the third difference counts
     ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.
     """
-    each, count = np.arange(len(place)), values.shape[1]
-    around = np.array([values[each, (place + shift) % count] for shift in (-2, -1, 0, 1, 2)])
-    third = np.array([-0.5, 1.0, 0.0, -1.0, 0.5]) @ around
-    fourth = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) @ around
-    return np.asarray(np.abs(third) / 16.0 + np.abs(fourth) * (3.0 / 128.0))
+    third = np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
+    fourth = np.abs(first - 4.0 * low + 6.0 * middle - 4.0 * high + last) * (3.0 / 128.0)
+    return np.asarray(third + fourth)
 
 
 def _require_damped(system: LinearPeriodic) -> None:

@@ -13,7 +13,7 @@ from elastolink.runtime.beams import Beam, Node, Section, Structure, linear_syst
 from elastolink.runtime.core.collocation import gauss_maps
 from elastolink.runtime.core.trigonometric import even_angles, interpolated
 from elastolink.runtime.design import SpeedProfile, run_through
-from elastolink.runtime.design.shape_stress import largest_by_shape
+from elastolink.runtime.design.transient import largest_by_shape
 from elastolink.runtime.linkages.linkage import LinkMotion
 from elastolink.runtime.periodic import steady_state
 from honesty import verdict

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..beams.section import Section
-from ..beams.structure import Beam, Structure
+from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
@@ -246,22 +246,27 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
     require_whole("count", count, 1, system.size)
     mean, own_error, _, _ = _means(system, count)
     rows, exponent, error = [], [], []
-    lengths = [name for name in (*names, "frame") if name in system.geometry]
-    wanted = [(name, "length") for name in lengths]
-    wanted += [(name, quantity) for name in names for quantity in _POWERS]
-    changes = {
-        f"{name} {quantity}": partial(_scaled, system, name, quantity) for name, quantity in wanted
-    }
-    changes |= {
-        f"mass at {node.name}": partial(_heavier, system, node.name)
+    # What changes, how, and its own value.
+    changes: list[tuple[str, Callable[[float], LinearPeriodic], float]] = [
+        (f"{name} length", partial(_changed, system, name, "length"), system.geometry[name])
+        for name in (*names, "frame")
+        if name in system.geometry
+    ]
+    changes += [
+        (f"{name} {quantity}", partial(_changed, system, name, quantity), 1.0)
+        for name in names
+        for quantity in _POWERS
+    ]
+    changes += [
+        (f"mass at {node.name}", partial(_heavier, system, node.name), 1.0)
         for node in structure.nodes
         if node.mass and not {"x", "y"} <= set(node.held)
-    }
-    for row, change in changes.items():
+    ]
+    for row, change, own in changes:
         # Symmetric differences of the logarithms at two steps, extrapolated.
         slopes = []
         for step in _STEPS:
-            ends = [np.log(_means(change(np.exp(sign * step)), count)[0]) for sign in (1, -1)]
+            ends = [np.log(_means(change(own * np.exp(sign * step)), count)[0]) for sign in (1, -1)]
             slopes.append((ends[0] - ends[1]) / (2.0 * step))
         coarse, fine = slopes
         best = fine + (fine - coarse) / 3.0
@@ -308,10 +313,38 @@ def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Arr
 
 
 def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> LinearPeriodic:
+    """Return the system with another length of a link, or its thickness or width times a value."""
     if quantity == "length":
         return system.with_geometry(**{link: value})
     area, second = (value**power for power in _POWERS[quantity])
-    return _remade(system, partial(_with_link, link, area, second))
+
+    def change(structure: Structure) -> Structure:
+        beam = structure.beam(link)
+        section, shear = beam.section, beam.section.shear_stiffness
+        made = replace(
+            section,
+            area=section.area * area,
+            second_moment=section.second_moment * second,
+            # k G A goes with the area.
+            shear_stiffness=None if shear is None else shear * area,
+        )
+        changed = replace(beam, section=made)
+        beams = tuple(changed if one is beam else one for one in structure.beams)
+        return replace(structure, beams=beams)
+
+    return _remade(system, change)
+
+
+def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
+    """Return the system with the lumped mass of a node times a factor."""
+
+    def change(structure: Structure) -> Structure:
+        node = structure.node(name)
+        changed = replace(node, mass=node.mass * factor)
+        nodes = tuple(changed if one is node else one for one in structure.nodes)
+        return replace(structure, nodes=nodes)
+
+    return _remade(system, change)
 
 
 def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) -> LinearPeriodic:
@@ -321,44 +354,7 @@ def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) ->
     return replace(system.remesh(change), parameters=dict(system.parameters))
 
 
-def _with_link(link: str, area: float, second: float, structure: Structure) -> Structure:
-    beams = tuple(
-        _with_section(beam, area, second) if beam.name == link else beam for beam in structure.beams
-    )
-    return replace(structure, beams=beams)
-
-
-def _with_section(beam: Beam, area: float, second: float) -> Beam:
-    section = beam.section
-    shear = section.shear_stiffness
-    made = replace(
-        section,
-        area=section.area * area,
-        second_moment=section.second_moment * second,
-        # k G A goes with the area.
-        shear_stiffness=None if shear is None else shear * area,
-    )
-    return replace(beam, section=made)
-
-
 def _factor(system: LinearPeriodic) -> float:
     """Return what the factors of moduli and densities make of a beam's own frequency."""
     values = system.parameters
     return float(np.sqrt(values.get("elasticity", 1.0) / values.get("distributed_mass", 1.0)))
-
-
-def _scaled(system: LinearPeriodic, link: str, quantity: str, factor: float) -> LinearPeriodic:
-    own = system.geometry[link] if quantity == "length" else 1.0
-    return _changed(system, link, quantity, own * factor)
-
-
-def _with_mass(name: str, factor: float, structure: Structure) -> Structure:
-    nodes = tuple(
-        replace(node, mass=node.mass * factor) if node.name == name else node
-        for node in structure.nodes
-    )
-    return replace(structure, nodes=nodes)
-
-
-def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
-    return _remade(system, partial(_with_mass, name, factor))

@@ -163,21 +163,11 @@ _WIDEST = 0.125
 
 @dataclass(frozen=True)
 class Walk:
-    """A turn of the crank with all encounters of the lowest modes.
+    """A turn of the crank with all encounters of the lowest modes."""
 
-    Attributes
-    ----------
-    encounters : tuple of Encounter
-        By angle.
-    theta : ndarray
-        Crank angles that it took [rad].
-    assured : float
-        Least assurance of a shape between neighbouring angles.
-    """
-
-    encounters: tuple[Encounter, ...]
-    theta: Array
-    assured: float
+    encounters: tuple[Encounter, ...]  # by angle
+    theta: Array  # crank angles that it took [rad]
+    assured: float  # least assurance of a shape between neighbouring angles
 
 
 def walk(modes: Modes, arrays: Arrays, period: float, count: int) -> Walk:
@@ -352,25 +342,14 @@ _ASIDE = 1e-7
 
 @dataclass(frozen=True)
 class Curves:
-    """Which curve each rank belongs to; curves are numbered from 0 by rank at a first angle.
+    """Which curve each rank belongs to; curves are numbered from 0 by rank at a first angle."""
 
-    Attributes
-    ----------
-    path : Walk
-        A turn with its crossings.
-    start : float
-        First angle [rad].
-    size, count : int
-        Number of ranks, and of requested curves.
-    period : float
-        Period [rad].
-    """
-
-    path: Walk
-    start: float
+    path: Walk  # a turn with its crossings
+    start: float  # first angle [rad]
+    # numbers of ranks, and of requested curves
     size: int
     count: int
-    period: float
+    period: float  # [rad]
 
     @cached_property
     def _passed(self) -> tuple[Array, Indices]:

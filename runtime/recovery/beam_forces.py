@@ -42,50 +42,24 @@ _GAUSS_PLACES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 @dataclass(frozen=True)
 class Station:
-    """A place on a beam.
-
-    Attributes
-    ----------
-    beam : str
-        Name of the beam.
-    place : float
-        x over the beam's length, 0 to 1.
-    element : int
-        Which of the structure's elements it lies on.
-    xi : float
-        x over the element's length, from its start.
-    """
+    """A place on a beam, and on one of the structure's elements."""
 
     beam: str
-    place: float
+    place: float  # x over the beam's length, 0 to 1
     element: int
-    xi: float
+    xi: float  # x over the element's length, from its start
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """Forces along beams as linear forms of a motion, at given crank angles.
+    """Forces along beams as linear forms of a motion, at given crank angles."""
 
-    Attributes
-    ----------
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-    stations : tuple of Station
-        Places.
-    forms : mapping of str to LinearForm
-        ``axial`` and ``shear`` [N], ``moment`` [N m]; ``along``, ``across`` [m] and ``slope``
-        [rad] from the rigid beam, in its axes: rows are the stations.
-    acceleration : LinearForm
-        ``w^2 d2q/dtheta2`` by the equation of motion.
-    method : str
-        ``equilibrium`` or ``shape``.
-    """
-
-    theta: Array
+    theta: Array  # crank angles [rad], (nt,)
     stations: tuple[Station, ...]
+    # axial and shear [N], moment [N m]; along, across [m] and slope [rad] from the rigid beam, in
+    # its axes: rows are the stations
     forms: Mapping[str, LinearForm]
-    acceleration: LinearForm
-    method: str
+    acceleration: LinearForm  # w^2 d2q/dtheta2 by the equation of motion
 
     def without_accelerations(self) -> Recovery:
         """Return the same with the accelerations replaced by the equation of motion."""
@@ -115,11 +89,6 @@ def stations_of(
 
     ``stations`` is the number on each beam, its ends included (by default 25), or by beam the
     places x/length.
-
-    Raises
-    ------
-    BadInput
-        If a beam is unknown or a place lies off it.
     """
     if stations is None or isinstance(stations, int):
         count = 25 if stations is None else stations
@@ -167,13 +136,7 @@ def recovery(
     stations: int | Mapping[str, ArrayLike] | tuple[Station, ...] | None = None,
     method: str = "equilibrium",
 ) -> Recovery:
-    """Return forces and displacements along the beams of a system as linear forms.
-
-    Raises
-    ------
-    BadInput
-        If the method or a beam is unknown, or the system is not one of beams.
-    """
+    """Return forces and displacements along the beams of a system as linear forms."""
     require_method(method)
     structure = required_structure(system)
     angles = np.atleast_1d(numbers("theta", theta))
@@ -191,8 +154,8 @@ def recovery(
         by_element.setdefault(station.element, []).append(station)
     for e, own in by_element.items():
         xi = np.array([station.xi for station in own])
-        finder = _by_equilibrium if method == "equilibrium" else _by_shape
-        for name, form in {**finder(forms, e, xi), **_displacements(forms, e, xi)}.items():
+        forces = _by_equilibrium if method == "equilibrium" else _by_shape
+        for name, form in {**forces(forms, e, xi), **_displacements(forms, e, xi)}.items():
             rows[name].append(form)
     met = [station for own in by_element.values() for station in own]
     order = np.array([met.index(station) for station in chosen])
@@ -201,7 +164,6 @@ def recovery(
         stations=chosen,
         forms={name: stacked(found).ordered(order) for name, found in rows.items()},
         acceleration=forms.acceleration,
-        method=method,
     )
 
 
@@ -456,9 +418,6 @@ def propagated(
         return np.zeros(len(FORCES))
     # A few angles tell the size of the coefficients.
     picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
-    made: Recovery = recovery(system, motion.theta[picked], stations, "shape")
-    found = []
-    for name in FORCES:
-        rows = made.forms[name].at_speed(motion.speed)
-        found.append(max(float(np.max(np.abs(r) @ motion.doubt)) for r in (rows["q"],)))
-    return np.array(found)
+    made = recovery(system, motion.theta[picked], stations, "shape")
+    rows = [made.forms[name].at_speed(motion.speed)["q"] for name in FORCES]
+    return np.array([np.max(np.abs(row) @ motion.doubt) for row in rows])

@@ -182,13 +182,7 @@ def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
 
 
 def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
-    """Return the equilibrium of a structure that stands still under constant loads.
-
-    Raises
-    ------
-    BadInput
-        If the structure moves, or a motion is given.
-    """
+    """Return the equilibrium of a structure that stands still under constant loads."""
     structure = required_structure(system)
     if structure.moving or motion is not None:
         raise bad(

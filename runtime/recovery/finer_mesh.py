@@ -6,6 +6,7 @@ damping: of modal damping the same ratio in every mode of the finer mesh too.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -98,6 +99,20 @@ def on_finer_mesh(
     return finer, BeamMotion(
         theta=motion.theta, q=q, qd=qd, speed=motion.speed, period=motion.period
     )
+
+
+def with_mesh(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    norm: str,
+    error: float,
+    change: Callable[[LinearPeriodic, BeamMotion], float],
+) -> dict[str, float | str]:
+    """Return an error estimate and its norm, with what a finer mesh changes where there is one."""
+    finer = on_finer_mesh(system, motion)
+    if finer is None:
+        return {"error": error, "error_norm": f"{norm}, by that of the motion; the mesh apart"}
+    return {"error": error + CAUTION * change(*finer), "error_norm": norm}
 
 
 def _kept_or_found(

@@ -277,13 +277,8 @@ def stress_curve(
 class Fibres:
     """Stresses of both outer fibres at stations, as forms of the motion.
 
-    Attributes
-    ----------
-    links : tuple of str
-        The beams with stations.
-    link, place, sign : ndarray, shape (rows,)
-        Which of them, x over its length, +1 or -1 for the fibre: first all positive fibres, then
-        the negative ones.
+    Of each row ``link``, ``place`` (x over its length) and ``sign`` of the fibre: first all
+    positive fibres, then the negative ones.
     """
 
     def __init__(
@@ -334,21 +329,17 @@ class Peaks:
 
 @dataclass(frozen=True)
 class _Range:
-    """What one range of speeds gives.
+    """What one range of speeds gives."""
 
-    ``size``, ``theta``, ``row``, ``error``: of the largest stresses, ``(links, ns)``.  ``growth``:
-    the largest multipliers; ``defect``: what the modes left out change of one, over its condition.
-    ``deflection``: the largest at each speed, ``(ns,)``.
-    """
-
+    # of the largest stresses, (links, ns): size [Pa], angle [rad], row, error over the size
     size: Array
     theta: Array
     row: NDArray[np.int64]
     error: Array
     modes: int
-    growth: Growth
-    defect: float
-    deflection: Array
+    growth: Growth  # the largest multipliers
+    defect: float  # what the modes left out change of one, over its condition
+    deflection: Array  # largest at each speed, (ns,)
 
 
 @dataclass(frozen=True)
@@ -364,12 +355,8 @@ class _Trial:
 class _Work:
     """One call's work: range after range, with the numbers of modes and of angles reached so far.
 
-    Attributes
-    ----------
-    angles : int
-        Angles of a revolution at which motions are computed at present.
-    least : int
-        Number of modes that the next range begins with.
+    ``angles`` of a revolution at which motions are computed at present; ``least``, the number of
+    modes that the next range begins with.
     """
 
     def __init__(

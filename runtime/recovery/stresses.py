@@ -44,25 +44,15 @@ _ANGLES = 64
 
 
 def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[Array, Array]:
-    """Return 1/A [1/m^2] and c/I [1/m^3] of each station, c half the thickness.
-
-    Raises
-    ------
-    BadInput
-        If a section has no thickness.
-    """
+    """Return 1/A [1/m^2] and c/I [1/m^3] of each station, c half the thickness."""
     structure = required_structure(system)
     sections = {beam.name: beam.section for beam in structure.beams}
-    missing = [
-        name
+    problems = [
+        Problem(f"section of {name}", "no thickness", "one, for stresses", "use recover() instead")
         for name in dict.fromkeys(station.beam for station in stations)
         if sections[name].thickness is None
     ]
-    if missing:
-        fix = "give Section.thickness, or use recover() for forces"
-        problems = [
-            Problem(f"section of {n}", "no thickness", "one, for stresses", fix) for n in missing
-        ]
+    if problems:
         raise BadInput(*problems)
     own = [sections[station.beam] for station in stations]
     levers = [0.5 * (section.thickness or 0.0) / section.second_moment for section in own]
@@ -140,39 +130,6 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
         wrong += float(np.sum((first[name] - second[name]) ** 2 @ np.array(flat)))
         total += float(np.sum(first[name] ** 2 @ np.array(flat)))
     return min(wrong / total, 0.5) if total else 0.0
-
-
-def draw(result: StressResult, ax: Axes | None = None) -> Axes:
-    """Draw the stress at each beam's worst place over the crank angle, its static part dashed.
-
-    Of one angle alone, the largest stress along the beams.
-    """
-    from ..core.plotting import axes_or_new
-
-    ax = axes_or_new(ax)
-    if len(result.theta) == 1:
-        for link in result.maxima:
-            own = stations_on(result.links, link)
-            ax.plot(result.places[own], 1e-6 * result.stress[0, own], label=link, linewidth=0.9)
-        ax.set_xlabel("place x/length")
-        ax.set_ylabel("largest stress [MPa]")
-        ax.legend()
-        return ax
-    period = result.period
-    closed = period is not None
-    angles = np.degrees(result.theta if period is None else np.append(result.theta, period))
-    for link, peak in result.maxima.items():
-        parts = [result.at(link, peak.place, peak.fibre, name) for name in ("all", "quasi-static")]
-        whole, still = (1e-6 * (np.append(p, p[:1]) if closed else p) for p in parts)
-        label = f"{link}, x/length = {peak.place:.3g}"
-        line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
-        ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
-        ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
-    ax.set_xlabel("crank angle [deg]")
-    ax.set_ylabel("stress at the worst fibre [MPa]")
-    ax.set_title(f"{result.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
-    ax.legend()
-    return ax
 
 
 FIBRES = ("positive", "negative")
@@ -367,9 +324,31 @@ class StressResult(StationResult):
 
         Of a structure that stands still, the stress along the beams.
         """
-        from .stresses import draw
+        from ..core.plotting import axes_or_new
 
-        return draw(self, ax)
+        ax = axes_or_new(ax)
+        if len(self.theta) == 1:
+            for link in self.maxima:
+                own = stations_on(self.links, link)
+                ax.plot(self.places[own], 1e-6 * self.stress[0, own], label=link, linewidth=0.9)
+            ax.set_xlabel("place x/length")
+            ax.set_ylabel("largest stress [MPa]")
+            ax.legend()
+            return ax
+        closed = self.period is not None
+        angles = np.degrees(np.append(self.theta, self.period) if closed else self.theta)
+        for link, peak in self.maxima.items():
+            parts = [self.at(link, peak.place, peak.fibre, part) for part in PARTS[:2]]
+            whole, still = (1e-6 * (np.append(p, p[:1]) if closed else p) for p in parts)
+            label = f"{link}, x/length = {peak.place:.3g}"
+            line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
+            ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
+            ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("stress at the worst fibre [MPa]")
+        ax.set_title(f"{self.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
+        ax.legend()
+        return ax
 
 
 def stress(

@@ -67,7 +67,7 @@ def test_held_frequencies_and_campbell():
         angles = rng.uniform(0.0, 6.0, 3)
         found = natural_frequencies(scene.system, angles, scene.system.size)
         frozen.append(above(found.error, found.frequency - scene.natural, scene.natural))
-        drawn = campbell(scene.system, np.linspace(2.0, 9.0, 4), exponents=False)
+        drawn = campbell(scene.system, np.linspace(2.0, 9.0, 4))
         held.append(above(drawn.error, drawn.held - scene.natural, scene.natural))
     verdict(frozen, SCENES)
     verdict(held, SCENES)

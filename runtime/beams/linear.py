@@ -48,18 +48,9 @@ SOURCES = ("distributed", "lumped", "static")
 class AxialForces:
     """Axial forces along every element, and the geometric stiffness that they give.
 
-    Parameters
-    ----------
-    arrays : AngleArrays
-        Of the structure.
-    constant_stiffness : ndarray, shape (n, n)
-        Of springs.
-    lumped_mass : ndarray, shape (N,)
-        Lumped mass of every coordinate, held ones included.
-    gravity : pair of float
-        Acceleration of gravity [m/s^2] in the fixed axes.
-    slide : Slide, optional
-        Of a structure with a sliding pin.
+    From the stiffness of springs ``(n, n)``, the lumped mass of every coordinate ``(N,)``, held
+    ones included, gravity [m/s^2] in the fixed axes and, of a structure with a sliding pin, its
+    slide.
     """
 
     def __init__(
@@ -426,12 +417,7 @@ def lumped_values(
 ) -> tuple[Array, Array, Array]:
     """Return lumped mass, springs and dampers of all coordinates, held ones included.
 
-    Parameters
-    ----------
-    structure : Structure
-        The nodes.
-    freedoms : Freedoms, optional
-        Another numbering of the coordinates than the structure's own.
+    By the structure's own numbering of the coordinates, or by another one.
     """
     freedoms = structure.freedoms if freedoms is None else freedoms
     mass, springs, dampers = (np.zeros(len(freedoms.all)) for _ in range(3))

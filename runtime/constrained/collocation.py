@@ -108,19 +108,8 @@ def _integrals(count: int) -> tuple[Array, Array]:
 def stage_matrix(by_x: Array, by_v: Array, h: float, points: Nodes) -> Array:
     """Return the matrix of ``a - (what a does to the accelerations)`` at the nodes of steps.
 
-    Parameters
-    ----------
-    by_x, by_v : ndarray, shape (*batch, s, n, n)
-        Derivatives of the accelerations at the nodes by coordinates and velocities.
-    h : float
-        Length of the steps [s].
-    points : Nodes
-        The nodes.
-
-    Returns
-    -------
-    ndarray, shape (*batch, s n, s n)
-        Rows and columns: nodes, then coordinates.
+    From derivatives of the accelerations at the nodes, ``(*batch, s, n, n)``, and the length h of
+    the steps: ``(*batch, s n, s n)``, rows and columns nodes, then coordinates.
     """
     *lead, s, n, _ = by_x.shape
     blocks = (-h * h * points.twice)[:, None, :, None] * by_x[..., None, :]

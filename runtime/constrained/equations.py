@@ -90,20 +90,8 @@ class Equations:
 
     The coordinates are ``q = columns x`` and the constraints ``rows Phi``, by powers of two, so
     that scaling is exact and one matrix of entries near 1 serves accelerations and projections.
-
-    Parameters
-    ----------
-    system : Constrained
-        The system; its parameters are single numbers.
-    q, qd : ndarray, shape (*batch, n)
-        Where masses and rows are measured: at their largest.
-    t : ndarray, shape batch
-        Times there [s].
-
-    Attributes
-    ----------
-    evaluations : int
-        States at which the dynamics were evaluated.
+    Masses and rows are measured at the given states, at their largest; ``evaluations`` counts the
+    states at which the dynamics were evaluated.
     """
 
     def __init__(self, system: Constrained, q: Array, qd: Array, t: float | Array) -> None:
@@ -207,18 +195,10 @@ class Equations:
     ) -> tuple[Array, int]:
         """Return the nearest positions on the constraints, and the number of corrections.
 
-        Newton's iteration, damped where a correction would raise the defect.
-
-        Parameters
-        ----------
-        t, x : ndarray, shape batch, (*batch, n)
-            Times and predicted positions.
-        mass : ndarray, shape (*batch, n, n)
-            Metric, not scaled.
-        free : ndarray, shape (n,), optional
-            1 for the coordinates that may move, 0 for those that are held.
+        Newton's iteration in the metric of the masses (not scaled), damped where a correction would
+        raise the defect.  ``free (n,)`` is 1 for coordinates that may move, 0 for those held.
         """
-        at = self._violation(t, x)
+        at = self.system.violation(x * self.columns, t)
         last = np.inf
         # Newton corrections of positions, and halvings of one that would raise the defect.
         for count in range(60):
@@ -239,9 +219,6 @@ class Equations:
         defect = at["velocity_rhs"] - at["jacobian"] @ (v * self.columns)[..., None]
         return self._least_change(at["mass"], at["jacobian"], defect[..., 0], free)
 
-    def _violation(self, t: float | Array, x: Array) -> Mapping[str, Array]:
-        return self.system.violation(x * self.columns, t)
-
     def _damped(
         self, t: float | Array, x: Array, change: Array, at: Mapping[str, Array]
     ) -> tuple[Array, Mapping[str, Array]]:
@@ -250,7 +227,7 @@ class Equations:
         factor = np.ones(np.shape(before))
         for _ in range(12):
             trial = x + factor[..., None] * change
-            at = self._violation(t, trial)
+            at = self.system.violation(trial * self.columns, t)
             after = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
             worse = (after > before) & (after > _LAST)
             if not np.any(worse):
@@ -307,26 +284,12 @@ def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]
 def constraint_norms(
     system: Constrained, t: Array, q: Array, qd: Array, qdd: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the scaled defects of the constraints at the three levels.
+    """Return the largest scaled defects of the constraints at the three levels, ``(nt,)`` each.
 
     A row of ``Phi``, ``Phi_q qd - rhs`` and ``Phi_q qdd - gamma`` is divided by the length of the
     row of ``Phi_q S`` (S measures the coordinates by their inertia) and by the size of the scaled
     coordinates, velocities and accelerations over the motion: 1e-16 is round-off whatever the
     units.
-
-    Parameters
-    ----------
-    system : Constrained
-        The system.
-    t : ndarray, shape (nt,)
-        Times [s].
-    q, qd, qdd : ndarray, shape (nt, n)
-        Coordinates and their derivatives.
-
-    Returns
-    -------
-    position, velocity, acceleration : ndarray, shape (nt,)
-        Largest scaled defect of a row at each time.
     """
     at = system.dynamics(q, qd, t)
     jacobian = at["jacobian"]

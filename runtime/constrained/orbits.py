@@ -25,7 +25,7 @@ from .equations import (
     require_variations,
     solved,
 )
-from .motion import Run, Watch, linear_range, march
+from .motion import Watch, linear_range, march
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -310,14 +310,8 @@ class Shooting:
 def closed_chain(maps: Array, wrong: Array) -> Array | None:
     """Solve ``e_{j+1} - G_j e_j = r_j`` round a ring; None where it is singular.
 
-    The equations stand together (sparse), not multiplied up, so that growth does no harm.
-
-    Parameters
-    ----------
-    maps : ndarray, shape (m, p, p)
-        G_j.
-    wrong : ndarray, shape (m, p, r)
-        Right-hand sides.
+    G are the ``maps (m, p, p)``, r what is ``wrong (m, p, k)``.  The equations stand together
+    (sparse), not multiplied up, so that growth does no harm.
     """
     from scipy import sparse
     from scipy.sparse.linalg import splu
@@ -716,7 +710,7 @@ def _followed(system: Constrained, guess: _Guess, samples: int) -> _Guess:
     columns = equations.columns
     x, v = equations.nearest(0.0, guess.q[0] / columns, guess.qd[0] / columns)
     times = np.linspace(0.0, guess.period, samples + 1)
-    path = march(Run(system, x * columns, v * columns, times, 1e-8, (), 1e6))
+    path = march(system, x * columns, v * columns, times, 1e-8)
     if path.status:
         raise _no_guess(f"the motion from the guess ends: {path.message}")
     return replace(guess, q=path.q[:-1], qd=path.qd[:-1])

@@ -26,15 +26,12 @@ def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
     """
     motion = arrays.motion(theta)
     found = []
-    for placed, own in arrays.local:
+    for placed in arrays.structure.elements:
         _, across = placed_shapes(placed, np.array([0.5, 1.0]))
-        c, s = motion.products[placed.beam.name][:, 1:3].T
-        local = np.zeros((len(theta), 2, len(own.mass)))
+        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
+        local = np.tile(across, (len(theta), 1, 1))
         for x, y in ((0, 1), (3, 4)):
-            local[:, :, x] = -s[:, None] * across[:, y]
-            local[:, :, y] = c[:, None] * across[:, y]
-        others = [i for i in range(len(own.mass)) if i not in (0, 1, 3, 4)]
-        local[:, :, others] = across[:, others]
+            local[:, :, x], local[:, :, y] = -s * across[:, y], c * across[:, y]
         full = np.zeros((len(theta), 2, arrays.count))
         full[:, :, placed.indices] = local / placed.beam.length
         found.append(full[:, :, arrays.free])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..beams.element_forms import required_structure
 from ..beams.section import Section
 from ..beams.structure import Structure
 from ..core.errors import bad
@@ -17,7 +18,7 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .held import cycle_mean, held_frequencies, require_system
+from .held import cycle_mean, held_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -189,7 +190,7 @@ def link_frequencies(
         If the system has no such link, a value is not positive, or the crank cannot turn fully
         with it.
     """
-    names = _structure(system)[1]
+    names = tuple(beam.name for beam in required_structure(system).beams)
     _check(system, names, link, quantity)
     values = np.atleast_1d(numbers("value", value))
     if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values) & (values > 0)):
@@ -199,7 +200,7 @@ def link_frequencies(
     with bar(progress, len(values)) as tick:
         for k, number in enumerate(values):
             changed = _changed(system, link, quantity, float(number))
-            beams = _structure(changed)[0].beams
+            beams = required_structure(changed).beams
             alone = [pinned_frequency(beam.section, beam.length) for beam in beams]
             pinned.append([_factor(changed) * frequency for frequency in alone])
             rows.append(_means(changed, count))
@@ -242,7 +243,8 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
     BadInput
         If the system is not a linkage of beams, or the number of modes is unusable.
     """
-    structure, names = _structure(system)
+    structure = required_structure(system)
+    names = [beam.name for beam in structure.beams]
     require_whole("count", count, 1, system.size)
     mean, own_error, _, _ = _means(system, count)
     rows, exponent, error = [], [], []
@@ -282,13 +284,6 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
         exponent=np.stack(exponent),
         mean=mean,
     )
-
-
-def _structure(system: LinearPeriodic) -> tuple[Structure, tuple[str, ...]]:
-    require_system(system)
-    if system.structure is None:
-        raise bad("system", "one without beams", "a linkage of beams", "use linkage_system")
-    return system.structure, tuple(beam.name for beam in system.structure.beams)
 
 
 def _check(system: LinearPeriodic, names: tuple[str, ...], link: str, quantity: str) -> None:

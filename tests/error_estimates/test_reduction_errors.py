@@ -11,7 +11,7 @@ import numpy as np
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import reduced_system
-from honesty import SCENES, verdict
+from honesty import over_scenes
 
 ANGLES = 40
 
@@ -107,8 +107,9 @@ def exact_parts(scene, small, theta):
     return found
 
 
-def ratios(rng):
-    """Return estimate over error of the arrays, and of the squared frequencies that they hold."""
+@over_scenes(9100, floor=1e-17)
+def test_arrays_and_squared_frequencies(rng):
+    """Arrays, and the squared frequencies that they hold."""
     scene, small = reduced(rng)
     theta = rng.uniform(0.0, 2 * np.pi, ANGLES)
     worst = 0.0
@@ -123,15 +124,7 @@ def ratios(rng):
     off = np.max(np.abs(np.sort(squares, axis=1) - scene.natural[: small.size] ** 2)) / largest
     # Each entry of M and of K may be off, and the basis rounds what it was made from.
     allowed = 2 * small.size * small.error + 1e-14 * scene.condition()
-    return np.array([small.error / max(worst, 1e-17)]), np.array([allowed / max(off, 1e-17)])
-
-
-@SCENES
-def test_arrays_and_squared_frequencies(scenes):
-    rng = np.random.default_rng(9100)
-    arrays, squares = zip(*(ratios(rng) for _ in range(scenes)), strict=True)
-    verdict(arrays, scenes)
-    verdict(squares, scenes)
+    return {"arrays": (small.error, worst), "squares": (allowed, off)}
 
 
 def test_the_estimate_sees_arrays_that_no_series_resolves():

@@ -8,8 +8,7 @@ from functools import cache
 import elastolink as el
 import numpy as np
 import pytest
-from constrained_truth import Circle, by_explicit_steps
-from elastolink.generated import four_bar_multibody as multibody
+from constrained_truth import LENGTHS, Circle, by_explicit_steps, driven_four_bar
 from elastolink.runtime.constrained import consistent_state, constrained_motion
 from elastolink.runtime.constrained.equations import Equations
 from elastolink.runtime.core.errors import BadInput, LinearRangeWarning, RedundantConstraints
@@ -110,29 +109,14 @@ def test_differences_are_the_emitted_variations():
 
 # Linkages ----------------------------------------------------------------------------------------
 
-LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
 SPEED = 6.0
-
-
-def driven_four_bar() -> Constrained:
-    values = dict.fromkeys(multibody.PARAMETERS, 0.0) | LENGTHS
-    for n, length in ((2, 0.3), (3, 0.9), (4, 0.8)):
-        values[f"mass{n}"] = length
-        values[f"along{n}"] = length**2 / 2
-        values[f"inertia{n}"] = length**3 / 3
-    drive = {
-        "drive": lambda q, t: SPEED * t,
-        "drive_d1": lambda q, t: SPEED,
-        "drive_d2": lambda q, t: 0.0,
-    }
-    return Constrained.from_module(multibody, values, external=drive)
 
 
 def test_a_driven_linkage_moves_as_its_kinematics():
     """As many constraints as coordinates: nothing is free, and all is to be met."""
     linkage = el.FourBar(**LENGTHS)
     at_start = linkage.motion(0.0, SPEED)
-    system = driven_four_bar()
+    system = driven_four_bar(SPEED)
     guess = np.zeros(9)
     guess[[5, 8]] = at_start.theta3, at_start.theta4
     start = consistent_state(system, guess, np.zeros(9))

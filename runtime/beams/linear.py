@@ -38,10 +38,6 @@ def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
     return np.concatenate(found, axis=1)
 
 
-# Masses that load the beams, each by itself: the beams' own, and the lumped ones.
-SOURCES = ("distributed", "lumped", "static")
-
-
 class AxialForces:
     """Axial forces along every element, and the geometric stiffness that they give.
 
@@ -171,10 +167,6 @@ def _node_forces(arrays: AngleArrays) -> Array:
     return found
 
 
-# Share of a motion from which a coordinate is named.
-_NAMED = 0.1
-
-
 def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> None:
     """Refuse a structure that can move without resistance, at a few angles of the crank.
 
@@ -200,7 +192,8 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
             motion = _rigid_motion(strain)
             if motion is None:
                 raise _lost_in_rounding(arrays)
-            loose = np.flatnonzero(motion > _NAMED * np.max(motion))
+            # The coordinates that have a tenth of the motion or more are named.
+            loose = np.flatnonzero(motion > 0.1 * np.max(motion))
         names = ", ".join([structure.labels[i] for i in loose][:6])
         raise bad(
             "structure",

@@ -26,8 +26,6 @@ from .equations import (
 _TAIL = 2
 # A factor of the length of the next window, and bounds of it.
 _CAUTION, _SHORTER, _LONGER = 0.9, 0.2, 3.0
-# Every so many nodes what may stop a motion is looked at.
-_EACH = 3
 # Some five minutes of windows of the rod.
 _MOST_WINDOWS = 100_000
 
@@ -258,7 +256,7 @@ def _step(window: _Window, after: State, astray: _Astray | None) -> Step:
         along = np.abs(along + h * h * (points.terms_twice @ astray.carried))
         along += np.abs(h * h * (points.terms_twice @ astray.local))
         error = np.max(along, axis=0) + window.left * window.units.place
-    inner = before.t + h * points.c[_EACH - 1 : -1 : _EACH]
+    inner = before.t + h * points.c[2:-1:3]  # what may stop a motion is looked at there
     return Step(before, after, at, window.units.place, inner, error)
 
 

@@ -15,16 +15,13 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
 from ..linkages import FourBar, transmission_angle
-from ..recovery.stress_over_speed import StressCurve, stress_curve
+from ..recovery.stress_over_speed import ELSEWHERE, StressCurve, stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _LENGTHS = ("frame", "crank", "coupler", "follower")
-# The whole equation may change other values by this much more than the first: as
-# ``stress_over_speed`` reckons for other speeds.
-_ELSEWHERE = 8.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,7 +181,7 @@ def effect_of(
 ) -> StressEffect:
     """Return the curves of systems, the first one known, up to the first that is enough.
 
-    The whole equation was solved for the first value alone: :data:`_ELSEWHERE` times what it
+    The whole equation was solved for the first value alone: :data:`.ELSEWHERE` times what it
     changed there is part of the errors of the others.
     """
     curves: list[StressCurve] = []
@@ -199,7 +196,7 @@ def effect_of(
             break
     change = first.checks["equation"]
     errors = np.array([curve.error for curve in curves])
-    errors[1:] += _ELSEWHERE * change.value
+    errors[1:] += ELSEWHERE * change.value
     return StressEffect(
         method=first.method,
         error=errors,

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
 _LENGTHS = tuple(1.0 + 0.02 * k for k in range(12))
-# Speeds of a run-up at which the stresses are looked at, about.
-_RUN_UP_SPEEDS = 200
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,7 +214,7 @@ def _way_up(
     A value passes where the steady stresses at all speeds of the way are within the limits.
     """
     own, end = system.geometry[length], _place(quiet, band)
-    every = max(1, end // _RUN_UP_SPEEDS)
+    every = max(1, end // 200)  # some 200 speeds of the way are looked at
     values = np.array(sorted(tried, key=lambda value: abs(value - own)))
     systems = [system.with_geometry(**{length: float(value)}) for value in values]
     way = quiet.curve.at(np.arange(end % every, end + 1, every))

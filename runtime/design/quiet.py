@@ -21,9 +21,6 @@ from .speed_profile import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Speeds at which the stresses are found, unless the caller gives them.
-_SPEEDS = 1000
-
 
 @dataclass(frozen=True)
 class Band:
@@ -157,7 +154,7 @@ def quiet_speeds(
     named = _limits(limits, links)
     given = numbers("speeds", speeds)
     if given.shape == (2,):
-        given = np.linspace(given[0], given[1], _SPEEDS)
+        given = np.linspace(given[0], given[1], 1000)
     if given.ndim != 1 or len(given) < 3 or not (given[0] > 0 and np.all(np.diff(given) > 0)):
         fix = "give the lowest and the highest, or increasing ones"
         raise bad("speeds", str(speeds), "increasing crank speeds above 0", fix)

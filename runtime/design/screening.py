@@ -20,7 +20,6 @@ from ..recovery.stresses import stress_operator
 from .speed_profile import Array
 
 _ANGLES = 256
-_STATIONS = 7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +93,7 @@ def screen(system: LinearPeriodic, speeds: ArrayLike, *, damping: float) -> Scre
     structure = required_structure(system)
     mean = float(natural_frequencies(system, count=1).mean[0])
     theta = system.period * np.arange(_ANGLES) / _ANGLES
-    form, stations = stress_operator(system, theta, _STATIONS, method="shape")
+    form, stations = stress_operator(system, theta, 7, method="shape")
     stiffness = system.array("K", theta)
     unit, constant = (
         form.values(1.0, still, np.zeros_like(still))

@@ -33,19 +33,9 @@ _STAGES = 3
 _CHUNK = 512
 # Modes that are added to see what the others would change.
 _MORE = 3
-_ROUNDS = 4
-# Steps of the first try: of a revolution, and of a period of the fastest mode that is followed.
-_PER_TURN, _PER_PERIOD = 48, 2.0
 _MOST_STEPS = 200_000
 # Coordinates that are followed without a reduction; their steps leave the axial modes unresolved.
 _FOLLOWED = 5
-# Levels of a changing length at first, at which the structure is made anew.
-_LEVELS = 9
-# Samples that are kept, and a margin for the largest stress between the steps.
-_MOST_SAMPLES = 20_000
-_BETWEEN = 2.0
-# Stresses, over the largest, whose changes tell that of the largest.
-_LARGE = 0.7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,7 +151,8 @@ def run_through(
     name = next(iter(profile.geometry), None)
     if name is not None and min(profile.geometry[name]) == max(profile.geometry[name]):
         system, name = system.with_geometry(**{name: profile.geometry[name][0]}), None
-    run = _Run(system, profile, chosen, stations, start, name, _LEVELS)
+    # Of a changing length the structure is made anew at nine levels first.
+    run = _Run(system, profile, chosen, stations, start, name, levels=9)
     steps = run.first_steps()
     found, before = run.solve(steps), None
     while True:
@@ -171,7 +162,7 @@ def run_through(
         if np.max(stepping + found.between) <= 0.5 * rtol or 2 * steps > _MOST_STEPS:
             break
     truncation = np.zeros(len(run.links))
-    for _ in range(_ROUNDS if chosen is not None or name is not None else 0):
+    for _ in range(4 if chosen is not None or name is not None else 0):
         richer = run.richer()
         more = richer.solve(steps)
         # Cubics between twice as many levels are better by far more than the half of the change.
@@ -246,7 +237,7 @@ class _Run:
         ranked = np.sqrt(np.maximum(np.sort(squares, axis=-1), 0.0))
         fastest = float(np.max(ranked[:, min(_FOLLOWED, ranked.shape[1]) - 1]))
         periods = fastest * self.profile.duration / (2.0 * np.pi)
-        steps = int(np.ceil(max(_PER_TURN * self.turns, _PER_PERIOD * periods, 16)))
+        steps = int(np.ceil(max(48.0 * self.turns, 2.0 * periods, 16)))
         if 4 * steps > _MOST_STEPS:
             raise bad(
                 "profile",
@@ -270,7 +261,7 @@ class _Run:
         """Return the run with a number of steps."""
         time = np.linspace(self.profile.times[0], self.profile.times[-1], steps + 1)
         states = march(self._generator, time, np.append(self._first, 1.0), _STAGES)
-        every = -(-len(time) // _MOST_SAMPLES)
+        every = -(-len(time) // 20_000)  # as many samples are kept at most
         q = np.empty((-(-len(time) // every), self.full.size))
         qd = np.empty_like(q)
         stress = np.empty((len(time), len(self.links)))
@@ -396,7 +387,7 @@ def _between(stress: Array) -> Array:
     added += missed_by_parabolas(first, low, top, high, last)
     largest = np.maximum(np.max(stress, axis=0), np.finfo(float).tiny)
     beyond = np.max(top + np.where(peaked, added, 0.0), axis=0, initial=0.0) / largest - 1.0
-    return np.asarray(_BETWEEN * np.maximum(beyond, 0.0))
+    return np.asarray(2.0 * np.maximum(beyond, 0.0))  # with a margin of as much again
 
 
 def _difference(finer: _Motion, coarse: _Motion) -> Array:
@@ -407,7 +398,7 @@ def _difference(finer: _Motion, coarse: _Motion) -> Array:
     every = (len(finer.steps) - 1) // (len(coarse.steps) - 1)
     old, new = coarse.steps, finer.steps[::every]
     largest = np.maximum(np.max(finer.steps, axis=0), np.finfo(float).tiny)
-    near = np.maximum(old, new) >= _LARGE * largest
+    near = np.maximum(old, new) >= 0.7 * largest
     return np.asarray(np.max(np.where(near, np.abs(new - old), 0.0), axis=0) / largest)
 
 

@@ -11,8 +11,6 @@ from ..core.collocation import gauss_maps
 from ..core.families import DAMPING, LinearPeriodic
 from .speed_profile import Array, SpeedProfile
 
-# Floats of the stage equations of a block of steps that are solved together.
-_BLOCK_FLOATS = 2_000_000
 # Forces of inertia and loads, with the power of the speed.
 FORCES = {"f": 2, "h": 1, "p": 0}
 
@@ -90,7 +88,8 @@ def march(generator: Callable[[Array], Array], edges: Array, start: Array, stage
     damped or kept, never amplified, and not resolved.
     """
     step = edges[1] - edges[0]
-    block = max(1, _BLOCK_FLOATS // (stages * len(start)) ** 2)
+    # Steps whose stage equations, two million numbers, are solved together.
+    block = max(1, 2_000_000 // (stages * len(start)) ** 2)
     states = np.empty((len(edges), len(start)))
     states[0] = start
     for first in range(0, len(edges) - 1, block):

@@ -117,11 +117,7 @@ def _shares(found: SlowMonodromy, vectors: Array, held: HeldModes, speed: float)
 
 Indices = NDArray[np.int64]
 
-# Means end this far before the held mechanism buckles.
-_SHORT = 0.999
 _ENOUGH = 1e-9
-# Rows to either side of a crossing that tell how uneven its curve is.
-_BESIDE = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -287,7 +283,7 @@ def _held(
     out, error = np.full((2, len(speeds), count), np.nan)
     with bar(progress, len(speeds)) as tick:
         for k, speed in enumerate(speeds):
-            if speed >= _SHORT * limit:
+            if speed >= 0.999 * limit:  # next to buckling the means are no longer smooth
                 break
             values = partial(_lowest, system, float(speed), count)
             out[k], error[k] = cycle_mean(values, system.period, enough=_ENOUGH)
@@ -331,12 +327,12 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
 
 
 def _unevenness(speeds: Array, values: Array, first: int) -> float:
-    """Return how far the rows beside an interval lie off the chord through its ends.
+    """Return how far the two rows to either side of an interval lie off the chord of its ends.
 
     What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
     """
     w, f = speeds[first : first + 2], values[first : first + 2]
-    near = slice(max(0, first - _BESIDE), first + 2 + _BESIDE)
+    near = slice(max(0, first - 2), first + 4)
     chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
     return float(np.max(np.abs(values[near] - chord)))
 

@@ -145,10 +145,6 @@ def projected(
     return values, np.asarray(vectors @ inner)
 
 
-# Frequencies nearer than this, relatively, are found together, in the span of their vectors.
-_TOGETHER = 1e-7
-
-
 @dataclass(frozen=True)
 class Mode:
     """One natural frequency of a structure.
@@ -224,7 +220,8 @@ def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
     done = 0
     while done < len(rough):
         end = done + 1
-        while end < len(rough) and rough[end] - rough[end - 1] < _TOGETHER * rough[end]:
+        # Nearer ones are computed together, in the span of their vectors.
+        while end < len(rough) and rough[end] - rough[end - 1] < 1e-7 * rough[end]:
             end += 1
         modes += _together(finer, rough[done:end], item.first + done)
         done = end

@@ -338,7 +338,6 @@ _SHARES: tuple[tuple[float, ...], ...] = (
     (0.345, 0.345, 0.31),
     (0.283, 0.262, 0.239, 0.216),
 )
-_WIDEST, _CHANGE = 0.02, 0.3
 
 
 def divided_for(
@@ -371,9 +370,9 @@ def divided_for(
 
 
 def narrow_enough(problem: DynamicStiffness, omega: float) -> float:
-    """Return the relative width within which no phase of a whole member changes much."""
+    """Return the relative width, 2 % at most, within which no member's phase changes by 0.3."""
     z, b = phases(omega, *problem.assembly.data)
-    return float(min(_WIDEST, _CHANGE / max(np.max(z) / 2.0, np.max(b))))
+    return float(min(0.02, 0.3 / max(np.max(z) / 2.0, np.max(b))))
 
 
 def _distance(z: Array, b: Array) -> float:

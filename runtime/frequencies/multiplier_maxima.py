@@ -26,11 +26,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-# Turn of the highest mode between two samples [rad].
-_TURN = 0.35
 _MOST_SAMPLES = 4000
-# Lowest frequency left out, over the highest wanted and over the highest kept.
-_BEYOND, _GAP = 4.0, 1.3
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 
@@ -64,7 +60,7 @@ def multiplier_maxima(
     low, high = speed_range
     slow = SlowModes(system, {})
     top = slow.highest_frequency(high, count)
-    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / _TURN)) + 8
+    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
     if number > _MOST_SAMPLES:
         raise bad(
             "speed_range",
@@ -258,7 +254,8 @@ def few_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -> 
     frequency = held_modes(form, even_angles(system.period, 128))[0]
     top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
     for kept in range(count, system.size):
-        apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]
+        # The lowest mode left out is well above those kept, and far above those wanted.
+        apart = low[kept] >= 1.3 * top[kept - 1] and low[kept] >= 4.0 * top[count - 1]
         if not apart:
             continue
         try:

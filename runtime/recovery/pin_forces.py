@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from .beam_motion import Motion
 
-# Round-off of the balance of forces, over the largest end force of an element.
-_ROUNDING = 1e-9
 _PARTS = ("x", "y", "moment")
 
 
@@ -152,7 +150,8 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
     total = sum((value[:, :2] for value in of_ground.values()), np.zeros_like(drag))
     largest = max(float(np.max(np.abs(v[:, :2]))) for v in on_beams.values())
     gap = float(np.max(np.abs(total + drag - rate)))
-    checks = {"balance": Check(gap / largest if largest else gap, _ROUNDING)}
+    # Round-off of the balance, over the largest end force of an element.
+    checks = {"balance": Check(gap / largest if largest else gap, 1e-9)}
     doubt = DeferredGroup(partial(_doubt, system, moving, on_beams))
     return PinReactions(
         method="end forces of the elements",

@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 
     from .beam_motion import Motion
 
-# Least amplitude that counts, over the largest: that of round-off in solving for the forces.
-_RESOLVED = 1e-10
-_MOST = 4096
 
 Slopes = Mapping[int, Callable[[Array], Array]]
 
@@ -58,11 +55,12 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
             # Supports may take all of a constant load: what is left is round-off of it.
             largest += float(np.max(np.abs(forms.axial.force("static", theta))))
             largest += float(np.max(np.abs(forms.axial.node_forces)))
-        if float(np.max(amplitudes[count // 3 :])) <= _RESOLVED * largest:
+        # Round-off in solving for the forces leaves amplitudes of 1e-10 of the largest.
+        if float(np.max(amplitudes[count // 3 :])) <= 1e-10 * largest:
             return interpolated(values, system.period, noise=1e-13).derivative
         count *= 2
-        if count > _MOST:
-            found = f"axial forces that {_MOST} samples do not resolve"
+        if count > 4096:
+            found = "axial forces that 4096 samples do not resolve"
             raise bad("structure", found, "a smooth motion", "keep off dead points")
 
 

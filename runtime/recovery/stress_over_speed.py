@@ -35,12 +35,10 @@ Array = NDArray[np.float64]
 _ANGLES, _MOST_ANGLES, _TAIL = 64, 1024, 0.01
 # At a few speeds a motion on the next larger number of modes tells what truncation changes; how
 # much larger it may be at other speeds (up to 1.5 times the fourfold in 216 random ones).
-_ELSEWHERE = 8.0
+ELSEWHERE = 8.0
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.
 _FINER, _NEAR = 8, 0.6
-# Half a fine step beside its top the highest harmonic has cos(pi/16) of it.
-_TIED = 0.98
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -395,7 +393,7 @@ class _Work:
             size=size,
             theta=np.concatenate([p.theta for p in peaks], axis=1),
             row=np.concatenate([p.row for p in peaks], axis=1),
-            error=3.0 * weight * np.concatenate(errors) + error + _ELSEWHERE * change[:, None],
+            error=3.0 * weight * np.concatenate(errors) + error + ELSEWHERE * change[:, None],
             modes=chosen,
             growth=moving.growth(speeds),
             defect=defect,
@@ -425,7 +423,7 @@ class _Work:
             change = float(np.max(np.abs(trials[0].size / trials[-1].size - 1.0)))
             if (
                 self.wanted is not None
-                or _ELSEWHERE * change <= 0.5 * self.rtol
+                or ELSEWHERE * change <= 0.5 * self.rtol
                 or trials[-1].modes == self.truncations.numbers[-1]
             ):
                 return trials[0], trials[-1]
@@ -451,7 +449,7 @@ def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple
     )
     whole = floquet_multipliers(system, float(speeds[-1]), rtol=1e-8)
     gap = abs(float(np.max(np.abs(whole.multipliers))) - modulus[-1]) / condition[-1]
-    defect = max(_ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
+    defect = max(ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
     return modulus, error + defect * condition
 
 
@@ -469,8 +467,9 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
         rows_of = np.flatnonzero(link == k)
         rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
         fine = np.abs(resampled(values[:, rows_of[rows], columns], _FINER * count)).T
-        # Of several tops almost equal at the angles another may be the largest between them.
-        which, place = np.nonzero(fine >= _TIED * np.max(fine, axis=1, keepdims=True))
+        # Of several tops almost equal at the angles another may be the largest between them: half a
+        # fine step beside its top the highest harmonic has cos(pi/16) of it.
+        which, place = np.nonzero(fine >= 0.98 * np.max(fine, axis=1, keepdims=True))
         before, after = fine[which, place - 1], fine[which, (place + 1) % fine.shape[1]]
         at = fine[which, place]
         top = (at >= before) & (at >= after)

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 Stations = int | Mapping[str, ArrayLike] | None
 # Places over each element for its energy: exact for the recovered polynomials' squares.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-# Angles at which the energy is looked at.
-_ANGLES = 64
 
 
 def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[Array, Array]:
@@ -107,7 +105,7 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     Of a natural mode this is the relative error of its squared frequency on the mesh.
     """
     structure = required_structure(system)
-    picked = np.unique(np.linspace(0, len(motion.theta) - 1, _ANGLES).astype(int))
+    picked = np.unique(np.linspace(0, len(motion.theta) - 1, 64).astype(int))
     few = replace(
         motion, theta=motion.theta[picked], q=motion.q[picked], qd=motion.qd[picked], period=None
     )
@@ -134,8 +132,6 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
 
 FIBRES = ("positive", "negative")
 PARTS = ("all", "quasi-static", "dynamic")
-# Angles per given one at which a periodic stress is looked at for its maximum.
-_FINER = 8
 # Fields that are computed when they are first looked at.
 _LATER = {
     name: DeferredField()
@@ -283,10 +279,10 @@ class StressResult(StationResult):
         return best
 
     def _finer(self, values: Array) -> tuple[Array, Array]:
-        """Return values of a periodic stress at more angles, by its Fourier series."""
+        """Return values of a periodic stress at eight times the angles, by its Fourier series."""
         if self.period is None or len(self.theta) < 3:
             return self.theta, values
-        count = _FINER * len(self.theta)
+        count = 8 * len(self.theta)
         return even_angles(self.period, count), resampled(values, count)
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:

@@ -16,9 +16,9 @@ from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
-from .beam_forces import recovery
+from .beam_forces import recovery, stations_of
 from .beam_motion import BeamMotion, beam_motion, chunks
-from .beam_result import BeamResult, in_motion
+from .beam_result import BeamResult, checked_forms, in_motion
 from .finer_mesh import with_mesh
 
 if TYPE_CHECKING:
@@ -173,10 +173,12 @@ def _shift(
 def _rows(system: LinearPeriodic, beam: Beam, theta: Array, along: float, across: float) -> Array:
     """Return what turns coordinates into the displacement of the point: ``(nt, 2, n)``."""
     nearest = min(max(along, 0.0), beam.length)
-    made = recovery(system, theta, {beam.name: nearest / beam.length}, "shape")
-    u, v, turn = (made.forms[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
+    structure = required_structure(system)
+    foot = stations_of(structure, {beam.name: nearest / beam.length})
+    made = recovery(checked_forms(system, theta), foot, "shape")
+    u, v, turn = (made[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
     along_beam, across_beam = u - across * turn, v + (along - nearest) * turn
-    angle = required_structure(system).configuration(theta)[beam.name].angle[:, None]
+    angle = structure.configuration(theta)[beam.name].angle[:, None]
     x = np.cos(angle) * along_beam - np.sin(angle) * across_beam
     y = np.sin(angle) * along_beam + np.cos(angle) * across_beam
     return np.stack([x, y], axis=1)

@@ -16,7 +16,7 @@ from ..beams.recovery_forms import LinearForm, stacked
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import is_finite
+from ..core.inputs import is_finite, numbers
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -28,7 +28,7 @@ from .beam_forces import (
     stations_of,
 )
 from .beam_motion import BeamMotion, beam_motion, chunks
-from .beam_result import StationResult, in_motion, stations_on
+from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 
 if TYPE_CHECKING:
@@ -498,10 +498,15 @@ def stress_operator(
     BadInput
         If an argument is unusable.
     """
-    made = recovery(system, theta, stations, method)
-    if not accelerations:
-        made = made.without_accelerations()
-    areas, levers = fibre_factors(system, made.stations)
-    axial = made.forms["axial"].turned(np.diag(areas))
-    bending = made.forms["moment"].turned(np.diag(-levers))
-    return stacked([axial + bending, axial - bending]), made.stations
+    require_method(method)
+    angles = np.atleast_1d(numbers("theta", theta))
+    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
+        raise bad("theta", f"shape {angles.shape}", "finite angles, shape (nt,)", "flatten them")
+    chosen = stations_of(required_structure(system), stations)
+    areas, levers = fibre_factors(system, chosen)
+    forms = checked_forms(system, angles)
+    made = recovery(forms, chosen, method)
+    axial = made["axial"].turned(np.diag(areas))
+    bending = made["moment"].turned(np.diag(-levers))
+    both = stacked([axial + bending, axial - bending])
+    return both if accelerations else both.eliminated(forms.acceleration), chosen

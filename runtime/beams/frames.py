@@ -258,7 +258,7 @@ def eliminated(rows: Array) -> tuple[NDArray[np.int64], Array]:
     kept = np.setdiff1d(np.arange(rows.shape[1]), gone)
     spread = np.zeros((rows.shape[1], len(kept)))
     spread[kept] = np.eye(len(kept))
-    spread[gone] = -rows[np.ix_(used, kept)]
+    spread[gone] = -rows[used][:, kept]
     return kept, spread
 
 

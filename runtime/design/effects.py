@@ -156,7 +156,8 @@ def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEff
     angles = []
     for value in effect.values:
         lengths = {name: system.geometry[name] for name in _LENGTHS} | {effect.name: float(value)}
-        angles.append(transmission_angle(FourBar(**lengths)))
+        frame, crank, coupler, follower = lengths.values()
+        angles.append(transmission_angle(FourBar(frame, crank, coupler, follower)))
     return replace(
         effect, transmission=np.array([[angle.least, angle.greatest] for angle in angles])
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -143,9 +143,10 @@ class NaturalFrequencies(Result):
         for k in range(self.tracked.shape[1]):
             ax.plot(np.degrees(self.theta), self.tracked[:, k], lw=1.2, label=f"mode {k + 1}")
         low, high = np.min(self.theta), np.max(self.theta)
+        veering: dict[str, Any] = {"marker": "o", "edgecolors": "0.35", "facecolors": "none"}
         for name, style, found in (
             ("crossing", {"marker": "x", "color": "k"}, self.crossings),
-            ("veering", {"marker": "o", "edgecolors": "0.35", "facecolors": "none"}, self.veerings),
+            ("veering", veering, self.veerings),
         ):
             seen = [one for one in found if low <= one.angle <= high]
             if seen:

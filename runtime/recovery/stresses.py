@@ -331,8 +331,8 @@ class StressResult(StationResult):
             ax.set_ylabel("largest stress [MPa]")
             ax.legend()
             return ax
-        closed = self.period is not None
-        angles = np.degrees(np.append(self.theta, self.period) if closed else self.theta)
+        period, closed = self.period, self.period is not None
+        angles = np.degrees(self.theta if period is None else np.append(self.theta, period))
         for link, peak in self.maxima.items():
             parts = [self.at(link, peak.place, peak.fibre, part) for part in PARTS[:2]]
             whole, still = (1e-6 * (np.append(p, p[:1]) if closed else p) for p in parts)

@@ -18,6 +18,7 @@ from ..core.errors import LINEAR_RANGE, BadInput, LinearRangeWarning, Problem, b
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
 from ..core.results import Check, Result, provenance
+from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
 from ..recovery.stress_over_speed import missed_by_parabolas
@@ -232,9 +233,7 @@ class _Run:
     def first_steps(self) -> int:
         """Return the number of steps of the first try."""
         theta = np.linspace(0.0, self.followed.period, 16, endpoint=False)
-        mass, stiffness = self.followed.array("M", theta), self.followed.array("K", theta)
-        squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
-        ranked = np.sqrt(np.maximum(np.sort(squares, axis=-1), 0.0))
+        ranked = held_frequencies(self.followed, theta, {})[0]
         fastest = float(np.max(ranked[:, min(_FOLLOWED, ranked.shape[1]) - 1]))
         periods = fastest * self.profile.duration / (2.0 * np.pi)
         steps = int(np.ceil(max(48.0 * self.turns, 2.0 * periods, 16)))

@@ -12,6 +12,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import reduced_system
 from honesty import over_scenes
+from wavy_springs import WavyCoordinates, without_parameters
 
 ANGLES = 40
 
@@ -24,50 +25,25 @@ class Coordinates:
         # Wide ranges of frequencies, and neighbours a few per cent apart.
         steps = 1.0 + 10.0 ** rng.uniform(-1.3, 0.8, n)
         self.natural = rng.uniform(3.0, 10.0) * np.cumprod(steps)
-        self.fixed = np.eye(n) + 0.15 * rng.standard_normal((n, n))
+        fixed = np.eye(n) + 0.15 * rng.standard_normal((n, n))
         # Some coordinates come near to being dependent at some angle: their series are long.
         count = int(rng.integers(1, 4))
-        self.waves = rng.uniform(0.02, 0.35) / np.sqrt(n) * rng.standard_normal((2, count, n, n))
+        waves = rng.uniform(0.02, 0.35) / np.sqrt(n) * rng.standard_normal((2, count, n, n))
         self.drag = float(rng.choice([0.0, 0.3]))
         push = rng.standard_normal((2, n))
-        squares = self.natural**2
-
-        def times(left, right, weight=1.0):
-            return lambda theta: np.swapaxes(left(theta), 1, 2) * weight @ right(theta)
+        coordinates = WavyCoordinates(fixed, waves)
 
         def force(theta):
             pushed = push[0] + np.multiply.outer(np.cos(theta), push[1])
-            return (np.swapaxes(self.turn(theta), 1, 2) @ pushed[..., None])[..., 0]
+            return (np.swapaxes(coordinates.turn(theta), 1, 2) @ pushed[..., None])[..., 0]
 
-        self.exact = {
-            "M": times(self.turn, self.turn),
-            "K": times(self.turn, self.turn, squares),
-            "A": times(self.turn, self.slope),
-            "B": times(self.slope, self.slope),
-            "f": force,
-        }
-        if self.drag:
-            self.exact["C"] = times(self.turn, self.turn, self.drag)
-            self.exact["D"] = times(self.turn, self.slope, self.drag)
-        terms = tuple(Term(name, None, function) for name, function in self.exact.items())
-        self.system = LinearPeriodic(n, terms, {}, lambda values: {})
+        self.exact = coordinates.arrays(self.natural**2, self.drag) | {"f": force}
+        self.system = without_parameters(self.exact)
 
     def condition(self):
         """Return the largest condition of K over a revolution."""
         theta = np.linspace(0.0, 2 * np.pi, 48)
         return float(np.max(np.linalg.cond(self.exact["K"](theta))))
-
-    def turn(self, theta):
-        k = np.arange(1, self.waves.shape[1] + 1)
-        angle = np.multiply.outer(theta, k)
-        waves = np.einsum("tk,kij->tij", np.cos(angle), self.waves[0].astype(theta.dtype))
-        return self.fixed + waves + np.einsum("tk,kij->tij", np.sin(angle), self.waves[1])
-
-    def slope(self, theta):
-        k = np.arange(1, self.waves.shape[1] + 1)
-        angle = np.multiply.outer(theta, k)
-        waves = np.einsum("tk,kij->tij", k * np.cos(angle), self.waves[1].astype(theta.dtype))
-        return waves - np.einsum("tk,kij->tij", k * np.sin(angle), self.waves[0])
 
 
 def reduced(rng):

@@ -12,6 +12,7 @@ from elastolink.runtime.frequencies import campbell, critical_speeds, natural_fr
 from elastolink.runtime.periodic import steady_peaks
 from honesty import over_scenes
 from manufactured import manufactured
+from wavy_springs import WavyCoordinates, without_parameters
 
 
 class Turned:
@@ -23,31 +24,8 @@ class Turned:
         self.natural = np.sqrt(squares.astype(np.longdouble))
         fixed = np.eye(count) + 0.15 * rng.standard_normal((count, count))
         fixed = np.rint(fixed * 1024.0) / 1024.0
-        waves = (0.08 if wavy else 0.0) * rng.standard_normal((2, count, count))
-
-        def turn(theta):
-            first = np.multiply.outer(np.cos(theta), waves[0])
-            return fixed + first + np.multiply.outer(np.sin(theta), waves[1])
-
-        def slope(theta):
-            first = np.multiply.outer(np.cos(theta), waves[1])
-            return first - np.multiply.outer(np.sin(theta), waves[0])
-
-        def made(left, right, weight=1.0):
-            return lambda theta: np.swapaxes(left(theta), 1, 2) * weight @ right(theta)
-
-        terms = [
-            Term("M", None, made(turn, turn)),
-            Term("K", None, made(turn, turn, squares)),
-            Term("A", None, made(turn, slope)),
-            Term("B", None, made(slope, slope)),
-        ]
-        if drag:
-            terms += [
-                Term("C", None, made(turn, turn, drag)),
-                Term("D", None, made(turn, slope, drag)),
-            ]
-        self.system = LinearPeriodic(count, tuple(terms), {}, lambda values: {})
+        waves = (0.08 if wavy else 0.0) * rng.standard_normal((2, 1, count, count))
+        self.system = without_parameters(WavyCoordinates(fixed, waves).arrays(squares, drag))
 
 
 def to_a_digit(error, actual, size):

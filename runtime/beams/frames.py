@@ -16,7 +16,7 @@ from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
 from .assembly import Array
 from .section import Section
-from .structure import Beam, Node, Structure, node_value_problems
+from .structure import Node, Structure, beams_between, node_value_problems
 
 
 def frame(
@@ -79,19 +79,11 @@ def frame(
         require_mapping(where, given, "see the example of frame")
     _check_form(places, members, elements, nodes)
     _check(places, members, sections, [*supports, *pins, *(nodes or {})])
-    ends = {name: (_complex(places[a]), _complex(places[b])) for name, (a, b) in members.items()}
-    beams = tuple(
-        Beam(
-            name=name,
-            start=start,
-            end=end,
-            section=sections[name] if isinstance(sections, Mapping) else sections,
-            length=abs(ends[name][1] - ends[name][0]),
-            elements=elements[name] if isinstance(elements, Mapping) else elements,
-            kind=kind,
-        )
-        for name, (start, end) in members.items()
-    )
+    ends = {name: (complex(*places[a]), complex(*places[b])) for name, (a, b) in members.items()}
+    lengths = {name: abs(end - start) for name, (start, end) in ends.items()}
+    if not isinstance(sections, Mapping):
+        sections = dict.fromkeys(members, sections)
+    beams = beams_between(members, lengths, sections, elements, kind)
     made = []
     for letter in places:
         meeting = tuple(beam.name for beam in beams if letter in (beam.start, beam.end))
@@ -107,10 +99,6 @@ def frame(
         moving=False,
         provenance=dict(provenance or {}),
     )
-
-
-def _complex(place: tuple[float, float]) -> complex:
-    return complex(*place)
 
 
 def _standing(

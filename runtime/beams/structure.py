@@ -407,19 +407,6 @@ class Structure:
         """
         return _named("node", self.nodes, name)
 
-    def index(self, label: str) -> int:
-        """Return the place of a free coordinate in q.
-
-        Raises
-        ------
-        BadInput
-            If there is no free coordinate of that name.
-        """
-        if label not in self.labels:
-            fix = "correct the name, or free it"
-            raise bad("coordinate", repr(label), f"one of {', '.join(self.labels)}", fix)
-        return self.labels.index(label)
-
     def require_pinned(self, what: str) -> None:
         """Refuse a node that slides.
 
@@ -506,6 +493,28 @@ class Structure:
                 found = f"{widest:.3g} m away from beam {beam.name}, on which it slides"
                 fix = "let places and configuration agree"
                 raise bad(f"node {name}", found, "a node on the beam", fix)
+
+
+def beams_between(
+    ends: Mapping[str, tuple[str, str]],
+    lengths: Mapping[str, float],
+    sections: Mapping[str, Section],
+    elements: int | Mapping[str, int | tuple[float, ...]],
+    kind: str,
+) -> tuple[Beam, ...]:
+    """Return a beam for each pair of nodes, with its own or the same elements."""
+    return tuple(
+        Beam(
+            name=name,
+            start=start,
+            end=end,
+            section=sections[name],
+            length=lengths[name],
+            elements=elements[name] if isinstance(elements, Mapping) else elements,
+            kind=kind,
+        )
+        for name, (start, end) in ends.items()
+    )
 
 
 def _named(what: str, items: tuple[_Item, ...], name: str) -> _Item:

@@ -21,6 +21,9 @@ SMALL = 0.01
 _LAST = 1e-9
 
 
+LEVELS = ("position", "velocity", "acceleration")
+
+
 class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
     """The equations have no solution near a state, or one that is not finite."""
 
@@ -283,8 +286,10 @@ def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]
 
 def constraint_norms(
     system: Constrained, t: Array, q: Array, qd: Array, qdd: Array
-) -> tuple[Array, Array, Array]:
-    """Return the largest scaled defects of the constraints at the three levels, ``(nt,)`` each.
+) -> dict[str, Array]:
+    """Return the largest scaled defects of the constraints by level, ``(nt,)`` each.
+
+    ``position_norm``, ``velocity_norm`` and ``acceleration_norm``, as results have them.
 
     A row of ``Phi``, ``Phi_q qd - rhs`` and ``Phi_q qdd - gamma`` is divided by the length of the
     row of ``Phi_q S`` (S measures the coordinates by their inertia) and by the size of the scaled
@@ -304,8 +309,7 @@ def constraint_norms(
     )
     # What cancels in the accelerations is of the size of the centripetal ones.
     sizes = (place, speed, max(push, speed * (speed / place if place > 0 else 0.0)))
-    norms = [
-        np.max(np.abs(rows * defect[..., 0]), axis=-1, initial=0.0) / (size if size > 0 else 1.0)
-        for defect, size in zip(defects, sizes, strict=True)
-    ]
-    return norms[0], norms[1], norms[2]
+    return {
+        f"{level}_norm": np.max(np.abs(rows * defect[..., 0]), axis=-1, initial=0.0) / (size or 1.0)
+        for level, defect, size in zip(LEVELS, defects, sizes, strict=True)
+    }

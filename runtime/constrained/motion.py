@@ -20,6 +20,7 @@ from .collocation import collocation
 from .consistent import consistent_state
 from .equations import (
     EPS,
+    LEVELS,
     SMALL,
     Array,
     Equations,
@@ -356,11 +357,10 @@ def _result(
     system: Constrained, path: Path, watch: Watch | None, energy: Energy | None
 ) -> ConstrainedMotion:
     norms = constraint_norms(system, path.time, path.q, path.qd, path.qdd)
-    levels = ("position", "velocity", "acceleration")
     # Constraints count as kept where their scaled defect is below this.
     checks = {
-        f"{level} constraints": Check(float(np.max(norm)), 1e-12)
-        for level, norm in zip(levels, norms, strict=True)
+        f"{level} constraints": Check(float(np.max(norms[f"{level}_norm"])), 1e-12)
+        for level in LEVELS
     }
     checks["end reached"] = Check(float(path.status), 0.0)
     if energy is not None:
@@ -381,10 +381,8 @@ def _result(
         error_norm="largest error of a coordinate over the given times, in its own unit",
         checks=checks,
         provenance=provenance(system.provenance),
-        position_norm=norms[0],
-        velocity_norm=norms[1],
-        acceleration_norm=norms[2],
         labels=system.labels,
+        **norms,
         **vars(path),
     )
 

@@ -553,14 +553,12 @@ def _result(
         advance=guess.advance,
         residual=shot.residual,
         iterations=iterations,
-        position_norm=float(np.max(norms[0])),
-        velocity_norm=float(np.max(norms[1])),
-        acceleration_norm=float(np.max(norms[2])),
         deflection=deflection,
         moved=_moved(source.shooting, guess, ring),
         message=shot.reason,
         labels=system.labels,
         source=source,
+        **{name: float(np.max(norm)) for name, norm in norms.items()},
     )
 
 

@@ -101,18 +101,11 @@ class StressCurve(Result):
         """Whether nearby motions stay near, ``(ns,)``; None where that was not requested.
 
         The largest multiplier is then within the unit circle by more than its error: what the
-        error leaves open is not called stable (see ``undecided``).
+        error leaves open is not called stable.
         """
         if self.multiplier is None or self.multiplier_error is None:
             return None
         return np.asarray(self.multiplier + self.multiplier_error < 1.0)
-
-    @property
-    def undecided(self) -> NDArray[np.bool_] | None:
-        """Where the error leaves open on which side of the unit circle the multiplier lies."""
-        if self.multiplier is None or self.multiplier_error is None:
-            return None
-        return np.asarray(np.abs(self.multiplier - 1.0) <= self.multiplier_error)
 
     @property
     def unstable_ranges(self) -> tuple[tuple[float, float], ...]:

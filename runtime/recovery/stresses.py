@@ -211,11 +211,6 @@ class StressResult(StationResult):
         """Largest size of the stress over the section [Pa], ``(nt, stations)``."""
         return np.asarray(np.abs(self.axial) + np.abs(self.bending))
 
-    @property
-    def quasi_static(self) -> Array:
-        """Largest size of the quasi-static stress over the section [Pa], ``(nt, stations)``."""
-        return np.asarray(np.abs(self.static_axial) + np.abs(self.static_bending))
-
     def fibre(self, name: str = "positive", part: str = "all") -> Array:
         """Return the stress of one outer fibre [Pa], ``(nt, stations)``.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -115,7 +116,7 @@ def consistent_state(
     qdd, multipliers = system.accelerations(place, speed, time)
     flat = [values.reshape(-1, system.size) for values in (place, speed, qdd)]
     made = constraint_norms(system, time.reshape(-1), *flat)
-    norms = {name: norm.reshape(time.shape) for name, norm in made.items()}
+    norms: dict[str, Any] = {name: norm.reshape(time.shape) for name, norm in made.items()}
     worst = max(float(np.max(norm, initial=0.0)) for norm in norms.values())
     # Constraints count as met where their scaled defect is of this size.
     return ConsistentState(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -286,7 +287,7 @@ def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]
 
 def constraint_norms(
     system: Constrained, t: Array, q: Array, qd: Array, qdd: Array
-) -> dict[str, Array]:
+) -> dict[str, Any]:
     """Return the largest scaled defects of the constraints by level, ``(nt,)`` each.
 
     ``position_norm``, ``velocity_norm`` and ``acceleration_norm``, as results have them.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -524,6 +524,7 @@ def _result(
     ]
     times = ring.times.ravel()
     norms = constraint_norms(system, times, *inside)
+    largest: dict[str, Any] = {name: float(np.max(norm)) for name, norm in norms.items()}
     checks = {
         "converged": Check(shot.residual if not shot.reason else np.inf, _ARRIVED),
         "accuracy": accuracy,
@@ -558,7 +559,7 @@ def _result(
         message=shot.reason,
         labels=system.labels,
         source=source,
-        **{name: float(np.max(norm)) for name, norm in norms.items()},
+        **largest,
     )
 
 

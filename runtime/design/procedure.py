@@ -232,13 +232,7 @@ def _way_up(
 
 
 def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) -> list[float]:
-    """Return lengths to try: those given, or from the design's own on while the crank turns.
-
-    Raises
-    ------
-    BadInput
-        If the system has no such length, or one that is given is unusable.
-    """
+    """Return lengths to try: those given, or from the design's own on while the crank turns."""
     own = system.geometry.get(name)
     if own is None:
         raise bad("length", repr(name), f"one of {sorted(system.geometry)}", "correct the name")

@@ -229,23 +229,21 @@ def stress_curve(
     places = 7 if stations is None else stations
     work = _Work(system, Fibres(system, places, method), rtol, modes)
     parts = [work.range_of(rising[part]) for part in speed_ranges(rising)]
-    size, error = (
-        np.concatenate([getattr(p, k) for p in parts], axis=1) for k in ("size", "error")
-    )
+    peaks = Peaks.joined(part.peaks for part in parts)
+    size, error = peaks.size, peaks.error
     checks, deflection = {}, None
     if whole:
         # At the highest speed, and where the modes answer most.
         most = int(np.argmax(np.max(size, axis=0) / rising**2))
         tried = {len(rising) - 1, most}
         change = np.max([work.changed(rising[k], size[:, k]) for k in tried], axis=0)
-        error += 2.0 * change[:, None]
+        error = error + 2.0 * change[:, None]
         checks["equation"] = Check(float(np.max(change)), rtol)
     checks["converged"] = Check(float(np.max(error)), rtol)
     if system.relative_deflection is not None:
         deflection = np.concatenate([part.deflection for part in parts])[back]
         checks["linear range"] = Check(float(np.max(deflection)), LINEAR_RANGE)
     growth = _growth(system, parts, rising) if stability else None
-    row = np.concatenate([part.row for part in parts], axis=1).T[back]
     return StressCurve(
         method="modal truncation, transition matrices in tables of the inverse speed",
         error=error.T[back],
@@ -255,10 +253,10 @@ def stress_curve(
         speed=given,
         links=work.fibres.links,
         maximum=size.T[back],
-        theta=np.concatenate([part.theta for part in parts], axis=1).T[back],
-        place=work.fibres.place[row],
-        fibre=work.fibres.sign[row],
-        modes=np.concatenate([np.full(part.size.shape[1], part.modes) for part in parts])[back],
+        theta=peaks.theta.T[back],
+        place=work.fibres.place[peaks.row.T[back]],
+        fibre=work.fibres.sign[peaks.row.T[back]],
+        modes=np.concatenate([np.full(len(part.deflection), part.modes) for part in parts])[back],
         deflection=deflection,
         multiplier=None if growth is None else growth[0][back],
         multiplier_error=None if growth is None else growth[1][back],
@@ -317,16 +315,18 @@ class Peaks:
     row: NDArray[np.int64]
     error: Array
 
+    @classmethod
+    def joined(cls, parts: Iterable[Peaks]) -> Peaks:
+        """Return those of several parts of the speeds."""
+        columns = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(column, axis=1) for column in columns))
+
 
 @dataclass(frozen=True)
 class _Range:
     """What one range of speeds gives."""
 
-    # of the largest stresses, (links, ns): size [Pa], angle [rad], row, error over the size
-    size: Array
-    theta: Array
-    row: NDArray[np.int64]
-    error: Array
+    peaks: Peaks  # their errors with those of the motion and of the truncation
     modes: int
     growth: Growth  # the largest multipliers
     defect: float  # what the modes left out change of one, over its condition
@@ -375,18 +375,14 @@ class _Work:
             errors.append(error)
             norms.append(np.max(np.abs(q), axis=(1, 2)))
             deflection.append(self._deflection(theta, q))
-        size, error = (
-            np.concatenate([getattr(p, k) for p in peaks], axis=1) for k in ("size", "error")
-        )
+        found = Peaks.joined(peaks)
         # A link that happens to be at rest is moved by an error as at its worst speed.
-        share = size / np.concatenate(norms)
+        share = found.size / np.concatenate(norms)
         weight = np.max(share, axis=1, keepdims=True) / share
         # An error of the motion stresses a link as the motion does, times this at the most.
+        error = 3.0 * weight * np.concatenate(errors) + found.error + ELSEWHERE * change[:, None]
         return _Range(
-            size=size,
-            theta=np.concatenate([p.theta for p in peaks], axis=1),
-            row=np.concatenate([p.row for p in peaks], axis=1),
-            error=3.0 * weight * np.concatenate(errors) + error + ELSEWHERE * change[:, None],
+            peaks=replace(found, error=error),
             modes=chosen,
             growth=moving.growth(speeds),
             defect=defect,

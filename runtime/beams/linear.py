@@ -18,7 +18,7 @@ from .sliding import Slide, slid_terms
 from .structure import Freedoms, Structure
 
 
-def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
+def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) -> Array:
     """Return what turns coordinates into deflections across the beams over their lengths.
 
     Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
@@ -35,7 +35,8 @@ def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
         full = np.zeros((len(theta), 2, arrays.count))
         full[:, :, placed.indices] = local / placed.beam.length
         found.append(full[:, :, arrays.free])
-    return np.concatenate(found, axis=1)
+    rows = np.concatenate(found, axis=1)
+    return rows if slide is None else np.asarray(rows @ slide.basis(theta))
 
 
 class AxialForces:
@@ -325,8 +326,9 @@ def linear_system(
         Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
     ]
     terms += _form_terms(arrays, form)
-    terms += _constant_terms(np.diag(lumped[free]), np.diag(springs[free]), np.diag(dampers[free]))
-    terms += _damping_terms(arrays, rayleigh, np.diag(lumped[free]), np.diag(springs[free]))
+    mass, stiffness = np.diag(lumped[free]), np.diag(springs[free])
+    terms += _constant_terms(mass, stiffness, np.diag(dampers[free]))
+    terms += _damping_terms(arrays, rayleigh, mass, stiffness)
     terms += _loading_terms(axial, acting, geometric_stiffness)
     if slide is not None:
         terms = slid_terms(terms, slide, form=form)
@@ -353,7 +355,7 @@ def linear_system(
         labels=structure.labels,
         provenance={**structure.provenance, **options},
         limits={name: "non-negative" for name in parameters} | dict.fromkeys(FACTORS, "positive"),
-        relative_deflection=partial(_relative_deflection, arrays, slide),
+        relative_deflection=partial(relative_deflection, arrays, slide),
         structure=structure if slide is None else None,
         remesh=partial(_remeshed, structure, made_with),
     )
@@ -422,21 +424,17 @@ def lumped_values(
                 "the beam that it turns with",
                 f"set carried_by to one of {', '.join(meeting)}",
             )
-        for part in ("x", "y"):
-            place = freedoms.at(node.name, part)
-            mass[place] += node.mass
+        inertias = (
+            ("x", "x", node.mass),
+            ("y", "y", node.mass),
+            ("rotation", turning, node.inertia),
+        )
+        for part, name, inertia in inertias:
+            place = freedoms.at(node.name, name)
+            mass[place] += inertia
             springs[place] += node.stiffness.get(part, 0.0)
             dampers[place] += node.damping.get(part, 0.0)
-        place = freedoms.at(node.name, turning)
-        mass[place] += node.inertia
-        springs[place] += node.stiffness.get("rotation", 0.0)
-        dampers[place] += node.damping.get("rotation", 0.0)
     return mass, springs, dampers
-
-
-def _relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) -> Array:
-    found = relative_deflection(arrays, theta)
-    return found if slide is None else np.asarray(found @ slide.basis(theta))
 
 
 def _sources(structure: Structure, lumped: Array, gravity: tuple[float, float]) -> list[str]:

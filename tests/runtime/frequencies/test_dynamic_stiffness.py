@@ -179,7 +179,7 @@ def test_linkage_against_its_finite_elements():
 
 @pytest.mark.slow
 def test_three_cubic_elements_of_the_thesis():
-    """Its 1.18 % at most in the first four modes over the cycle: 1.17 % here, in the fourth."""
+    """Its 1.18 % at most in the first four modes over the cycle: so here, in the fourth."""
     worst = np.zeros(4)
     linkage = four_bar(elements=3)
     for theta in np.linspace(0.0, 2 * np.pi, 13)[:-1]:
@@ -187,8 +187,8 @@ def test_three_cubic_elements_of_the_thesis():
         mass, stiffness, _ = element_matrices(linkage, theta)
         values = np.sqrt(eigvalsh(stiffness, mass))[:4]
         worst = np.maximum(worst, values / found.frequencies - 1.0)
-    assert np.all(worst[:3] < 1e-3)
-    assert worst[3] == pytest.approx(0.0118, abs=2e-4)
+    assert np.all(worst[:3] < 1.1e-3)
+    assert worst[3] == pytest.approx(0.0118, abs=5e-5)
 
 
 def test_plain_problems_are_bisected():

@@ -205,15 +205,15 @@ RESULTS = {
 def test_asking_for_the_error_is_what_finds_it(name, steady_four_bar, monkeypatch):
     """A finer mesh takes longer than the motion: none is made for values alone."""
     system, motion = steady_four_bar
-    module = importlib.import_module(getattr(recovery, name).__module__)
+    module = importlib.import_module("elastolink.runtime.recovery.finer_mesh")
     made = Counter()
-    find = module.on_finer_mesh
+    find = module.finer_system
 
     def counting(*arguments):
         made["finer"] += 1
         return find(*arguments)
 
-    monkeypatch.setattr(module, "on_finer_mesh", counting)
+    monkeypatch.setattr(module, "finer_system", counting)
     found = getattr(recovery, name)(system, motion)
     RESULTS[name](system, motion)
     assert found.passed and not made

@@ -32,12 +32,9 @@ def products(angle: Array) -> Array:
 
 
 def rotation(size: int) -> dict[str, Array]:
-    """Return R(phi), from fixed to the element's own axes, as factors of 1, c and s (4.26).
+    """Return R(phi), from fixed to the axes of an element, as factors of 1, c and s (4.26).
 
-    Parameters
-    ----------
-    size : int
-        Number of coordinates of the element: displacement and rotation at both ends, its own.
+    Of displacement and rotation at both ends, then the element's own coordinates: ``size`` in all.
     """
     fixed = np.zeros((size, size))
     cosine, sine = np.zeros_like(fixed), np.zeros_like(fixed)
@@ -81,38 +78,24 @@ Kernel = tuple[PlacedElement, Array]
 
 @dataclass(frozen=True)
 class RigidMotion:
-    """How the rigid beams move at crank angles ``(nt,)``, over the crank speed.
+    """How the rigid beams move at crank angles ``(nt,)``, over the crank speed."""
 
-    Attributes
-    ----------
-    products : mapping of str to ndarray
-        By beam, the products of cosine and sine of its angle, ``(nt, 6)``.
-    turning : mapping of str to ndarray
-        By beam, d phi/d theta, ``(nt,)``.
-    first, second : ndarray, shape (nt, number of coordinates)
-        First and second derivative of the rigid place of each coordinate, held ones included.
-    """
-
-    products: dict[str, Array]
-    turning: dict[str, Array]
+    products: dict[str, Array]  # by beam, those of cosine and sine of its angle, (nt, 6)
+    turning: dict[str, Array]  # by beam, d phi/d theta, (nt,)
+    # (nt, coordinates): derivatives of the rigid place of each coordinate, held ones included
     first: Array
     second: Array
 
 
 class AngleArrays:
-    """Arrays of a structure at crank angles; all that turns or hurries is found once per call.
-
-    Parameters
-    ----------
-    structure : Structure
-        Beams, nodes and their motion.
-    """
+    """Arrays of a structure at crank angles; what depends on them alone is computed once."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         self.free = structure.freedoms.free
         self.count = len(structure.freedoms.all)
         self._last: tuple[Array, RigidMotion] | None = None
+        self._made: dict[str, tuple[Kernel, ...]] = {}
 
     def motion(self, theta: Array) -> RigidMotion:
         """Return the rigid motion at crank angles ``(nt,)``; the last one is kept."""
@@ -130,32 +113,32 @@ class AngleArrays:
 
     def mass(self, theta: Array) -> Array:
         """Return M of the distributed mass, ``(nt, n, n)``."""
-        return self._free(self._sum(self.mass_kernels, theta))
+        return self._sum("mass", theta)
 
     def coupling(self, theta: Array) -> Array:
         """Return A: what the turning of the beams couples, ``(nt, n, n)`` (4.28)."""
-        return self._free(self._sum(self._coupling_kernels, theta, turning=1))
+        return self._sum("coupling", theta, turning=1)
 
     def centripetal(self, theta: Array) -> Array:
         """Return B: the square of the turning, ``(nt, n, n)``."""
-        return self._free(self._sum(self._centripetal_kernels, theta, turning=2))
+        return self._sum("centripetal", theta, turning=2)
 
     def stiffness(self, theta: Array) -> Array:
         """Return K of the beams, ``(nt, n, n)``."""
-        return self._free(self._sum(self._stiffness_kernels, theta))
+        return self._sum("stiffness", theta)
 
     def mass_slope(self, theta: Array) -> Array:
         """Return dM/dtheta of the distributed mass, ``(nt, n, n)``."""
-        found = self._sum(self._mass_slope_kernels, theta, turning=1)
-        return self._free(found + np.swapaxes(found, -1, -2))
+        half = self._sum("mass slope", theta, turning=1)
+        return half + np.swapaxes(half, -1, -2)
 
     def retarded(self, theta: Array) -> Array:
         """Return the damping C of Kelvin and Voigt's material, ``(nt, n, n)``."""
-        return self._free(self._sum(self._retarded_kernels, theta))
+        return self._sum("retarded", theta)
 
     def retarded_turning(self, theta: Array) -> Array:
         """Return its D: strain rates that come from turning, ``(nt, n, n)``."""
-        return self._free(self._sum(self._retarded_slope_kernels, theta, turning=1))
+        return self._sum("retarded slope", theta, turning=1)
 
     def inertia_force(self, theta: Array, derivative: int = 2) -> Array:
         """Return the forces ``-M r_r''`` of the distributed mass, or ``-M r_r'``: ``(nt, n)``."""
@@ -166,82 +149,47 @@ class AngleArrays:
         """Return the distributed mass times values of all coordinates ``(nt, N)``: ``(nt, n)``."""
         motion = self.motion(theta)
         total = np.zeros((len(theta), self.count))
-        for placed, kernel in self.mass_kernels:
+        for placed, kernel in self._kernels("mass"):
             values = field[:, placed.indices]
             weights = motion.products[placed.beam.name]
             total[:, placed.indices] += np.einsum("tk,kij,tj->ti", weights, kernel, values)
         return total[:, self.free]
 
-    @cached_property
-    def mass_kernels(self) -> tuple[Kernel, ...]:
-        """``R^T M_l R`` of each element, factors of the six products."""
-        return tuple(
-            (placed, turned(rotation(len(own.mass)), own.mass, rotation(len(own.mass))))
-            for placed, own in self.local
-        )
+    def _kernels(self, name: str) -> tuple[Kernel, ...]:
+        """Return an array of each element by the fixed axes, factors of the six products."""
+        if name not in self._made:
+            self._made[name] = tuple((p, _kernel(name, p, own)) for p, own in self.local)
+        return self._made[name]
 
-    @cached_property
-    def _mass_slope_kernels(self) -> tuple[Kernel, ...]:
-        return tuple(
-            (placed, turned(rotation_slope(len(own.mass)), own.mass, rotation(len(own.mass))))
-            for placed, own in self.local
-        )
-
-    @cached_property
-    def _coupling_kernels(self) -> tuple[Kernel, ...]:
-        found = []
-        for placed, own in self.local:
-            r, slope = rotation(len(own.mass)), rotation_slope(len(own.mass))
-            found.append((placed, turned(r, own.mass, slope) + turned(r, own.coupling, r)))
-        return tuple(found)
-
-    @cached_property
-    def _centripetal_kernels(self) -> tuple[Kernel, ...]:
-        found = []
-        for placed, own in self.local:
-            r, slope = rotation(len(own.mass)), rotation_slope(len(own.mass))
-            mixed = turned(slope, own.coupling, r)
-            total = turned(slope, own.mass, slope) + turned(r, own.centripetal, r)
-            found.append((placed, total + mixed + np.swapaxes(mixed, -1, -2)))
-        return tuple(found)
-
-    @cached_property
-    def _stiffness_kernels(self) -> tuple[Kernel, ...]:
-        return tuple(
-            (p, turned(rotation(len(o.mass)), o.stiffness, rotation(len(o.mass))))
-            for p, o in self.local
-        )
-
-    @cached_property
-    def _retarded_kernels(self) -> tuple[Kernel, ...]:
-        return tuple((p, p.beam.section.retardation * k) for p, k in self._stiffness_kernels)
-
-    @cached_property
-    def _retarded_slope_kernels(self) -> tuple[Kernel, ...]:
-        return tuple(
-            (
-                p,
-                p.beam.section.retardation
-                * turned(rotation(len(o.mass)), o.stiffness, rotation_slope(len(o.mass))),
-            )
-            for p, o in self.local
-        )
-
-    def _sum(self, kernels: tuple[Kernel, ...], theta: Array, turning: int = 0) -> Array:
-        """Return the sum over the elements, all coordinates, ``(nt, N, N)``."""
+    def _sum(self, name: str, theta: Array, turning: int = 0) -> Array:
+        """Return the sum of an array over the elements, of the free coordinates, ``(nt, n, n)``."""
         motion = self.motion(theta)
         total = np.zeros((len(theta), self.count, self.count))
-        for placed, kernel in kernels:
+        for placed, kernel in self._kernels(name):
             weights = motion.products[placed.beam.name]
             if turning:
                 weights = weights * motion.turning[placed.beam.name][:, None] ** turning
             rows, columns = np.ix_(placed.indices, placed.indices)
             total[:, rows, columns] += np.tensordot(weights, kernel, axes=1)
-        return total
-
-    def _free(self, full: Array) -> Array:
         rows, columns = np.ix_(self.free, self.free)
-        return np.ascontiguousarray(full[:, rows, columns])
+        return np.ascontiguousarray(total[:, rows, columns])
+
+
+def _kernel(name: str, placed: PlacedElement, own: ElementArrays) -> Array:
+    """Return ``R^T X R`` of an element, or what turning makes of it, as factors of the products."""
+    r, slope = rotation(len(own.mass)), rotation_slope(len(own.mass))
+    if name == "mass":
+        return turned(r, own.mass, r)
+    if name == "mass slope":
+        return turned(slope, own.mass, r)
+    if name == "coupling":
+        return turned(r, own.mass, slope) + turned(r, own.coupling, r)
+    if name == "centripetal":
+        mixed = turned(slope, own.coupling, r)
+        total = turned(slope, own.mass, slope) + turned(r, own.centripetal, r)
+        return total + mixed + np.swapaxes(mixed, -1, -2)
+    stiffness = turned(r, own.stiffness, slope if name == "retarded slope" else r)
+    return stiffness if name == "stiffness" else placed.beam.section.retardation * stiffness
 
 
 def beam_element(beam: Beam, length: float) -> ElementArrays:

@@ -47,43 +47,23 @@ _OUTSIDE = {
 
 @dataclass(frozen=True)
 class Turning:
-    """One element at the given angles: its own axes, its turning, its rigid acceleration.
+    """One element at the given angles: its own axes, its turning, its rigid acceleration."""
 
-    Attributes
-    ----------
-    own, slope, circle : ndarray, shape (nt, n_local, n)
-        From the free coordinates to local nodal values: R, dR/dphi, -d2R/dphi2.
-    rate, acceleration : ndarray, shape (nt,)
-        dphi/dtheta, d2phi/dtheta2.
-    rigid : ndarray, shape (nt, n_local)
-        Nodal values of the rigid acceleration over the squared crank speed.
-    back : ndarray, shape (nt, n_local, n_local)
-        R itself, from fixed to own axes.
-    """
-
+    # (nt, n_local, n): from the free coordinates to local nodal values, R, dR/dphi, -d2R/dphi2
     own: Array
     slope: Array
     circle: Array
+    # (nt,): dphi/dtheta, d2phi/dtheta2
     rate: Array
     acceleration: Array
-    rigid: Array
-    back: Array
+    rigid: Array  # (nt, n_local): nodal values of the rigid acceleration, at unit crank speed
+    back: Array  # (nt, n_local, n_local): R itself, from fixed to own axes
 
 
 class ElementForms:
-    """The elements of a system of beams at crank angles, as forms linear in its motion.
+    """The elements of a system of beams at crank angles ``(nt,)``, as forms linear in its motion.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Made by ``linear_system``, with whatever damping was added.
-    theta : ndarray, shape (nt,)
-        Crank angles [rad].
-
-    Raises
-    ------
-    BadInput
-        If the system was not made from a structure, or has terms of inertia that are not its own.
+    The system is one of ``linear_system``, with whatever damping was added.
     """
 
     def __init__(self, system: LinearPeriodic, theta: Array) -> None:
@@ -283,13 +263,6 @@ class ElementForms:
             total = total + self.local(e).turned(kernel).faster(power)
         return total
 
-    def node_forces(self) -> LinearForm:
-        """Return the forces of lumped masses, springs and dampers less loads: ``(nt, N)``.
-
-        They resist the motion of every coordinate, held ones included.
-        """
-        return self.node_inertia() + self.node_holds() - self.node_loads()
-
     def node_inertia(self) -> LinearForm:
         """Return lumped mass times acceleration less gravity, of every coordinate."""
         lumped = self.factor["lumped_mass"] * self.lumped
@@ -331,7 +304,7 @@ class ElementForms:
     @cached_property
     def resisted(self) -> LinearForm:
         """The forces that the motion needs at every coordinate ``(nt, N)``; of free ones none."""
-        total = self.node_forces()
+        total = self.node_inertia() + self.node_holds() - self.node_loads()
         for e, (placed, own) in enumerate(self.elements):
             scatter = np.zeros((self.arrays.count, len(own.mass)))
             scatter[placed.indices, np.arange(len(own.mass))] = 1.0
@@ -354,13 +327,7 @@ class ElementForms:
         return LinearForm(rest).turned(-_inverse(mass))
 
     def require_same(self) -> None:
-        """Refuse a system whose stiffness or forces are not those of its structure.
-
-        Raises
-        ------
-        BadInput
-            If they differ, for example because terms were changed by hand.
-        """
+        """Refuse a system whose stiffness or forces are not those of its structure."""
         free = self.arrays.free
         still = self.resisted.parts
         expected = {("q", 0): self.system.array("K", self.theta)}
@@ -388,13 +355,7 @@ def _inverse(matrices: Array) -> Array:
 
 
 def required_structure(system: object) -> Structure:
-    """Return the structure of a system.
-
-    Raises
-    ------
-    BadInput
-        If the system was not made from beams.
-    """
+    """Return the structure of a system; refuse one that was not made from beams."""
     found = system.structure if isinstance(system, LinearPeriodic) else None
     if isinstance(found, Structure) and found.size == getattr(system, "size", None):
         return found

@@ -16,7 +16,7 @@ from ..core.inputs import are_finite, names_problems, require_mapping
 from ..linkages.linkage import LinkMotion
 from .assembly import Array
 from .section import Section
-from .structure import Beam, Node, Structure, node_value_problems
+from .structure import Node, Structure, beams_between, node_value_problems
 
 
 def frame(
@@ -79,19 +79,11 @@ def frame(
         require_mapping(where, given, "see the example of frame")
     _check_form(places, members, elements, nodes)
     _check(places, members, sections, [*supports, *pins, *(nodes or {})])
-    ends = {name: (_complex(places[a]), _complex(places[b])) for name, (a, b) in members.items()}
-    beams = tuple(
-        Beam(
-            name=name,
-            start=start,
-            end=end,
-            section=sections[name] if isinstance(sections, Mapping) else sections,
-            length=abs(ends[name][1] - ends[name][0]),
-            elements=elements[name] if isinstance(elements, Mapping) else elements,
-            kind=kind,
-        )
-        for name, (start, end) in members.items()
-    )
+    ends = {name: (complex(*places[a]), complex(*places[b])) for name, (a, b) in members.items()}
+    lengths = {name: abs(end - start) for name, (start, end) in ends.items()}
+    if not isinstance(sections, Mapping):
+        sections = dict.fromkeys(members, sections)
+    beams = beams_between(members, lengths, sections, elements, kind)
     made = []
     for letter in places:
         meeting = tuple(beam.name for beam in beams if letter in (beam.start, beam.end))
@@ -107,10 +99,6 @@ def frame(
         moving=False,
         provenance=dict(provenance or {}),
     )
-
-
-def _complex(place: tuple[float, float]) -> complex:
-    return complex(*place)
 
 
 def _standing(
@@ -230,11 +218,8 @@ def _axial_rows(structure: Structure) -> Array:
     rows = np.zeros((len(structure.elements), len(freedoms.all)))
     for row, placed in zip(rows, structure.elements, strict=True):
         angle = motion[placed.beam.name].angle[0]
-        x1, y1, _, x2, y2 = placed.indices[:5]
-        for place, factor in ((x2, np.cos(angle)), (y2, np.sin(angle))):
-            row[place] += factor
-        for place, factor in ((x1, np.cos(angle)), (y1, np.sin(angle))):
-            row[place] -= factor
+        c, s = np.cos(angle), np.sin(angle)
+        np.add.at(row, placed.indices[[0, 1, 3, 4]], [-c, -s, c, s])
     return rows[:, freedoms.free]
 
 
@@ -244,28 +229,24 @@ def eliminated(rows: Array) -> tuple[NDArray[np.int64], Array]:
     Return the places of those kept, and what makes all coordinates of them, ``(n, kept)``.
     """
     rows = rows.copy()
-    count = rows.shape[1]
     gone: list[int] = []
     used: list[int] = []
     for _ in range(len(rows)):
-        open_rows = [i for i in range(len(rows)) if i not in used]
-        sizes = np.abs(rows[open_rows])
-        i, j = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
+        sizes = np.abs(rows)
+        sizes[used] = 0.0
+        pivot, column = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
         # An entry of the elimination so small, its rows being of unit size, is round-off.
-        if sizes[i, j] < 1e-12:
+        if sizes[pivot, column] < 1e-12:
             break
-        pivot = open_rows[int(i)]
-        rows[pivot] /= rows[pivot, j]
-        for other in range(len(rows)):
-            if other != pivot:
-                rows[other] -= rows[other, j] * rows[pivot]
-        used.append(pivot)
-        gone.append(int(j))
-    kept = np.array([j for j in range(count) if j not in gone], dtype=np.int64)
-    spread = np.zeros((count, len(kept)))
-    spread[kept, np.arange(len(kept))] = 1.0
-    for pivot, column in zip(used, gone, strict=True):
-        spread[column] = -rows[pivot, kept]
+        rows[pivot] /= rows[pivot, column]
+        others = np.arange(len(rows)) != pivot
+        rows[others] -= np.outer(rows[others, column], rows[pivot])
+        used.append(int(pivot))
+        gone.append(int(column))
+    kept = np.setdiff1d(np.arange(rows.shape[1]), gone)
+    spread = np.zeros((rows.shape[1], len(kept)))
+    spread[kept] = np.eye(len(kept))
+    spread[gone] = -rows[used][:, kept]
     return kept, spread
 
 

@@ -18,7 +18,7 @@ from .sliding import Slide, slid_terms
 from .structure import Freedoms, Structure
 
 
-def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
+def relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) -> Array:
     """Return what turns coordinates into deflections across the beams over their lengths.
 
     Shape ``(nt, k, n)``: displacement across each element from its place on the rigid beam, at
@@ -26,40 +26,25 @@ def relative_deflection(arrays: AngleArrays, theta: Array) -> Array:
     """
     motion = arrays.motion(theta)
     found = []
-    for placed, own in arrays.local:
+    for placed in arrays.structure.elements:
         _, across = placed_shapes(placed, np.array([0.5, 1.0]))
-        c, s = motion.products[placed.beam.name][:, 1:3].T
-        local = np.zeros((len(theta), 2, len(own.mass)))
+        c, s = motion.products[placed.beam.name][:, 1:3].T[..., None]
+        local = np.tile(across, (len(theta), 1, 1))
         for x, y in ((0, 1), (3, 4)):
-            local[:, :, x] = -s[:, None] * across[:, y]
-            local[:, :, y] = c[:, None] * across[:, y]
-        others = [i for i in range(len(own.mass)) if i not in (0, 1, 3, 4)]
-        local[:, :, others] = across[:, others]
+            local[:, :, x], local[:, :, y] = -s * across[:, y], c * across[:, y]
         full = np.zeros((len(theta), 2, arrays.count))
         full[:, :, placed.indices] = local / placed.beam.length
         found.append(full[:, :, arrays.free])
-    return np.concatenate(found, axis=1)
-
-
-# Masses that load the beams, each by itself: the beams' own, and the lumped ones.
-SOURCES = ("distributed", "lumped", "static")
+    rows = np.concatenate(found, axis=1)
+    return rows if slide is None else np.asarray(rows @ slide.basis(theta))
 
 
 class AxialForces:
     """Axial forces along every element, and the geometric stiffness that they give.
 
-    Parameters
-    ----------
-    arrays : AngleArrays
-        Of the structure.
-    constant_stiffness : ndarray, shape (n, n)
-        Of springs.
-    lumped_mass : ndarray, shape (N,)
-        Lumped mass of every coordinate, held ones included.
-    gravity : pair of float
-        Acceleration of gravity [m/s^2] in the fixed axes.
-    slide : Slide, optional
-        Of a structure with a sliding pin.
+    From the stiffness of springs ``(n, n)``, the lumped mass of every coordinate ``(N,)``, held
+    ones included, gravity [m/s^2] in the fixed axes and, of a structure with a sliding pin, its
+    slide.
     """
 
     def __init__(
@@ -183,10 +168,6 @@ def _node_forces(arrays: AngleArrays) -> Array:
     return found
 
 
-# Share of a motion from which a coordinate is named.
-_NAMED = 0.1
-
-
 def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> None:
     """Refuse a structure that can move without resistance, at a few angles of the crank.
 
@@ -212,7 +193,8 @@ def require_held(arrays: AngleArrays, springs: Array, slide: Slide | None) -> No
             motion = _rigid_motion(strain)
             if motion is None:
                 raise _lost_in_rounding(arrays)
-            loose = np.flatnonzero(motion > _NAMED * np.max(motion))
+            # The coordinates that have a tenth of the motion or more are named.
+            loose = np.flatnonzero(motion > 0.1 * np.max(motion))
         names = ", ".join([structure.labels[i] for i in loose][:6])
         raise bad(
             "structure",
@@ -344,8 +326,9 @@ def linear_system(
         Term("g", "distributed_mass", partial(arrays.inertia_force, derivative=1)),
     ]
     terms += _form_terms(arrays, form)
-    terms += _constant_terms(np.diag(lumped[free]), np.diag(springs[free]), np.diag(dampers[free]))
-    terms += _damping_terms(arrays, rayleigh, np.diag(lumped[free]), np.diag(springs[free]))
+    mass, stiffness = np.diag(lumped[free]), np.diag(springs[free])
+    terms += _constant_terms(mass, stiffness, np.diag(dampers[free]))
+    terms += _damping_terms(arrays, rayleigh, mass, stiffness)
     terms += _loading_terms(axial, acting, geometric_stiffness)
     if slide is not None:
         terms = slid_terms(terms, slide, form=form)
@@ -372,7 +355,7 @@ def linear_system(
         labels=structure.labels,
         provenance={**structure.provenance, **options},
         limits={name: "non-negative" for name in parameters} | dict.fromkeys(FACTORS, "positive"),
-        relative_deflection=partial(_relative_deflection, arrays, slide),
+        relative_deflection=partial(relative_deflection, arrays, slide),
         structure=structure if slide is None else None,
         remesh=partial(_remeshed, structure, made_with),
     )
@@ -426,12 +409,7 @@ def lumped_values(
 ) -> tuple[Array, Array, Array]:
     """Return lumped mass, springs and dampers of all coordinates, held ones included.
 
-    Parameters
-    ----------
-    structure : Structure
-        The nodes.
-    freedoms : Freedoms, optional
-        Another numbering of the coordinates than the structure's own.
+    By the structure's own numbering of the coordinates, or by another one.
     """
     freedoms = structure.freedoms if freedoms is None else freedoms
     mass, springs, dampers = (np.zeros(len(freedoms.all)) for _ in range(3))
@@ -446,21 +424,17 @@ def lumped_values(
                 "the beam that it turns with",
                 f"set carried_by to one of {', '.join(meeting)}",
             )
-        for part in ("x", "y"):
-            place = freedoms.at(node.name, part)
-            mass[place] += node.mass
+        inertias = (
+            ("x", "x", node.mass),
+            ("y", "y", node.mass),
+            ("rotation", turning, node.inertia),
+        )
+        for part, name, inertia in inertias:
+            place = freedoms.at(node.name, name)
+            mass[place] += inertia
             springs[place] += node.stiffness.get(part, 0.0)
             dampers[place] += node.damping.get(part, 0.0)
-        place = freedoms.at(node.name, turning)
-        mass[place] += node.inertia
-        springs[place] += node.stiffness.get("rotation", 0.0)
-        dampers[place] += node.damping.get("rotation", 0.0)
     return mass, springs, dampers
-
-
-def _relative_deflection(arrays: AngleArrays, slide: Slide | None, theta: Array) -> Array:
-    found = relative_deflection(arrays, theta)
-    return found if slide is None else np.asarray(found @ slide.basis(theta))
 
 
 def _sources(structure: Structure, lumped: Array, gravity: tuple[float, float]) -> list[str]:

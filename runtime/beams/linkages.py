@@ -16,7 +16,7 @@ from ..linkages.linkage import LinkMotion
 from .assembly import Array
 from .linear import linear_system
 from .section import Section
-from .structure import DIRECTIONS, Beam, Node, Structure, node_value_problems
+from .structure import DIRECTIONS, Node, Structure, beams_between, node_value_problems
 
 # The links that bend, with the joints at their ends; the first is the origin of the link's axes.
 BARS: Mapping[type[Linkage], Mapping[str, tuple[str, str]]] = MappingProxyType(
@@ -89,18 +89,8 @@ def beam_linkage(
         raise bad("beam_linkage", found, expected, "make a Structure from its beams and nodes")
     linkage.require_full_turn()
     _check_names(bars, sections, elements, joint_masses, nodes)
-    beams = tuple(
-        Beam(
-            name=name,
-            start=start,
-            end=end,
-            section=sections[name],
-            length=float(linkage.lengths[name]),
-            elements=elements[name] if isinstance(elements, Mapping) else elements,
-            kind=kind,
-        )
-        for name, (start, end) in bars.items()
-    )
+    lengths = {name: float(linkage.lengths[name]) for name in bars}
+    beams = beams_between(bars, lengths, sections, elements, kind)
     made = tuple(
         _node(letter, type(linkage), joint_masses or {}, nodes or {}) for letter in _letters(bars)
     )

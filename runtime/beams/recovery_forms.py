@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-# What a part multiplies, with the power of the speed: the coordinates, their derivatives by the
-# crank angle, one.
-COORDINATES, RATES, ACCELERATIONS, RIGID = "q", "dq", "ddq", "1"
+# What a part multiplies, with the power of the speed: the coordinates (q), their derivatives by the
+# crank angle (dq, ddq), or one.
 Key = tuple[str, int]
+RIGID = "1"
 
 
 @dataclass(frozen=True)
@@ -70,10 +70,10 @@ class LinearForm:
 
     def eliminated(self, acceleration: LinearForm) -> LinearForm:
         """Return it with ``w^2 d2q/dtheta2`` replaced by a form in the rest."""
-        kept = {key: value for key, value in self.parts.items() if key[0] != ACCELERATIONS}
+        kept = {key: value for key, value in self.parts.items() if key[0] != "ddq"}
         total = LinearForm(kept)
         for (name, power), value in self.parts.items():
-            if name == ACCELERATIONS:
+            if name == "ddq":
                 total = total + acceleration.turned(value).faster(power - 2)
         return total
 
@@ -87,7 +87,7 @@ class LinearForm:
 
     def values(self, speed: float, q: Array, dq: Array, ddq: Array | None = None) -> Array:
         """Return the rows' values ``(nt, rows)`` in a motion, arrays ``(nt, n)`` by angle."""
-        given = {COORDINATES: q, RATES: dq, ACCELERATIONS: ddq}
+        given = {"q": q, "dq": dq, "ddq": ddq}
         total: Array = np.zeros(())
         for name, rows in self.at_speed(speed).items():
             vector = given.get(name)

@@ -41,13 +41,7 @@ _RULES = {
 
 
 class Slide:
-    """The coordinates of a structure with a sliding pin.
-
-    Parameters
-    ----------
-    arrays : AngleArrays
-        Of the structure, which has one node that slides along a beam.
-    """
+    """The coordinates of a structure that has one node which slides along a beam."""
 
     def __init__(self, arrays: AngleArrays) -> None:
         structure = arrays.structure

@@ -22,21 +22,11 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Freedom:
-    """One coordinate.
+    """One coordinate: its name, a beam that has it, where on that beam [m], and its kind.
 
-    Attributes
-    ----------
-    label : str
-        Its name.
-    beam : str
-        A beam that has it.
-    along : float
-        Where on that beam [m].
-    part : str
-        ``x`` or ``y``: displacement along the fixed axes [m]; ``rotation`` [rad]; ``across``:
-        displacement across the beam [m]; ``curvature``: of the beam's deflection [1/m].
-    held : bool
-        Whether it is 0 at all times.
+    ``part`` is ``x`` or ``y``, a displacement along the fixed axes [m]; ``rotation`` [rad];
+    ``across``, a displacement across the beam [m]; ``curvature`` of the beam's deflection [1/m].
+    One that is held is 0 at all times.
     """
 
     label: str
@@ -48,46 +38,24 @@ class Freedom:
 
 @dataclass(frozen=True)
 class PlacedElement:
-    """An element of a beam with its coordinates.
-
-    Attributes
-    ----------
-    beam : Beam
-        The beam.
-    number : int
-        Which of its elements, from 0.
-    start, length : float
-        Where it begins along the beam, and its length [m].
-    indices : ndarray of int
-        Places of its coordinates among all, in the element's own order.
-    """
+    """An element of a beam with its coordinates."""
 
     beam: Beam
-    number: int
+    number: int  # which of the beam's elements, from 0
+    # where it begins along the beam, and its length [m]
     start: float
     length: float
-    indices: Indices
+    indices: Indices  # places of its coordinates among all, in the element's own order
 
 
 @dataclass(frozen=True)
 class Freedoms:
-    """All coordinates of a structure, held ones included.
-
-    Attributes
-    ----------
-    all : tuple of Freedom
-        The coordinates.
-    free : ndarray of int
-        Places of those that are not held.
-    elements : tuple of PlacedElement
-        The elements, beam by beam.
-    places : mapping
-        From a node and ``x``, ``y`` or a beam (its rotation there) to the coordinate's place.
-    """
+    """All coordinates of a structure, held ones included."""
 
     all: tuple[Freedom, ...]
-    free: Indices
-    elements: tuple[PlacedElement, ...]
+    free: Indices  # places of those that are not held
+    elements: tuple[PlacedElement, ...]  # beam by beam
+    # from a node and ``x``, ``y`` or a beam (its rotation there) to the coordinate's place
     places: dict[tuple[str, str], int]
 
     @property
@@ -176,13 +144,7 @@ class _Numbering:
 
 
 def number_freedoms(beams: Sequence[Beam], nodes: Sequence[Node]) -> Freedoms:
-    """Return the numbering of all coordinates: node by node, then the inside of each beam.
-
-    Raises
-    ------
-    BadInput
-        If nothing is left free.
-    """
+    """Return the numbering of all coordinates: node by node, then the inside of each beam."""
     numbering = _Numbering()
     for node in nodes:
         numbering.node(node, [b for b in beams if node.name in (b.start, b.end)])
@@ -445,19 +407,6 @@ class Structure:
         """
         return _named("node", self.nodes, name)
 
-    def index(self, label: str) -> int:
-        """Return the place of a free coordinate in q.
-
-        Raises
-        ------
-        BadInput
-            If there is no free coordinate of that name.
-        """
-        if label not in self.labels:
-            fix = "correct the name, or free it"
-            raise bad("coordinate", repr(label), f"one of {', '.join(self.labels)}", fix)
-        return self.labels.index(label)
-
     def require_pinned(self, what: str) -> None:
         """Refuse a node that slides.
 
@@ -544,6 +493,28 @@ class Structure:
                 found = f"{widest:.3g} m away from beam {beam.name}, on which it slides"
                 fix = "let places and configuration agree"
                 raise bad(f"node {name}", found, "a node on the beam", fix)
+
+
+def beams_between(
+    ends: Mapping[str, tuple[str, str]],
+    lengths: Mapping[str, float],
+    sections: Mapping[str, Section],
+    elements: int | Mapping[str, int | tuple[float, ...]],
+    kind: str,
+) -> tuple[Beam, ...]:
+    """Return a beam for each pair of nodes, with its own or the same elements."""
+    return tuple(
+        Beam(
+            name=name,
+            start=start,
+            end=end,
+            section=sections[name],
+            length=lengths[name],
+            elements=elements[name] if isinstance(elements, Mapping) else elements,
+            kind=kind,
+        )
+        for name, (start, end) in ends.items()
+    )
 
 
 def _named(what: str, items: tuple[_Item, ...], name: str) -> _Item:

@@ -26,8 +26,6 @@ from .equations import (
 _TAIL = 2
 # A factor of the length of the next window, and bounds of it.
 _CAUTION, _SHORTER, _LONGER = 0.9, 0.2, 3.0
-# Every so many nodes what may stop a motion is looked at.
-_EACH = 3
 # Some five minutes of windows of the rod.
 _MOST_WINDOWS = 100_000
 
@@ -108,19 +106,8 @@ def _integrals(count: int) -> tuple[Array, Array]:
 def stage_matrix(by_x: Array, by_v: Array, h: float, points: Nodes) -> Array:
     """Return the matrix of ``a - (what a does to the accelerations)`` at the nodes of steps.
 
-    Parameters
-    ----------
-    by_x, by_v : ndarray, shape (*batch, s, n, n)
-        Derivatives of the accelerations at the nodes by coordinates and velocities.
-    h : float
-        Length of the steps [s].
-    points : Nodes
-        The nodes.
-
-    Returns
-    -------
-    ndarray, shape (*batch, s n, s n)
-        Rows and columns: nodes, then coordinates.
+    From derivatives of the accelerations at the nodes, ``(*batch, s, n, n)``, and the length h of
+    the steps: ``(*batch, s n, s n)``, rows and columns nodes, then coordinates.
     """
     *lead, s, n, _ = by_x.shape
     blocks = (-h * h * points.twice)[:, None, :, None] * by_x[..., None, :]
@@ -269,7 +256,7 @@ def _step(window: _Window, after: State, astray: _Astray | None) -> Step:
         along = np.abs(along + h * h * (points.terms_twice @ astray.carried))
         along += np.abs(h * h * (points.terms_twice @ astray.local))
         error = np.max(along, axis=0) + window.left * window.units.place
-    inner = before.t + h * points.c[_EACH - 1 : -1 : _EACH]
+    inner = before.t + h * points.c[2:-1:3]  # what may stop a motion is looked at there
     return Step(before, after, at, window.units.place, inner, error)
 
 

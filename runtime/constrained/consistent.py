@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -114,8 +115,9 @@ def consistent_state(
         speed = qd0 + columns * equations.velocity_change(at, qd0 / columns, free)
     qdd, multipliers = system.accelerations(place, speed, time)
     flat = [values.reshape(-1, system.size) for values in (place, speed, qdd)]
-    norms = [norm.reshape(time.shape) for norm in constraint_norms(system, time.reshape(-1), *flat)]
-    worst = max(float(np.max(norm, initial=0.0)) for norm in norms)
+    made = constraint_norms(system, time.reshape(-1), *flat)
+    norms: dict[str, Any] = {name: norm.reshape(time.shape) for name, norm in made.items()}
+    worst = max(float(np.max(norm, initial=0.0)) for norm in norms.values())
     # Constraints count as met where their scaled defect is of this size.
     return ConsistentState(
         method="Newton's iteration, smallest change in the metric of the masses",
@@ -129,11 +131,9 @@ def consistent_state(
         multipliers=multipliers,
         t=time,
         moved=place - q0,
-        position_norm=norms[0],
-        velocity_norm=norms[1],
-        acceleration_norm=norms[2],
         iterations=count,
         labels=system.labels,
+        **norms,
     )
 
 

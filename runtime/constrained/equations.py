@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,9 @@ EPS = float(np.finfo(float).eps)
 SMALL = 0.01
 # Newton squares the defect: a correction of this relative size leaves none ...
 _LAST = 1e-9
+
+
+LEVELS = ("position", "velocity", "acceleration")
 
 
 class NoConvergence(ArithmeticError):  # noqa: N818 - reads as what it is
@@ -90,20 +94,8 @@ class Equations:
 
     The coordinates are ``q = columns x`` and the constraints ``rows Phi``, by powers of two, so
     that scaling is exact and one matrix of entries near 1 serves accelerations and projections.
-
-    Parameters
-    ----------
-    system : Constrained
-        The system; its parameters are single numbers.
-    q, qd : ndarray, shape (*batch, n)
-        Where masses and rows are measured: at their largest.
-    t : ndarray, shape batch
-        Times there [s].
-
-    Attributes
-    ----------
-    evaluations : int
-        States at which the dynamics were evaluated.
+    Masses and rows are measured at the given states, at their largest; ``evaluations`` counts the
+    states at which the dynamics were evaluated.
     """
 
     def __init__(self, system: Constrained, q: Array, qd: Array, t: float | Array) -> None:
@@ -207,18 +199,10 @@ class Equations:
     ) -> tuple[Array, int]:
         """Return the nearest positions on the constraints, and the number of corrections.
 
-        Newton's iteration, damped where a correction would raise the defect.
-
-        Parameters
-        ----------
-        t, x : ndarray, shape batch, (*batch, n)
-            Times and predicted positions.
-        mass : ndarray, shape (*batch, n, n)
-            Metric, not scaled.
-        free : ndarray, shape (n,), optional
-            1 for the coordinates that may move, 0 for those that are held.
+        Newton's iteration in the metric of the masses (not scaled), damped where a correction would
+        raise the defect.  ``free (n,)`` is 1 for coordinates that may move, 0 for those held.
         """
-        at = self._violation(t, x)
+        at = self.system.violation(x * self.columns, t)
         last = np.inf
         # Newton corrections of positions, and halvings of one that would raise the defect.
         for count in range(60):
@@ -239,9 +223,6 @@ class Equations:
         defect = at["velocity_rhs"] - at["jacobian"] @ (v * self.columns)[..., None]
         return self._least_change(at["mass"], at["jacobian"], defect[..., 0], free)
 
-    def _violation(self, t: float | Array, x: Array) -> Mapping[str, Array]:
-        return self.system.violation(x * self.columns, t)
-
     def _damped(
         self, t: float | Array, x: Array, change: Array, at: Mapping[str, Array]
     ) -> tuple[Array, Mapping[str, Array]]:
@@ -250,7 +231,7 @@ class Equations:
         factor = np.ones(np.shape(before))
         for _ in range(12):
             trial = x + factor[..., None] * change
-            at = self._violation(t, trial)
+            at = self.system.violation(trial * self.columns, t)
             after = np.max(np.abs(self.rows * at["constraints"][..., 0]), axis=-1)
             worse = (after > before) & (after > _LAST)
             if not np.any(worse):
@@ -306,27 +287,15 @@ def require_variations(system: Constrained) -> Callable[..., Mapping[str, Array]
 
 def constraint_norms(
     system: Constrained, t: Array, q: Array, qd: Array, qdd: Array
-) -> tuple[Array, Array, Array]:
-    """Return the scaled defects of the constraints at the three levels.
+) -> dict[str, Any]:
+    """Return the largest scaled defects of the constraints by level, ``(nt,)`` each.
+
+    ``position_norm``, ``velocity_norm`` and ``acceleration_norm``, as results have them.
 
     A row of ``Phi``, ``Phi_q qd - rhs`` and ``Phi_q qdd - gamma`` is divided by the length of the
     row of ``Phi_q S`` (S measures the coordinates by their inertia) and by the size of the scaled
     coordinates, velocities and accelerations over the motion: 1e-16 is round-off whatever the
     units.
-
-    Parameters
-    ----------
-    system : Constrained
-        The system.
-    t : ndarray, shape (nt,)
-        Times [s].
-    q, qd, qdd : ndarray, shape (nt, n)
-        Coordinates and their derivatives.
-
-    Returns
-    -------
-    position, velocity, acceleration : ndarray, shape (nt,)
-        Largest scaled defect of a row at each time.
     """
     at = system.dynamics(q, qd, t)
     jacobian = at["jacobian"]
@@ -341,8 +310,7 @@ def constraint_norms(
     )
     # What cancels in the accelerations is of the size of the centripetal ones.
     sizes = (place, speed, max(push, speed * (speed / place if place > 0 else 0.0)))
-    norms = [
-        np.max(np.abs(rows * defect[..., 0]), axis=-1, initial=0.0) / (size if size > 0 else 1.0)
-        for defect, size in zip(defects, sizes, strict=True)
-    ]
-    return norms[0], norms[1], norms[2]
+    return {
+        f"{level}_norm": np.max(np.abs(rows * defect[..., 0]), axis=-1, initial=0.0) / (size or 1.0)
+        for level, defect, size in zip(LEVELS, defects, sizes, strict=True)
+    }

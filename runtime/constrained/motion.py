@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.errors import LinearRangeWarning, bad
+from ..core.errors import LINEAR_RANGE, LinearRangeWarning, bad
 from ..core.families import Constrained, Guard
 from ..core.inputs import numbers
 from ..core.results import Check, Result, provenance
@@ -20,6 +20,7 @@ from .collocation import collocation
 from .consistent import consistent_state
 from .equations import (
     EPS,
+    LEVELS,
     SMALL,
     Array,
     Equations,
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
 Watch = Callable[[Array, Array], ArrayLike]
 Energy = Callable[[Array, Array, Array], ArrayLike]
 
-LINEAR_RANGE = 0.05
 _MOST_SAMPLES = 2_000_000
 
 
@@ -189,27 +189,13 @@ def constrained_motion(
     _check_numbers(rtol, bound)
     start = _start(system, q, qd, first)
     kept = tuple(system.guards if guards is None else guards)
-    run = Run(system, *start, times, rtol, kept, bound)
-    path = march(run, progress)
-    return _result(run, path, system.watch if watch is None else watch, energy)
-
-
-@dataclass(frozen=True)
-class Run:
-    """A request that has been checked."""
-
-    system: Constrained
-    q: Array
-    qd: Array
-    times: Array
-    rtol: float
-    guards: tuple[Guard, ...]
-    bound: float
+    path = march(system, *start, times, rtol, kept, bound, progress)
+    return _result(system, path, system.watch if watch is None else watch, energy)
 
 
 @dataclass(frozen=True)
 class Path:
-    """The states at the given times that were reached, and how."""
+    """The states that were reached, and how: fields of :class:`ConstrainedMotion`."""
 
     time: Array
     q: Array
@@ -223,16 +209,25 @@ class Path:
     message: str
 
 
-def march(run: Run, progress: bool = False) -> Path:
-    """Follow a motion as far as it goes."""
+def march(
+    system: Constrained,
+    q: Array,
+    qd: Array,
+    times: Array,
+    rtol: float,
+    guards: Sequence[Guard] = (),
+    bound: float = 1e6,
+    progress: bool = False,
+) -> Path:
+    """Follow a motion from a state on the constraints as far as it goes."""
     from ..core.progress import bar
 
-    times, begin = run.times, float(run.times[0])
-    equations = Equations(run.system, run.q, run.qd, begin)
+    begin = float(times[0])
+    equations = Equations(system, q, qd, begin)
     columns = equations.columns
-    start = equations.at(begin, run.q / columns, run.qd / columns)
-    tolerance = _tolerance(run, start)
-    for guard in run.guards:
+    start = equations.at(begin, q / columns, qd / columns)
+    tolerance = _tolerance(rtol, start)
+    for guard in guards:
         if not _margin(equations, guard, start) > 0.0:
             raise bad("guards", f"{guard[1]}, at the start", "a start inside", "move it")
     parts = [(times[:1], start.x[None], start.v[None])]
@@ -245,9 +240,9 @@ def march(run: Run, progress: bool = False) -> Path:
             for step in collocation(equations, start, float(times[-1]), tolerance):
                 if not steps:  # from rest at the origin a motion has its size from here
                     least = max(tolerance.place, SMALL * float(np.max(step.reach)))
-                    limit = run.bound * np.maximum(np.abs(start.x), least)
+                    limit = bound * np.maximum(np.abs(start.x), least)
                 steps += 1
-                stopped = _stop(equations, step, run.guards, limit)
+                stopped = _stop(equations, step, guards, limit)
                 end, because = (step.after, "") if stopped is None else stopped
                 error = np.maximum(error, step.error)
                 stop = int(np.searchsorted(times, end.t, side="right"))
@@ -300,13 +295,13 @@ def _on_constraints(
         return _on_constraints(equations, parts[: len(parts) // 2])
 
 
-def _tolerance(run: Run, start: State) -> Tolerance:
+def _tolerance(rtol: float, start: State) -> Tolerance:
     """Return the tolerance, absolute for coordinates and velocities far below the largest."""
     place = max(float(np.max(np.abs(start.x))), 1e-300)
     # A motion that starts from rest gets speeds of the order sqrt(acceleration x length).
     push = float(np.sqrt(place) * np.sqrt(np.max(np.abs(start.a))))
     speed = max(float(np.max(np.abs(start.v))), push, 1e-300)
-    return Tolerance(run.rtol, SMALL * place, speed)
+    return Tolerance(rtol, SMALL * place, speed)
 
 
 def _margin(equations: Equations, guard: Guard, state: State) -> float:
@@ -358,13 +353,14 @@ def _crossing(equations: Equations, step: Step, guard: Guard, before: State, aft
     return after
 
 
-def _result(run: Run, path: Path, watch: Watch | None, energy: Energy | None) -> ConstrainedMotion:
-    norms = constraint_norms(run.system, path.time, path.q, path.qd, path.qdd)
-    levels = ("position", "velocity", "acceleration")
+def _result(
+    system: Constrained, path: Path, watch: Watch | None, energy: Energy | None
+) -> ConstrainedMotion:
+    norms = constraint_norms(system, path.time, path.q, path.qd, path.qdd)
     # Constraints count as kept where their scaled defect is below this.
     checks = {
-        f"{level} constraints": Check(float(np.max(norm)), 1e-12)
-        for level, norm in zip(levels, norms, strict=True)
+        f"{level} constraints": Check(float(np.max(norms[f"{level}_norm"])), 1e-12)
+        for level in LEVELS
     }
     checks["end reached"] = Check(float(path.status), 0.0)
     if energy is not None:
@@ -382,23 +378,12 @@ def _result(run: Run, path: Path, watch: Watch | None, energy: Energy | None) ->
             )
     return ConstrainedMotion(
         method="collocation",
-        error=path.error,
         error_norm="largest error of a coordinate over the given times, in its own unit",
         checks=checks,
-        provenance=provenance(run.system.provenance),
-        time=path.time,
-        q=path.q,
-        qd=path.qd,
-        qdd=path.qdd,
-        multipliers=path.multipliers,
-        position_norm=norms[0],
-        velocity_norm=norms[1],
-        acceleration_norm=norms[2],
-        steps=path.steps,
-        evaluations=path.evaluations,
-        status=path.status,
-        message=path.message,
-        labels=run.system.labels,
+        provenance=provenance(system.provenance),
+        labels=system.labels,
+        **norms,
+        **vars(path),
     )
 
 

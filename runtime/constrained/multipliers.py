@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 ComplexArray = NDArray[np.complex128]
 
-# In place of an error that is not finite.
-_HOPELESS = 1e6
-
 
 @dataclass(frozen=True, kw_only=True)
 class ConstrainedMultipliers(Result):
@@ -158,7 +155,7 @@ def orbit_multipliers(orbit: PeriodicOrbit) -> ConstrainedMultipliers:
     shift = float(np.linalg.norm(reduced - rough)) * LEFT + rounding
     if not accuracy.passed:
         # About a motion that is off by so much, the coefficients are off by that part or so.
-        off = np.nan_to_num(accuracy.value, nan=_HOPELESS, posinf=_HOPELESS)
+        off = np.nan_to_num(accuracy.value, nan=1e6, posinf=1e6)
         shift += float(off) * (2 * np.pi + shooting.rate * ring.period) * max(norm, 1.0)
     physical, error = _eigenvalues(reduced, shift)
     others, defect, root = _of_violations(fine, ring.period, shooting.rate)

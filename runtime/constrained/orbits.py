@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,7 @@ from .equations import (
     require_variations,
     solved,
 )
-from .motion import Run, Watch, linear_range, march
+from .motion import Watch, linear_range, march
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -310,14 +310,8 @@ class Shooting:
 def closed_chain(maps: Array, wrong: Array) -> Array | None:
     """Solve ``e_{j+1} - G_j e_j = r_j`` round a ring; None where it is singular.
 
-    The equations stand together (sparse), not multiplied up, so that growth does no harm.
-
-    Parameters
-    ----------
-    maps : ndarray, shape (m, p, p)
-        G_j.
-    wrong : ndarray, shape (m, p, r)
-        Right-hand sides.
+    G are the ``maps (m, p, p)``, r what is ``wrong (m, p, k)``.  The equations stand together
+    (sparse), not multiplied up, so that growth does no harm.
     """
     from scipy import sparse
     from scipy.sparse.linalg import splu
@@ -530,6 +524,7 @@ def _result(
     ]
     times = ring.times.ravel()
     norms = constraint_norms(system, times, *inside)
+    largest: dict[str, Any] = {name: float(np.max(norm)) for name, norm in norms.items()}
     checks = {
         "converged": Check(shot.residual if not shot.reason else np.inf, _ARRIVED),
         "accuracy": accuracy,
@@ -559,14 +554,12 @@ def _result(
         advance=guess.advance,
         residual=shot.residual,
         iterations=iterations,
-        position_norm=float(np.max(norms[0])),
-        velocity_norm=float(np.max(norms[1])),
-        acceleration_norm=float(np.max(norms[2])),
         deflection=deflection,
         moved=_moved(source.shooting, guess, ring),
         message=shot.reason,
         labels=system.labels,
         source=source,
+        **largest,
     )
 
 
@@ -716,7 +709,7 @@ def _followed(system: Constrained, guess: _Guess, samples: int) -> _Guess:
     columns = equations.columns
     x, v = equations.nearest(0.0, guess.q[0] / columns, guess.qd[0] / columns)
     times = np.linspace(0.0, guess.period, samples + 1)
-    path = march(Run(system, x * columns, v * columns, times, 1e-8, (), 1e6))
+    path = march(system, x * columns, v * columns, times, 1e-8)
     if path.status:
         raise _no_guess(f"the motion from the guess ends: {path.message}")
     return replace(guess, q=path.q[:-1], qd=path.qd[:-1])

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .fatigue_life import Fatigue, Material, fatigue
     from .procedure import RunningSpeed, running_speed
     from .quiet import Band, QuietSpeeds, quiet_speeds
-    from .screening import Screening, screen, screening_error
+    from .screening import Screening, screen
     from .speed_profile import SpeedProfile
     from .transient import Transient, run_through
 
@@ -32,7 +32,6 @@ _PUBLIC = {
     "run_through": "transient",
     "running_speed": "procedure",
     "screen": "screening",
-    "screening_error": "screening",
 }
 
 __all__ = [
@@ -52,7 +51,6 @@ __all__ = [
     "run_through",
     "running_speed",
     "screen",
-    "screening_error",
 ]
 
 __getattr__, __dir__ = on_first_use(globals(), _PUBLIC)

@@ -23,28 +23,14 @@ from .unsteady import Drive, arrays_of
 # Levels whose cubic holds between the middle two, or beside the ends.
 _STENCIL = 4
 
-Found = Mapping[str, Array]
+ByName = Mapping[str, Array]
 Places = NDArray[np.intp]
 
 
 class ChangingLength:
-    """A structure at even levels of a length, and what is between them.
+    """A structure at even levels of a length that changes, four or more, and what is between.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        Of a linkage of beams with geometry to vary.
-    profile : SpeedProfile
-        The drive.
-    name : str
-        The length that changes: of the ground, so that no beam's own length does.
-    count : int
-        Number of levels, four or more.
-
-    Raises
-    ------
-    BadInput
-        If the crank cannot turn at a level, or the length is that of a beam.
+    The length is one of the ground, so that no beam's own changes; the crank turns at every level.
     """
 
     def __init__(
@@ -65,7 +51,7 @@ class ChangingLength:
     def arrays(self, drive: Drive, time: Array) -> dict[str, Array]:
         """Return the arrays of the system at points of time, by name."""
 
-        def find(system: LinearPeriodic, own: Places) -> Found:
+        def find(system: LinearPeriodic, own: Places) -> ByName:
             return arrays_of(
                 system, Drive(drive.angle[own], drive.speed[own], drive.acceleration[own])
             )
@@ -75,7 +61,7 @@ class ChangingLength:
     def directions(self, angle: Array, time: Array) -> dict[str, Array]:
         """Return cosine and sine of each link's angle, ``(nt, 2)`` by link."""
 
-        def find(system: LinearPeriodic, own: Places) -> Found:
+        def find(system: LinearPeriodic, own: Places) -> ByName:
             motion = required_structure(system).configuration(angle[own])
             return {link: products(each.angle)[:, 1:3] for link, each in motion.items()}
 
@@ -84,13 +70,13 @@ class ChangingLength:
     def deflections(self, angle: Array, time: Array) -> Array:
         """Return the rows of the deflections over the links' lengths, ``(nt, k, n)``."""
 
-        def find(system: LinearPeriodic, own: Places) -> Found:
+        def find(system: LinearPeriodic, own: Places) -> ByName:
             return {"rows": deflection_rows(system, angle[own])}
 
         return self._between(time, find)["rows"]
 
     def _between(
-        self, time: Array, find: Callable[[LinearPeriodic, Places], Found]
+        self, time: Array, find: Callable[[LinearPeriodic, Places], ByName]
     ) -> dict[str, Array]:
         """Return what is found at the levels about each point of time, by Lagrange's cubic."""
         places = self.places

@@ -10,21 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem, bad
+from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
 from ..linkages import FourBar, transmission_angle
-from ..recovery.stress_over_speed import StressCurve, stress_curve
+from ..recovery.stress_over_speed import ELSEWHERE, StressCurve, stress_curve
 from .speed_profile import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _LENGTHS = ("frame", "crank", "coupler", "follower")
-# The whole equation may change other values by this much more than the first: as
-# ``stress_over_speed`` reckons for other speeds.
-_ELSEWHERE = 8.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,10 +38,8 @@ class StressEffect(Result):
         Crank speeds [rad/s].
     links : tuple of str
         Links.
-    maximum : ndarray, shape (nv, ns, links)
-        Largest stress [Pa].
-    error : ndarray, shape (nv, ns, links)
-        Of each, relative.
+    maximum, error : ndarray, shape (nv, ns, links)
+        Largest stress [Pa], and the error of each, relative.
     transmission : ndarray or None
         Of a four-bar whose length changes: least and greatest transmission angle [rad],
         ``(nv, 2)``.
@@ -70,31 +65,6 @@ class StressEffect(Result):
     def change(self) -> Array:
         """Largest stress over that of the first value, ``(nv, ns, links)``: below 1 it helps."""
         return np.asarray(self.maximum / self.maximum[:1])
-
-    def hurts(self, value: int = -1) -> Array:
-        """Return where a value stresses a link more than the first one does, ``(ns, links)``.
-
-        Parameters
-        ----------
-        value : int
-            Which of the values; the last by default.
-        """
-        doubt = self.error[value] + self.error[0]
-        return np.asarray(self.change[value] > 1.0 + doubt)
-
-    def best(self, limit: float = np.inf) -> Array:
-        """Return at each speed the value with the least largest stress of all links, ``(ns,)``.
-
-        Parameters
-        ----------
-        limit : float
-            The largest value that may be chosen.
-        """
-        allowed = np.flatnonzero(self.values <= limit)
-        if not allowed.size:
-            raise bad("limit", f"{limit:g}", f"at least {np.min(self.values):g}", "raise it")
-        worst = np.max(self.maximum[allowed], axis=2)
-        return np.asarray(self.values[allowed[np.argmin(worst, axis=0)]])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of all links over the speed, a line for each value."""
@@ -183,12 +153,10 @@ def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEff
     """Return the effect of a length with the transmission angles, where there is a four-bar."""
     if not set(_LENGTHS) <= set(system.geometry):
         return effect
-    lengths = {name: system.geometry[name] for name in _LENGTHS}
     angles = []
     for value in effect.values:
-        frame, crank, coupler, follower = (
-            float(value) if name == effect.name else lengths[name] for name in _LENGTHS
-        )
+        lengths = {name: system.geometry[name] for name in _LENGTHS} | {effect.name: float(value)}
+        frame, crank, coupler, follower = lengths.values()
         angles.append(transmission_angle(FourBar(frame, crank, coupler, follower)))
     return replace(
         effect, transmission=np.array([[angle.least, angle.greatest] for angle in angles])
@@ -198,8 +166,7 @@ def with_transmission(effect: StressEffect, system: LinearPeriodic) -> StressEff
 def _values(where: str, values: Sequence[float]) -> Array:
     array = np.atleast_1d(numbers(where, values))
     if array.ndim != 1 or not array.size or not np.all(np.isfinite(array) & (array > 0)):
-        problem = Problem(where, str(values), "positive numbers", "correct them")
-        raise BadInput(problem)
+        raise bad(where, str(values), "positive numbers", "correct them")
     return array
 
 
@@ -215,7 +182,7 @@ def effect_of(
 ) -> StressEffect:
     """Return the curves of systems, the first one known, up to the first that is enough.
 
-    The whole equation was solved for the first value alone: :data:`_ELSEWHERE` times what it
+    The whole equation was solved for the first value alone: :data:`.ELSEWHERE` times what it
     changed there is part of the errors of the others.
     """
     curves: list[StressCurve] = []
@@ -230,7 +197,7 @@ def effect_of(
             break
     change = first.checks["equation"]
     errors = np.array([curve.error for curve in curves])
-    errors[1:] += _ELSEWHERE * change.value
+    errors[1:] += ELSEWHERE * change.value
     return StressEffect(
         method=first.method,
         error=errors,

@@ -8,8 +8,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput, ElastolinkError, Problem
+from ..core.errors import BadInput, ElastolinkError, Problem, bad
+from ..core.inputs import require_kind, sign_problems
 from ..core.results import Result
+from ..recovery.stress_over_speed import missed_by_parabolas
 from ..recovery.stresses import FIBRES, StressResult
 
 Array = NDArray[np.float64]
@@ -43,13 +45,8 @@ class Material:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        problems = []
-        for name in ("tensile_strength", "endurance_limit", "exponent", "knee"):
-            value = getattr(self, name)
-            usable = isinstance(value, (int, float, np.integer, np.floating))
-            if not (usable and np.isfinite(value) and value > 0):
-                found, fix = repr(value), "correct it"
-                problems.append(Problem(f"Material.{name}", found, "a positive number", fix))
+        names = ("tensile_strength", "endurance_limit", "exponent", "knee")
+        problems = sign_problems("Material", self, names, positive=True, fix="correct it")
         if not problems and self.endurance_limit >= self.tensile_strength:
             expected = f"less than tensile_strength, {self.tensile_strength:g}"
             found = f"{self.endurance_limit:g}"
@@ -139,14 +136,11 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
     ElastolinkError
         If the counting library is not installed.
     """
-    for name, value, kind in (("stress", stress, StressResult), ("material", material, Material)):
-        if not isinstance(value, kind):
-            expected = f"a {kind.__name__}"
-            raise BadInput(Problem(f"fatigue {name}", repr(value), expected, "make one"))
+    require_kind("fatigue stress", stress, StressResult, "make one with stress")
+    require_kind("fatigue material", material, Material, "make one")
     if stress.period is None:
         fix = "take the stress of a steady state"
-        problem = Problem("fatigue", "a motion that is not periodic", "a periodic one", fix)
-        raise BadInput(problem)
+        raise bad("fatigue", "a motion that is not periodic", "a periodic one", fix)
     doubt = float(stress.error)
     amplitude = np.zeros((2, len(stress.places)))
     worse, damage = np.zeros_like(amplitude), np.zeros_like(amplitude)
@@ -154,7 +148,7 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
         _, fine = stress._finer(stress.fibre(fibre))
         if not np.all(np.isfinite(fine)):
             fix = "choose a speed with a single periodic motion"
-            raise BadInput(Problem("fatigue", "stresses that are not finite", "finite ones", fix))
+            raise bad("fatigue", "stresses that are not finite", "finite ones", fix)
         topped, missed = _between(fine)
         off = doubt + missed
         for column, history in enumerate(topped.T):
@@ -185,17 +179,12 @@ def fatigue(stress: StressResult, material: Material) -> Fatigue:
 
 
 def _between(fine: Array) -> tuple[Array, Array]:
-    """Return histories with their extremes where parabolas have them, and what these may miss.
-
-    With s steps from the middle angle to the extreme, at most a half, ``s (1 - s^2)/6`` third and
-    ``s^2 (1 - s^2)/8`` fourth differences.
-    """
+    """Return histories with their extremes where parabolas have them, and what these may miss."""
     first, low, high, last = (np.roll(fine, shift, axis=0) for shift in (2, 1, -1, -2))
     bend = low - 2.0 * fine + high
     extreme = ((fine - low) * (fine - high) >= 0) & (bend != 0)
     raised = (high - low) ** 2 / np.where(extreme, 8.0 * bend, 1.0)
-    missed = np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
-    missed += np.abs(first - 4.0 * low + 6.0 * fine - 4.0 * high + last) * (3.0 / 128.0)
+    missed = missed_by_parabolas(first, low, fine, high, last)
     topped = np.where(extreme, fine - raised, fine)
     return topped, np.max(np.where(extreme, missed, 0.0), axis=0)
 

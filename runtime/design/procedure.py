@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 # Damping ratios that are tried, over the system's own, and lengths over the design's.
 _DAMPING = (1.0, 1.25, 1.5, 2.0, 3.0)
 _LENGTHS = tuple(1.0 + 0.02 * k for k in range(12))
-# Speeds of a run-up at which the stresses are looked at, about.
-_RUN_UP_SPEEDS = 200
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,7 +135,9 @@ def running_speed(
         )
     offered = quiet.quiet or quiet.bands
     band = offered[-1] if highest else min(offered, key=lambda one: one.ratio)
-    allowed = np.array([_limit(limits, link) for link in quiet.links])
+    allowed = np.array(
+        [limits[link] if isinstance(limits, Mapping) else limits for link in quiet.links]
+    )
     damping = best = way = chosen = None
     with bar(progress, len(_DAMPING) + len(tried)) as tick:
         if "damping_ratio" in system.parameters:
@@ -158,13 +158,7 @@ def running_speed(
         method="stress curves over speed, damping and length",
         error=float(np.max(quiet.error)),
         error_norm="largest stress over its limit, relative, the worst speed",
-        checks={
-            **quiet.checks,
-            # Of the speed that was chosen: at the critical speeds it is left in any case.
-            **_linear_range(quiet, band),
-            "within limits": Check(band.ratio * (1.0 + _doubt(quiet, band)), 1.0),
-            "stable": Check(_largest_multiplier(quiet, band), 1.0),
-        },
+        checks=_checks(quiet, band),
         provenance=dict(quiet.provenance),
         quiet=quiet,
         band=band,
@@ -177,31 +171,27 @@ def running_speed(
     )
 
 
-def _doubt(quiet: QuietSpeeds, band: Band) -> float:
-    """Return the relative error of the stresses at the running speed."""
-    return float(np.asarray(quiet.error)[_place(quiet, band)])
-
-
 def _place(quiet: QuietSpeeds, band: Band) -> int:
     """Return the place of the running speed among the speeds."""
     return int(np.argmin(np.abs(quiet.speed - band.best)))
 
 
-def _largest_multiplier(quiet: QuietSpeeds, band: Band) -> float:
-    """Return the largest multiplier's modulus at the running speed, with its error."""
+def _checks(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:
+    """Return the checks of the running speed.
+
+    The linear range is that of this speed alone: at the critical speeds it is left in any case.
+    """
     curve, place = quiet.curve, _place(quiet, band)
-    return float(cast(Array, curve.multiplier)[place] + cast(Array, curve.multiplier_error)[place])
-
-
-def _linear_range(quiet: QuietSpeeds, band: Band) -> dict[str, Check]:
-    deflection = quiet.curve.deflection
-    if deflection is None:
-        return {}
-    return {"linear range": Check(float(deflection[_place(quiet, band)]), LINEAR_RANGE)}
-
-
-def _limit(limits: float | Mapping[str, float], link: str) -> float:
-    return float(limits[link] if isinstance(limits, Mapping) else limits)
+    checks = dict(quiet.checks)
+    if curve.deflection is not None:
+        checks["linear range"] = Check(float(curve.deflection[place]), LINEAR_RANGE)
+    doubt = float(np.asarray(quiet.error)[place])
+    multiplier, error = cast(Array, curve.multiplier), cast(Array, curve.multiplier_error)
+    return {
+        **checks,
+        "within limits": Check(band.ratio * (1.0 + doubt), 1.0),
+        "stable": Check(float(multiplier[place] + error[place]), 1.0),
+    }
 
 
 def _ratios(effect: StressEffect, quiet: QuietSpeeds, allowed: Array) -> Array:
@@ -224,7 +214,7 @@ def _way_up(
     A value passes where the steady stresses at all speeds of the way are within the limits.
     """
     own, end = system.geometry[length], _place(quiet, band)
-    every = max(1, end // _RUN_UP_SPEEDS)
+    every = max(1, end // 200)  # some 200 speeds of the way are looked at
     values = np.array(sorted(tried, key=lambda value: abs(value - own)))
     systems = [system.with_geometry(**{length: float(value)}) for value in values]
     way = quiet.curve.at(np.arange(end % every, end + 1, every))
@@ -242,13 +232,7 @@ def _way_up(
 
 
 def _tried(system: LinearPeriodic, name: str, values: Sequence[float] | None) -> list[float]:
-    """Return lengths to try: those given, or from the design's own on while the crank turns.
-
-    Raises
-    ------
-    BadInput
-        If the system has no such length, or one that is given is unusable.
-    """
+    """Return lengths to try: those given, or from the design's own on while the crank turns."""
     own = system.geometry.get(name)
     if own is None:
         raise bad("length", repr(name), f"one of {sorted(system.geometry)}", "correct the name")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..beams.element_forms import required_structure
-from ..core.errors import BadInput, Problem
+from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.results import Check, Result
@@ -20,9 +20,6 @@ from .speed_profile import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-# Speeds at which the stresses are found, unless the caller gives them.
-_SPEEDS = 1000
 
 
 @dataclass(frozen=True)
@@ -157,10 +154,10 @@ def quiet_speeds(
     named = _limits(limits, links)
     given = numbers("speeds", speeds)
     if given.shape == (2,):
-        given = np.linspace(given[0], given[1], _SPEEDS)
-    if given.ndim != 1 or len(given) < 3 or not _rising(given):
+        given = np.linspace(given[0], given[1], 1000)
+    if given.ndim != 1 or len(given) < 3 or not (given[0] > 0 and np.all(np.diff(given) > 0)):
         fix = "give the lowest and the highest, or increasing ones"
-        raise BadInput(Problem("speeds", str(speeds), "increasing crank speeds above 0", fix))
+        raise bad("speeds", str(speeds), "increasing crank speeds above 0", fix)
     curve = stress_curve(system, given, rtol=rtol)
     chosen = [curve.links.index(link) for link in named]
     ratio = curve.maximum[:, chosen] / np.array(list(named.values()))
@@ -182,10 +179,6 @@ def quiet_speeds(
         bands=_bands(given, worst, limiting, curve.unstable_ranges),
         curve=curve,
     )
-
-
-def _rising(speeds: Array) -> bool:
-    return bool(speeds[0] > 0 and np.all(np.diff(speeds) > 0))
 
 
 def _limits(limits: float | Mapping[str, float], links: list[str]) -> dict[str, float]:

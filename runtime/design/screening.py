@@ -20,15 +20,14 @@ from ..recovery.stresses import stress_operator
 from .speed_profile import Array
 
 _ANGLES = 256
-_STATIONS = 7
 
 
 @dataclass(frozen=True, kw_only=True)
 class Screening(Result):
     """Estimated largest stresses over the crank speed.
 
-    ``error`` is NaN: a screen knows no bound of what it leaves out.  Its error against the full
-    answer is measured by :func:`screening_error`.
+    ``error`` is NaN: a screen knows no bound of what it leaves out; compare it with the maxima of
+    :func:`elastolink.stress_curve`.
 
     Attributes
     ----------
@@ -40,27 +39,23 @@ class Screening(Result):
         Estimated largest stress [Pa].
     quasi_static : ndarray, shape (ns, links)
         Largest quasi-static stress [Pa].
-    mean_frequency : ndarray, shape (modes,)
-        Mean natural frequencies over the cycle [rad/s].
+    mean_frequency : float
+        Mean of the lowest natural frequency over the cycle [rad/s].
     """
 
     speed: Array
     links: tuple[str, ...]
     maximum: Array
     quasi_static: Array
-    mean_frequency: Array
+    mean_frequency: float
 
     dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "speed": ("speed",),
-        "mean_frequency": ("mode",),
-        "maximum": ("speed", "link"),
-        "quasi_static": ("speed", "link"),
+        **dict.fromkeys(("maximum", "quasi_static"), ("speed", "link")),
     }
 
 
-def screen(
-    system: LinearPeriodic, speeds: ArrayLike, *, damping: float, modes: int = 1
-) -> Screening:
+def screen(system: LinearPeriodic, speeds: ArrayLike, *, damping: float) -> Screening:
     """Return estimated largest stresses without solving the equations of motion.
 
     The quasi-static stress is a function of the crank angle times the squared speed, found once,
@@ -77,8 +72,6 @@ def screen(
         Crank speeds [rad/s], positive.
     damping : float
         Damping ratio z.
-    modes : int
-        Modes whose mean frequencies are told; the first is used.
 
     Returns
     -------
@@ -98,9 +91,9 @@ def screen(
     if problems:
         raise BadInput(*problems)
     structure = required_structure(system)
-    mean = np.asarray(natural_frequencies(system, count=modes).mean)
+    mean = float(natural_frequencies(system, count=1).mean[0])
     theta = system.period * np.arange(_ANGLES) / _ANGLES
-    form, stations = stress_operator(system, theta, _STATIONS, method="shape")
+    form, stations = stress_operator(system, theta, 7, method="shape")
     stiffness = system.array("K", theta)
     unit, constant = (
         form.values(1.0, still, np.zeros_like(still))
@@ -115,7 +108,7 @@ def screen(
     n = np.arange(len(spectra[0]))
     maximum, static = np.empty((2, len(given), len(links)))
     for i, speed in enumerate(given):
-        ratio = n * speed / mean[0]
+        ratio = n * speed / mean
         below = 1.0 - ratio**2 + 2j * damping * ratio
         still = speed**2 * unit + constant
         static[i] = [np.max(np.abs(still[:, named == link])) for link in links]
@@ -128,7 +121,7 @@ def screen(
     return Screening(
         method="quasi-static stress times the factor of one mode, by harmonics",
         error=np.nan,
-        error_norm="none: see screening_error",
+        error_norm="none",
         provenance=provenance(dict(system.provenance)),
         speed=given,
         links=links,
@@ -136,38 +129,3 @@ def screen(
         quasi_static=static,
         mean_frequency=mean,
     )
-
-
-def screening_error(found: Screening, speed: Array, maximum: Array) -> dict[str, Array]:
-    """Return how far a screen is from the full answer.
-
-    Parameters
-    ----------
-    found : Screening
-        At the same speeds and links as the full answer.
-    speed : ndarray, shape (ns,)
-        Crank speeds of the full answer [rad/s].
-    maximum : ndarray, shape (ns, links)
-        Its largest stresses [Pa], of a ``StressCurve``.
-
-    Returns
-    -------
-    dict of str to ndarray
-        ``ratio (ns, links)``: screen over full; by link ``median``, ``least`` and ``most``.
-
-    Raises
-    ------
-    BadInput
-        If the speeds differ.
-    """
-    if found.speed.shape != np.shape(speed) or not np.array_equal(found.speed, speed):
-        fix = "screen the speeds of the curve"
-        problem = Problem("screening_error", "other speeds", "the screen's own", fix)
-        raise BadInput(problem)
-    ratio = found.maximum / maximum
-    return {
-        "ratio": ratio,
-        "median": np.median(ratio, axis=0),
-        "least": np.min(ratio, axis=0),
-        "most": np.max(ratio, axis=0),
-    }

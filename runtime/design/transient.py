@@ -11,40 +11,32 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ..beams.assembly import in_own_axes, products
 from ..beams.element_forms import required_structure
+from ..beams.elements import placed_rotation, placed_shapes
 from ..core.errors import LINEAR_RANGE, BadInput, LinearRangeWarning, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, require_whole
 from ..core.results import Check, Result, provenance
+from ..frequencies.held import held_frequencies
 from ..periodic import steady_state
 from ..periodic.reduced import ReducedSystem, reduced_system
+from ..recovery.stress_over_speed import missed_by_parabolas
 from .changing_length import ChangingLength, deflection_rows
-from .shape_stress import largest_by_shape
 from .speed_profile import Array, SpeedProfile
-from .unsteady import Drive, arrays_of, march
+from .unsteady import FORCES, Drive, arrays_of, generator_of, march
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _STAGES = 3
-_ORDER = 2 * _STAGES
 # Steps whose motion and stresses are recovered together.
 _CHUNK = 512
 # Modes that are added to see what the others would change.
 _MORE = 3
-_ROUNDS = 4
-# Steps of the first try: of a revolution, and of a period of the fastest mode that is followed.
-_PER_TURN, _PER_PERIOD = 48, 2.0
 _MOST_STEPS = 200_000
 # Coordinates that are followed without a reduction; their steps leave the axial modes unresolved.
 _FOLLOWED = 5
-# Levels of a changing length at first, at which the structure is made anew.
-_LEVELS = 9
-# Samples that are kept, and a margin for the largest stress between the steps.
-_MOST_SAMPLES = 20_000
-_BETWEEN = 2.0
-# Stresses, over the largest, whose changes tell that of the largest.
-_LARGE = 0.7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,21 +82,6 @@ class Transient(Result):
     def largest(self) -> dict[str, float]:
         """Largest stress of each link [Pa]."""
         return dict(zip(self.links, np.max(self.stress, axis=0).tolist(), strict=True))
-
-    def envelope(self) -> tuple[Array, Array]:
-        """Return the largest stress of each link in each revolution.
-
-        Returns
-        -------
-        speed : ndarray, shape (turns,)
-            Mean crank speed of the revolution [rad/s].
-        stress : ndarray, shape (turns, links)
-            Largest stress in it [Pa].
-        """
-        turn = np.floor((self.angle - self.angle[0]) / (2.0 * np.pi)).astype(int)
-        kinds = np.unique(turn)
-        mean = np.array([np.mean(self.speed[turn == k]) for k in kinds])
-        return mean, np.array([np.max(self.stress[turn == k], axis=0) for k in kinds])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest stress of each link over the time, and the crank speed."""
@@ -175,7 +152,8 @@ def run_through(
     name = next(iter(profile.geometry), None)
     if name is not None and min(profile.geometry[name]) == max(profile.geometry[name]):
         system, name = system.with_geometry(**{name: profile.geometry[name][0]}), None
-    run = _Run(system, profile, chosen, stations, start, name, _LEVELS)
+    # Of a changing length the structure is made anew at nine levels first.
+    run = _Run(system, profile, chosen, stations, start, name, levels=9)
     steps = run.first_steps()
     found, before = run.solve(steps), None
     while True:
@@ -185,7 +163,7 @@ def run_through(
         if np.max(stepping + found.between) <= 0.5 * rtol or 2 * steps > _MOST_STEPS:
             break
     truncation = np.zeros(len(run.links))
-    for _ in range(_ROUNDS if chosen is not None or name is not None else 0):
+    for _ in range(4 if chosen is not None or name is not None else 0):
         richer = run.richer()
         more = richer.solve(steps)
         # Cubics between twice as many levels are better by far more than the half of the change.
@@ -206,24 +184,20 @@ def _stepping(change: Array, before: Array | None) -> tuple[Array, Array]:
     shrunk = 4.0 * np.ones_like(change)
     if before is not None:
         seen = float(np.max(before)) / max(float(np.max(change)), np.finfo(float).tiny)
-        shrunk[:] = np.clip(seen, 1.5, 2.0**_ORDER)
+        shrunk[:] = np.clip(seen, 1.5, 2.0 ** (2 * _STAGES))
     return change / (shrunk - 1.0), change
 
 
 @dataclass(frozen=True)
-class _Found:
-    """One run: times, motion of the structure, and the links' largest stresses over time.
-
-    ``steps``: those at the steps.  ``between``: what the largest stress is beyond that at the
-    steps, over it, by links.
-    """
+class _Motion:
+    """One run: samples of the motion of the structure, and the links' largest stresses."""
 
     time: Array
     q: Array
     qd: Array
-    stress: Array
-    steps: Array
-    between: Array
+    stress: Array  # from each sample up to the next
+    steps: Array  # at every step
+    between: Array  # what the largest stress is beyond that at the steps, over it, by links
 
 
 class _Run:
@@ -259,12 +233,10 @@ class _Run:
     def first_steps(self) -> int:
         """Return the number of steps of the first try."""
         theta = np.linspace(0.0, self.followed.period, 16, endpoint=False)
-        mass, stiffness = self.followed.array("M", theta), self.followed.array("K", theta)
-        squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
-        ranked = np.sqrt(np.maximum(np.sort(squares, axis=-1), 0.0))
+        ranked = held_frequencies(self.followed, theta, {})[0]
         fastest = float(np.max(ranked[:, min(_FOLLOWED, ranked.shape[1]) - 1]))
         periods = fastest * self.profile.duration / (2.0 * np.pi)
-        steps = int(np.ceil(max(_PER_TURN * self.turns, _PER_PERIOD * periods, 16)))
+        steps = int(np.ceil(max(48.0 * self.turns, 2.0 * periods, 16)))
         if 4 * steps > _MOST_STEPS:
             raise bad(
                 "profile",
@@ -280,11 +252,15 @@ class _Run:
             return arrays_of(self.followed, drive)
         return self.changing.arrays(drive, time)
 
-    def solve(self, steps: int) -> _Found:
+    def _generator(self, time: Array) -> Array:
+        drive = Drive.of(self.profile, time)
+        return generator_of(self.arrays(drive, time), drive)
+
+    def solve(self, steps: int) -> _Motion:
         """Return the run with a number of steps."""
-        size = self.followed.size
-        time, states = march(self.arrays, self.profile, size, self._first, steps, _STAGES)
-        every = -(-len(time) // _MOST_SAMPLES)
+        time = np.linspace(self.profile.times[0], self.profile.times[-1], steps + 1)
+        states = march(self._generator, time, np.append(self._first, 1.0), _STAGES)
+        every = -(-len(time) // 20_000)  # as many samples are kept at most
         q = np.empty((-(-len(time) // every), self.full.size))
         qd = np.empty_like(q)
         stress = np.empty((len(time), len(self.links)))
@@ -295,7 +271,7 @@ class _Run:
             kept = slice(begin // every, begin // every + -(-len(own_q) // every))
             q[kept], qd[kept] = own_q[::every], own_qd[::every]
         highest = np.maximum.reduceat(stress, np.arange(0, len(time), every), axis=0)
-        return _Found(time[::every], q, qd, highest, stress, _between(stress))
+        return _Motion(time[::every], q, qd, highest, stress, _between(stress))
 
     def _recovered(self, time: Array, states: Array) -> tuple[Array, Array, Array]:
         """Return coordinates, their rates and the largest stresses at points of time."""
@@ -305,7 +281,7 @@ class _Run:
         drift = np.zeros_like(states[:, :size])
         if "A" in arrays:
             drift = drive.speed[:, None] * np.einsum("tij,tj->ti", arrays["A"], states[:, :size])
-        momentum = states[:, size:] - drift
+        momentum = states[:, size:-1] - drift
         rates = np.asarray(np.linalg.solve(arrays["M"], momentum[..., None])[..., 0])
         q, qd = self._lifted(drive, states[:, :size], rates)
         turned = None if self.changing is None else self.changing.directions(drive.angle, time)
@@ -341,20 +317,15 @@ class _Run:
 
     def _left_out(self, at: Drive, phi: Array) -> Array:
         """Return the equilibrium of the modes left out under the inertia of the rigid motion."""
-        arrays = arrays_of(self.full, at, ("K", "f", "g", "p"))
-        force = np.zeros((len(at.angle), self.full.size))
-        for name, power in (("f", 2), ("p", 0)):
-            if name in arrays:
-                force += at.speed[:, None] ** power * arrays[name]
-        if "g" in arrays:
-            force += at.acceleration[:, None] * arrays["g"]
+        arrays = arrays_of(self.full, at, ("K", "g", *FORCES))
+        force = at.force(arrays)
         stiffness = arrays["K"]
         whole = np.linalg.solve(stiffness, force[..., None])[..., 0]
         kept = np.einsum("tnm,tnk,tkj->tmj", phi, stiffness, phi)
         own = np.linalg.solve(kept, np.einsum("tnm,tn->tm", phi, force)[..., None])[..., 0]
         return np.asarray(whole - np.einsum("tnm,tm->tn", phi, own))
 
-    def deflection(self, found: _Found) -> float:
+    def deflection(self, found: _Motion) -> float:
         """Return the largest deflection over the length of a link."""
         largest = 0.0
         for begin in range(0, len(found.time), _CHUNK):
@@ -370,25 +341,55 @@ class _Run:
         return largest
 
 
-def _between(stress: Array) -> Array:
-    """Return what lies above the largest of the steps, over it, by links.
+def largest_by_shape(
+    system: LinearPeriodic,
+    theta: Array,
+    q: Array,
+    stations: int,
+    directions: Mapping[str, Array] | None = None,
+) -> Array:
+    """Return the largest stress of each link, ``E (|u'| + h/2 |v''|)``, ``(nt, links)`` [Pa].
 
-    Parabolas through local maxima, and what these miss: with s steps from the middle to the top,
-    at most a half, ``s (1 - s^2)/6`` third and ``s^2 (1 - s^2)/8`` fourth differences.
+    By the shapes of the elements, at so many stations on each.  ``directions`` are cosine and sine
+    of each link's angle, ``(nt, 2)``, where they are not those of the system.
     """
+    structure = required_structure(system)
+    full = np.zeros((len(theta), len(structure.freedoms.all)))
+    full[:, structure.freedoms.free] = q
+    links = [beam.name for beam in structure.beams]
+    if directions is None:
+        motion = structure.configuration(theta)
+        directions = {name: products(motion[name].angle)[:, 1:3] for name in links}
+    largest = np.zeros((len(theta), len(links)))
+    xi = np.linspace(0.0, 1.0, stations)
+    for placed in structure.elements:
+        section = placed.beam.section
+        if section.thickness is None:
+            fix = "give Section.thickness"
+            raise bad(f"beam {placed.beam.name}", "no thickness", "one, for its stresses", fix)
+        stretch, _ = placed_shapes(placed, xi, 1)
+        bend = 0.5 * section.thickness * placed_rotation(placed, xi, 1)
+        local = in_own_axes(full[:, placed.indices], *directions[placed.beam.name].T)
+        strain = np.abs(local @ stretch.T) + np.abs(local @ bend.T)
+        k = links.index(placed.beam.name)
+        largest[:, k] = np.maximum(largest[:, k], section.modulus * np.max(strain, axis=1))
+    return largest
+
+
+def _between(stress: Array) -> Array:
+    """Return what lies above the largest of the steps by parabolas, over it, by links."""
     wide = np.pad(stress, ((1, 1), (0, 0)), mode="edge")
     first, low, top, high, last = (wide[k : len(wide) - 4 + k] for k in range(5))
     bend = 2.0 * top - low - high
     peaked = (top >= low) & (top >= high) & (bend > 0)
     added = (low - high) ** 2 / (8.0 * np.where(peaked, bend, 1.0))
-    added += np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
-    added += np.abs(first - 4.0 * low + 6.0 * top - 4.0 * high + last) * (3.0 / 128.0)
+    added += missed_by_parabolas(first, low, top, high, last)
     largest = np.maximum(np.max(stress, axis=0), np.finfo(float).tiny)
     beyond = np.max(top + np.where(peaked, added, 0.0), axis=0, initial=0.0) / largest - 1.0
-    return np.asarray(_BETWEEN * np.maximum(beyond, 0.0))
+    return np.asarray(2.0 * np.maximum(beyond, 0.0))  # with a margin of as much again
 
 
-def _difference(finer: _Found, coarse: _Found) -> Array:
+def _difference(finer: _Motion, coarse: _Motion) -> Array:
     """Return the change of the large stresses of each link at the times of both, over the largest.
 
     Of all of them, as the largest itself may stay by chance.
@@ -396,11 +397,11 @@ def _difference(finer: _Found, coarse: _Found) -> Array:
     every = (len(finer.steps) - 1) // (len(coarse.steps) - 1)
     old, new = coarse.steps, finer.steps[::every]
     largest = np.maximum(np.max(finer.steps, axis=0), np.finfo(float).tiny)
-    near = np.maximum(old, new) >= _LARGE * largest
+    near = np.maximum(old, new) >= 0.7 * largest
     return np.asarray(np.max(np.where(near, np.abs(new - old), 0.0), axis=0) / largest)
 
 
-def _result(run: _Run, found: _Found, error: Array, rtol: float) -> Transient:
+def _result(run: _Run, found: _Motion, error: Array, rtol: float) -> Transient:
     system, profile = run.full, run.profile
     largest = run.deflection(found)
     if largest > LINEAR_RANGE:
@@ -412,7 +413,7 @@ def _result(run: _Run, found: _Found, error: Array, rtol: float) -> Transient:
         )
     followed = "all coordinates" if run.followed is system else f"{run.followed.size} modes or more"
     return Transient(
-        method=f"Gauss-Legendre collocation of order {_ORDER}, {followed}",
+        method=f"Gauss-Legendre collocation of order {2 * _STAGES}, {followed}",
         error=error,
         error_norm="largest stress of each link over the run, relative",
         checks={

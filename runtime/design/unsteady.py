@@ -1,4 +1,4 @@
-"""Step maps of a linear periodic system whose crank speed changes in time."""
+"""A linear periodic system whose crank speed changes in time, marched by Gauss collocation."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.collocation import CollocationTableau, gauss_tableau
+from ..core.collocation import gauss_maps
 from ..core.families import DAMPING, LinearPeriodic
 from .speed_profile import Array, SpeedProfile
 
-# Floats of the stage equations of a block of steps that are solved together.
-_BLOCK_FLOATS = 2_000_000
-_INERTIA_POWER = {"f": 2, "h": 1, "p": 0}
+# Forces of inertia and loads, with the power of the speed.
+FORCES = {"f": 2, "h": 1, "p": 0}
 
 
 @dataclass(frozen=True)
@@ -29,28 +28,23 @@ class Drive:
         """Return those of a profile."""
         return cls(profile.angle(time), profile.speed(time), profile.acceleration(time))
 
-
-Arrays = Callable[[Drive, Array], Mapping[str, Array]]
+    def force(self, arrays: Mapping[str, Array]) -> Array:
+        """Return the generalised forces ``td^2 f + td h + p + tdd g``, ``(nt, n)``."""
+        total = np.zeros(arrays["K"].shape[:2])
+        for name, power in FORCES.items():
+            if name in arrays:
+                total += self.speed[:, None] ** power * arrays[name]
+        if "g" in arrays:
+            total += self.acceleration[:, None] * arrays["g"]
+        return total
 
 
 def arrays_of(
     system: LinearPeriodic, drive: Drive, only: Collection[str] | None = None
 ) -> dict[str, Array]:
-    """Return the arrays of a system along a drive, terms with a power of the speed included.
+    """Return the arrays of a system, or some, along a drive, their powers of the speed included.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    drive : Drive
-        At points of time ``(nt,)``.
-    only : collection of str, optional
-        The arrays that are wanted; by default all.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By array, ``(nt, n, n)`` or ``(nt, n)``; those without a term are left out.
+    By name, ``(nt, n, n)`` or ``(nt, n)``; those without a term are left out.
     """
     scales = system.scale_values()
     found: dict[str, Array] = {}
@@ -64,15 +58,9 @@ def arrays_of(
     return found
 
 
-def first_order(arrays: Mapping[str, Array], drive: Drive, size: int) -> tuple[Array, Array]:
-    """Return L and g of ``y' = L y + g`` in time, y = (q, p = M qd + td A q).
-
-    Returns
-    -------
-    generator : ndarray, shape (nt, 2n, 2n)
-    forcing : ndarray, shape (nt, 2n)
-    """
-    count = len(drive.angle)
+def generator_of(arrays: Mapping[str, Array], drive: Drive) -> Array:
+    """Return L of ``y' = L y`` in time, y = (q, p = M qd + td A q, 1): ``(nt, 2n + 1, 2n + 1)``."""
+    count, size, _ = arrays["M"].shape
     speed, acceleration = drive.speed[:, None, None], drive.acceleration[:, None, None]
     none = np.zeros((count, size, size))
     inverse = np.linalg.inv(arrays["M"])
@@ -84,79 +72,28 @@ def first_order(arrays: Mapping[str, Array], drive: Drive, size: int) -> tuple[A
     if any(name in arrays for name in DAMPING):
         restoring = restoring + speed * arrays.get("D", none)
     push = np.swapaxes(drift, -1, -2) - arrays.get("C", none)
-    generator = np.empty((count, 2 * size, 2 * size))
-    generator[:, :size, :size] = -back
-    generator[:, :size, size:] = inverse
-    generator[:, size:, :size] = -push @ back - restoring
-    generator[:, size:, size:] = push @ inverse
-    forcing = np.zeros((count, 2 * size))
-    for name, power in _INERTIA_POWER.items():
-        if name in arrays:
-            forcing[:, size:] += drive.speed[:, None] ** power * arrays[name]
-    if "g" in arrays:
-        forcing[:, size:] += drive.acceleration[:, None] * arrays["g"]
-    return generator, forcing
+    found = np.zeros((count, 2 * size + 1, 2 * size + 1))
+    found[:, :size, :size] = -back
+    found[:, :size, size:-1] = inverse
+    found[:, size:-1, :size] = -push @ back - restoring
+    found[:, size:-1, size:-1] = push @ inverse
+    found[:, size:-1, -1] = drive.force(arrays)
+    return found
 
 
-def march(
-    find: Arrays, profile: SpeedProfile, size: int, start: Array, steps: int, stages: int
-) -> tuple[Array, Array]:
-    """Return times and states of Gauss-Legendre collocation with even steps.
+def march(generator: Callable[[Array], Array], edges: Array, start: Array, stages: int) -> Array:
+    """Return the states at even times, ``(nt, m)``, by Gauss-Legendre collocation.
 
-    A-stable: modes far faster than the steps are damped or kept, never amplified, and not resolved.
-
-    Parameters
-    ----------
-    find : callable
-        Drive and times to the arrays.
-    profile : SpeedProfile
-        The drive.
-    size : int
-        Number n of coordinates.
-    start : ndarray, shape (2n,)
-        State at the first time.
-    steps, stages : int
-        Number of steps, and of stages in each.
-
-    Returns
-    -------
-    time : ndarray, shape (steps + 1,)
-    states : ndarray, shape (steps + 1, 2n)
+    The generator maps times to L of ``y' = L y``.  A-stable: modes far faster than the steps are
+    damped or kept, never amplified, and not resolved.
     """
-    tableau = gauss_tableau(stages)
-    edges = np.linspace(profile.times[0], profile.times[-1], steps + 1)
-    step = (edges[-1] - edges[0]) / steps
-    block = max(1, _BLOCK_FLOATS // (stages * 2 * size) ** 2)
-    states = np.empty((steps + 1, 2 * size))
+    step = edges[1] - edges[0]
+    # Steps whose stage equations, two million numbers, are solved together.
+    block = max(1, 2_000_000 // (stages * len(start)) ** 2)
+    states = np.empty((len(edges), len(start)))
     states[0] = start
-    for first in range(0, steps, block):
-        own = np.arange(first, min(first + block, steps))
-        nodes = (edges[own][:, None] + step * tableau.c).ravel()
-        drive = Drive.of(profile, nodes)
-        generator, forcing = first_order(find(drive, nodes), drive, size)
-        shape = (len(own), stages, 2 * size)
-        matrix, shift = _step_maps(
-            tableau, step, generator.reshape(*shape, 2 * size), forcing.reshape(shape)
-        )
-        for k, i in enumerate(own):
-            states[i + 1] = states[i] + matrix[k] @ states[i] + shift[k]
-    return edges, states
-
-
-def _step_maps(
-    tableau: CollocationTableau, step: float, generator: Array, forcing: Array
-) -> tuple[Array, Array]:
-    """Return the change of the state over each step: ``P y + r``.
-
-    The stage slopes solve ``k_i = L_i (y + h sum_j a_ij k_j) + g_i``, all steps at once.
-    """
-    count, stages, m = forcing.shape
-    system = -step * np.einsum("ij,nirc->nirjc", tableau.a, generator)
-    diagonal, rows = np.arange(stages), np.arange(m)
-    system[:, diagonal[:, None], rows, diagonal[:, None], rows] += 1.0
-    right = np.concatenate([generator, forcing[..., None]], axis=-1)
-    slopes = np.linalg.solve(
-        system.reshape(count, stages * m, stages * m), right.reshape(count, stages * m, m + 1)
-    ).reshape(count, stages, m, m + 1)
-    total = np.einsum("i,nirc->nrc", step * tableau.b, slopes)
-    return total[..., :m], total[..., m]
+    for first in range(0, len(edges) - 1, block):
+        maps = gauss_maps(stages, generator, edges[first:-1][:block], step)
+        for k, matrix in enumerate(maps, first):
+            states[k + 1] = matrix @ states[k]
+    return states

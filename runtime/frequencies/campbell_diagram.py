@@ -40,24 +40,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Running:
-    """Frequencies of the running mechanism at several speeds.
+    """Frequencies of the running mechanism at several speeds, by mode: ``(ns, modes)``."""
 
-    Attributes
-    ----------
-    frequency : ndarray
-        By mode [rad/s], ``(ns, modes)``.
-    growth : ndarray
-        Real parts of the exponents [1/s], ``(ns, modes)``.
-    share : ndarray
-        Share of each motion that is its mode's, ``(ns, modes)``.
-    away : float
-        Largest distance from the expected frequency, over half the speed.
-    """
-
-    frequency: Array
-    growth: Array
-    share: Array
-    away: float
+    frequency: Array  # [rad/s]
+    growth: Array  # real parts of the exponents [1/s]
+    share: Array  # of each motion that is its mode's
+    away: float  # largest distance from the expected frequency, over half the speed
 
 
 def running_frequencies(system: LinearPeriodic, speeds: Array, held: Array, rest: Array) -> Running:
@@ -129,11 +117,7 @@ def _shares(found: SlowMonodromy, vectors: Array, held: HeldModes, speed: float)
 
 Indices = NDArray[np.int64]
 
-# Means end this far before the held mechanism buckles.
-_SHORT = 0.999
 _ENOUGH = 1e-9
-# Rows to either side of a crossing that tell how uneven its curve is.
-_BESIDE = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,9 +134,9 @@ class Campbell(Result):
     running : ndarray
         Frequencies of the running mechanism [rad/s], ``(ns, modes)``: the imaginary parts of the
         characteristic exponents, all terms with them (axial forces, Coriolis, centripetal, Euler),
-        each with that multiple of the speed added that brings it to its mode; NaN where they were
-        not requested.  A motion is named by its shape, taken apart along the turn into the modes of
-        the mechanism held still: names do not depend on the other speeds.
+        each with that multiple of the speed added that brings it to its mode.  A motion is named
+        by its shape, taken apart along the turn into the modes of the mechanism held still: names
+        do not depend on the other speeds.
     growth : ndarray
         Their real parts [1/s], ``(ns, modes)``: positive where the motion grows.
     share : ndarray
@@ -162,8 +146,7 @@ class Campbell(Result):
     buckling : float
         Least crank speed [rad/s] at which the held mechanism buckles at some angle; inf if none.
     crossing_speed : ndarray
-        Speeds at which a frequency is n times the speed, ``(nc,)`` [rad/s]: of ``running`` where
-        it is there, else of ``held``.
+        Speeds at which a frequency of ``running`` is n times the speed, ``(nc,)`` [rad/s].
     crossing_mode, crossing_order : ndarray of int
         Mode (from 1) and n of each, ``(nc,)``.
     crossing_error : ndarray
@@ -198,8 +181,7 @@ class Campbell(Result):
         from ..core.plotting import axes_or_new
 
         ax = axes_or_new(ax)
-        shown = np.where(np.isfinite(self.running), self.running, self.held)
-        top = 1.1 * float(np.nanmax(shown))
+        top = 1.1 * float(np.nanmax(self.running))
         last = int(self.crossing_order.max(initial=1))
         named, room = np.inf, 0.03 * float(self.speed[-1] - self.speed[0])
         for n in range(1, last + 1):
@@ -213,7 +195,7 @@ class Campbell(Result):
             colour = f"C{k % 10}"
             ax.plot(self.speed, self.held[:, k], "--", color=colour, lw=0.9)
             ax.plot(self.speed, self.running[:, k], color=colour, lw=1.3)
-            grown = self.growth[:, k] > 1e-6 * shown[:, k]
+            grown = self.growth[:, k] > 1e-6 * self.running[:, k]
             ax.plot(self.speed[grown], self.running[grown, k], ".", color="r", ms=5)
         height = self.crossing_order * self.crossing_speed
         ax.plot(self.crossing_speed, height, "ko", ms=3, mfc="none", mew=0.7)
@@ -231,7 +213,6 @@ def campbell(
     speed: ArrayLike,
     *,
     modes: int | None = None,
-    exponents: bool = True,
     progress: bool = False,
 ) -> Campbell:
     """Return the frequencies of a mechanism against its crank speed, and where orders meet them.
@@ -248,8 +229,6 @@ def campbell(
         Crank speeds [rad/s], rising, ``(ns,)``, at least 4.
     modes : int, optional
         Number of modes, 4 by default.
-    exponents : bool
-        Whether the frequencies of the running mechanism are found too.
     progress : bool
         Whether to show a progress bar (extra ``progress``).
 
@@ -273,16 +252,13 @@ def campbell(
     count = require_whole("modes", wanted, 1, system.size)
     limit = buckling_speed(system).speed
     held, error = _held(system, speeds, count, limit, progress)
-    nothing = np.full(held.shape, np.nan)
-    found = Running(nothing, nothing, nothing, 0.0)
-    if exponents:
-        rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
-        found = running_frequencies(system, speeds, held, rest)
-    shown = found.frequency if exponents else held
-    crossing = [row for k in range(count) for row in _crossings(speeds, shown[:, k], k + 1)]
+    rest = cycle_mean(partial(_lowest, system, 0.0, count), system.period, enough=_ENOUGH)[0]
+    found = running_frequencies(system, speeds, held, rest)
+    curves = found.frequency.T
+    crossing = [row for k, curve in enumerate(curves, 1) for row in _crossings(speeds, curve, k)]
     crossing.sort()
     return Campbell(
-        method="means of held frequencies" + "; characteristic exponents" * exponents,
+        method="means of held frequencies; characteristic exponents",
         error=error,
         error_norm="absolute, of each held mean [rad/s]",
         checks={"near": Check(found.away, 0.8)},
@@ -307,7 +283,7 @@ def _held(
     out, error = np.full((2, len(speeds), count), np.nan)
     with bar(progress, len(speeds)) as tick:
         for k, speed in enumerate(speeds):
-            if speed >= _SHORT * limit:
+            if speed >= 0.999 * limit:  # next to buckling the means are no longer smooth
                 break
             values = partial(_lowest, system, float(speed), count)
             out[k], error[k] = cycle_mean(values, system.period, enough=_ENOUGH)
@@ -351,12 +327,12 @@ def _crossings(speeds: Array, values: Array, mode: int) -> list[tuple[float, int
 
 
 def _unevenness(speeds: Array, values: Array, first: int) -> float:
-    """Return how far the rows beside an interval lie off the chord through its ends.
+    """Return how far the two rows to either side of an interval lie off the chord of its ends.
 
     What they do beside it, meeting other frequencies, a frequency may do inside it unseen.
     """
     w, f = speeds[first : first + 2], values[first : first + 2]
-    near = slice(max(0, first - _BESIDE), first + 2 + _BESIDE)
+    near = slice(max(0, first - 2), first + 4)
     chord = f[0] + (f[1] - f[0]) / (w[1] - w[0]) * (speeds[near] - w[0])
     return float(np.max(np.abs(values[near] - chord)))
 

@@ -8,7 +8,7 @@ for rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -84,12 +84,6 @@ def _symmetric(matrix: Array) -> Array:
     return np.asarray((matrix + matrix.T) / 2.0)
 
 
-def rounding(sizes: Array) -> Array:
-    """Return a bound, to first order, of what rounding does to quadratic forms of those sizes."""
-    # Rounding of an entry of a local matrix, over u times its size: functions, products, turn.
-    return np.asarray(32.0 * UNIT * sizes)
-
-
 def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
     """Return the number of negative eigenvalues of D at a frequency, and whether it is certain."""
     local, _ = assembly.local_matrices(omega)
@@ -110,18 +104,10 @@ def signs(assembly: Assembly, omega: float) -> tuple[int, bool]:
 
 @dataclass(frozen=True)
 class Modal:
-    """``D x = mu M x`` at one frequency: mu is what is missing to the squares of frequencies.
+    """``D x = mu M x`` at one frequency: mu is what is missing to the squares of frequencies."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (n,)
-        mu, ascending.
-    vectors : ndarray, shape (size, n)
-        x, of unit generalised mass.
-    """
-
-    values: Array
-    vectors: Array
+    values: Array  # mu, ascending, (n,)
+    vectors: Array  # x, of unit generalised mass, (size, n)
 
     @property
     def negative(self) -> int:
@@ -157,12 +143,6 @@ def projected(
     stiffness, heavy, _ = quadratic_forms(assembly, omega, vectors, mass)
     values, inner = eigh(stiffness, heavy)
     return values, np.asarray(vectors @ inner)
-
-
-Count = Callable[[float], int]
-
-# Frequencies nearer than this, relatively, are found together, in the span of their vectors.
-_TOGETHER = 1e-7
 
 
 @dataclass(frozen=True)
@@ -240,7 +220,8 @@ def solve(problem: DynamicStiffness, item: Interval) -> list[Mode]:
     done = 0
     while done < len(rough):
         end = done + 1
-        while end < len(rough) and rough[end] - rough[end - 1] < _TOGETHER * rough[end]:
+        # Nearer ones are computed together, in the span of their vectors.
+        while end < len(rough) and rough[end] - rough[end - 1] < 1e-7 * rough[end]:
             end += 1
         modes += _together(finer, rough[done:end], item.first + done)
         done = end
@@ -278,7 +259,9 @@ def _together(finer: DynamicStiffness, rough: list[float], before: int) -> list[
     values, vectors = projected(finer.assembly, omega, chosen)
     places = np.sqrt(np.maximum(omega**2 + values, 0.0))
     _, mass, sizes = quadratic_forms(finer.assembly, omega, vectors)
-    spread = rounding(sizes) / (2.0 * omega * np.diagonal(mass))
+    # To first order: an entry of a local matrix is off by 32 u of its size, functions, products
+    # and turn together.
+    spread = 32.0 * UNIT * sizes / (2.0 * omega * np.diagonal(mass))
     width, certified = _confirmed(finer, places, before, np.max(spread))
     return [
         Mode(float(place), float(width + own), finer, _signed(vector), certified)
@@ -339,13 +322,7 @@ class MemberShape:
 def member_shape(
     assembly: Assembly, omega: float, vector: Array, beam: str, eta: ArrayLike
 ) -> MemberShape:
-    """Return the shape of a beam in a harmonic motion, at places ``(m,)`` in lengths.
-
-    Raises
-    ------
-    BadInput
-        If there is no such beam, or a place lies outside.
-    """
+    """Return the shape of a beam in a harmonic motion, at places ``(m,)`` in lengths."""
     places = numbers_in_a_row("eta", eta)
     if not np.all((places >= 0.0) & (places <= 1.0)):
         raise bad("eta", repr(eta), "places from 0 to 1 in a row", "divide by the length")
@@ -619,15 +596,10 @@ def rigid_motions(problem: DynamicStiffness) -> list[Mode]:
     return [Mode(0.0, 0.0, problem, vector, True) for vector in vectors.T[soft]]
 
 
-def _scale(problem: DynamicStiffness) -> float:
-    """Return a frequency of the size of the members' own."""
-    length, bending, _, mass = problem.assembly.data
-    return float(np.min(np.sqrt(bending / mass) / length**2))
-
-
 def _below_all(problem: DynamicStiffness, rigid: int) -> float:
     """Return a frequency below all that are not 0."""
-    low = _scale(problem)
+    length, bending, _, mass = problem.assembly.data
+    low = float(np.min(np.sqrt(bending / mass) / length**2))  # of the size of the members' own
     for _ in range(200):
         low, found = certain_count(problem, low)
         if found <= rigid:

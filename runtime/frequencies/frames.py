@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,41 +15,26 @@ from ..beams.structure import Freedoms, PlacedElement, Structure, number_freedom
 from ..core.errors import bad
 from ..core.families import Transcendental
 from ..core.inputs import is_finite, names_problems, numbers, require_kind, require_mapping
-from .members import member_inertias, member_matrices, phases, poles_below
+from .members import functions, member_inertias, member_matrices, phases
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 Pieces = Mapping[str, tuple[float, ...]]
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """Members, what joins them, and the coordinates left.
+    """Members, what joins them, and the coordinates left."""
 
-    Attributes
-    ----------
-    pieces : tuple of PlacedElement
-        Members, or parts of members, each one exact element.
-    axial_stiffness : ndarray, shape (n,)
-        EA [N] of each; infinite where it cannot stretch.
-    local : ndarray, shape (n, 6, size)
-        Displacements of the ends along and across each piece by the coordinates that are left.
-    reduction : ndarray, shape (free, size)
-        The free coordinates by those that are left.
-    lumped_mass, springs : ndarray, shape (free,)
-        On the free coordinates [kg, kg m^2, N/m, N m/rad].
-    labels : tuple of str
-        Names of the free coordinates.
-    """
-
-    pieces: tuple[PlacedElement, ...]
-    axial_stiffness: Array
-    angles: Array
+    pieces: tuple[PlacedElement, ...]  # members, or parts of them, each one exact element
+    axial_stiffness: Array  # EA [N] of each piece, (n,); infinite where it cannot stretch
+    angles: Array  # of each piece against the fixed axes [rad], (n,)
+    # (n, 6, size): displacements of the ends along and across each piece by the coordinates left
     local: Array
-    reduction: Array
+    reduction: Array  # (free, size): the free coordinates by those that are left
+    # (free,): on the free coordinates [kg, kg m^2, N/m, N m/rad]
     lumped_mass: Array
     springs: Array
-    labels: tuple[str, ...]
+    labels: tuple[str, ...]  # names of the free coordinates
 
     @property
     def size(self) -> int:
@@ -99,8 +84,7 @@ class Assembly:
     def poles(self, omega: ArrayLike) -> Array:
         """Return how many frequencies lie below with every node held, ``(...)``."""
         z, b = phases(np.asarray(omega, dtype=float), *self.data)
-        bending, axial = poles_below(z, b)
-        return np.asarray(np.sum(bending + axial, axis=-1))
+        return np.asarray(np.sum(functions.bending_poles(z) + functions.axial_poles(b), axis=-1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,7 +220,13 @@ def _assembly(
     motion = structure.configuration(np.array([theta]))
     elements, free = freedoms.elements, freedoms.free
     angles = np.array([float(motion[e.beam.name].angle[0]) for e in elements])
-    local = _ends(elements, angles, free, len(freedoms.all))
+    # What turns free coordinates into displacements of the ends of each piece.
+    local = np.zeros((len(elements), 6, len(freedoms.all)))
+    for ends, element, angle in zip(local, elements, angles, strict=True):
+        c, s = np.cos(angle), np.sin(angle)
+        turn = np.kron(np.eye(2), [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        ends[:, element.indices[:6]] += turn
+    local = local[:, :, free]
     stiff = np.array(
         [np.inf if e.beam.name in rigid else e.beam.section.axial_stiffness for e in elements]
     )
@@ -252,16 +242,6 @@ def _assembly(
         springs=springs[free],
         labels=freedoms.free_labels,
     )
-
-
-def _ends(elements: Sequence[PlacedElement], angles: Array, free: Index, count: int) -> Array:
-    """Return what turns free coordinates into displacements of the ends, ``(n, 6, free)``."""
-    every = np.zeros((len(elements), 6, count))
-    for k, element in enumerate(elements):
-        c, s = np.cos(angles[k]), np.sin(angles[k])
-        turn = np.kron(np.eye(2), [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        every[k][:, element.indices[:6]] += turn
-    return every[:, :, free]
 
 
 def without_stretch(local: Array, rigid: NDArray[np.bool_]) -> Array:
@@ -308,15 +288,10 @@ def element_matrices(
     """
     rigid = rigid_beams("element_matrices", structure, theta, inextensible)
     arrays, angle = AngleArrays(structure), np.array([float(theta)])
-    lumped, springs, _ = lumped_values(structure)
-    free = structure.freedoms.free
-    mass = arrays.mass(angle)[0] + np.diag(lumped[free])
-    stiffness = arrays.stiffness(angle)[0] + np.diag(springs[free])
-    motion, elements = structure.configuration(angle), structure.elements
-    angles = np.array([float(motion[element.beam.name].angle[0]) for element in elements])
-    local = _ends(elements, angles, free, len(structure.freedoms.all))
-    stiff = np.array([element.beam.name in rigid for element in structure.elements])
-    reduction = without_stretch(local, stiff)
+    made = _assembly(structure, float(theta), structure.freedoms, rigid)
+    reduction = made.reduction
+    mass = arrays.mass(angle)[0] + np.diag(made.lumped_mass)
+    stiffness = arrays.stiffness(angle)[0] + np.diag(made.springs)
     return reduction.T @ mass @ reduction, reduction.T @ stiffness @ reduction, reduction
 
 
@@ -363,7 +338,6 @@ _SHARES: tuple[tuple[float, ...], ...] = (
     (0.345, 0.345, 0.31),
     (0.283, 0.262, 0.239, 0.216),
 )
-_WIDEST, _CHANGE = 0.02, 0.3
 
 
 def divided_for(
@@ -396,9 +370,9 @@ def divided_for(
 
 
 def narrow_enough(problem: DynamicStiffness, omega: float) -> float:
-    """Return the relative width within which no phase of a whole member changes much."""
+    """Return the relative width, 2 % at most, within which no member's phase changes by 0.3."""
     z, b = phases(omega, *problem.assembly.data)
-    return float(min(_WIDEST, _CHANGE / max(np.max(z) / 2.0, np.max(b))))
+    return float(min(0.02, 0.3 / max(np.max(z) / 2.0, np.max(b))))
 
 
 def _distance(z: Array, b: Array) -> float:

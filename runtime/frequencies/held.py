@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +15,6 @@ from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
 from ..core.trigonometric import even_angles
 
-if TYPE_CHECKING:
-    pass
-
 Array = NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
@@ -25,24 +22,12 @@ _EPS = float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class HeldModes:
-    """Natural frequencies and shapes at crank angles.
+    """Natural frequencies and shapes at crank angles."""
 
-    Attributes
-    ----------
-    frequency : ndarray
-        Natural frequencies [rad/s], rising, shape ``(nt, n)``.
-    shape : ndarray
-        Shapes, columns of unit modal mass, ``(nt, n, n)``.
-    mass : ndarray
-        M, ``(nt, n, n)``.
-    error : ndarray
-        Round-off of the frequencies [rad/s], ``(nt, n)``.
-    """
-
-    frequency: Array
-    shape: Array
-    mass: Array
-    error: Array
+    frequency: Array  # natural frequencies [rad/s], rising, (nt, n)
+    shape: Array  # columns of unit modal mass, (nt, n, n)
+    mass: Array  # M, (nt, n, n)
+    error: Array  # round-off of the frequencies [rad/s], (nt, n)
 
 
 def held_arrays(
@@ -69,10 +54,7 @@ def held_modes(
 ) -> HeldModes:
     """Return natural frequencies and shapes at crank angles ``(nt,)`` [rad].
 
-    Raises
-    ------
-    BadInput
-        If mass or stiffness is not positive definite at some angle.
+    A mass or stiffness that is not positive definite at some angle is refused.
     """
     mass, stiffness = held_arrays(system, theta, parameters, speed)
     half = _inverse_factor(mass, stiffness, theta)

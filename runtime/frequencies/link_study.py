@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..beams.element_forms import required_structure
 from ..beams.section import Section
-from ..beams.structure import Beam, Structure
+from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers, require_kind, require_positive, require_whole
 from ..core.progress import bar
 from ..core.results import Check, Result, provenance
-from .held import cycle_mean, held_frequencies, require_system
+from .held import cycle_mean, held_frequencies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -189,7 +190,7 @@ def link_frequencies(
         If the system has no such link, a value is not positive, or the crank cannot turn fully
         with it.
     """
-    names = _structure(system)[1]
+    names = tuple(beam.name for beam in required_structure(system).beams)
     _check(system, names, link, quantity)
     values = np.atleast_1d(numbers("value", value))
     if values.ndim != 1 or not len(values) or not np.all(np.isfinite(values) & (values > 0)):
@@ -199,7 +200,7 @@ def link_frequencies(
     with bar(progress, len(values)) as tick:
         for k, number in enumerate(values):
             changed = _changed(system, link, quantity, float(number))
-            beams = _structure(changed)[0].beams
+            beams = required_structure(changed).beams
             alone = [pinned_frequency(beam.section, beam.length) for beam in beams]
             pinned.append([_factor(changed) * frequency for frequency in alone])
             rows.append(_means(changed, count))
@@ -242,26 +243,32 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
     BadInput
         If the system is not a linkage of beams, or the number of modes is unusable.
     """
-    structure, names = _structure(system)
+    structure = required_structure(system)
+    names = [beam.name for beam in structure.beams]
     require_whole("count", count, 1, system.size)
     mean, own_error, _, _ = _means(system, count)
     rows, exponent, error = [], [], []
-    lengths = [name for name in (*names, "frame") if name in system.geometry]
-    wanted = [(name, "length") for name in lengths]
-    wanted += [(name, quantity) for name in names for quantity in _POWERS]
-    changes = {
-        f"{name} {quantity}": partial(_scaled, system, name, quantity) for name, quantity in wanted
-    }
-    changes |= {
-        f"mass at {node.name}": partial(_heavier, system, node.name)
+    # What changes, how, and its own value.
+    changes: list[tuple[str, Callable[[float], LinearPeriodic], float]] = [
+        (f"{name} length", partial(_changed, system, name, "length"), system.geometry[name])
+        for name in (*names, "frame")
+        if name in system.geometry
+    ]
+    changes += [
+        (f"{name} {quantity}", partial(_changed, system, name, quantity), 1.0)
+        for name in names
+        for quantity in _POWERS
+    ]
+    changes += [
+        (f"mass at {node.name}", partial(_heavier, system, node.name), 1.0)
         for node in structure.nodes
         if node.mass and not {"x", "y"} <= set(node.held)
-    }
-    for row, change in changes.items():
+    ]
+    for row, change, own in changes:
         # Symmetric differences of the logarithms at two steps, extrapolated.
         slopes = []
         for step in _STEPS:
-            ends = [np.log(_means(change(np.exp(sign * step)), count)[0]) for sign in (1, -1)]
+            ends = [np.log(_means(change(own * np.exp(sign * step)), count)[0]) for sign in (1, -1)]
             slopes.append((ends[0] - ends[1]) / (2.0 * step))
         coarse, fine = slopes
         best = fine + (fine - coarse) / 3.0
@@ -277,13 +284,6 @@ def frequency_exponents(system: LinearPeriodic, *, count: int = 4) -> FrequencyE
         exponent=np.stack(exponent),
         mean=mean,
     )
-
-
-def _structure(system: LinearPeriodic) -> tuple[Structure, tuple[str, ...]]:
-    require_system(system)
-    if system.structure is None:
-        raise bad("system", "one without beams", "a linkage of beams", "use linkage_system")
-    return system.structure, tuple(beam.name for beam in system.structure.beams)
 
 
 def _check(system: LinearPeriodic, names: tuple[str, ...], link: str, quantity: str) -> None:
@@ -308,10 +308,38 @@ def _means(system: LinearPeriodic, count: int) -> tuple[Array, Array, Array, Arr
 
 
 def _changed(system: LinearPeriodic, link: str, quantity: str, value: float) -> LinearPeriodic:
+    """Return the system with another length of a link, or its thickness or width times a value."""
     if quantity == "length":
         return system.with_geometry(**{link: value})
     area, second = (value**power for power in _POWERS[quantity])
-    return _remade(system, partial(_with_link, link, area, second))
+
+    def change(structure: Structure) -> Structure:
+        beam = structure.beam(link)
+        section, shear = beam.section, beam.section.shear_stiffness
+        made = replace(
+            section,
+            area=section.area * area,
+            second_moment=section.second_moment * second,
+            # k G A goes with the area.
+            shear_stiffness=None if shear is None else shear * area,
+        )
+        changed = replace(beam, section=made)
+        beams = tuple(changed if one is beam else one for one in structure.beams)
+        return replace(structure, beams=beams)
+
+    return _remade(system, change)
+
+
+def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
+    """Return the system with the lumped mass of a node times a factor."""
+
+    def change(structure: Structure) -> Structure:
+        node = structure.node(name)
+        changed = replace(node, mass=node.mass * factor)
+        nodes = tuple(changed if one is node else one for one in structure.nodes)
+        return replace(structure, nodes=nodes)
+
+    return _remade(system, change)
 
 
 def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) -> LinearPeriodic:
@@ -321,44 +349,7 @@ def _remade(system: LinearPeriodic, change: Callable[[Structure], Structure]) ->
     return replace(system.remesh(change), parameters=dict(system.parameters))
 
 
-def _with_link(link: str, area: float, second: float, structure: Structure) -> Structure:
-    beams = tuple(
-        _with_section(beam, area, second) if beam.name == link else beam for beam in structure.beams
-    )
-    return replace(structure, beams=beams)
-
-
-def _with_section(beam: Beam, area: float, second: float) -> Beam:
-    section = beam.section
-    shear = section.shear_stiffness
-    made = replace(
-        section,
-        area=section.area * area,
-        second_moment=section.second_moment * second,
-        # k G A goes with the area.
-        shear_stiffness=None if shear is None else shear * area,
-    )
-    return replace(beam, section=made)
-
-
 def _factor(system: LinearPeriodic) -> float:
     """Return what the factors of moduli and densities make of a beam's own frequency."""
     values = system.parameters
     return float(np.sqrt(values.get("elasticity", 1.0) / values.get("distributed_mass", 1.0)))
-
-
-def _scaled(system: LinearPeriodic, link: str, quantity: str, factor: float) -> LinearPeriodic:
-    own = system.geometry[link] if quantity == "length" else 1.0
-    return _changed(system, link, quantity, own * factor)
-
-
-def _with_mass(name: str, factor: float, structure: Structure) -> Structure:
-    nodes = tuple(
-        replace(node, mass=node.mass * factor) if node.name == name else node
-        for node in structure.nodes
-    )
-    return replace(structure, nodes=nodes)
-
-
-def _heavier(system: LinearPeriodic, name: str, factor: float) -> LinearPeriodic:
-    return _remade(system, partial(_with_mass, name, factor))

@@ -139,11 +139,6 @@ def _mirrored(upper: Array) -> Array:
     return upper
 
 
-def poles_below(z: Array, b: Array) -> tuple[Array, Array]:
-    """Return how many bending and axial frequencies of held beams lie below: shapes of z, b."""
-    return functions.bending_poles(z), functions.axial_poles(b)
-
-
 def _require_positive(values: dict[str, ArrayLike]) -> None:
     problems = []
     for name, value in values.items():

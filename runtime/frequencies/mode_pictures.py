@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..beams.assembly import in_own_axes
+from ..beams.element_forms import required_structure
 from ..beams.elements import placed_shapes
 from ..beams.structure import Structure
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite, require_whole
-from .held import crank_angles, require_system
+from .held import crank_angles
 from .natural import NaturalFrequencies, natural_frequencies
 
 if TYPE_CHECKING:
@@ -38,9 +40,7 @@ def deflected_links(
         own = motion[beam.name]
         angle = float(own.angle[0])
         axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        local = full[element.indices].copy()
-        for k in (0, 3):
-            local[k : k + 2] = axes @ local[k : k + 2]
+        local = in_own_axes(full[None, element.indices], axes[0, 0], axes[0, 1])[0]
         moved = np.stack([along @ local, across @ local], axis=-1) @ axes
         at = element.start + element.length * places
         rigid, bent = found.setdefault(beam.name, ([], []))
@@ -84,7 +84,7 @@ def draw_mode(
     """
     from ..core.plotting import axes_or_new
 
-    structure = _structure(system)
+    structure = required_structure(system)
     require_whole("mode", mode, 1, system.size)
     if not is_finite(theta):
         raise bad("theta", repr(theta), "one number [rad]", "choose a crank angle")
@@ -137,7 +137,7 @@ def draw_modes(
     """
     from ..core.plotting import new_figure
 
-    _structure(system)
+    required_structure(system)
     if theta is None:
         angles = np.linspace(0.0, system.period, 10, endpoint=False)
     else:
@@ -149,10 +149,3 @@ def draw_modes(
         for k, ax in enumerate(row):
             draw_mode(system, float(angle), k + 1, ax, found=found)
     return figure
-
-
-def _structure(system: LinearPeriodic) -> Structure:
-    require_system(system)
-    if system.structure is None:
-        raise bad("system", "one without beams", "a linkage or frame of beams", "use its arrays")
-    return system.structure

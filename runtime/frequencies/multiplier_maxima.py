@@ -26,11 +26,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-# Turn of the highest mode between two samples [rad].
-_TURN = 0.35
 _MOST_SAMPLES = 4000
-# Lowest frequency left out, over the highest wanted and over the highest kept.
-_BEYOND, _GAP = 4.0, 1.3
 # Error of the transition matrices: the place of a maximum is open by the root of it.
 _RTOL = 1e-9
 
@@ -60,16 +56,11 @@ def multiplier_maxima(
     modes stand apart from the rest the speeds are swept on those alone; what that costs at the
     highest speed is in the error.  A maximum between two samples, of which the highest mode turns
     by 0.35 rad at most, may be missed.
-
-    Raises
-    ------
-    BadInput
-        If the range needs more than 4000 samples.
     """
     low, high = speed_range
     slow = SlowModes(system, {})
     top = slow.highest_frequency(high, count)
-    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / _TURN)) + 8
+    number = int(np.ceil(top * system.period * (1 / low - 1 / high) / 0.35)) + 8
     if number > _MOST_SAMPLES:
         raise bad(
             "speed_range",
@@ -82,14 +73,14 @@ def multiplier_maxima(
     few = few_modes(slow.system, (low, high), wanted)
     # At the highest speed the modes left out matter most.
     whole = slow.exponents(speed if few is None else speed[:1], wanted, rtol=_RTOL)
-    values = whole.multipliers if few is None else few.multipliers(speed, wanted)
+    values = whole.multipliers if few is None else multipliers_of(few, speed, wanted)
     real = _larger(values)
 
     def value(at: Array, mode: Whole) -> Array:
         if few is None:
             got = slow.exponents(at, wanted, rtol=_RTOL).multipliers
         else:
-            got = few.multipliers(at, wanted)
+            got = multipliers_of(few, at, wanted)
         return np.asarray(_larger(got)[np.arange(len(at)), mode])
 
     row, mode = _peaks(real)
@@ -97,13 +88,13 @@ def multiplier_maxima(
     around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
     at, best, width = _refined(value, mode, brackets, around)
     noise = np.max(whole.error[row if few is None else np.zeros_like(row)], axis=-1)
-    noise = noise + (0.0 if few is None else few.ready.error)
+    noise = noise + (0.0 if few is None else few.error)
     span = np.abs(brackets[2] - brackets[0])
     error = width + np.minimum(_blur(around, span, noise), span)
     method = "local maxima of the real parts of the multipliers"
     if few is not None:
         error = error + _slip(whole, values[0]) * at
-        method += f", on {few.ready.system.size} natural modes"
+        method += f", on {few.system.size} natural modes"
     return Maxima(at, mode + 1, best, error, method, whole.checks)
 
 
@@ -228,48 +219,48 @@ def _meissner_maxima(
     return _refined(half_trace, mode.astype(np.int64), brackets, around)
 
 
-class FewModes(NamedTuple):
-    """The lowest natural modes of a stiff system, prepared for a range of speeds."""
-
-    ready: Prepared
-
-    def multipliers(self, speed: Array, count: int) -> ComplexArray:
-        """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
-        half = self.ready.system.size
-        found = self.ready.monodromy(speed)
-        values, vectors = np.linalg.eig(found.scaled)
-        # In velocities of time, not of angle, a state is the same at all speeds.
-        size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
-        level = self._level(vectors * size[:, :, None])
-        order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
-        return np.take_along_axis(values.astype(complex), order, axis=-1)
-
-    def _level(self, states: ComplexArray) -> Array:
-        """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
-        form = canonical_form(self.ready.system, np.array([self.ready.span[1]]), {})
-        frequency, shapes, mass, _ = held_modes(form, np.zeros(1))
-        half = self.ready.system.size
-        rest = np.abs(shapes[0].T @ mass[0] @ states[:, :half]) ** 2
-        moved = np.abs(shapes[0].T @ states[:, half:]) ** 2
-        rate = np.maximum(frequency[0], 1.0)[:, None]
-        energy = rate**2 * rest + moved
-        return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+def multipliers_of(ready: Prepared, speed: Array, count: int) -> ComplexArray:
+    """Return the multipliers of the lowest modes ``(ns, 2 count)``, two to a mode."""
+    half = ready.system.size
+    found = ready.monodromy(speed)
+    values, vectors = np.linalg.eig(found.scaled)
+    # In velocities of time, not of angle, a state is the same at all speeds.
+    size = np.concatenate([found.scale[:, :half], found.scale[:, half:] * speed[:, None]], 1)
+    level = _level(ready, vectors * size[:, :, None])
+    order = np.argsort(level, axis=-1, kind="stable")[:, : 2 * count]
+    return np.take_along_axis(values.astype(complex), order, axis=-1)
 
 
-def few_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -> FewModes | None:
-    """Return the lowest modes over speeds; None where no few modes stand apart from the rest."""
+def _level(ready: Prepared, states: ComplexArray) -> Array:
+    """Return energy over action of states (q, M qd) in columns, by the modes held at 0."""
+    form = canonical_form(ready.system, np.array([ready.span[1]]), {})
+    frequency, shapes, mass, _ = held_modes(form, np.zeros(1))
+    half = ready.system.size
+    rest = np.abs(shapes[0].T @ mass[0] @ states[:, :half]) ** 2
+    moved = np.abs(shapes[0].T @ states[:, half:]) ** 2
+    rate = np.maximum(frequency[0], 1.0)[:, None]
+    energy = rate**2 * rest + moved
+    return np.asarray(np.sum(energy, axis=1) / np.sum(energy / rate, axis=1))
+
+
+def few_modes(system: LinearPeriodic, span: tuple[float, float], count: int) -> Prepared | None:
+    """Return a stiff system on its lowest modes, prepared for a range of speeds.
+
+    None where no few modes stand apart from the rest.
+    """
     from ..periodic.reduced import reduced_system
 
     form = canonical_form(system, np.array([span[1]]), {})
     frequency = held_modes(form, even_angles(system.period, 128))[0]
     top, low = np.max(frequency, axis=0), np.min(frequency, axis=0)
     for kept in range(count, system.size):
-        apart = low[kept] >= _GAP * top[kept - 1] and low[kept] >= _BEYOND * top[count - 1]
+        # The lowest mode left out is well above those kept, and far above those wanted.
+        apart = low[kept] >= 1.3 * top[kept - 1] and low[kept] >= 4.0 * top[count - 1]
         if not apart:
             continue
         try:
             reduced = reduced_system(system, kept)
-            return FewModes(prepare(reduced, span, samples=1, forcing=False, rtol=0.1 * _RTOL))
+            return prepare(reduced, span, samples=1, forcing=False, rtol=0.1 * _RTOL)
         except BadInput:
             continue
     return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,22 +108,22 @@ class NaturalFrequencies(Result):
     @property
     def encounter_angle(self) -> Array:
         """Crank angles of the encounters [rad]."""
-        return np.array([found.angle for found in self.encounters], dtype=float)
+        return np.array([one.angle for one in self.encounters], dtype=float)
 
     @property
     def encounter_rank(self) -> NDArray[np.int64]:
         """Lower rank of each encounter, from 1."""
-        return np.array([found.lower for found in self.encounters], dtype=np.int64)
+        return np.array([one.lower for one in self.encounters], dtype=np.int64)
 
     @property
     def encounter_gap(self) -> Array:
         """Least gap of each encounter [rad/s]."""
-        return np.array([found.gap for found in self.encounters], dtype=float)
+        return np.array([one.gap for one in self.encounters], dtype=float)
 
     @property
     def encounter_width(self) -> Array:
         """Width of each veering [rad]; 0 of a crossing."""
-        return np.array([found.width for found in self.encounters], dtype=float)
+        return np.array([one.width for one in self.encounters], dtype=float)
 
     @property
     def crossings(self) -> tuple[Encounter, ...]:
@@ -143,22 +143,16 @@ class NaturalFrequencies(Result):
         for k in range(self.tracked.shape[1]):
             ax.plot(np.degrees(self.theta), self.tracked[:, k], lw=1.2, label=f"mode {k + 1}")
         low, high = np.min(self.theta), np.max(self.theta)
-        marks = (("x", "k", "crossing", self.crossings), ("o", "0.35", "veering", self.veerings))
-        for marker, colour, name, found in marks:
+        veering: dict[str, Any] = {"marker": "o", "edgecolors": "0.35", "facecolors": "none"}
+        for name, style, found in (
+            ("crossing", {"marker": "x", "color": "k"}, self.crossings),
+            ("veering", veering, self.veerings),
+        ):
             seen = [one for one in found if low <= one.angle <= high]
-            face = "none" if marker == "o" else colour
             if seen:
                 places = np.degrees([one.angle for one in seen])
-                heights = [one.frequency for one in seen]
                 ax.scatter(
-                    places,
-                    heights,
-                    marker=marker,
-                    s=36,
-                    edgecolors=None if marker == "x" else colour,
-                    facecolors=face,
-                    label=name,
-                    zorder=3,
+                    places, [one.frequency for one in seen], s=36, label=name, zorder=3, **style
                 )
         ax.set_xlabel("crank angle [deg]")
         ax.set_ylabel("natural frequency [rad/s]")

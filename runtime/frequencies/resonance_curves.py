@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# Each pass puts so many speeds into the gap about a maximum, and keeps a quarter of it.
-_PASSES = 4
+# Each of four passes puts so many speeds into the gap about a maximum, and keeps a quarter of it.
 _WITHIN = 9
 
 
@@ -168,7 +167,7 @@ def resonance_curve(
     peak = state.peak(x)
     tops = _tops(peak)
     low, high = speeds[tops - 1], speeds[tops + 1]
-    for _ in range(_PASSES if len(low) else 0):
+    for _ in range(4 if len(low) else 0):
         inside = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _WITHIN)
         tried = quiet_state(system, inside, rtol, parameters).peak(x)
         best = np.argmax(np.nan_to_num(tried), axis=1)

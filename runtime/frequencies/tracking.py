@@ -147,43 +147,30 @@ Indices = NDArray[np.int64]
 # Assurance from which a shape is taken for the same as at the next angle.
 CLEAR = 0.9
 _INTERVALS = 96
-# The even angles begin here, in intervals: symmetric mechanisms meet at round angles, where shapes
-# of equal frequency are arbitrary.
-_OFFSET = 0.2718281828
 _MOST_ANGLES = 20000
-# Intervals narrower than this, over the period, are not divided; from the other on three and more
-# frequencies are taken to meet at one angle.
-_NARROWEST = 1e-11
+# In intervals this narrow, over the period, three and more frequencies are taken to meet at one
+# angle; those a ten thousandth as wide are not divided.
 _TIGHT = 1e-7
 # A least gap is a veering where two modes trade shapes with each other within this much of the
 # period; else it is but a gap.
-_TRADE = 0.5
 _WIDEST = 0.125
 
 
 @dataclass(frozen=True)
 class Walk:
-    """A turn of the crank with all encounters of the lowest modes.
+    """A turn of the crank with all encounters of the lowest modes."""
 
-    Attributes
-    ----------
-    encounters : tuple of Encounter
-        By angle.
-    theta : ndarray
-        Crank angles that it took [rad].
-    assured : float
-        Least assurance of a shape between neighbouring angles.
-    """
-
-    encounters: tuple[Encounter, ...]
-    theta: Array
-    assured: float
+    encounters: tuple[Encounter, ...]  # by angle
+    theta: Array  # crank angles that it took [rad]
+    assured: float  # least assurance of a shape between neighbouring angles
 
 
 def walk(modes: Modes, arrays: Arrays, period: float, count: int) -> Walk:
     """Return a turn of the crank with the encounters of the lowest ``count`` modes."""
     step = period / _INTERVALS
-    theta = np.asarray(step * (np.arange(_INTERVALS + 1) + _OFFSET), dtype=np.float64)
+    # Not from 0: symmetric mechanisms meet at round angles, where shapes of equal frequency are
+    # arbitrary.
+    theta = np.asarray(step * (np.arange(_INTERVALS + 1) + 0.2718281828), dtype=np.float64)
     held = modes(theta)
     while True:
         theta, held, swaps, assured = _divided(modes, theta, held, period, count)
@@ -208,7 +195,7 @@ def _divided(
     while True:
         width = np.diff(theta)
         unclear, swaps, assured = _status(held, count, width <= _TIGHT * period)
-        wide = unclear & (width > _NARROWEST * period)
+        wide = unclear & (width > 1e-4 * _TIGHT * period)
         new = 0.5 * (theta[:-1] + theta[1:])[wide]
         if not len(new) or len(theta) + len(new) > _MOST_ANGLES:
             return theta, held, swaps, assured
@@ -334,7 +321,7 @@ def _narrows(
                 and abs((one.angle - found.angle + period / 2) % period - period / 2)
                 < 1e-9 * period + 0.25 * one.width
             ]
-            trades = found.trade > _TRADE and found.width < _WIDEST * period
+            trades = found.trade > 0.5 and found.width < _WIDEST * period
             if near:
                 continue
             if found.kind == "veering" and trades:
@@ -352,25 +339,14 @@ _ASIDE = 1e-7
 
 @dataclass(frozen=True)
 class Curves:
-    """Which curve each rank belongs to; curves are numbered from 0 by rank at a first angle.
+    """Which curve each rank belongs to; curves are numbered from 0 by rank at a first angle."""
 
-    Attributes
-    ----------
-    path : Walk
-        A turn with its crossings.
-    start : float
-        First angle [rad].
-    size, count : int
-        Number of ranks, and of requested curves.
-    period : float
-        Period [rad].
-    """
-
-    path: Walk
-    start: float
+    path: Walk  # a turn with its crossings
+    start: float  # first angle [rad]
+    # numbers of ranks, and of requested curves
     size: int
     count: int
-    period: float
+    period: float  # [rad]
 
     @cached_property
     def _passed(self) -> tuple[Array, Indices]:

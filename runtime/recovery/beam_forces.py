@@ -9,7 +9,7 @@ one or two orders of the element's length less.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -25,8 +25,15 @@ from ..core.deferred import DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import numbers
-from .beam_motion import BeamMotion, beam_motion, chunks
-from .beam_result import StationResult, in_motion, stations_on
+from .beam_motion import BeamMotion, beam_motion
+from .beam_result import (
+    MotionValues,
+    StationResult,
+    checked_forms,
+    in_motion,
+    over_motion,
+    stations_on,
+)
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 
 if TYPE_CHECKING:
@@ -42,70 +49,12 @@ _GAUSS_PLACES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 @dataclass(frozen=True)
 class Station:
-    """A place on a beam.
-
-    Attributes
-    ----------
-    beam : str
-        Name of the beam.
-    place : float
-        x over the beam's length, 0 to 1.
-    element : int
-        Which of the structure's elements it lies on.
-    xi : float
-        x over the element's length, from its start.
-    """
+    """A place on a beam, and on one of the structure's elements."""
 
     beam: str
-    place: float
+    place: float  # x over the beam's length, 0 to 1
     element: int
-    xi: float
-
-
-@dataclass(frozen=True)
-class Recovery:
-    """Forces along beams as linear forms of a motion, at given crank angles.
-
-    Attributes
-    ----------
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
-    stations : tuple of Station
-        Places.
-    forms : mapping of str to LinearForm
-        ``axial`` and ``shear`` [N], ``moment`` [N m]; ``along``, ``across`` [m] and ``slope``
-        [rad] from the rigid beam, in its axes: rows are the stations.
-    acceleration : LinearForm
-        ``w^2 d2q/dtheta2`` by the equation of motion.
-    method : str
-        ``equilibrium`` or ``shape``.
-    """
-
-    theta: Array
-    stations: tuple[Station, ...]
-    forms: Mapping[str, LinearForm]
-    acceleration: LinearForm
-    method: str
-
-    def without_accelerations(self) -> Recovery:
-        """Return the same with the accelerations replaced by the equation of motion."""
-        forms = {name: form.eliminated(self.acceleration) for name, form in self.forms.items()}
-        return replace(self, forms=forms)
-
-    def values(
-        self, name: str, speed: float, q: Array, dq: Array, ddq: Array | None = None
-    ) -> Array:
-        """Return one of ``forms`` ``(nt, stations)`` in a motion: q and its slope by the angle.
-
-        The second derivatives ``ddq`` come from the equation of motion where they are not given.
-        """
-        form = self.forms[name]
-        if ddq is None:
-            # Frames have no crank: any speed will do where nothing depends on it.
-            ddq = self.acceleration.values(speed, q, dq) / speed**2
-        return np.broadcast_to(
-            form.values(speed, q, dq, ddq), (len(self.theta), len(self.stations))
-        )
+    xi: float  # x over the element's length, from its start
 
 
 def stations_of(
@@ -115,11 +64,6 @@ def stations_of(
 
     ``stations`` is the number on each beam, its ends included (by default 25), or by beam the
     places x/length.
-
-    Raises
-    ------
-    BadInput
-        If a beam is unknown or a place lies off it.
     """
     if stations is None or isinstance(stations, int):
         count = 25 if stations is None else stations
@@ -162,47 +106,25 @@ def require_method(method: str) -> None:
 
 
 def recovery(
-    system: LinearPeriodic,
-    theta: ArrayLike,
-    stations: int | Mapping[str, ArrayLike] | tuple[Station, ...] | None = None,
-    method: str = "equilibrium",
-) -> Recovery:
-    """Return forces and displacements along the beams of a system as linear forms.
+    forms: ElementForms, stations: tuple[Station, ...], method: str = "equilibrium"
+) -> dict[str, LinearForm]:
+    """Return forces and displacements along beams as linear forms whose rows are the stations.
 
-    Raises
-    ------
-    BadInput
-        If the method or a beam is unknown, or the system is not one of beams.
+    ``axial`` and ``shear`` [N], ``moment`` [N m]; ``along``, ``across`` [m] and ``slope`` [rad]
+    from the rigid beam, in its axes.
     """
-    require_method(method)
-    structure = required_structure(system)
-    angles = np.atleast_1d(numbers("theta", theta))
-    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
-        raise bad("theta", f"shape {angles.shape}", "finite angles, shape (nt,)", "flatten them")
-    if isinstance(stations, tuple) and all(isinstance(s, Station) for s in stations):
-        chosen: tuple[Station, ...] = stations
-    else:
-        chosen = stations_of(structure, stations)  # type: ignore[arg-type]
-    forms = ElementForms(system, angles)
-    forms.require_same()
     rows: dict[str, list[LinearForm]] = {name: [] for name in (*FORCES, *_FIELDS)}
     by_element: dict[int, list[Station]] = {}
-    for station in dict.fromkeys(chosen):
+    for station in dict.fromkeys(stations):
         by_element.setdefault(station.element, []).append(station)
     for e, own in by_element.items():
         xi = np.array([station.xi for station in own])
-        finder = _by_equilibrium if method == "equilibrium" else _by_shape
-        for name, form in {**finder(forms, e, xi), **_displacements(forms, e, xi)}.items():
+        forces = _by_equilibrium if method == "equilibrium" else _by_shape
+        for name, form in {**forces(forms, e, xi), **_displacements(forms, e, xi)}.items():
             rows[name].append(form)
     met = [station for own in by_element.values() for station in own]
-    order = np.array([met.index(station) for station in chosen])
-    return Recovery(
-        theta=angles,
-        stations=chosen,
-        forms={name: stacked(found).ordered(order) for name, found in rows.items()},
-        acceleration=forms.acceleration,
-        method=method,
-    )
+    order = np.array([met.index(station) for station in stations])
+    return {name: stacked(parts).ordered(order) for name, parts in rows.items()}
 
 
 _FIELDS = ("along", "across", "slope")
@@ -433,15 +355,13 @@ def evaluated(
     frozen: bool = False,
 ) -> dict[str, Array]:
     """Return quantities ``(nt, stations)`` in a motion; of a frozen one, without any rates."""
-    parts: dict[str, list[Array]] = {name: [] for name in names}
-    for chunk in chunks(motion):
-        made = recovery(system, motion.theta[chunk], stations, method)
-        q, slope = motion.q[chunk], motion.slope[chunk]
-        second = np.zeros_like(q) if frozen else None
-        slope = np.zeros_like(q) if frozen else slope
-        for name in names:
-            parts[name].append(made.values(name, motion.speed, q, slope, second))
-    return {name: np.concatenate(values) for name, values in parts.items()}
+    chosen = stations_of(required_structure(system), stations)
+
+    def piece(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
+        made, shape = recovery(forms, chosen, method), (len(forms.theta), len(chosen))
+        return {name: np.broadcast_to(values(made[name]), shape) for name in names}
+
+    return over_motion(system, motion, piece, frozen=frozen)
 
 
 def propagated(
@@ -456,9 +376,7 @@ def propagated(
         return np.zeros(len(FORCES))
     # A few angles tell the size of the coefficients.
     picked = np.linspace(0, len(motion.theta) - 1, min(len(motion.theta), 16)).astype(int)
-    made: Recovery = recovery(system, motion.theta[picked], stations, "shape")
-    found = []
-    for name in FORCES:
-        rows = made.forms[name].at_speed(motion.speed)
-        found.append(max(float(np.max(np.abs(r) @ motion.doubt)) for r in (rows["q"],)))
-    return np.array(found)
+    chosen = stations_of(required_structure(system), stations)
+    made = recovery(checked_forms(system, motion.theta[picked]), chosen, "shape")
+    rows = [made[name].at_speed(motion.speed)["q"] for name in FORCES]
+    return np.array([np.max(np.abs(row) @ motion.doubt) for row in rows])

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
     Motion: TypeAlias = "BeamMotion | SteadyState | Trajectory"
 
-# Angles of one piece.
-_CHUNK = 256
-
 
 @dataclass(frozen=True, kw_only=True)
 class BeamMotion:
@@ -144,8 +141,8 @@ def beam_motion(system: LinearPeriodic, motion: Motion | float | None) -> BeamMo
 
 
 def chunks(motion: BeamMotion) -> list[slice]:
-    """Return pieces of the many angles of a motion, so that the arrays of one fit the memory."""
-    return [slice(start, start + _CHUNK) for start in range(0, len(motion.theta), _CHUNK)]
+    """Return pieces of 256 angles of a motion, so that the arrays of one fit the memory."""
+    return [slice(start, start + 256) for start in range(0, len(motion.theta), 256)]
 
 
 def quiet_steady_state(system: LinearPeriodic, speed: float) -> SteadyState:
@@ -182,13 +179,7 @@ def _checks(motion: SteadyState | Trajectory) -> dict[str, Check]:
 
 
 def standing(system: LinearPeriodic, motion: object) -> BeamMotion:
-    """Return the equilibrium of a structure that stands still under constant loads.
-
-    Raises
-    ------
-    BadInput
-        If the structure moves, or a motion is given.
-    """
+    """Return the equilibrium of a structure that stands still under constant loads."""
     structure = required_structure(system)
     if structure.moving or motion is not None:
         raise bad(

@@ -118,28 +118,41 @@ def _linear_range(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Check
 
 
 class MotionValues:
-    """Values of forms in a piece of a motion, accelerations by the equation of motion."""
+    """Values of forms in a piece of a motion, accelerations by the equation of motion.
 
-    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice) -> None:
+    In a frozen motion there are none.
+    """
+
+    def __init__(self, forms: ElementForms, motion: BeamMotion, chunk: slice, frozen: bool) -> None:
         self.speed = motion.speed
         self.q, self.slope = motion.q[chunk], motion.slope[chunk]
-        second = forms.acceleration.values(self.speed, self.q, self.slope)
-        self.second = second / self.speed**2
+        self.second = np.zeros_like(self.q)
+        if not frozen:
+            second = forms.acceleration.values(self.speed, self.q, self.slope)
+            self.second = second / self.speed**2
 
     def __call__(self, form: LinearForm) -> Array:
         """Return the rows of a form ``(nt, rows)``."""
         return form.values(self.speed, self.q, self.slope, self.second)
 
 
+def checked_forms(system: LinearPeriodic, theta: Array) -> ElementForms:
+    """Return the elements of a system at crank angles, its terms being those of its structure."""
+    forms = ElementForms(system, theta)
+    forms.require_same()
+    return forms
+
+
 def over_motion(
     system: LinearPeriodic,
     motion: BeamMotion,
     piece: Callable[[ElementForms, MotionValues], dict[str, Array]],
+    *,
+    frozen: bool = False,
 ) -> dict[str, Array]:
     """Return arrays over the angles of a motion by name, joined from its pieces."""
     pieces = []
     for chunk in chunks(motion):
-        forms = ElementForms(system, motion.theta[chunk])
-        forms.require_same()
-        pieces.append(piece(forms, MotionValues(forms, motion, chunk)))
+        forms = checked_forms(system, motion.theta[chunk])
+        pieces.append(piece(forms, MotionValues(forms, motion, chunk, frozen)))
     return {name: np.concatenate([found[name] for found in pieces]) for name in pieces[0]}

@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ..beams.assembly import Array
 from ..beams.element_forms import required_structure
 from ..beams.structure import Beam
-from ..core.deferred import DeferredField, DeferredGroup
+from ..core.deferred import DeferredGroup
 from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_finite
-from ..core.results import Result
-from .beam_forces import recovery
+from .beam_forces import recovery, stations_of
 from .beam_motion import BeamMotion, beam_motion, chunks
-from .beam_result import in_motion
-from .finer_mesh import CAUTION, on_finer_mesh
+from .beam_result import BeamResult, checked_forms, in_motion
+from .finer_mesh import with_mesh
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .beam_motion import Motion
 
-# Fields that are computed when they are first looked at; of its own and not of BeamResult, as in
-# its files the place comes before the speed.
-_LATER = {name: DeferredField() for name in ("error", "error_norm")}
-
 
 @dataclass(frozen=True, kw_only=True)
-class ElasticCurve(Result):
+class ElasticCurve(BeamResult):
     """Curve that a point of an elastic link draws, and that of the rigid linkage.
+
+    Speed and crank angles: see :class:`BeamResult`.
 
     Attributes
     ----------
@@ -41,10 +39,6 @@ class ElasticCurve(Result):
         The link.
     along, across : float
         Place of the point in the link's own axes [m].
-    speed : float
-        Crank speed [rad/s].
-    theta : ndarray
-        Crank angles [rad], shape ``(nt,)``.
     rigid, elastic : ndarray
         Places of the point in the fixed axes [m], shape ``(nt, 2)``.
     error : float
@@ -55,17 +49,12 @@ class ElasticCurve(Result):
     link: str
     along: float
     across: float
-    speed: float
-    theta: Array
     rigid: Array
     elastic: Array
-    error: Any = _LATER["error"]
-    error_norm: Any = _LATER["error_norm"]  # str
 
-    dimensions: ClassVar[dict[str, tuple[str, ...]]] = {
-        "theta": ("sample",),
-        "rigid": ("sample", "direction"),
-        "elastic": ("sample", "direction"),
+    dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **BeamResult.dimensions,
+        **dict.fromkeys(("rigid", "elastic"), ("sample", "direction")),
     }
 
     @property
@@ -160,14 +149,13 @@ def _doubt(
 ) -> dict[str, float | str]:
     """Return the error estimate and its norm."""
     shift, doubt = own
-    error, norm = float(np.sqrt(2.0)) * doubt, "largest error of a place [m]"
-    finer = on_finer_mesh(system, moving)
-    if finer is None:
-        norm = f"{norm}, by that of the coordinates; the mesh apart"
-    else:
-        better, _ = _shift(finer[0], required_structure(system).beam(link), finer[1], place)
-        error += CAUTION * float(np.max(np.hypot(*(better - shift).T)))
-    return {"error": error, "error_norm": norm}
+
+    def change(finer: LinearPeriodic, motion: BeamMotion) -> float:
+        better, _ = _shift(finer, required_structure(system).beam(link), motion, place)
+        return float(np.max(np.hypot(*(better - shift).T)))
+
+    error = float(np.sqrt(2.0)) * doubt
+    return with_mesh(system, moving, "largest error of a place [m]", error, change)
 
 
 def _shift(
@@ -185,10 +173,12 @@ def _shift(
 def _rows(system: LinearPeriodic, beam: Beam, theta: Array, along: float, across: float) -> Array:
     """Return what turns coordinates into the displacement of the point: ``(nt, 2, n)``."""
     nearest = min(max(along, 0.0), beam.length)
-    made = recovery(system, theta, {beam.name: nearest / beam.length}, "shape")
-    u, v, turn = (made.forms[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
+    structure = required_structure(system)
+    foot = stations_of(structure, {beam.name: nearest / beam.length})
+    made = recovery(checked_forms(system, theta), foot, "shape")
+    u, v, turn = (made[name].parts["q", 0][:, 0] for name in ("along", "across", "slope"))
     along_beam, across_beam = u - across * turn, v + (along - nearest) * turn
-    angle = required_structure(system).configuration(theta)[beam.name].angle[:, None]
+    angle = structure.configuration(theta)[beam.name].angle[:, None]
     x = np.cos(angle) * along_beam - np.sin(angle) * across_beam
     y = np.sin(angle) * along_beam + np.cos(angle) * across_beam
     return np.stack([x, y], axis=1)

@@ -6,6 +6,7 @@ damping: of modal damping the same ratio in every mode of the finer mesh too.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -21,14 +22,8 @@ from .beam_motion import BeamMotion, standing
 CAUTION = 3.0
 # Round-off of stiff structures, over the largest value.
 ROUNDING = 1e-10
-# Amplitude of a harmonic, over a coordinate's peak, from which it is followed, and intervals of
-# collocation of order 15 for each: what they miss is a thousandth of a coordinate or less.
-_SEEN = 1e-3
-_INTERVALS = 1.0
-_FEWEST = 8
 # Angles at which a system made anew is compared with the one given, over the period.
 _PROBES = np.array([0.1, 0.45, 0.8])
-_SAME = 1e-6
 _KEPT = "steady state on a finer mesh"
 
 
@@ -69,7 +64,7 @@ def _is_remade(system: LinearPeriodic) -> bool:
     made = system.remesh(_as_it_is)
     return len(made.terms) == len(system.terms) and all(
         (new.array, new.scale, new.power) == (own.array, own.scale, own.power)
-        and np.allclose(new(theta), own(theta), rtol=_SAME, atol=0.0)
+        and np.allclose(new(theta), own(theta), rtol=1e-6, atol=0.0)
         for new, own in zip(made.terms, system.terms, strict=True)
     )
 
@@ -100,6 +95,20 @@ def on_finer_mesh(
     )
 
 
+def with_mesh(
+    system: LinearPeriodic,
+    motion: BeamMotion,
+    norm: str,
+    error: float,
+    change: Callable[[LinearPeriodic, BeamMotion], float],
+) -> dict[str, float | str]:
+    """Return an error estimate and its norm, with what a finer mesh changes where there is one."""
+    finer = on_finer_mesh(system, motion)
+    if finer is None:
+        return {"error": error, "error_norm": f"{norm}, by that of the motion; the mesh apart"}
+    return {"error": error + CAUTION * change(*finer), "error_norm": norm}
+
+
 def _kept_or_found(
     system: LinearPeriodic, finer: LinearPeriodic, motion: BeamMotion
 ) -> tuple[Array, Array]:
@@ -112,12 +121,15 @@ def _kept_or_found(
 
 
 def intervals_for(q: Array) -> int:
-    """Return how many intervals of collocation follow a periodic motion ``(nt, n)``."""
+    """Return how many intervals of collocation follow a periodic motion ``(nt, n)``: 8 or more.
+
+    One of order 15 for each harmonic whose amplitude is a thousandth of a coordinate's peak or
+    more: what they miss is a thousandth of a coordinate or less.
+    """
     amplitude = np.abs(np.fft.rfft(q, axis=0))
     largest = np.max(amplitude, axis=0)
-    seen = np.max(amplitude / np.where(largest > 0.0, largest, 1.0), axis=1) > _SEEN
-    highest = int(np.max(np.flatnonzero(seen), initial=1))
-    return max(_FEWEST, int(np.ceil(_INTERVALS * highest)))
+    seen = np.max(amplitude / np.where(largest > 0.0, largest, 1.0), axis=1) > 1e-3
+    return max(8, int(np.max(np.flatnonzero(seen), initial=1)))
 
 
 def solved(system: LinearPeriodic, speed: float, intervals: int, count: int) -> tuple[Array, Array]:

@@ -18,15 +18,13 @@ from ..core.results import Check
 from .beam_forces import propagated
 from .beam_motion import BeamMotion, beam_motion
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
-from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
+from .finer_mesh import ROUNDING, with_mesh
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .beam_motion import Motion
 
-# Round-off of the balance of forces, over the largest end force of an element.
-_ROUNDING = 1e-9
 _PARTS = ("x", "y", "moment")
 
 
@@ -152,7 +150,8 @@ def pin_reactions(system: LinearPeriodic, motion: Motion | float | None = None) 
     total = sum((value[:, :2] for value in of_ground.values()), np.zeros_like(drag))
     largest = max(float(np.max(np.abs(v[:, :2]))) for v in on_beams.values())
     gap = float(np.max(np.abs(total + drag - rate)))
-    checks = {"balance": Check(gap / largest if largest else gap, _ROUNDING)}
+    # Round-off of the balance, over the largest end force of an element.
+    checks = {"balance": Check(gap / largest if largest else gap, 1e-9)}
     doubt = DeferredGroup(partial(_doubt, system, moving, on_beams))
     return PinReactions(
         method="end forces of the elements",
@@ -184,9 +183,10 @@ def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
     """Return forces by node and beam, of the ground by node, drag and rate of momentum."""
     structure, freedoms = forms.structure, forms.structure.freedoms
     found: dict[str, Array] = {}
-    resisted = np.broadcast_to(
+    lumped = np.broadcast_to(
         values(forms.node_inertia() - forms.node_loads()), (len(forms.theta), forms.arrays.count)
-    ).copy()
+    )
+    resisted = lumped.copy()
     momentum = np.zeros((len(forms.theta), 2))
     for e, (placed, _) in enumerate(forms.elements):
         back = np.swapaxes(forms.turning[e].back, -1, -2)
@@ -198,7 +198,6 @@ def _at_nodes(forms: ElementForms, values: MotionValues) -> dict[str, Array]:
             found[f"{placed.beam.start} {placed.beam.name}"] = fixed[:, :3]
         if last:
             found[f"{placed.beam.end} {placed.beam.name}"] = fixed[:, 3:6]
-    lumped = np.broadcast_to(values(forms.node_inertia() - forms.node_loads()), resisted.shape)
     for node in structure.nodes:
         x, y = (freedoms.at(node.name, part) for part in ("x", "y"))
         momentum += lumped[:, [x, y]]
@@ -236,33 +235,19 @@ def _outside_forces(forms: ElementForms, values: MotionValues) -> Array:
 
 
 def _doubt(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    on_beams: Mapping[tuple[str, str], Array],
+    system: LinearPeriodic, motion: BeamMotion, on_beams: Mapping[tuple[str, str], Array]
 ) -> dict[str, float | str]:
     """Return the error estimate and its norm."""
-    finer = on_finer_mesh(system, motion)
-    norm = "largest error of a force [N]; of a moment, over the longest beam's length"
-    return {
-        "error": _motion_error(system, motion, on_beams, finer),
-        "error_norm": norm if finer else f"{norm}; that of the mesh apart",
-    }
-
-
-def _motion_error(
-    system: LinearPeriodic,
-    motion: BeamMotion,
-    on_beams: Mapping[tuple[str, str], Array],
-    finer: tuple[LinearPeriodic, BeamMotion] | None,
-) -> float:
-    """Return the error of forces by that of the motion and by the mesh."""
-    doubt = propagated(system, motion, 2)
     longest = max(beam.length for beam in required_structure(system).beams)
-    by_motion = float(np.hypot(doubt[0], doubt[1]) + doubt[2] / longest)
     scale = np.array([1.0, 1.0, 1.0 / longest])
     own = np.stack(list(on_beams.values())) * scale
-    error = by_motion + ROUNDING * float(np.max(np.abs(own)))
-    if finer is None:
-        return error
-    better = np.stack(list(_forces(*finer)[0].values())) * scale
-    return error + CAUTION * float(np.max(np.linalg.norm(better - own, axis=-1)))
+    axial, shear, moment = propagated(system, motion, 2)
+    by_motion = float(np.hypot(axial, shear) + moment / longest)
+
+    def change(finer: LinearPeriodic, motion: BeamMotion) -> float:
+        better = np.stack(list(_forces(finer, motion)[0].values())) * scale
+        return float(np.max(np.linalg.norm(better - own, axis=-1)))
+
+    norm = "largest error of a force [N]; of a moment, over the longest beam's length"
+    rounding = ROUNDING * float(np.max(np.abs(own)))
+    return with_mesh(system, motion, norm, by_motion + rounding, change)

@@ -19,16 +19,13 @@ from ..core.results import Check
 from ..core.trigonometric import differentiated, even_angles, interpolated
 from .beam_motion import BeamMotion, beam_motion, chunks
 from .beam_result import BeamResult, MotionValues, in_motion, over_motion
-from .finer_mesh import CAUTION, on_finer_mesh
+from .finer_mesh import with_mesh
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .beam_motion import Motion
 
-# Least amplitude that counts, over the largest: that of round-off in solving for the forces.
-_RESOLVED = 1e-10
-_MOST = 4096
 
 Slopes = Mapping[int, Callable[[Array], Array]]
 
@@ -46,13 +43,7 @@ def force_slopes(system: LinearPeriodic) -> Slopes:
 
 
 def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
-    """Return the derivative of the axial forces of one power by their Fourier series.
-
-    Raises
-    ------
-    BadInput
-        If 4096 samples do not resolve them.
-    """
+    """Return the derivative of the axial forces of one power by their Fourier series."""
     count = 256
     while True:
         theta = even_angles(system.period, count)
@@ -64,11 +55,12 @@ def _slope(system: LinearPeriodic, power: int) -> Callable[[Array], Array]:
             # Supports may take all of a constant load: what is left is round-off of it.
             largest += float(np.max(np.abs(forms.axial.force("static", theta))))
             largest += float(np.max(np.abs(forms.axial.node_forces)))
-        if float(np.max(amplitudes[count // 3 :])) <= _RESOLVED * largest:
+        # Round-off in solving for the forces leaves amplitudes of 1e-10 of the largest.
+        if float(np.max(amplitudes[count // 3 :])) <= 1e-10 * largest:
             return interpolated(values, system.period, noise=1e-13).derivative
         count *= 2
-        if count > _MOST:
-            found = f"axial forces that {_MOST} samples do not resolve"
+        if count > 4096:
+            found = "axial forces that 4096 samples do not resolve"
             raise bad("structure", found, "a smooth motion", "keep off dead points")
 
 
@@ -89,7 +81,7 @@ class Energies:
     def _spread(self, form: LinearForm, like: Array) -> Array:
         return np.broadcast_to(self.values(form), like.shape)
 
-    def found(self) -> dict[str, Array]:
+    def by_name(self) -> dict[str, Array]:
         """Return the arrays by name, as :class:`BeamEnergies` has them."""
         forms, count = self.forms, len(self.forms.theta)
         links = [beam.name for beam in forms.structure.beams]
@@ -101,8 +93,9 @@ class Energies:
         for e, (placed, _) in enumerate(forms.elements):
             strain[:, links.index(placed.beam.name)] += self._element(e, sums)
         self._nodes(sums)
-        outside = self._outside_power()
-        sums["dissipated"] += outside
+        if forms.outside.parts:
+            force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
+            sums["dissipated"] += _dot(self.speed * self.slope, force)
         return {"strain": strain, **sums}
 
     def _element(self, e: int, sums: dict[str, Array]) -> Array:
@@ -202,14 +195,6 @@ class Energies:
         rates = np.zeros(count)
         rates[:, free] = self.speed * self.slope
         sums["dissipated"] += _dot(rates, holds - q * forms.springs)
-
-    def _outside_power(self) -> Array:
-        """Return the power that drag from outside takes."""
-        forms = self.forms
-        if not forms.outside.parts:
-            return np.zeros(len(forms.theta))
-        force = forms.outside.turned(forms.mass).values(self.speed, self.q, self.slope)
-        return _dot(self.speed * self.slope, np.broadcast_to(force, self.slope.shape))
 
 
 def _times(matrices: Array, vectors: Array) -> Array:
@@ -354,22 +339,20 @@ def beam_energies(system: LinearPeriodic, motion: Motion | float | None = None) 
 
 def _doubt(system: LinearPeriodic, moving: BeamMotion, strain: Array) -> dict[str, float | str]:
     """Return the error estimate and its norm."""
-    error = _motion_error(system, moving)
+
+    def change(finer: LinearPeriodic, motion: BeamMotion) -> float:
+        better = np.sum(_energies(finer, motion)["strain"], axis=1)
+        return float(np.max(np.abs(better - np.sum(strain, axis=1))))
+
     norm = "largest error of the strain energy of all beams [J]"
-    finer = on_finer_mesh(system, moving)
-    if finer is None:
-        norm = f"{norm}, by that of the motion; the mesh apart"
-    else:
-        both = [np.sum(own, axis=1) for own in (strain, _energies(*finer)["strain"])]
-        error += CAUTION * float(np.max(np.abs(both[1] - both[0])))
-    return {"error": error, "error_norm": norm}
+    return with_mesh(system, moving, norm, _motion_error(system, moving), change)
 
 
 def _energies(system: LinearPeriodic, motion: BeamMotion) -> dict[str, Any]:
     """Return the energies and powers of a motion by name."""
     slopes = force_slopes(system)
     return over_motion(
-        system, motion, lambda forms, values: Energies(forms, values, slopes).found()
+        system, motion, lambda forms, values: Energies(forms, values, slopes).by_name()
     )
 
 

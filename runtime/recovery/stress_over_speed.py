@@ -35,12 +35,10 @@ Array = NDArray[np.float64]
 _ANGLES, _MOST_ANGLES, _TAIL = 64, 1024, 0.01
 # At a few speeds a motion on the next larger number of modes tells what truncation changes; how
 # much larger it may be at other speeds (up to 1.5 times the fourfold in 216 random ones).
-_ELSEWHERE = 8.0
+ELSEWHERE = 8.0
 # How much finer the angles are at which the largest stress is sought, and how near to the largest
 # at the coarse angles a row has to come to be looked at.
 _FINER, _NEAR = 8, 0.6
-# Half a fine step beside its top the highest harmonic has cos(pi/16) of it.
-_TIED = 0.98
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,18 +101,11 @@ class StressCurve(Result):
         """Whether nearby motions stay near, ``(ns,)``; None where that was not requested.
 
         The largest multiplier is then within the unit circle by more than its error: what the
-        error leaves open is not called stable (see ``undecided``).
+        error leaves open is not called stable.
         """
         if self.multiplier is None or self.multiplier_error is None:
             return None
         return np.asarray(self.multiplier + self.multiplier_error < 1.0)
-
-    @property
-    def undecided(self) -> NDArray[np.bool_] | None:
-        """Where the error leaves open on which side of the unit circle the multiplier lies."""
-        if self.multiplier is None or self.multiplier_error is None:
-            return None
-        return np.asarray(np.abs(self.multiplier - 1.0) <= self.multiplier_error)
 
     @property
     def unstable_ranges(self) -> tuple[tuple[float, float], ...]:
@@ -238,23 +229,21 @@ def stress_curve(
     places = 7 if stations is None else stations
     work = _Work(system, Fibres(system, places, method), rtol, modes)
     parts = [work.range_of(rising[part]) for part in speed_ranges(rising)]
-    size, error = (
-        np.concatenate([getattr(p, k) for p in parts], axis=1) for k in ("size", "error")
-    )
+    peaks = Peaks.joined(part.peaks for part in parts)
+    size, error = peaks.size, peaks.error
     checks, deflection = {}, None
     if whole:
         # At the highest speed, and where the modes answer most.
         most = int(np.argmax(np.max(size, axis=0) / rising**2))
         tried = {len(rising) - 1, most}
         change = np.max([work.changed(rising[k], size[:, k]) for k in tried], axis=0)
-        error += 2.0 * change[:, None]
+        error = error + 2.0 * change[:, None]
         checks["equation"] = Check(float(np.max(change)), rtol)
     checks["converged"] = Check(float(np.max(error)), rtol)
     if system.relative_deflection is not None:
         deflection = np.concatenate([part.deflection for part in parts])[back]
         checks["linear range"] = Check(float(np.max(deflection)), LINEAR_RANGE)
     growth = _growth(system, parts, rising) if stability else None
-    row = np.concatenate([part.row for part in parts], axis=1).T[back]
     return StressCurve(
         method="modal truncation, transition matrices in tables of the inverse speed",
         error=error.T[back],
@@ -264,10 +253,10 @@ def stress_curve(
         speed=given,
         links=work.fibres.links,
         maximum=size.T[back],
-        theta=np.concatenate([part.theta for part in parts], axis=1).T[back],
-        place=work.fibres.place[row],
-        fibre=work.fibres.sign[row],
-        modes=np.concatenate([np.full(part.size.shape[1], part.modes) for part in parts])[back],
+        theta=peaks.theta.T[back],
+        place=work.fibres.place[peaks.row.T[back]],
+        fibre=work.fibres.sign[peaks.row.T[back]],
+        modes=np.concatenate([np.full(len(part.deflection), part.modes) for part in parts])[back],
         deflection=deflection,
         multiplier=None if growth is None else growth[0][back],
         multiplier_error=None if growth is None else growth[1][back],
@@ -277,13 +266,8 @@ def stress_curve(
 class Fibres:
     """Stresses of both outer fibres at stations, as forms of the motion.
 
-    Attributes
-    ----------
-    links : tuple of str
-        The beams with stations.
-    link, place, sign : ndarray, shape (rows,)
-        Which of them, x over its length, +1 or -1 for the fibre: first all positive fibres, then
-        the negative ones.
+    Of each row ``link``, ``place`` (x over its length) and ``sign`` of the fibre: first all
+    positive fibres, then the negative ones.
     """
 
     def __init__(
@@ -331,24 +315,22 @@ class Peaks:
     row: NDArray[np.int64]
     error: Array
 
+    @classmethod
+    def joined(cls, parts: Iterable[Peaks]) -> Peaks:
+        """Return those of several parts of the speeds."""
+        columns = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(column, axis=1) for column in columns))
+
 
 @dataclass(frozen=True)
 class _Range:
-    """What one range of speeds gives.
+    """What one range of speeds gives."""
 
-    ``size``, ``theta``, ``row``, ``error``: of the largest stresses, ``(links, ns)``.  ``growth``:
-    the largest multipliers; ``defect``: what the modes left out change of one, over its condition.
-    ``deflection``: the largest at each speed, ``(ns,)``.
-    """
-
-    size: Array
-    theta: Array
-    row: NDArray[np.int64]
-    error: Array
+    peaks: Peaks  # their errors with those of the motion and of the truncation
     modes: int
-    growth: Growth
-    defect: float
-    deflection: Array
+    growth: Growth  # the largest multipliers
+    defect: float  # what the modes left out change of one, over its condition
+    deflection: Array  # largest at each speed, (ns,)
 
 
 @dataclass(frozen=True)
@@ -364,12 +346,8 @@ class _Trial:
 class _Work:
     """One call's work: range after range, with the numbers of modes and of angles reached so far.
 
-    Attributes
-    ----------
-    angles : int
-        Angles of a revolution at which motions are computed at present.
-    least : int
-        Number of modes that the next range begins with.
+    ``angles`` of a revolution at which motions are computed at present; ``least``, the number of
+    modes that the next range begins with.
     """
 
     def __init__(
@@ -397,18 +375,14 @@ class _Work:
             errors.append(error)
             norms.append(np.max(np.abs(q), axis=(1, 2)))
             deflection.append(self._deflection(theta, q))
-        size, error = (
-            np.concatenate([getattr(p, k) for p in peaks], axis=1) for k in ("size", "error")
-        )
+        found = Peaks.joined(peaks)
         # A link that happens to be at rest is moved by an error as at its worst speed.
-        share = size / np.concatenate(norms)
+        share = found.size / np.concatenate(norms)
         weight = np.max(share, axis=1, keepdims=True) / share
         # An error of the motion stresses a link as the motion does, times this at the most.
+        error = 3.0 * weight * np.concatenate(errors) + found.error + ELSEWHERE * change[:, None]
         return _Range(
-            size=size,
-            theta=np.concatenate([p.theta for p in peaks], axis=1),
-            row=np.concatenate([p.row for p in peaks], axis=1),
-            error=3.0 * weight * np.concatenate(errors) + error + _ELSEWHERE * change[:, None],
+            peaks=replace(found, error=error),
             modes=chosen,
             growth=moving.growth(speeds),
             defect=defect,
@@ -438,7 +412,7 @@ class _Work:
             change = float(np.max(np.abs(trials[0].size / trials[-1].size - 1.0)))
             if (
                 self.wanted is not None
-                or _ELSEWHERE * change <= 0.5 * self.rtol
+                or ELSEWHERE * change <= 0.5 * self.rtol
                 or trials[-1].modes == self.truncations.numbers[-1]
             ):
                 return trials[0], trials[-1]
@@ -464,7 +438,7 @@ def _growth(system: LinearPeriodic, parts: list[_Range], speeds: Array) -> tuple
     )
     whole = floquet_multipliers(system, float(speeds[-1]), rtol=1e-8)
     gap = abs(float(np.max(np.abs(whole.multipliers))) - modulus[-1]) / condition[-1]
-    defect = max(_ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
+    defect = max(ELSEWHERE * max(part.defect for part in parts), 2.0 * gap)
     return modulus, error + defect * condition
 
 
@@ -482,8 +456,9 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
         rows_of = np.flatnonzero(link == k)
         rows, columns = np.nonzero(coarse[rows_of] >= _NEAR * np.max(coarse[rows_of], axis=0))
         fine = np.abs(resampled(values[:, rows_of[rows], columns], _FINER * count)).T
-        # Of several tops almost equal at the angles another may be the largest between them.
-        which, place = np.nonzero(fine >= _TIED * np.max(fine, axis=1, keepdims=True))
+        # Of several tops almost equal at the angles another may be the largest between them: half a
+        # fine step beside its top the highest harmonic has cos(pi/16) of it.
+        which, place = np.nonzero(fine >= 0.98 * np.max(fine, axis=1, keepdims=True))
         before, after = fine[which, place - 1], fine[which, (place + 1) % fine.shape[1]]
         at = fine[which, place]
         top = (at >= before) & (at >= after)
@@ -498,21 +473,20 @@ def _peaks(values: Array, link: NDArray[np.int64], links: int, period: float) ->
         size[k] = height[first]
         theta[k] = (place[first] + shift[first]) % fine.shape[1] * (period / fine.shape[1])
         row[k] = rows_of[rows[which[first]]]
-        error[k] = _missed(fine[which[first]], place[first]) / size[k]
+        around = (place[first] + np.arange(-2, 3)[:, None]) % fine.shape[1]
+        error[k] = missed_by_parabolas(*fine[which[first], around]) / size[k]
     return Peaks(size, theta, row, error)
 
 
-def _missed(values: Array, place: NDArray[np.intp]) -> Array:
-    """Return the most by which a parabola misses maxima of rows ``(k, angles)``, ``(k,)``.
+def missed_by_parabolas(first: Array, low: Array, middle: Array, high: Array, last: Array) -> Array:
+    """Return the most by which parabolas through three even samples miss extremes near the middle.
 
-    With s steps from the middle angle to the maximum, at most a half, the third difference counts
+    With s steps from the middle to the extreme, at most a half, the third difference counts
     ``s (1 - s^2)/6`` and the fourth ``s^2 (1 - s^2)/8``.
     """
-    each, count = np.arange(len(place)), values.shape[1]
-    around = np.array([values[each, (place + shift) % count] for shift in (-2, -1, 0, 1, 2)])
-    third = np.array([-0.5, 1.0, 0.0, -1.0, 0.5]) @ around
-    fourth = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) @ around
-    return np.asarray(np.abs(third) / 16.0 + np.abs(fourth) * (3.0 / 128.0))
+    third = np.abs(last - 2.0 * high + 2.0 * low - first) / 32.0
+    fourth = np.abs(first - 4.0 * low + 6.0 * middle - 4.0 * high + last) * (3.0 / 128.0)
+    return np.asarray(third + fourth)
 
 
 def _require_damped(system: LinearPeriodic) -> None:

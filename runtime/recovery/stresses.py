@@ -16,7 +16,7 @@ from ..beams.recovery_forms import LinearForm, stacked
 from ..core.deferred import DeferredField, DeferredGroup
 from ..core.errors import BadInput, Problem, bad
 from ..core.families import LinearPeriodic
-from ..core.inputs import is_finite
+from ..core.inputs import is_finite, numbers
 from ..core.trigonometric import even_angles, resampled
 from .beam_forces import (
     METHODS,
@@ -28,7 +28,7 @@ from .beam_forces import (
     stations_of,
 )
 from .beam_motion import BeamMotion, beam_motion, chunks
-from .beam_result import StationResult, in_motion, stations_on
+from .beam_result import StationResult, checked_forms, in_motion, stations_on
 from .finer_mesh import CAUTION, ROUNDING, on_finer_mesh
 
 if TYPE_CHECKING:
@@ -39,30 +39,18 @@ if TYPE_CHECKING:
 Stations = int | Mapping[str, ArrayLike] | None
 # Places over each element for its energy: exact for the recovered polynomials' squares.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-# Angles at which the energy is looked at.
-_ANGLES = 64
 
 
 def fibre_factors(system: LinearPeriodic, stations: Sequence[Station]) -> tuple[Array, Array]:
-    """Return 1/A [1/m^2] and c/I [1/m^3] of each station, c half the thickness.
-
-    Raises
-    ------
-    BadInput
-        If a section has no thickness.
-    """
+    """Return 1/A [1/m^2] and c/I [1/m^3] of each station, c half the thickness."""
     structure = required_structure(system)
     sections = {beam.name: beam.section for beam in structure.beams}
-    missing = [
-        name
+    problems = [
+        Problem(f"section of {name}", "no thickness", "one, for stresses", "use recover() instead")
         for name in dict.fromkeys(station.beam for station in stations)
         if sections[name].thickness is None
     ]
-    if missing:
-        fix = "give Section.thickness, or use recover() for forces"
-        problems = [
-            Problem(f"section of {n}", "no thickness", "one, for stresses", fix) for n in missing
-        ]
+    if problems:
         raise BadInput(*problems)
     own = [sections[station.beam] for station in stations]
     levers = [0.5 * (section.thickness or 0.0) / section.second_moment for section in own]
@@ -117,7 +105,7 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     Of a natural mode this is the relative error of its squared frequency on the mesh.
     """
     structure = required_structure(system)
-    picked = np.unique(np.linspace(0, len(motion.theta) - 1, _ANGLES).astype(int))
+    picked = np.unique(np.linspace(0, len(motion.theta) - 1, 64).astype(int))
     few = replace(
         motion, theta=motion.theta[picked], q=motion.q[picked], qd=motion.qd[picked], period=None
     )
@@ -142,43 +130,8 @@ def energy_gap(system: LinearPeriodic, motion: BeamMotion) -> float:
     return min(wrong / total, 0.5) if total else 0.0
 
 
-def draw(result: StressResult, ax: Axes | None = None) -> Axes:
-    """Draw the stress at each beam's worst place over the crank angle, its static part dashed.
-
-    Of one angle alone, the largest stress along the beams.
-    """
-    from ..core.plotting import axes_or_new
-
-    ax = axes_or_new(ax)
-    if len(result.theta) == 1:
-        for link in result.maxima:
-            own = stations_on(result.links, link)
-            ax.plot(result.places[own], 1e-6 * result.stress[0, own], label=link, linewidth=0.9)
-        ax.set_xlabel("place x/length")
-        ax.set_ylabel("largest stress [MPa]")
-        ax.legend()
-        return ax
-    period = result.period
-    closed = period is not None
-    angles = np.degrees(result.theta if period is None else np.append(result.theta, period))
-    for link, peak in result.maxima.items():
-        parts = [result.at(link, peak.place, peak.fibre, name) for name in ("all", "quasi-static")]
-        whole, still = (1e-6 * (np.append(p, p[:1]) if closed else p) for p in parts)
-        label = f"{link}, x/length = {peak.place:.3g}"
-        line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
-        ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
-        ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
-    ax.set_xlabel("crank angle [deg]")
-    ax.set_ylabel("stress at the worst fibre [MPa]")
-    ax.set_title(f"{result.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
-    ax.legend()
-    return ax
-
-
 FIBRES = ("positive", "negative")
 PARTS = ("all", "quasi-static", "dynamic")
-# Angles per given one at which a periodic stress is looked at for its maximum.
-_FINER = 8
 # Fields that are computed when they are first looked at.
 _LATER = {
     name: DeferredField()
@@ -258,11 +211,6 @@ class StressResult(StationResult):
         """Largest size of the stress over the section [Pa], ``(nt, stations)``."""
         return np.asarray(np.abs(self.axial) + np.abs(self.bending))
 
-    @property
-    def quasi_static(self) -> Array:
-        """Largest size of the quasi-static stress over the section [Pa], ``(nt, stations)``."""
-        return np.asarray(np.abs(self.static_axial) + np.abs(self.static_bending))
-
     def fibre(self, name: str = "positive", part: str = "all") -> Array:
         """Return the stress of one outer fibre [Pa], ``(nt, stations)``.
 
@@ -326,10 +274,10 @@ class StressResult(StationResult):
         return best
 
     def _finer(self, values: Array) -> tuple[Array, Array]:
-        """Return values of a periodic stress at more angles, by its Fourier series."""
+        """Return values of a periodic stress at eight times the angles, by its Fourier series."""
         if self.period is None or len(self.theta) < 3:
             return self.theta, values
-        count = _FINER * len(self.theta)
+        count = 8 * len(self.theta)
         return even_angles(self.period, count), resampled(values, count)
 
     def safety(self, limit: float | Mapping[str, float]) -> dict[str, float]:
@@ -367,9 +315,31 @@ class StressResult(StationResult):
 
         Of a structure that stands still, the stress along the beams.
         """
-        from .stresses import draw
+        from ..core.plotting import axes_or_new
 
-        return draw(self, ax)
+        ax = axes_or_new(ax)
+        if len(self.theta) == 1:
+            for link in self.maxima:
+                own = stations_on(self.links, link)
+                ax.plot(self.places[own], 1e-6 * self.stress[0, own], label=link, linewidth=0.9)
+            ax.set_xlabel("place x/length")
+            ax.set_ylabel("largest stress [MPa]")
+            ax.legend()
+            return ax
+        period, closed = self.period, self.period is not None
+        angles = np.degrees(self.theta if period is None else np.append(self.theta, period))
+        for link, peak in self.maxima.items():
+            parts = [self.at(link, peak.place, peak.fibre, part) for part in PARTS[:2]]
+            whole, still = (1e-6 * (np.append(p, p[:1]) if closed else p) for p in parts)
+            label = f"{link}, x/length = {peak.place:.3g}"
+            line = ax.plot(angles, whole, label=label, linewidth=0.9)[0]
+            ax.plot(angles, still, "--", color=line.get_color(), linewidth=0.7)
+            ax.plot(np.degrees(peak.theta), 1e-6 * peak.value, "o", color=line.get_color(), ms=3)
+        ax.set_xlabel("crank angle [deg]")
+        ax.set_ylabel("stress at the worst fibre [MPa]")
+        ax.set_title(f"{self.speed:.4g} rad/s; dashed: quasi-static", fontsize="medium")
+        ax.legend()
+        return ax
 
 
 def stress(
@@ -523,10 +493,15 @@ def stress_operator(
     BadInput
         If an argument is unusable.
     """
-    made = recovery(system, theta, stations, method)
-    if not accelerations:
-        made = made.without_accelerations()
-    areas, levers = fibre_factors(system, made.stations)
-    axial = made.forms["axial"].turned(np.diag(areas))
-    bending = made.forms["moment"].turned(np.diag(-levers))
-    return stacked([axial + bending, axial - bending]), made.stations
+    require_method(method)
+    angles = np.atleast_1d(numbers("theta", theta))
+    if angles.ndim != 1 or not angles.size or not np.all(np.isfinite(angles)):
+        raise bad("theta", f"shape {angles.shape}", "finite angles, shape (nt,)", "flatten them")
+    chosen = stations_of(required_structure(system), stations)
+    areas, levers = fibre_factors(system, chosen)
+    forms = checked_forms(system, angles)
+    made = recovery(forms, chosen, method)
+    axial = made["axial"].turned(np.diag(areas))
+    bending = made["moment"].turned(np.diag(-levers))
+    both = stacked([axial + bending, axial - bending])
+    return both if accelerations else both.eliminated(forms.acceleration), chosen

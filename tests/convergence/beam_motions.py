@@ -67,13 +67,13 @@ def periodic_motion(system, speed, count=64):
     return BeamMotion(theta=theta, q=q, qd=speed * (first @ q), speed=speed, period=system.period)
 
 
-def turning_bar(angle, *, pinned=False, modulus=210e9, drag=0.0, **beam):
+def turning_bar(angle, *, pinned=False, modulus=210e9, thickness=0.01, drag=0.0, **beam):
     """Return a bar of 1 m whose rigid angle is given with two derivatives by the crank angle.
 
     Clamped to what turns at its first end and free at the other; or, pinned, held there.  The drag
     is that of its elastic motion, over the mass [1/s].
     """
-    section = Section.rectangle(0.02, 0.01, modulus=modulus, density=7850.0, poisson=0.3)
+    section = Section.rectangle(0.02, thickness, modulus=modulus, density=7850.0, poisson=0.3)
 
     def configuration(theta):
         phi, rate, acceleration = angle(theta)
@@ -96,20 +96,23 @@ def steadily(theta):
     return theta, np.ones_like(theta), np.zeros_like(theta)
 
 
-def rocking(theta):
-    """Return an angle that swings by 0.4 rad, and its derivatives."""
-    return 0.4 * np.sin(theta), 0.4 * np.cos(theta), -0.4 * np.sin(theta)
+def swinging(size, second=0.0, order=2):
+    """Return a function of the crank angle: an angle that swings, and its derivatives."""
+
+    def angle(theta):
+        phi = size * np.sin(theta) + second * np.cos(order * theta)
+        rate = size * np.cos(theta) - order * second * np.sin(order * theta)
+        return phi, rate, -size * np.sin(theta) - order**2 * second * np.cos(order * theta)
+
+    return angle
+
+
+rocking = swinging(0.4)
 
 
 def rocking_bar(rng, elements):
     """Return a random rocking bar and its speed, over its first frequency."""
-    size, second = rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2)
-
-    def angle(theta):
-        phi = size * np.sin(theta) + second * np.cos(2 * theta)
-        rate = size * np.cos(theta) - 2 * second * np.sin(2 * theta)
-        return phi, rate, -size * np.sin(theta) - 4 * second * np.cos(2 * theta)
-
+    angle = swinging(rng.uniform(0.05, 0.5), rng.uniform(-0.2, 0.2))
     pinned = bool(rng.integers(2))
     # (lambda L)^2 of a pinned and of a clamped bar of 1 m, 10 mm thick: sqrt(EI/m) = 14.93 m^2/s.
     first = (9.870 if pinned else 3.516) * 14.93

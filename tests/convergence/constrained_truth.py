@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import mpmath
 import numpy as np
+from elastolink.generated import four_bar_multibody as multibody
 from elastolink.runtime.core.families import Constrained
 from scipy.integrate import solve_ivp
 
@@ -132,3 +133,21 @@ def by_explicit_steps(system: Constrained, q, qd, times, rtol=1e-11):
     start, span = np.concatenate([q, qd]), (times[0], times[-1])
     run = solve_ivp(rate, span, start, "DOP853", times, rtol=rtol, atol=1e-3 * rtol)
     return run.y[:n].T, run.nfev // 12
+
+
+LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
+
+
+def driven_four_bar(speed):
+    """Return the four-bar of uniform links with a driven crank: nothing of it is free."""
+    values = dict.fromkeys(multibody.PARAMETERS, 0.0) | LENGTHS
+    for n, length in ((2, 0.3), (3, 0.9), (4, 0.8)):
+        values[f"mass{n}"] = length
+        values[f"along{n}"] = length**2 / 2
+        values[f"inertia{n}"] = length**3 / 3
+    drive = {
+        "drive": lambda q, t: speed * t,
+        "drive_d1": lambda q, t: speed,
+        "drive_d2": lambda q, t: 0.0,
+    }
+    return Constrained.from_module(multibody, values, external=drive)

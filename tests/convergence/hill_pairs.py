@@ -12,6 +12,7 @@ import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from half_trace_truth import half_traces
+from wavy_springs import WavyCoordinates
 
 
 class HillPair:
@@ -29,48 +30,28 @@ class HillPair:
         self.f, self.drag = PeriodicFunction(a, b), drag
         self.pull = pull * self.natural**2 * rng.uniform(0.2, 1.0, n) / np.sum(self.f.amplitudes)
         self.pull[2:] = 0.0
-        self._fixed = np.eye(n) + 0.2 * rng.standard_normal((n, n))
-        self._waves = (0.06 if wavy else 0.0) * rng.standard_normal((2, n, n))
-        self.system = self._system()
+        fixed = np.eye(n) + 0.2 * rng.standard_normal((n, n))
+        waves = (0.06 if wavy else 0.0) * rng.standard_normal((2, 1, n, n))
+        self.system = self._system(WavyCoordinates(fixed, waves))
 
-    def _turn(self, theta):
-        value = self._fixed + np.multiply.outer(np.cos(theta), self._waves[0])
-        value = value + np.multiply.outer(np.sin(theta), self._waves[1])
-        slope = np.multiply.outer(np.cos(theta), self._waves[1])
-        return value, slope - np.multiply.outer(np.sin(theta), self._waves[0])
+    def _system(self, coordinates):
+        arrays = coordinates.arrays(self.natural**2, 1.0)
+        scaled = {"C": "drag", "D": "drag"}
+        terms = [Term(name, scaled.get(name), function) for name, function in arrays.items()]
 
-    def _product(self, one, two, weight=None):
-        def function(theta):
-            parts = self._turn(theta)
-            left = np.swapaxes(parts[one], -1, -2)
-            return (left if weight is None else left * weight) @ parts[two]
+        def wave(theta):
+            turned = coordinates.turn(theta)
+            weight = np.multiply.outer(self.f(theta), self.pull)[:, None, :]
+            return (np.swapaxes(turned, -1, -2) * weight) @ turned
 
-        return function
-
-    def _wave(self, theta):
-        turned = self._turn(theta)[0]
-        weight = np.multiply.outer(self.f(theta), self.pull)[:, None, :]
-        return (np.swapaxes(turned, -1, -2) * weight) @ turned
-
-    def _system(self):
-        terms = [
-            Term("M", None, self._product(0, 0)),
-            Term("A", None, self._product(0, 1)),
-            Term("B", None, self._product(1, 1)),
-            Term("K", None, self._product(0, 0, self.natural**2)),
-            Term("K", "pull", self._wave),
-        ]
-        if self.drag:
-            terms += [
-                Term("C", "drag", self._product(0, 0)),
-                Term("D", "drag", self._product(0, 1)),
-            ]
+        terms.append(Term("K", "pull", wave))
         values = {"pull": 1.0, "drag": 2.0 * self.drag}
 
         def scales(given):
             return {name: np.asarray(given[name], dtype=float) for name in values}
 
-        return LinearPeriodic(len(self.natural), tuple(terms), values, scales)
+        kept = [term for term in terms if self.drag or term.array not in scaled]
+        return LinearPeriodic(len(self.natural), tuple(kept), values, scales)
 
     def ends(self, mode, sign, speeds, factor=1.0):
         """Return the ends of regions next to given speeds, and how steep the half traces are.

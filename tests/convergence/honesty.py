@@ -2,23 +2,61 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
+
 import numpy as np
 import pytest
 
 # How many random scenes: a few in the first stage of the tests, many in the second.
 SCENES = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
-# The same where a scene takes a good part of a second.
-FEWER_SCENES = pytest.mark.parametrize("scenes", [10, pytest.param(100, marks=pytest.mark.slow)])
 
 
-def verdict(ratios, least=1):
+def verdict(ratios, least=1, median=1e3):
     """Estimate over actual error: at least 1 in 99 %, median no larger than 1000."""
     ratios = np.hstack(ratios).astype(float)
     assert ratios.size >= least
     assert np.mean(ratios >= 1.0) >= 0.99
-    assert np.median(ratios) <= 1e3
+    assert np.median(ratios) <= median
 
 
-def covers(estimates, actual, least=1, floor=1e-300):
+def covers(estimates, actual, least=1, floor=1e-300, median=1e3):
     """The same of estimates and actual errors; below ``floor`` the reference is not known."""
-    verdict(np.hstack(estimates) / np.maximum(np.hstack(actual).astype(float), floor), least)
+    actual = np.maximum(np.abs(np.hstack(actual).astype(float)), floor)
+    verdict(np.hstack(estimates) / actual, least, median)
+
+
+def over_scenes(seed, few=20, many=200, *, floor=1e-300, median=1e3):
+    """Make a test of one random scene a test of many.
+
+    ``scene(rng, ...)`` returns estimates and actual errors that broadcast, or by name several such
+    pairs; None where the scene does not do and another is to be drawn.  ``few`` scenes stand in the
+    first stage of the tests, ``many`` in the second; None for neither.
+    """
+    counts = [few] if few else []
+    counts += [pytest.param(many, marks=pytest.mark.slow)] if many else []
+
+    def made(scene):
+        @functools.wraps(scene)
+        def test(scenes, **given):
+            rng, found, drawn = np.random.default_rng(seed), {}, 0
+            while drawn < scenes:
+                pairs = scene(rng, **given)
+                drawn += pairs is not None
+                named = pairs if isinstance(pairs, dict) else {"": pairs}
+                for name, pair in named.items() if pairs is not None else ():
+                    both = np.broadcast_arrays(*(np.asarray(part, dtype=float) for part in pair))
+                    found.setdefault(name, []).append([part.ravel() for part in both])
+            for rows in found.values():
+                covers(*zip(*rows, strict=True), scenes, floor, median)
+
+        own = inspect.signature(scene)
+        test.__signature__ = own.replace(
+            parameters=[
+                inspect.Parameter("scenes", inspect.Parameter.POSITIONAL_OR_KEYWORD),
+                *(part for name, part in own.parameters.items() if name != "rng"),
+            ]
+        )
+        return pytest.mark.parametrize("scenes", counts)(test)
+
+    return made

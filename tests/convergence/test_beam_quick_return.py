@@ -32,7 +32,7 @@ def _error(elements, kind, steps, tension=True):
     system = linear_system(structure, geometric_stiffness=tension)
     moved = marched(3, system, rod.speed, steps, 1)[steps // 8 :: steps // 8]
     angle = linkage.motion(np.arange(1, 9) * np.pi / 4).theta4
-    x, y = (moved[:, structure.index(label)] for label in ("C.x", "C.y"))
+    x, y = (moved[:, structure.labels.index(label)] for label in ("C.x", "C.y"))
     tip = (np.cos(angle) * y - np.sin(angle) * x) / rod.length
     exact = TIPS[NAME, tension][1]
     return np.max(np.abs(tip - exact)) / np.max(np.abs(exact))

@@ -10,39 +10,63 @@ import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
 
 
+class WavyCoordinates:
+    """Coordinates ``z = R(theta) q`` that wave with the crank, and oscillators seen in them.
+
+    R is a fixed matrix with ``waves``, cosines and sines by harmonic, ``(2, harmonics, n, n)``.
+    """
+
+    def __init__(self, fixed, waves):
+        self.fixed, self.waves = fixed, np.asarray(waves)
+        self.order = np.arange(1, self.waves.shape[1] + 1)
+
+    def turn(self, theta):
+        """Return R, ``(nt, n, n)``."""
+        return self.fixed + self._sum(theta, *self.waves)
+
+    def slope(self, theta):
+        """Return dR/dtheta, ``(nt, n, n)``."""
+        cosine, sine = self.order[:, None, None] * self.waves
+        return self._sum(theta, sine, -cosine)
+
+    def _sum(self, theta, cosine, sine):
+        angle = np.multiply.outer(theta, self.order)
+        return np.tensordot(np.cos(angle), cosine, 1) + np.tensordot(np.sin(angle), sine, 1)
+
+    def arrays(self, squares, drag=0.0):
+        """Return by name the arrays of oscillators of squared frequencies, and of a drag on all."""
+
+        def between(left, right, weight=1.0):
+            return lambda theta: np.swapaxes(left(theta), 1, 2) * weight @ right(theta)
+
+        found = {
+            "M": between(self.turn, self.turn),
+            "A": between(self.turn, self.slope),
+            "B": between(self.slope, self.slope),
+            "K": between(self.turn, self.turn, squares),
+        }
+        if drag:
+            found["C"] = between(self.turn, self.turn, drag)
+            found["D"] = between(self.turn, self.slope, drag)
+        return found
+
+
+def without_parameters(arrays):
+    """Return the system of arrays by name."""
+    terms = tuple(Term(name, None, function) for name, function in arrays.items())
+    return LinearPeriodic(arrays["M"](np.zeros(1)).shape[-1], terms, {}, lambda values: {})
+
+
 class Wavy:
     """Springs of given squared frequencies, negative ones repelling, in wavy coordinates."""
 
     def __init__(self, rng: np.random.Generator, squares: np.ndarray) -> None:
         self.squares = squares
         n = len(squares)
-        self._fixed = np.eye(n) + 0.2 * rng.standard_normal((n, n))
-        self._waves = 0.12 * rng.standard_normal((2, 2, n, n))
-        terms = (
-            Term("M", None, self._product(0, 0)),
-            Term("A", None, self._product(0, 1)),
-            Term("B", None, self._product(1, 1)),
-            Term("K", None, self._product(0, 0, np.diag(squares))),
-        )
-        self.system = LinearPeriodic(n, terms, {}, lambda values: {})
-
-    def transform(self, theta):
-        """Return R and dR/dtheta, ``(nt, n, n)``."""
-        value = np.broadcast_to(self._fixed, (len(theta), *self._fixed.shape)).copy()
-        slope = np.zeros_like(value)
-        for k, (c, s) in enumerate(self._waves, start=1):
-            cos, sin = np.cos(k * theta)[:, None, None], np.sin(k * theta)[:, None, None]
-            value += c * cos + s * sin
-            slope += k * (s * cos - c * sin)
-        return value, slope
-
-    def _product(self, first, second, weight=None):
-        def function(theta):
-            parts = self.transform(theta)
-            left = np.swapaxes(parts[first], 1, 2)
-            return (left if weight is None else left @ weight) @ parts[second]
-
-        return function
+        fixed = np.eye(n) + 0.2 * rng.standard_normal((n, n))
+        waves = 0.12 * rng.standard_normal((2, 2, n, n))
+        coordinates = WavyCoordinates(fixed, np.swapaxes(waves, 0, 1))
+        self.turn, self.system = coordinates.turn, without_parameters(coordinates.arrays(squares))
 
     def exact(self, speed):
         """Return the monodromy matrix in extended precision until the last product."""
@@ -59,7 +83,7 @@ class Wavy:
                 c, s = np.cosh(w * period), np.sinh(w * period)
                 block = [[c, s / w * speed], [w * s / speed, c]]
             flow[np.ix_([i, n + i], [i, n + i])] = np.array(block, dtype=float)
-        start = self.transform(np.zeros(1))[0][0]
+        start = self.turn(np.zeros(1))[0]
         zero = np.zeros((n, n))
         into = np.block([[start, zero], [zero, np.linalg.inv(start).T]])
         return np.linalg.solve(into, flow @ into)
@@ -79,5 +103,4 @@ class Wavy:
 
 def tame(scene):
     """True where the coordinates are nowhere near singular."""
-    value, _ = scene.transform(np.linspace(0.0, 2 * np.pi, 64))
-    return np.max(np.linalg.cond(value)) < 30
+    return np.max(np.linalg.cond(scene.turn(np.linspace(0.0, 2 * np.pi, 64)))) < 30

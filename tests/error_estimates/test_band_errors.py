@@ -11,7 +11,7 @@ import pytest
 from elastolink.runtime.periodic.decoupled import slow_system
 from elastolink.runtime.stability import resonances, stability_edges, tongue, tongue_curves
 from hill_pairs import HillPair
-from honesty import verdict
+from honesty import over_scenes
 
 pytestmark = [
     pytest.mark.slow,
@@ -20,89 +20,77 @@ pytestmark = [
     ),
 ]
 SPAN = (3.5, 9.5)
-ENDS = 200
+ENDS = 60
 
 
 def compared(scene, mode, harmonic, found, error, factor=1.0):
-    """Return figures over actual errors of ends that are simple roots."""
+    """Return estimates and actual errors of ends that are simple roots."""
     exact, steep = scene.ends(mode, (-1) ** harmonic, found, factor)
-    gaps = np.abs(exact - found).astype(float)
-    return (error / np.maximum(gaps, 1e-18))[steep]
+    return np.broadcast_to(error, steep.shape)[steep], (exact - found)[steep]
+
+
+def joined(pairs):
+    """Return pairs of estimates and errors in one; None where there are none."""
+    both = [np.concatenate([part for part in parts]) for parts in zip(*pairs, strict=True)]
+    return both if both and both[0].size else None
 
 
 def of_regions(scene, found):
-    ratios = [np.zeros(0)]
+    assert found.passed, found.checks
+    pairs = []
     for i, kind in enumerate(found.kind):
         ends = np.array([found.lower[i], found.upper[i]])
         if kind == "principal" and np.all(np.isfinite(ends)) and ends[1] > ends[0]:
             mode, harmonic = int(found.modes[i, 0]) - 1, int(found.harmonic[i])
-            ratios.append(compared(scene, mode, harmonic, ends, found.error[i]))
-    return np.concatenate(ratios)
+            pairs.append(compared(scene, mode, harmonic, ends, found.error[i]))
+    return joined(pairs)
 
 
-@pytest.mark.parametrize("drag", [0.0, 0.01])
-def test_ends_of_all_regions(drag):
-    rng = np.random.default_rng(41)
-    ratios, count = [], 0
-    while count < ENDS:
-        scene = HillPair(rng, drag)
-        found = stability_edges(scene.system, SPAN)
-        assert found.passed, found.checks
-        ratios.append(of_regions(scene, found))
-        count += len(ratios[-1])
-    verdict(ratios, ENDS)
+damped = pytest.mark.parametrize("drag", [0.0, 0.01])
 
 
-@pytest.mark.parametrize("drag", [0.0, 0.01])
-def test_bands_of_slow_modes(drag):
-    rng = np.random.default_rng(42)
-    ratios, count = [], 0
-    while count < ENDS:
-        scene = HillPair(rng, drag, stiff=True)
-        slow = slow_system(scene.system, (SPAN[0] / 1.05, SPAN[1] * 1.05), 2)
-        found = stability_edges(slow, SPAN)
-        assert found.passed, found.checks
-        ratios.append(of_regions(scene, found))
-        count += len(ratios[-1])
-    verdict(ratios, ENDS)
+@over_scenes(41, few=None, many=ENDS, floor=1e-18)
+@damped
+def test_ends_of_all_regions(rng, drag):
+    scene = HillPair(rng, drag)
+    return of_regions(scene, stability_edges(scene.system, SPAN))
 
 
-def test_curves_from_their_feet():
-    rng = np.random.default_rng(44)
-    ratios, count = [], 0
-    factors = np.linspace(0.1, 1.0, 7)
-    while count < ENDS:
-        scene = HillPair(rng, wavy=False)
-        found = tongue_curves(scene.system, "pull", factors, SPAN, highest=2)
-        for i, label in enumerate(found.labels):
-            if not label.startswith("2"):
-                continue
-            mode, harmonic = int(found.modes[i, 0]) - 1, int(found.harmonic[i])
-            for j, factor in enumerate(factors):
-                ends = np.array([found.lower[i, j], found.upper[i, j]])
-                if np.all(np.isfinite(ends)) and ends[1] > ends[0]:
-                    error = found.error[i, j]
-                    ratios.append(compared(scene, mode, harmonic, ends, error, factor))
-                    count += len(ratios[-1])
-    verdict(ratios, ENDS)
+@over_scenes(42, few=None, many=ENDS, floor=1e-18)
+@damped
+def test_bands_of_slow_modes(rng, drag):
+    scene = HillPair(rng, drag, stiff=True)
+    slow = slow_system(scene.system, (SPAN[0] / 1.05, SPAN[1] * 1.05), 2)
+    return of_regions(scene, stability_edges(slow, SPAN))
 
 
-@pytest.mark.parametrize("drag", [0.0, 0.01])
-def test_series_of_tongues(drag):
-    """Here the figure is the truncation: it has to cover the next orders, not round-off."""
-    rng = np.random.default_rng(45)
-    ratios, count = [], 0
-    factors = np.geomspace(0.05, 0.5, 5)
-    while count < ENDS:
-        scene = HillPair(rng, drag, wavy=False)
-        order = int(rng.integers(2, 6))
-        for one in resonances(scene.system, SPAN, kinds=("principal",), highest=2):
-            found = tongue(scene.system, one, parameter=("pull", factors), order=order)
-            for j, factor in enumerate(factors):
-                ends = np.array([found.lower[j], found.upper[j]])
-                # One Newton step of the reference leaves the square of the distance.
-                if found.open[j] and found.error[j] < 1e-4 * ends[0]:
-                    mode, harmonic = one.modes[0] - 1, one.harmonic
-                    ratios.append(compared(scene, mode, harmonic, ends, found.error[j], factor))
-                    count += len(ratios[-1])
-    verdict(ratios, ENDS)
+@over_scenes(44, few=None, many=ENDS // 5, floor=1e-18)
+def test_curves_from_their_feet(rng):
+    scene, factors, pairs = HillPair(rng, wavy=False), np.linspace(0.1, 1.0, 7), []
+    found = tongue_curves(scene.system, "pull", factors, SPAN, highest=2)
+    for i, label in enumerate(found.labels):
+        if not label.startswith("2"):
+            continue
+        mode, harmonic = int(found.modes[i, 0]) - 1, int(found.harmonic[i])
+        for j, factor in enumerate(factors):
+            ends = np.array([found.lower[i, j], found.upper[i, j]])
+            if np.all(np.isfinite(ends)) and ends[1] > ends[0]:
+                pairs.append(compared(scene, mode, harmonic, ends, found.error[i, j], factor))
+    return joined(pairs)
+
+
+@over_scenes(45, few=None, many=ENDS // 5, floor=1e-18)
+@damped
+def test_series_of_tongues(rng, drag):
+    """Here the estimate is the truncation: it has to cover the next orders, not round-off."""
+    scene, factors, pairs = HillPair(rng, drag, wavy=False), np.geomspace(0.05, 0.5, 5), []
+    order = int(rng.integers(2, 6))
+    for one in resonances(scene.system, SPAN, kinds=("principal",), highest=2):
+        found = tongue(scene.system, one, parameter=("pull", factors), order=order)
+        for j, factor in enumerate(factors):
+            ends = np.array([found.lower[j], found.upper[j]])
+            # One Newton step of the reference leaves the square of the distance.
+            if found.open[j] and found.error[j] < 1e-4 * ends[0]:
+                mode, harmonic = one.modes[0] - 1, one.harmonic
+                pairs.append(compared(scene, mode, harmonic, ends, found.error[j], factor))
+    return joined(pairs)

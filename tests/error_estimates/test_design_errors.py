@@ -1,4 +1,4 @@
-"""Figures of the design tools over random bars that rock: stresses, quiet speeds, fatigue.
+"""Error estimates of the design tools over random bars that rock: stresses, quiet speeds, fatigue.
 
 The reference solves the full equations of the same elements speed by speed, by dense Fourier
 collocation of the second-order form (``beam_motions``), and looks for the largest stress at 4096
@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beam_motions import periodic_motion, turning_bar
+from beam_motions import periodic_motion, swinging, turning_bar
 from elastolink.runtime.design import (
     Material,
     damping_effect,
@@ -25,9 +25,8 @@ from elastolink.runtime.recovery import stress
 from elastolink.runtime.recovery.beam_motion import quiet_steady_state
 from elastolink.runtime.recovery.stresses import StressResult
 from elastolink.runtime.systems import with_modal_damping
-from honesty import verdict
+from honesty import over_scenes
 
-SCENES = 200
 # Angles of the reference's motion, and those at which its stresses are looked at.
 COUNT, FINE = 64, 4096
 STATIONS = 7
@@ -39,13 +38,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
 def rocking_bar(rng, drag=True):
     """Return a random rocking bar and its first frequency."""
     size, second = rng.uniform(0.02, 0.6), rng.uniform(-0.2, 0.2)
-    order = int(rng.integers(2, 4))
-
-    def angle(theta):
-        phi = size * np.sin(theta) + second * np.cos(order * theta)
-        rate = size * np.cos(theta) - order * second * np.sin(order * theta)
-        return phi, rate, -size * np.sin(theta) - order**2 * second * np.cos(order * theta)
-
+    angle = swinging(size, second, int(rng.integers(2, 4)))
     pinned = bool(rng.integers(2))
     loss = 10.0 ** rng.uniform(-2.5, -0.7) * FIRST[pinned] if drag else 0.0
     return turning_bar(angle, pinned=pinned, drag=loss, elements=1), FIRST[pinned]
@@ -106,21 +99,23 @@ def exact_maximum(system, speed, method="equilibrium"):
     return max(largest(found.fibre(name)) for name in ("positive", "negative"))
 
 
-def over(figure, actual):
-    """Return figures over actual errors; the reference has round-off of its own."""
-    return np.ravel(figure) / np.maximum(np.ravel(np.abs(actual)), 1e-13)
+# The reference has round-off of its own.
+FLOOR = 1e-13
 
 
-def ratios_of_quiet_speeds(rng):
+@over_scenes(7200, few=2, many=20, floor=FLOOR)
+def test_quiet_speeds(rng):
+    """Each with ten stresses."""
     system, first = rocking_bar(rng)
     speeds = random_speeds(rng, first, 10)
     found = quiet_speeds(system, speeds, 1e8, rtol=10.0 ** rng.uniform(-5, -2.5))
     exact = np.array([exact_maximum(system, speed) / 1e8 for speed in speeds])
-    return over(found.error, found.worst / exact - 1.0)
+    return found.error, found.worst / exact - 1.0
 
 
-def ratios_of_running_speed(rng):
-    """Return those of the result, and of the quiet speeds that it holds."""
+@over_scenes(7250, few=1, many=10, floor=FLOOR)
+def test_running_and_quiet_speeds(rng):
+    """The error of the result, and of the quiet speeds that it holds."""
     system, frame, first = rocker(rng)
     speeds = random_speeds(rng, first, 3)
     exact = np.array([exact_maximum(system, speed) for speed in speeds])
@@ -128,13 +123,13 @@ def ratios_of_running_speed(rng):
     found = running_speed(system, speeds, limit, values=[frame], rtol=10.0 ** rng.uniform(-5, -2.5))
     place = int(np.argmin(np.abs(speeds - found.speed)))
     assert speeds[place] == found.speed
-    truth = exact[place] / limit
-    assert found.checks["within limits"].value >= truth * (1.0 - 1e-13)
+    assert found.checks["within limits"].value >= exact[place] / limit * (1.0 - 1e-13)
     actual = np.abs(found.quiet.worst * limit / exact - 1.0)
-    return over(found.error, np.max(actual)), over(found.quiet.error, actual)
+    return {"running": (found.error, np.max(actual)), "quiet": (found.quiet.error, actual)}
 
 
-def ratios_of_damping(rng):
+@over_scenes(7200, few=2, many=20, floor=FLOOR)
+def test_damping_effects(rng):
     bare, first = rocking_bar(rng, drag=False)
     system = with_modal_damping(bare, 0.02)
     speeds, values = random_speeds(rng, first, 5), np.sort(10.0 ** rng.uniform(-3, -0.7, 2))
@@ -143,49 +138,18 @@ def ratios_of_damping(rng):
         [exact_maximum(system.with_parameters(damping_ratio=value), w) for w in speeds]
         for value in values
     ]
-    return over(found.error, found.maximum[..., 0] / exact - 1.0)
+    return found.error[..., 0], found.maximum[..., 0] / exact - 1.0
 
 
-def ratios_of_lengths(rng):
+@over_scenes(7200, few=1, many=12, floor=FLOOR)
+def test_length_effects(rng):
     system, frame, first = rocker(rng)
     speeds, values = random_speeds(rng, first, 5), [frame, frame * rng.uniform(0.7, 1.5)]
     found = length_effect(system, "frame", values, speeds, rtol=10.0 ** rng.uniform(-5, -2.5))
     exact = [
         [exact_maximum(system.with_geometry(frame=value), w) for w in speeds] for value in values
     ]
-    return over(found.error, found.maximum[..., 0] / exact - 1.0)
-
-
-CURVES = {
-    "quiet_speeds": ratios_of_quiet_speeds,
-    "damping_effect": ratios_of_damping,
-    "length_effect": ratios_of_lengths,
-}
-
-
-# Bars, each with ten stresses.
-BARS = 20
-
-
-@pytest.mark.parametrize("name", CURVES)
-def test_some_stresses(name):
-    rng = np.random.default_rng(7100)
-    verdict([CURVES[name](rng) for _ in range(2)], 4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CURVES)
-def test_stresses_of_many_bars(name):
-    rng = np.random.default_rng(7200)
-    verdict([CURVES[name](rng) for _ in range(BARS)], SCENES)
-
-
-@pytest.mark.parametrize("scenes", [2, pytest.param(10, marks=pytest.mark.slow)])
-def test_running_and_quiet_speeds(scenes):
-    rng = np.random.default_rng(7250)
-    found = [ratios_of_running_speed(rng) for _ in range(scenes)]
-    for ratios in zip(*found, strict=True):
-        verdict(ratios, scenes)
+    return found.error[..., 0], found.maximum[..., 0] / exact - 1.0
 
 
 def counted(history):
@@ -233,8 +197,9 @@ def waves(rng, harmonics, places):
     return function
 
 
-def ratio_of_histories(rng):
-    """Histories off by no more than their figure: figure over error of the least safety."""
+@over_scenes(7400, few=3, floor=FLOOR)
+def test_safeties_of_histories(rng):
+    """Histories off by no more than their error estimate."""
     places = int(rng.integers(1, 4))
     exact, off = waves(rng, int(rng.integers(1, 9)), places), waves(rng, 6, places)
     size, doubt = 10.0 ** rng.uniform(6, 8.3), 10.0 ** rng.uniform(-6, -1.5)
@@ -261,12 +226,12 @@ def ratio_of_histories(rng):
     material = Material(tensile_strength=6e8, endurance_limit=2e8)
     found = fatigue(given, material)
     truth = least_safety(size * exact(fine), material)
-    actual = np.min(found.safety) / truth - 1.0
-    return over(found.error, actual)
+    return found.error, np.min(found.safety) / truth - 1.0
 
 
-def ratio_of_bars(rng):
-    """Stresses of one to three elements, against those of many: figure over error of the safety."""
+@over_scenes(7300, few=3, many=30, floor=FLOOR)
+def test_safeties_of_bars(rng):
+    """Stresses of one element, against those of many."""
     system, first = rocking_bar(rng)
     speed = first * rng.uniform(0.03, 0.4)
     material = Material(tensile_strength=1e12, endurance_limit=2e8)
@@ -278,23 +243,10 @@ def ratio_of_bars(rng):
     motion = periodic_motion(system.remesh(meshed), speed, 32)
     fine = stress(system.remesh(meshed), motion, stations=3)
     values = np.hstack([fine_values(fine.fibre(name)) for name in ("positive", "negative")])
-    return over(found.error, np.min(found.safety) / least_safety(values, material) - 1.0)
+    return found.error, np.min(found.safety) / least_safety(values, material) - 1.0
 
 
 def test_cycles_are_counted_as_they_are():
     """Peaks 300, valley 100, peak 200, valley -300: one cycle of 600, one of 100 within."""
     size, mean = counted(np.array([300.0, 100.0, 200.0, -300.0]))
     assert sorted(zip(size, mean, strict=True)) == [(100.0, 150.0), (600.0, 0.0)]
-
-
-@pytest.mark.parametrize("made", [ratio_of_histories, ratio_of_bars])
-def test_some_safeties(made):
-    rng = np.random.default_rng(7300)
-    verdict([made(rng) for _ in range(3)], 3)
-
-
-@pytest.mark.slow
-def test_safeties_of_histories_and_of_bars():
-    rng = np.random.default_rng(7400)
-    verdict([ratio_of_histories(rng) for _ in range(SCENES)], SCENES)
-    verdict([ratio_of_bars(rng) for _ in range(30)], 30)

@@ -7,7 +7,7 @@ import numpy as np
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import natural_frequencies
 from elastolink.runtime.frequencies.held import cycle_mean, held_frequencies
-from honesty import SCENES, verdict
+from honesty import over_scenes
 
 
 def _exact(mass, stiffness):
@@ -19,80 +19,59 @@ def _exact(mass, stiffness):
         return [mpmath.sqrt(square) for square in squares]
 
 
-@SCENES
-def test_errors_of_held_frequencies(scenes):
-    rng = np.random.default_rng(11)
-    ratio = []
-    for _ in range(scenes):
-        n = int(rng.integers(2, 5))
-        turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
-        stiffness = turn @ np.diag(10.0 ** rng.uniform(0, 8, n)) @ turn.T
-        stiffness = (stiffness + stiffness.T) / 2
-        base = rng.normal(size=(n, n))
-        mass = base @ base.T + 0.3 * np.eye(n)
-        mass = (mass + mass.T) / 2
-        terms = (Term("M", None, mass), Term("K", None, stiffness))
-        system = LinearPeriodic(n, terms, {}, lambda values: {})
-        frequency, error = held_frequencies(system, np.zeros(1), {})
-        exact = _exact(mass, stiffness)
-        for found, estimate, true in zip(frequency[0], error[0], exact, strict=True):
-            ratio.append(float(estimate / max(abs(found - true), mpmath.mpf(found) * 2**-60)))
-    verdict(ratio)
+@over_scenes(11)
+def test_errors_of_held_frequencies(rng):
+    n = int(rng.integers(2, 5))
+    turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
+    stiffness = turn @ np.diag(10.0 ** rng.uniform(0, 8, n)) @ turn.T
+    stiffness = (stiffness + stiffness.T) / 2
+    base = rng.normal(size=(n, n))
+    mass = base @ base.T + 0.3 * np.eye(n)
+    mass = (mass + mass.T) / 2
+    terms = (Term("M", None, mass), Term("K", None, stiffness))
+    system = LinearPeriodic(n, terms, {}, lambda values: {})
+    frequency, error = held_frequencies(system, np.zeros(1), {})
+    gaps = [float(abs(a - b)) for a, b in zip(frequency[0], _exact(mass, stiffness), strict=True)]
+    return error[0], np.maximum(gaps, frequency[0] * 2.0**-60)
 
 
-@SCENES
-def test_errors_of_means(scenes):
-    rng = np.random.default_rng(12)
-    ratio = []
-    for _ in range(scenes):
-        depth, harmonic = rng.uniform(0.05, 0.95), int(rng.integers(1, 4))
-        phase = rng.uniform(0, 2 * np.pi)
+@over_scenes(12, floor=1e-17)
+def test_errors_of_means(rng):
+    depth, harmonic = rng.uniform(0.05, 0.95), int(rng.integers(1, 4))
+    phase = rng.uniform(0, 2 * np.pi)
 
-        def values(theta, depth=depth, harmonic=harmonic, phase=phase):
-            found = 1.0 / (1.0 - depth * np.cos(harmonic * theta - phase))[:, None]
-            return found, 1e-15 * found
+    def values(theta):
+        found = 1.0 / (1.0 - depth * np.cos(harmonic * theta - phase))[:, None]
+        return found, 1e-15 * found
 
-        mean, error = cycle_mean(values, 2 * np.pi, enough=1e-7)
-        # The mean of 1/(1 - a cos x) is 1/sqrt(1 - a^2).
-        actual = abs(mean[0] - 1.0 / np.sqrt(1.0 - depth**2))
-        ratio.append(error[0] / max(actual, 1e-17))
-    verdict(ratio)
+    mean, error = cycle_mean(values, 2 * np.pi, enough=1e-7)
+    # The mean of 1/(1 - a cos x) is 1/sqrt(1 - a^2).
+    return error, mean - 1.0 / np.sqrt(1.0 - depth**2)
 
 
-@SCENES
-def test_errors_of_means_with_a_kink(scenes):
-    rng = np.random.default_rng(13)
-    ratio = []
-    for _ in range(scenes):
-        at = rng.uniform(0.0, 2 * np.pi)
+@over_scenes(13, floor=1e-16)
+def test_errors_of_means_with_a_kink(rng):
+    at = rng.uniform(0.0, 2 * np.pi)
 
-        def values(theta, at=at):
-            found = np.abs(np.cos((theta - at) / 2))[:, None] + 2.0
-            return found, 1e-15 * found
+    def values(theta):
+        found = np.abs(np.cos((theta - at) / 2))[:, None] + 2.0
+        return found, 1e-15 * found
 
-        mean, error = cycle_mean(values, 2 * np.pi, [at + np.pi], enough=1e-9)
-        ratio.append(error[0] / max(abs(mean[0] - 2.0 - 2.0 / np.pi), 1e-16))
-    verdict(ratio)
+    mean, error = cycle_mean(values, 2 * np.pi, [at + np.pi], enough=1e-9)
+    return error, mean - 2.0 - 2.0 / np.pi
 
 
-@SCENES
-def test_errors_of_least_gaps(scenes):
-    rng = np.random.default_rng(14)
-    ratio = []
-    for _ in range(scenes // 5):
-        coupling, at = 10.0 ** rng.uniform(-6, -1), rng.uniform(0, 2 * np.pi)
+@over_scenes(14, few=4, many=40, floor=1e-17)
+def test_errors_of_least_gaps(rng):
+    coupling, at = 10.0 ** rng.uniform(-6, -1), rng.uniform(0, 2 * np.pi)
 
-        def stiffness(theta, coupling=coupling, at=at):
-            d = np.sin((theta - at) / 1.0)
-            return np.moveaxis(
-                np.array([[16 + d, coupling + 0 * d], [coupling + 0 * d, 16 - d]]), (0, 1), (-2, -1)
-            )
+    def stiffness(theta):
+        d = np.sin(theta - at)[:, None, None]
+        return np.array([[16.0, coupling], [coupling, 16.0]]) + d * np.diag([1.0, -1.0])
 
-        terms = (Term("M", None, np.eye(2)), Term("K", None, stiffness))
-        found = natural_frequencies(LinearPeriodic(2, terms, {}, lambda values: {}), 0.0)
-        assert [one.kind for one in found.encounters] == ["veering", "veering"]
-        for one in found.encounters:
-            # sqrt(16 + c) - sqrt(16 - c), free of cancellation.
-            exact = 2 * coupling / (np.sqrt(16 + coupling) + np.sqrt(16 - coupling))
-            ratio.append(one.gap_error / max(abs(one.gap - exact), 1e-17))
-    verdict(ratio)
+    terms = (Term("M", None, np.eye(2)), Term("K", None, stiffness))
+    found = natural_frequencies(LinearPeriodic(2, terms, {}, lambda values: {}), 0.0).encounters
+    assert [one.kind for one in found] == ["veering", "veering"]
+    # sqrt(16 + c) - sqrt(16 - c), free of cancellation.
+    exact = 2 * coupling / (np.sqrt(16 + coupling) + np.sqrt(16 - coupling))
+    return [one.gap_error for one in found], [one.gap - exact for one in found]

@@ -16,11 +16,10 @@ from elastolink.runtime.hill import (
     hill_boundaries,
 )
 from half_trace_truth import half_traces
-from honesty import verdict
+from honesty import over_scenes
 from smith_chapter_8.exact import exact_operator, exact_series
 from smith_chapter_8.surd import ExactHarmonics
 
-scenes = pytest.mark.parametrize("scenes", [20, pytest.param(200, marks=pytest.mark.slow)])
 extended = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
@@ -42,81 +41,72 @@ def scene(rng, counts=(1, 2, 4, 8)):
 
 
 @extended
-@scenes
-def test_half_traces(scenes):
+@over_scenes(11, floor=1e-18)
+def test_half_traces(rng):
     """At points and, by interpolation, on a grid that holds them."""
-    rng, ratios = np.random.default_rng(11), []
-    for _ in range(scenes):
-        f, _ = scene(rng, (1, 2, 5, 12, 24))
-        low = -(10.0 ** rng.uniform(-1, 1.5)) if rng.random() < 0.3 else 0.0
-        high, reach = 10.0 ** rng.uniform(-1, 2.5), 10.0 ** rng.uniform(-2, 1)
-        lam2, mu = rng.uniform(low, high, 2), rng.uniform(-reach, reach, 2)
-        x = np.sort(np.concatenate([lam2, np.linspace(low, high, 70)]))
-        y = np.sort(np.concatenate([mu, np.linspace(-reach, reach, 40)]))
-        truth, at = half_traces(f, lam2, mu), (np.searchsorted(x, lam2), np.searchsorted(y, mu))
-        for found, where in (
-            (discriminant(f, lam2, mu), ...),
-            (discriminant(f, x[:, None], y), at),
-        ):
-            gap = np.abs(found.value[where] - truth).astype(float)
-            least = 1e-18 * np.maximum(1.0, np.abs(truth.astype(float)))
-            ratios.append(found.error[where] / np.maximum(gap, least))
-    verdict(ratios, 4 * scenes)
+    f, _ = scene(rng, (1, 2, 5, 12, 24))
+    low = -(10.0 ** rng.uniform(-1, 1.5)) if rng.random() < 0.3 else 0.0
+    high, reach = 10.0 ** rng.uniform(-1, 2.5), 10.0 ** rng.uniform(-2, 1)
+    lam2, mu = rng.uniform(low, high, 2), rng.uniform(-reach, reach, 2)
+    x = np.sort(np.concatenate([lam2, np.linspace(low, high, 70)]))
+    y = np.sort(np.concatenate([mu, np.linspace(-reach, reach, 40)]))
+    truth, at = half_traces(f, lam2, mu), (np.searchsorted(x, lam2), np.searchsorted(y, mu))
+    least = 1e-18 * np.maximum(1.0, np.abs(truth.astype(float)))
+    found = {
+        "points": (discriminant(f, lam2, mu), ...),
+        "grid": (discriminant(f, x[:, None], y), at),
+    }
+    return {
+        name: (made.error[where], np.maximum(np.abs(made.value[where] - truth), least))
+        for name, (made, where) in found.items()
+    }
 
 
 @extended
-@scenes
-def test_exponents(scenes):
-    rng, ratios = np.random.default_rng(24), []
-    for _ in range(scenes):
-        (f, mu), lam2 = scene(rng), rng.uniform(0.0, 6.0, 2)
-        k = float(rng.choice([0.0, 0.03]))
-        found = characteristic_exponents(f, lam2, mu, k)
-        x = half_traces(f, lam2, mu, k) * np.exp(2 * PI * np.longdouble(k))
-        rise = np.where(np.abs(x) > 1, np.arccosh(np.maximum(np.abs(x), 1)), 0) / (2 * PI)
-        nu = np.arccos(np.clip(x, -1, 1)) / (2 * PI)
-        gap = np.hypot((found.growth - (rise - k)).astype(float), (found.nu - nu).astype(float))
-        ratios.append(found.error / np.maximum(gap, LEAST))
-    verdict(ratios, 2 * scenes)
+@over_scenes(24, floor=LEAST)
+def test_exponents(rng):
+    (f, mu), lam2 = scene(rng), rng.uniform(0.0, 6.0, 2)
+    k = float(rng.choice([0.0, 0.03]))
+    found = characteristic_exponents(f, lam2, mu, k)
+    x = half_traces(f, lam2, mu, k) * np.exp(2 * PI * np.longdouble(k))
+    rise = np.where(np.abs(x) > 1, np.arccosh(np.maximum(np.abs(x), 1)), 0) / (2 * PI)
+    nu = np.arccos(np.clip(x, -1, 1)) / (2 * PI)
+    gap = np.hypot((found.growth - (rise - k)).astype(float), (found.nu - nu).astype(float))
+    return found.error, gap
 
 
-@scenes
+@over_scenes(25, floor=LEAST)
 @pytest.mark.parametrize("damped", [False, True])
-def test_boundaries_against_enclosures(scenes, damped):
+def test_boundaries_against_enclosures(rng, damped):
     """Weak and strong damping, shallow and deep wells."""
-    rng, ratios = np.random.default_rng(25), []
-    for _ in range(scenes):
-        f, mu = scene(rng)
-        mu *= 10.0 ** rng.uniform(0, 2)
-        k = float(10.0 ** rng.uniform(-2, 0.8)) if damped else 0.0
-        plain, proved = (hill_boundaries(f, mu, (0, 1, 2, 3), k, certified=c) for c in BOTH)
-        for end in ("lower", "upper"):
-            known = np.isfinite(getattr(proved, end))
-            gaps = getattr(plain, end)[known] - getattr(proved, end)[known]
-            gaps -= getattr(proved, f"{end}_rest")[known]
-            assert not np.isnan(gaps).any()
-            ratios.append(plain.error[known] / np.maximum(np.abs(gaps), LEAST))
-    verdict(ratios, 2 * scenes)
+    f, mu = scene(rng)
+    mu *= 10.0 ** rng.uniform(0, 2)
+    k = float(10.0 ** rng.uniform(-2, 0.8)) if damped else 0.0
+    plain, proved = (hill_boundaries(f, mu, (0, 1, 2, 3), k, certified=c) for c in BOTH)
+    errors, gaps = [], []
+    for end in ("lower", "upper"):
+        known = np.isfinite(getattr(proved, end))
+        gaps.append(getattr(plain, end)[known] - getattr(proved, end)[known])
+        gaps[-1] -= getattr(proved, f"{end}_rest")[known]
+        errors.append(plain.error[known])
+    assert not np.isnan(np.concatenate(gaps)).any()
+    return np.concatenate(errors), np.concatenate(gaps)
 
 
-@scenes
-def test_bands_against_enclosures(scenes):
+@over_scenes(22, floor=LEAST)
+def test_bands_against_enclosures(rng):
     """Bands at nu = 1/4 are every other boundary of the equation with twice the period.
 
     With theta = 2 x the function f(2 x), four times lam2 and mu, has the phase 1/2: its odd
     regions end at the bands of nu = 1/4, both ends of region 2 j + 1 being band j.
     """
-    rng, ratios = np.random.default_rng(22), []
-    for _ in range(scenes):
-        f, mu = scene(rng)
-        ours = characteristic_exponents(f, None, mu, nu=0.25, bands=(0, 1, 2, 3))
-        a, b = np.zeros((2, 2 * f.harmonics + 1))
-        a[::2], b[::2] = f.a, f.b
-        proved = hill_boundaries(PeriodicFunction(a, b), 4 * mu, (1, 3, 5, 7), certified=True)
-        assert proved.pair.all()
-        gaps = ours.lam2 - 0.25 * proved.lower - 0.25 * proved.lower_rest
-        ratios.append(ours.error / np.maximum(np.abs(gaps), LEAST))
-    verdict(ratios, 4 * scenes)
+    f, mu = scene(rng)
+    ours = characteristic_exponents(f, None, mu, nu=0.25, bands=(0, 1, 2, 3))
+    a, b = np.zeros((2, 2 * f.harmonics + 1))
+    a[::2], b[::2] = f.a, f.b
+    proved = hill_boundaries(PeriodicFunction(a, b), 4 * mu, (1, 3, 5, 7), certified=True)
+    assert proved.pair.all()
+    return ours.error, ours.lam2 - 0.25 * proved.lower - 0.25 * proved.lower_rest
 
 
 def exact_ends(f, mu, n, k):
@@ -124,30 +114,27 @@ def exact_ends(f, mu, n, k):
     return [sum(found.enclosure(end, 0)) / 2 for end in ("lower", "upper")]
 
 
-@scenes
+@over_scenes(23, few=10, many=100, floor=LEAST)
 @pytest.mark.parametrize("k", [0.0, 2.0**-6])
-def test_derivatives_against_differences_of_enclosures(scenes, k):
+def test_derivatives_against_differences_of_enclosures(rng, k):
     """Central differences of sixth order, between ends known to 1e-20 or better."""
-    rng, ratios = np.random.default_rng(23), []
     weights = {1: Fraction(3, 4), 2: Fraction(-3, 20), 3: Fraction(1, 60)}
-    for _ in range(scenes):
-        f, mu = scene(rng)
-        n = int(rng.integers(1, 4))
-        found = boundary_derivatives(f, mu, (n,), damping=k)
-        if not hill_boundaries(f, mu, (n,), k).width[0] > 0.02:
-            # Closed, or so narrow that the ends turn about each other within the steps.
-            continue
-        slopes = [Fraction(0), Fraction(0)]
-        for j, weight in weights.items():
-            up, down = (exact_ends(f, mu + side * j * STEP, n, k) for side in (1, -1))
-            for end in (0, 1):
-                slopes[end] += weight * (up[end] - down[end]) / Fraction(STEP)
-        ours = (found.lower[0, 0], found.upper[0, 0])
-        gaps = [abs(float(Fraction(float(x)) - y)) for x, y in zip(ours, slopes, strict=True)]
-        # The difference itself: the seventh derivative over 140, at most about 1 / width^6 there,
-        # times STEP^6 = 5e-26.
-        ratios.append(found.error[0, 0] / np.maximum(gaps, LEAST))
-    verdict(ratios, scenes // 2)
+    f, mu = scene(rng)
+    n = int(rng.integers(1, 4))
+    found = boundary_derivatives(f, mu, (n,), damping=k)
+    if not hill_boundaries(f, mu, (n,), k).width[0] > 0.02:
+        # Closed, or so narrow that the ends turn about each other within the steps.
+        return None
+    slopes = [Fraction(0), Fraction(0)]
+    for j, weight in weights.items():
+        up, down = (exact_ends(f, mu + side * j * STEP, n, k) for side in (1, -1))
+        for end in (0, 1):
+            slopes[end] += weight * (up[end] - down[end]) / Fraction(STEP)
+    ours = (found.lower[0, 0], found.upper[0, 0])
+    # The difference itself: the seventh derivative over 140, at most about 1 / width^6 there,
+    # times STEP^6 = 5e-26.
+    gaps = [float(Fraction(float(x)) - y) for x, y in zip(ours, slopes, strict=True)]
+    return found.error[0, 0], gaps
 
 
 # ---------------------------------------------------------------- thresholds and series
@@ -171,55 +158,42 @@ def closing(f, lam2, mu):
 
 
 @extended
-@scenes
-def test_damping_that_closes_regions(scenes):
-    rng, ratios = np.random.default_rng(81), []
-    for _ in range(scenes // 3 + 1):
-        f, mu = waves(rng, int(rng.choice([1, 2, 5]))), rng.uniform(0.2, 3.0, 2)
-        found = critical_damping(f, mu, (1, 2))
-        truth = closing(f, found.lam2 - found.damping**2, np.broadcast_to(mu, found.lam2.shape))
-        known = np.asarray(found.damping > 1e-3)
-        gaps = np.abs(found.damping - truth).astype(float)
-        ratios.append((found.error / np.maximum(gaps, 1e-18))[known])
-    verdict(ratios, scenes)
+@over_scenes(81, floor=1e-18)
+def test_damping_that_closes_regions(rng):
+    f, mu = waves(rng, int(rng.choice([1, 2, 5]))), rng.uniform(0.2, 3.0, 2)
+    found = critical_damping(f, mu, (1, 2))
+    truth = closing(f, found.lam2 - found.damping**2, np.broadcast_to(mu, found.lam2.shape))
+    known = np.asarray(found.damping > 1e-3)
+    return (found.error[known], (found.damping - truth)[known]) if known.any() else None
 
 
 @extended
-@scenes
-def test_least_parameters(scenes):
+@over_scenes(82, floor=1e-18)
+def test_least_parameters(rng):
     """The damping that closes the region at the parameter found, over how fast it grows there."""
-    rng, ratios = np.random.default_rng(82), []
-    while sum(map(len, ratios)) < scenes:
-        f, damping = waves(rng, int(rng.choice([1, 2, 5]))), rng.uniform(0.02, 0.3, 2)
-        found = critical_damping(f, None, (1,), damping=damping)
-        kept = np.isfinite(found.mu[0])
-        if not kept.any():
-            continue
-        mu, lam2 = found.mu[0, kept], found.lam2[0, kept]
-        step = 1e-5 * mu
-        low, high = critical_damping(f, np.stack([mu - step, mu + step]), (1,)).damping[0]
-        at = closing(f, lam2 - damping[kept] ** 2, mu)
-        gaps = np.abs((at - damping[kept]) / ((high - low) / (2 * step))).astype(float)
-        ratios.append(found.error[0, kept] / np.maximum(gaps, 1e-18))
-    verdict(ratios, scenes)
+    f, damping = waves(rng, int(rng.choice([1, 2, 5]))), rng.uniform(0.02, 0.3, 2)
+    found = critical_damping(f, None, (1,), damping=damping)
+    kept = np.isfinite(found.mu[0])
+    if not kept.any():
+        return None
+    mu, lam2 = found.mu[0, kept], found.lam2[0, kept]
+    step = 1e-5 * mu
+    low, high = critical_damping(f, np.stack([mu - step, mu + step]), (1,)).damping[0]
+    at = closing(f, lam2 - damping[kept] ** 2, mu)
+    return found.error[0, kept], (at - damping[kept]) / ((high - low) / (2 * step))
 
 
-@scenes
-def test_coefficients_of_boundaries(scenes):
+@over_scenes(83)
+def test_coefficients_of_boundaries(rng):
     """Against the same series in rational numbers and square roots of them."""
-    rng, ratios = np.random.default_rng(83), []
-    for _ in range(scenes):
-        f, region = waves(rng, 2), int(rng.integers(0, 4))
-        found = boundary_series(f, region, 3)
-        cosine, sine = ([Fraction(float(v)) for v in part[1:]] for part in (f.a, f.b))
-        exact = ExactHarmonics(Fraction(0), tuple(cosine), tuple(sine))
-        series = exact_series(exact_operator([exact], region, 3), [1])
-        for ours, error, theirs in zip(
-            (found.lower, found.upper), found.error, (series.lower, series.upper), strict=True
-        ):
-            truth = np.array([float(v) for v in theirs])
-            gaps = np.abs(ours - truth)
-            # What is zero in both is known.
-            known = (gaps > 0.0) | (error > 0.0)
-            ratios.append((error / np.maximum(gaps, 1e-17 * np.abs(truth) + 1e-300))[known])
-    verdict(ratios, scenes)
+    f, region = waves(rng, 2), int(rng.integers(0, 4))
+    found = boundary_series(f, region, 3)
+    cosine, sine = ([Fraction(float(v)) for v in part[1:]] for part in (f.a, f.b))
+    exact = ExactHarmonics(Fraction(0), tuple(cosine), tuple(sine))
+    series = exact_series(exact_operator([exact], region, 3), [1])
+    truth = np.array([[float(v) for v in end] for end in (series.lower, series.upper)])
+    gaps = np.abs(np.array([found.lower, found.upper]) - truth)
+    errors = np.asarray(found.error)
+    # What is zero in both is known.
+    known = (gaps > 0.0) | (errors > 0.0)
+    return errors[known], np.maximum(gaps, 1e-17 * np.abs(truth))[known]

@@ -13,12 +13,11 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_solution, hill_boundaries
-from honesty import verdict
+from honesty import over_scenes
 
 pytestmark = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
-SOME = [pytest.param(20, id="some"), pytest.param(200, marks=pytest.mark.slow, id="all")]
 THETA = np.linspace(0.0, 4.0 * np.pi, 61)
 CLOSE = 1e-4
 
@@ -207,30 +206,23 @@ def deviation(given, found):
     return float(np.max(np.abs(found(THETA) - values)))
 
 
-def ratios(seed, scenes, strongest, orders):
-    rng = np.random.default_rng(seed)
-    out, passed = [], 0
-    while len(out) < scenes:
-        given = scene(rng, strongest)
-        order = orders[int(rng.integers(len(orders)))]
-        functions, mu, n, end, damping = given
-        try:
-            found = boundary_solution(functions, mu, n, end, order, damping)
-        except BadInput as refusal:
-            assert "closed by damping" in str(refusal) or "converge visibly" in str(refusal)
-            continue
-        with mpmath.workdps(60):
-            out.append(found.error / max(deviation(given, found), 1e-17))
-        passed += found.passed
-    assert passed >= 0.99 * scenes
-    return out
+def compared(given, order):
+    """Return the estimate and the deviation of a solution; None where there is none."""
+    functions, mu, n, end, damping = given
+    try:
+        found = boundary_solution(functions, mu, n, end, order, damping)
+    except BadInput as refusal:
+        assert "closed by damping" in str(refusal) or "converge visibly" in str(refusal)
+        return None
+    with mpmath.workdps(60):
+        return found.error, deviation(given, found)
 
 
-@pytest.mark.parametrize("scenes", SOME)
-def test_exact_solutions(scenes):
-    verdict([ratios(61, scenes, 2.0, [None])], scenes)
+@over_scenes(61, floor=1e-17)
+def test_exact_solutions(rng):
+    return compared(scene(rng, 2.0), None)
 
 
-@pytest.mark.parametrize("scenes", SOME)
-def test_solutions_to_an_order(scenes):
-    verdict([ratios(62, scenes, 0.0, range(1, 9))], scenes)
+@over_scenes(62, floor=1e-17)
+def test_solutions_to_an_order(rng):
+    return compared(scene(rng, 0.0), int(rng.integers(1, 9)))

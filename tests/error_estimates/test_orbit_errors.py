@@ -12,7 +12,7 @@ from elastolink.derive.spec import ModelSpec
 from elastolink.runtime.constrained import orbit_multipliers, periodic_orbit
 from elastolink.runtime.core.families import Constrained
 from elastolink.runtime.systems import find_module
-from honesty import SCENES, verdict
+from honesty import over_scenes
 
 MODEL = Path(__file__).parents[1] / "third_party_models" / "cycloid.py"
 
@@ -36,27 +36,20 @@ def random_bead(rng: np.random.Generator) -> Cycloid:
     return Cycloid(mass, radius, gravity, drag, arc * reply, speed)
 
 
-@SCENES
-def test_estimates_hold_and_are_not_idle(module, scenes):
-    rng = np.random.default_rng(20)
-    orbit_ratio, ratio = [], []
-    for _ in range(scenes):
-        bead = random_bead(rng)
-        system = Constrained.from_module(module, bead.numbers)
-        t = np.arange(24) * (bead.period / 24)
-        guess = [0.9 * values for values in bead.state(t)]
-        orbit = periodic_orbit(system, bead.period, *guess)
-        assert not orbit.message
-        shooting = orbit.source.shooting
-        columns = shooting.equations.columns
-        state, exact = (
-            shooting.state(q / columns, qd / columns)
-            for q, qd in ((orbit.q, orbit.qd), bead.state(orbit.t))
-        )
-        away = np.max(np.abs(state - exact)) / np.max(np.abs(exact))
-        orbit_ratio.append(orbit.error / away)
-        found = orbit_multipliers(orbit)
-        gap = np.abs(found.physical[:, None] - bead.multipliers()).min(axis=1)
-        ratio.extend(found.error / gap)
-    verdict(orbit_ratio)
-    verdict(ratio)
+@over_scenes(20)
+def test_estimates_hold_and_are_not_idle(rng, module):
+    bead = random_bead(rng)
+    system = Constrained.from_module(module, bead.numbers)
+    guess = [0.9 * values for values in bead.state(np.arange(24) * (bead.period / 24))]
+    orbit = periodic_orbit(system, bead.period, *guess)
+    assert not orbit.message
+    shooting = orbit.source.shooting
+    columns = shooting.equations.columns
+    state, exact = (
+        shooting.state(q / columns, qd / columns)
+        for q, qd in ((orbit.q, orbit.qd), bead.state(orbit.t))
+    )
+    away = np.max(np.abs(state - exact)) / np.max(np.abs(exact))
+    found = orbit_multipliers(orbit)
+    gap = np.abs(found.physical[:, None] - bead.multipliers()).min(axis=1)
+    return {"orbit": (orbit.error, away), "multipliers": (found.error, gap)}

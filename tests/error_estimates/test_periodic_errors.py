@@ -17,7 +17,7 @@ from elastolink.runtime.periodic import (
     simulate,
     steady_state,
 )
-from honesty import FEWER_SCENES, SCENES, covers
+from honesty import over_scenes
 from manufactured import manufactured
 from wavy_springs import Wavy, tame
 
@@ -27,20 +27,19 @@ SAMPLES = 8
 
 
 def _of_motion(result, truth):
-    """Return the actual errors of a motion over the peaks, and its error estimates."""
+    """Return the error estimates of a motion, and the actual errors over the peaks."""
     gap = np.max(np.abs(result.q - truth), axis=0) / np.max(np.abs(truth), axis=0)
-    return [(float(a), float(e)) for a, e in zip(gap, result.error, strict=True)]
+    return result.error, gap
 
 
 def _of_matrix(result, exact):
-    """Return the actual error of a monodromy matrix in scaled variables, and its estimate."""
+    """Return the error estimate of a monodromy matrix, and its error in scaled variables."""
     exact = exact / result.scale[:, None] * result.scale
-    top = np.max(np.abs(exact))
-    return [(float(np.max(np.abs(result.scaled - exact)) / top), float(result.error))]
+    return result.error, np.max(np.abs(result.scaled - exact)) / np.max(np.abs(exact))
 
 
 def _outcomes(seed):
-    """Return by answer the actual errors and the estimates, of one random system."""
+    """Return by answer the estimates and the actual errors, of one random system."""
     system, speed, motion = manufactured(seed)
     rng, n = np.random.default_rng(seed), system.size
     truth = taylor_truth.Equation.of(system, speed, forced=True)
@@ -86,40 +85,31 @@ def _outcomes(seed):
     return out
 
 
-@FEWER_SCENES
+@pytest.mark.parametrize("scenes", [10, pytest.param(100, marks=pytest.mark.slow)])
 def test_the_estimates_cover_the_errors_and_are_not_idle(scenes):
-    """In 99 of 100 cases, and not by more than a thousand times in the middle."""
-    total: dict[str, list[tuple[float, float]]] = {}
+    """In 99 of 100 cases, of few systems in all but one, and within a thousand in the middle."""
+    total: dict[str, list] = {}
     for seed in range(scenes):
-        for name, pairs in _outcomes(seed).items():
-            total.setdefault(name, []).extend(pairs)
+        for name, (estimate, actual) in _outcomes(seed).items():
+            total.setdefault(name, []).append(np.broadcast_arrays(estimate, np.atleast_1d(actual)))
     for name, pairs in total.items():
-        actual, estimate = np.array(pairs).T
-        # Of few systems one may be missed.
+        estimate, actual = np.hstack(pairs).astype(float)
         assert np.sum(actual > estimate) <= max(1, 0.01 * len(actual)), name
         # Below a few units in the last place the reference's own rounding shows.
-        ratio = estimate / np.maximum(actual, 4 * EPS)
-        assert np.median(ratio) <= 1e3, f"{name}: {np.median(ratio):.3g}"
+        assert np.median(estimate / np.maximum(actual, 4 * EPS)) <= 1e3, name
 
 
-@SCENES
+@over_scenes(2)
 @pytest.mark.parametrize("repelling", [False, True])
-def test_estimates_of_multipliers(repelling, scenes):
-    rng = np.random.default_rng(2)
-    actual, estimate, drawn = [], [], 0
-    while drawn < scenes:
-        squares = rng.uniform(1.0, 60.0, 2)
-        if repelling:
-            squares[0] *= -0.2
-        scene = Wavy(rng, squares)
-        if not tame(scene):
-            continue
-        drawn += 1
-        speed = float(rng.uniform(0.3, 4.0))
-        result = floquet_multipliers(scene.system, speed)
-        exact = scene.multipliers(speed)
-        assert result.passed, (result.checks, squares, speed)
-        for value, error in zip(result.multipliers, result.error, strict=True):
-            actual.append(np.min(np.abs(exact - value)))
-            estimate.append(error)
-    covers(estimate, actual)
+def test_estimates_of_multipliers(rng, repelling):
+    squares = rng.uniform(1.0, 60.0, 2)
+    if repelling:
+        squares[0] *= -0.2
+    scene = Wavy(rng, squares)
+    if not tame(scene):
+        return None
+    speed = float(rng.uniform(0.3, 4.0))
+    result = floquet_multipliers(scene.system, speed)
+    assert result.passed, (result.checks, squares, speed)
+    gaps = np.abs(scene.multipliers(speed)[:, None] - result.multipliers)
+    return result.error, np.min(gaps, axis=0)

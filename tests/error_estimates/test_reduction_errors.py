@@ -11,7 +11,8 @@ import numpy as np
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.periodic import reduced_system
-from honesty import SCENES, verdict
+from honesty import over_scenes
+from wavy_springs import WavyCoordinates, without_parameters
 
 ANGLES = 40
 
@@ -24,50 +25,25 @@ class Coordinates:
         # Wide ranges of frequencies, and neighbours a few per cent apart.
         steps = 1.0 + 10.0 ** rng.uniform(-1.3, 0.8, n)
         self.natural = rng.uniform(3.0, 10.0) * np.cumprod(steps)
-        self.fixed = np.eye(n) + 0.15 * rng.standard_normal((n, n))
+        fixed = np.eye(n) + 0.15 * rng.standard_normal((n, n))
         # Some coordinates come near to being dependent at some angle: their series are long.
         count = int(rng.integers(1, 4))
-        self.waves = rng.uniform(0.02, 0.35) / np.sqrt(n) * rng.standard_normal((2, count, n, n))
+        waves = rng.uniform(0.02, 0.35) / np.sqrt(n) * rng.standard_normal((2, count, n, n))
         self.drag = float(rng.choice([0.0, 0.3]))
         push = rng.standard_normal((2, n))
-        squares = self.natural**2
-
-        def times(left, right, weight=1.0):
-            return lambda theta: np.swapaxes(left(theta), 1, 2) * weight @ right(theta)
+        coordinates = WavyCoordinates(fixed, waves)
 
         def force(theta):
             pushed = push[0] + np.multiply.outer(np.cos(theta), push[1])
-            return (np.swapaxes(self.turn(theta), 1, 2) @ pushed[..., None])[..., 0]
+            return (np.swapaxes(coordinates.turn(theta), 1, 2) @ pushed[..., None])[..., 0]
 
-        self.exact = {
-            "M": times(self.turn, self.turn),
-            "K": times(self.turn, self.turn, squares),
-            "A": times(self.turn, self.slope),
-            "B": times(self.slope, self.slope),
-            "f": force,
-        }
-        if self.drag:
-            self.exact["C"] = times(self.turn, self.turn, self.drag)
-            self.exact["D"] = times(self.turn, self.slope, self.drag)
-        terms = tuple(Term(name, None, function) for name, function in self.exact.items())
-        self.system = LinearPeriodic(n, terms, {}, lambda values: {})
+        self.exact = coordinates.arrays(self.natural**2, self.drag) | {"f": force}
+        self.system = without_parameters(self.exact)
 
     def condition(self):
         """Return the largest condition of K over a revolution."""
         theta = np.linspace(0.0, 2 * np.pi, 48)
         return float(np.max(np.linalg.cond(self.exact["K"](theta))))
-
-    def turn(self, theta):
-        k = np.arange(1, self.waves.shape[1] + 1)
-        angle = np.multiply.outer(theta, k)
-        waves = np.einsum("tk,kij->tij", np.cos(angle), self.waves[0].astype(theta.dtype))
-        return self.fixed + waves + np.einsum("tk,kij->tij", np.sin(angle), self.waves[1])
-
-    def slope(self, theta):
-        k = np.arange(1, self.waves.shape[1] + 1)
-        angle = np.multiply.outer(theta, k)
-        waves = np.einsum("tk,kij->tij", k * np.cos(angle), self.waves[1].astype(theta.dtype))
-        return waves - np.einsum("tk,kij->tij", k * np.sin(angle), self.waves[0])
 
 
 def reduced(rng):
@@ -107,8 +83,9 @@ def exact_parts(scene, small, theta):
     return found
 
 
-def ratios(rng):
-    """Return estimate over error of the arrays, and of the squared frequencies that they hold."""
+@over_scenes(9100, floor=1e-17)
+def test_arrays_and_squared_frequencies(rng):
+    """Arrays, and the squared frequencies that they hold."""
     scene, small = reduced(rng)
     theta = rng.uniform(0.0, 2 * np.pi, ANGLES)
     worst = 0.0
@@ -123,15 +100,7 @@ def ratios(rng):
     off = np.max(np.abs(np.sort(squares, axis=1) - scene.natural[: small.size] ** 2)) / largest
     # Each entry of M and of K may be off, and the basis rounds what it was made from.
     allowed = 2 * small.size * small.error + 1e-14 * scene.condition()
-    return np.array([small.error / max(worst, 1e-17)]), np.array([allowed / max(off, 1e-17)])
-
-
-@SCENES
-def test_arrays_and_squared_frequencies(scenes):
-    rng = np.random.default_rng(9100)
-    arrays, squares = zip(*(ratios(rng) for _ in range(scenes)), strict=True)
-    verdict(arrays, scenes)
-    verdict(squares, scenes)
+    return {"arrays": (small.error, worst), "squares": (allowed, off)}
 
 
 def test_the_estimate_sees_arrays_that_no_series_resolves():

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from elastolink import resonance_curve
-from elastolink.runtime.core.errors import LinearRangeWarning
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import campbell, critical_speeds, natural_frequencies
 from elastolink.runtime.periodic import steady_peaks
-from honesty import verdict
+from honesty import over_scenes
 from manufactured import manufactured
-
-SCENES = 200
+from wavy_springs import WavyCoordinates, without_parameters
 
 
 class Turned:
@@ -27,78 +24,46 @@ class Turned:
         self.natural = np.sqrt(squares.astype(np.longdouble))
         fixed = np.eye(count) + 0.15 * rng.standard_normal((count, count))
         fixed = np.rint(fixed * 1024.0) / 1024.0
-        waves = (0.08 if wavy else 0.0) * rng.standard_normal((2, count, count))
-
-        def turn(theta):
-            first = np.multiply.outer(np.cos(theta), waves[0])
-            return fixed + first + np.multiply.outer(np.sin(theta), waves[1])
-
-        def slope(theta):
-            first = np.multiply.outer(np.cos(theta), waves[1])
-            return first - np.multiply.outer(np.sin(theta), waves[0])
-
-        def made(left, right, weight=1.0):
-            return lambda theta: np.swapaxes(left(theta), 1, 2) * weight @ right(theta)
-
-        terms = [
-            Term("M", None, made(turn, turn)),
-            Term("K", None, made(turn, turn, squares)),
-            Term("A", None, made(turn, slope)),
-            Term("B", None, made(slope, slope)),
-        ]
-        if drag:
-            terms += [
-                Term("C", None, made(turn, turn, drag)),
-                Term("D", None, made(turn, slope, drag)),
-            ]
-        self.system = LinearPeriodic(count, tuple(terms), {}, lambda values: {})
+        waves = (0.08 if wavy else 0.0) * rng.standard_normal((2, 1, count, count))
+        self.system = without_parameters(WavyCoordinates(fixed, waves).arrays(squares, drag))
 
 
-def above(error, actual, size):
-    """Return figures over actual errors, these no less than half a last digit."""
-    return np.ravel(error / np.maximum(np.abs(actual), 1e-16 * np.abs(size))).astype(float)
+def to_a_digit(error, actual, size):
+    """Return estimates and actual errors, these no less than half a last digit of a size."""
+    return error, np.maximum(np.abs(actual), 1e-16 * np.abs(size))
 
 
-def test_held_frequencies_and_campbell():
-    rng = np.random.default_rng(71)
-    frozen, held = [], []
-    for _ in range(SCENES):
-        scene = Turned(rng, wavy=False)
-        angles = rng.uniform(0.0, 6.0, 3)
-        found = natural_frequencies(scene.system, angles, scene.system.size)
-        frozen.append(above(found.error, found.frequency - scene.natural, scene.natural))
-        drawn = campbell(scene.system, np.linspace(2.0, 9.0, 4), exponents=False)
-        held.append(above(drawn.error, drawn.held - scene.natural, scene.natural))
-    verdict(frozen, SCENES)
-    verdict(held, SCENES)
+@over_scenes(71, few=5, many=50)
+def test_held_frequencies_and_campbell(rng):
+    scene = Turned(rng, wavy=False)
+    angles = rng.uniform(0.0, 6.0, 3)
+    found = natural_frequencies(scene.system, angles, scene.system.size)
+    drawn = campbell(scene.system, np.linspace(2.0, 9.0, 4))
+    return {
+        "held": to_a_digit(found.error, found.frequency - scene.natural, scene.natural),
+        "drawn": to_a_digit(drawn.error, drawn.held - scene.natural, scene.natural),
+    }
 
 
-def test_fractions_of_mean_frequencies():
-    rng = np.random.default_rng(72)
-    ratios = []
-    for _ in range(SCENES):
-        scene = Turned(rng, wavy=False)
-        found = critical_speeds(scene.system, (6.0, 30.0))
-        exact = scene.natural[found.mode - 1] / found.order
-        ratios.append(above(found.error, found.speed - exact, exact))
-    verdict(ratios, SCENES)
+@over_scenes(72, few=200, many=None)
+def test_fractions_of_mean_frequencies(rng):
+    scene = Turned(rng, wavy=False)
+    found = critical_speeds(scene.system, (6.0, 30.0))
+    exact = scene.natural[found.mode - 1] / found.order
+    return to_a_digit(found.error, found.speed - exact, exact)
 
 
-@pytest.mark.slow
-def test_maxima_of_multipliers():
+@over_scenes(73, few=None, many=100)
+def test_maxima_of_multipliers(rng):
     """exp(-c t/2) cos(w t) over the period t is greatest where tan(w t) = -c/(2 w)."""
-    rng = np.random.default_rng(73)
-    ratios = []
-    while len(ratios) < SCENES // 2:
-        drag = float(rng.choice([0.0, rng.uniform(0.1, 3.0)]))
-        scene = Turned(rng, count=1, drag=drag)
-        own = np.sqrt(scene.natural[0] ** 2 - drag**2 / 4)
-        n = int(rng.integers(1, 4))
-        exact = 2 * np.pi * own / (2 * np.pi * n - np.arctan(drag / (2 * own)))
-        found = critical_speeds(scene.system, (0.9 * exact, 1.1 * exact), method="multipliers")
-        assert len(found.speed) == 1
-        ratios.append(above(found.error, found.speed - exact, exact))
-    verdict(ratios, SCENES // 2)
+    drag = float(rng.choice([0.0, rng.uniform(0.1, 3.0)]))
+    scene = Turned(rng, count=1, drag=drag)
+    own = np.sqrt(scene.natural[0] ** 2 - drag**2 / 4)
+    n = int(rng.integers(1, 4))
+    exact = 2 * np.pi * own / (2 * np.pi * n - np.arctan(drag / (2 * own)))
+    found = critical_speeds(scene.system, (0.9 * exact, 1.1 * exact), method="multipliers")
+    assert len(found.speed) == 1
+    return to_a_digit(found.error, found.speed - exact, exact)
 
 
 class Forced:
@@ -142,29 +107,15 @@ class Forced:
         return at
 
 
-@pytest.mark.slow
-def test_maxima_of_the_response():
+@over_scenes(74, few=None)
+def test_maxima_of_the_response(rng):
     """The speed at which two oscillators and three harmonics together move most."""
-    rng = np.random.default_rng(74)
-    ratios = []
-    for _ in range(SCENES):
-        scene = Forced(rng)
-        top = scene.natural[0] / int(rng.integers(1, 4))
-        span = (top * rng.uniform(0.75, 0.9), top * rng.uniform(1.1, 1.25))
-        found = critical_speeds(scene.system, span, method="response", speeds=31)
-        for speed, error in zip(found.speed, found.error, strict=True):
-            ratios.append(above(error, speed - scene.maximum(speed), speed))
-    verdict(ratios, SCENES)
-
-
-def _with_shapes(seed):
-    system, speed, motion = manufactured(seed)
-    n = system.size
-
-    def shape(x):
-        return 1e-4 * np.stack([np.asarray(x) ** (k + 1) for k in range(n)], axis=1)
-
-    return replace(system, shape=shape), speed, motion, shape
+    scene = Forced(rng)
+    top = scene.natural[0] / int(rng.integers(1, 4))
+    span = (top * rng.uniform(0.75, 0.9), top * rng.uniform(1.1, 1.25))
+    found = critical_speeds(scene.system, span, method="response", speeds=31)
+    exact = np.array([scene.maximum(speed) for speed in found.speed])
+    return to_a_digit(found.error, found.speed - exact, found.speed)
 
 
 def _largest(motion, weights):
@@ -179,19 +130,16 @@ def _largest(motion, weights):
     return float(np.max(values))
 
 
-@pytest.mark.slow
-def test_peaks_of_steady_motions():
-    ratios, curves = [], []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LinearRangeWarning)
-        for seed in range(SCENES):
-            system, speed, motion, shape = _with_shapes(7000 + seed)
-            found = steady_peaks(system, [speed], x=[0.5, 1.0])
-            exact = [_largest(motion, shape(np.array([x]))[0]) for x in (0.5, 1.0)]
-            actual = abs(found.peak[0] - max(exact)) / max(exact)
-            ratios.append(above(found.error, actual, 1.0))
-            curve = resonance_curve(system, speed * np.array([0.999, 1.0, 1.001]))
-            actual = abs(curve.peak[1] - exact[1]) / exact[1]
-            curves.append(above(curve.error[1], actual, 1.0))
-    verdict(ratios, SCENES)
-    verdict(curves, SCENES)
+@pytest.mark.filterwarnings("ignore::elastolink.LinearRangeWarning")
+@over_scenes(75, few=None)
+def test_peaks_of_steady_motions(rng):
+    system, speed, motion = manufactured(int(rng.integers(2**32)))
+    powers = np.arange(1, system.size + 1)
+    system = replace(system, shape=lambda x: 1e-4 * np.asarray(x)[:, None] ** powers)
+    peaks = steady_peaks(system, [speed], x=[0.5, 1.0])
+    half, end = (_largest(motion, 1e-4 * x**powers) for x in (0.5, 1.0))
+    curve = resonance_curve(system, speed * np.array([0.999, 1.0, 1.001]))
+    return {
+        "peaks": to_a_digit(peaks.error, peaks.peak[0] / max(half, end) - 1.0, 1.0),
+        "curve": to_a_digit(curve.error[1], curve.peak[1] / end - 1.0, 1.0),
+    }

@@ -14,12 +14,11 @@ import numpy as np
 import pytest
 from balancing_machines import random_machine
 from elastolink.runtime.rigid import Bounds, trade_off
-from honesty import verdict
+from honesty import over_scenes
 
 pytestmark = pytest.mark.skipif(
     np.finfo(np.longdouble).eps > 1e-18, reason="the reference needs a long double of 80 bits"
 )
-SOME = [pytest.param(4, id="some"), pytest.param(24, marks=pytest.mark.slow, id="all")]
 POINTS = 5  # of each curve: 210 estimates in all
 
 
@@ -95,34 +94,32 @@ def scene(rng):
     return machine, theta, speed, acceleration, bounds
 
 
-@pytest.mark.parametrize("machines", SOME)
-def test_bounds_of_points_hold_and_are_not_idle(machines):
-    rng = np.random.default_rng(34)
-    ratios = []
-    for _ in range(machines):
-        machine, theta, speed, acceleration, bounds = scene(rng)
-        found = trade_off(
-            machine,
-            speed,
-            "shaking_force",
-            "f12",
-            POINTS,
-            acceleration=acceleration,
-            links=("crank",),
-            bounds=bounds,
-            angles=theta,
-        )
-        assert found.passed
-        first, second = seen_from_crank(machine, theta, speed, acceleration)
-        # A mass m at r pulls with m r (w^2 - i alpha) along the crank.
-        reach = bounds.mass * bounds.offset * np.hypot(speed**2, acceleration)
-        peak, size = np.max(np.abs(first)), np.max(np.abs(second))
-        for x, y, error in zip(found.first_values, found.second_values, found.error, strict=True):
-            # f12 is the pull of the frame on the crank, the shaking force that on the frame.
-            limits = [(-z / size, x * peak / size) for z in first]
-            least = least_radius(second / size, [*limits, (0 * peak, reach / size)])
-            assert y - least <= error
-            # The bound is of what lies above.  All are of the order of 1: no difference below its
-            # round-off means anything.
-            ratios.append(np.array([error / max(y - least, np.finfo(float).eps / 2.0)]))
-    verdict(ratios, POINTS * machines)
+@over_scenes(34, few=4, many=24, floor=np.finfo(float).eps / 2.0)
+def test_bounds_of_points_hold_and_are_not_idle(rng):
+    """All are of the order of 1: no difference below its round-off means anything."""
+    machine, theta, speed, acceleration, bounds = scene(rng)
+    found = trade_off(
+        machine,
+        speed,
+        "shaking_force",
+        "f12",
+        POINTS,
+        acceleration=acceleration,
+        links=("crank",),
+        bounds=bounds,
+        angles=theta,
+    )
+    assert found.passed
+    first, second = seen_from_crank(machine, theta, speed, acceleration)
+    # A mass m at r pulls with m r (w^2 - i alpha) along the crank.
+    reach = bounds.mass * bounds.offset * np.hypot(speed**2, acceleration)
+    peak, size = np.max(np.abs(first)), np.max(np.abs(second))
+    above = []
+    for x, y, error in zip(found.first_values, found.second_values, found.error, strict=True):
+        # f12 is the pull of the frame on the crank, the shaking force that on the frame.
+        limits = [(-z / size, x * peak / size) for z in first]
+        least = least_radius(second / size, [*limits, (0 * peak, reach / size)])
+        assert y - least <= error
+        # The bound is of what lies above.
+        above.append(max(y - least, 0.0))
+    return found.error, above

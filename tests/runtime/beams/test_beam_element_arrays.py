@@ -43,30 +43,6 @@ def test_matrices_are_symmetric_or_skew_and_cannot_be_written_to(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_energies_by_quadrature_of_the_shapes(kind):
-    """Kinetic, strain and geometric energy, power of a load: Gauss points against matrices."""
-    rng = np.random.default_rng(7)
-    q, p, found = nodal(kind, rng), nodal(kind, rng), arrays(kind)
-    points, weights = np.polynomial.legendre.leggauss(8)
-    xi, dx = (points + 1) / 2, weights * LENGTH / 2
-    (u, v), (strain, slope) = (shape_functions(kind, xi, LENGTH, k, **STIFF) for k in (0, 1))
-    turn, bend = (section_rotation(kind, xi, LENGTH, k, **STIFF) @ q for k in (0, 1))
-    thick = kind == "timoshenko"
-    moving = 1.2 * ((u @ q) ** 2 + (v @ q) ** 2) + 2e-4 * thick * turn**2
-    assert q @ found.mass @ q == pytest.approx(dx @ moving, rel=1e-12)
-    energy = 1e6 * (strain @ q) ** 2 + BENDING * bend**2 + SHEAR * (slope @ q - turn) ** 2
-    assert q @ found.stiffness @ q == pytest.approx(dx @ energy, rel=1e-12)
-    crossed = 1.2 * ((v @ q) * (u @ p) - (u @ q) * (v @ p))
-    assert q @ found.coupling @ p == pytest.approx(dx @ crossed, rel=1e-11)
-    for k in range(3):
-        pulled = xi**k * (slope @ q) ** 2
-        assert q @ found.geometric[k] @ q == pytest.approx(dx @ pulled, rel=1e-12)
-    ends = np.array([3.0, -1.0, 2.0, 5.0])
-    work = (3.0 - 4.0 * xi) * (u @ q) + (2.0 + 3.0 * xi) * (v @ q)
-    assert q @ found.load @ ends == pytest.approx(dx @ work, rel=1e-12)
-
-
-@pytest.mark.parametrize("kind", KINDS)
 def test_derivatives_of_the_shapes_by_differences(kind):
     q = nodal(kind, np.random.default_rng(8))
     xi, h = np.array([0.1, 0.45, 0.8]), 1e-5
@@ -77,15 +53,6 @@ def test_derivatives_of_the_shapes_by_differences(kind):
             difference = (two - one) @ q / (2 * h * LENGTH)
             scale = np.max(np.abs(slope)) * np.max(np.abs(q)) + np.max(np.abs(one)) * 1e-3
             np.testing.assert_allclose(slope @ q, difference, atol=1e-6 * scale + 1e-8)
-
-
-def test_shear_force_of_timoshenkos_beam_from_either_side():
-    """``k G A (v' - psi)`` is ``-EI psi''``, the same everywhere."""
-    q = nodal("timoshenko", np.random.default_rng(9))
-    xi = np.linspace(0.0, 1.0, 5)
-    slope = shape_functions("timoshenko", xi, LENGTH, 1, **STIFF)[1]
-    turn, second = (section_rotation("timoshenko", xi, LENGTH, k, **STIFF) for k in (0, 2))
-    np.testing.assert_allclose(SHEAR * (slope - turn) @ q, -BENDING * second @ q, rtol=1e-8)
 
 
 def test_kinds_without_shear_do_not_use_its_numbers():

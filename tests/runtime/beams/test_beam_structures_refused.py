@@ -204,7 +204,6 @@ def test_unknown_names_of_a_structure():
     structure = beam_linkage(FOUR_BAR, BARS, elements=1)
     refused(lambda: structure.beam("rod"), "rod", "crank")
     refused(lambda: structure.node("E"), "E")
-    refused(lambda: structure.index("A.x"), "A.x", "B.x")
 
 
 def standing(theta, length=1.0):

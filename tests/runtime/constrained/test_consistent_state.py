@@ -5,8 +5,7 @@ from __future__ import annotations
 import elastolink as el
 import numpy as np
 import pytest
-from constrained_truth import Circle
-from elastolink.generated import four_bar_multibody as multibody
+from constrained_truth import LENGTHS, Circle, driven_four_bar
 from elastolink.runtime.constrained import consistent_state
 from elastolink.runtime.core.errors import BadInput, RedundantConstraints
 from elastolink.runtime.core.families import Constrained
@@ -62,31 +61,13 @@ def test_a_batch_is_as_each_alone():
         np.testing.assert_allclose(together.qd[i], alone.qd, rtol=1e-9, atol=1e-10)
 
 
-LENGTHS = {"frame": 1.0, "crank": 0.3, "coupler": 0.9, "follower": 0.8}
-
-
-def four_bar(turning=0.0, mass: float = 1.0):
-    """The four-bar with a driven crank: as many constraints as coordinates."""
-    values = dict.fromkeys(multibody.PARAMETERS, 0.0) | LENGTHS
-    for n, length in ((2, 0.3), (3, 0.9), (4, 0.8)):
-        values[f"mass{n}"] = mass * length
-        values[f"along{n}"] = mass * length**2 / 2
-        values[f"inertia{n}"] = mass * length**3 / 3
-    drive = {
-        "drive": lambda q, t: turning * t,
-        "drive_d1": lambda q, t: turning,
-        "drive_d2": lambda q, t: 0.0,
-    }
-    return Constrained.from_module(multibody, values, external=drive)
-
-
 def test_a_driven_linkage_finds_its_position():
     linkage = el.FourBar(**LENGTHS)
     exact = linkage.motion(0.8, 5.0)
     t, turning = 0.16, 5.0
     guess = np.zeros(9)
     guess[[2, 5, 8]] = 0.8, float(exact.theta3) + 0.3, float(exact.theta4) - 0.2
-    found = consistent_state(four_bar(turning), guess, np.zeros(9), t)
+    found = consistent_state(driven_four_bar(turning), guess, np.zeros(9), t)
     np.testing.assert_allclose(found.q[5], exact.theta3, rtol=1e-13)
     np.testing.assert_allclose(found.q[8], exact.theta4, rtol=1e-13)
     np.testing.assert_allclose(found.qd[[5, 8]], [exact.omega3, exact.omega4], rtol=1e-12)

@@ -14,7 +14,6 @@ from elastolink.runtime.design import (
     quiet_speeds,
     running_speed,
     screen,
-    screening_error,
 )
 from elastolink.runtime.design.quiet import _bands, _maxima
 from elastolink.runtime.linkages import FourBar
@@ -97,7 +96,8 @@ def test_damping_helps_at_a_critical_speed_and_hurts_a_link_at_a_quiet_one():
     # Aannaque 7.4.2; the machine of Table 4.1 with one element: critical at 61.4, quiet at 41.
     found = damping_effect(system(), [41.0, 61.4], [0.02, 0.06])
     assert np.all(found.change[1, 1] < 0.8)
-    assert np.any(found.hurts()[0])
+    doubt = np.sum(found.error[:, 0], axis=0)
+    assert np.any(found.change[1, 0] > 1.0 + doubt)
     with pytest.raises(BadInput, match="without modal damping"):
         damping_effect(load_scene(TABLE, overrides={"damping.ratio": 0.0}).system(), [10.0], [0.1])
 
@@ -108,7 +108,6 @@ def test_a_longer_frame_lowers_the_stresses_up_to_a_length():
     worst = np.max(found.maximum, axis=(1, 2))
     assert worst[1] < 0.7 * worst[0] and worst[2] > worst[1]
     assert found.transmission is not None and found.transmission[2, 1] > np.radians(150)
-    assert found.best(limit=0.64)[0] == 0.632
     with pytest.raises(BadInput, match="cannot turn"):
         length_effect(system(), "frame", [0.7], [30.0])
 
@@ -143,18 +142,15 @@ def test_the_screen_is_quasi_static_at_low_speed_and_peaks_at_the_fractions_of_t
     found = screen(made, speeds, damping=0.02)
     full = stress_curve(made, speeds, method="shape")
     # At 2 rad/s the third harmonic lies at 0.033 of the first frequency: 0.1 % of amplification.
-    ratio = screening_error(found, full.speed, full.maximum)["ratio"]
-    np.testing.assert_allclose(ratio, 1.0, atol=0.01)
+    np.testing.assert_allclose(found.maximum / full.maximum, 1.0, atol=0.01)
     near = np.linspace(58.0, 65.0, 141)
     peak = near[np.argmax(np.max(screen(made, near, damping=0.02).maximum, axis=1))]
-    np.testing.assert_allclose(peak, found.mean_frequency[0] / 3.0, rtol=0.01)
-    with pytest.raises(BadInput, match="other speeds"):
-        screening_error(found, np.array([1.0]), full.maximum[:1])
+    np.testing.assert_allclose(peak, found.mean_frequency / 3.0, rtol=0.01)
 
 
 def test_a_resonance_without_damping_is_infinite_and_constant_loads_count():
     made = system()
-    mean = screen(made, [10.0], damping=0.02).mean_frequency[0]
+    mean = screen(made, [10.0], damping=0.02).mean_frequency
     assert np.all(np.isinf(screen(made, [mean / 3.0], damping=0.0).maximum))
     heavy = linkage_system(
         FourBar(crank=0.17, coupler=0.328, follower=0.525, frame=0.547),
@@ -225,20 +221,6 @@ def test_compression_counts_as_no_mean_and_small_cycles_do_no_damage():
     found = fatigue(of_history(-300e6 + 150e6 * np.cos(theta)), STEEL)
     np.testing.assert_allclose(found.amplitude, 150e6, rtol=1e-12)
     assert np.all(found.damage == 0) and found.revolutions == np.inf
-
-
-def test_nested_cycles_are_counted_apart():
-    # Peaks 300, valley 100, peak 200, valley -300 MPa: one cycle 300/-300, one 100/200 inside.
-    theta = np.linspace(0.0, 2 * np.pi, 5)
-    corners = np.array([300e6, 100e6, 200e6, -300e6, 300e6])
-    count = 4000
-    fine = 2 * np.pi * np.arange(count) / count
-    found = fatigue(of_history(np.interp(fine, theta, corners)), STEEL)
-    # The Fourier series of a polygon overshoots its corners by 1/count of the slopes.
-    large, small = 300e6, 50e6 / (1 - 150.0 / 600.0)
-    np.testing.assert_allclose(found.amplitude, large, rtol=2e-3)
-    assert small < STEEL.endurance_limit
-    np.testing.assert_allclose(found.damage, (large / 200e6) ** 9 / 1e6, rtol=2e-2)
 
 
 def test_a_cycle_that_reaches_the_strength_is_no_life():

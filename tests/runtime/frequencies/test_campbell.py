@@ -104,10 +104,8 @@ def test_a_parametric_resonance_grows_and_locks():
     assert np.max(np.abs(found.growth[[0, 3], 0])) < 1e-5
 
 
-def test_the_picture_is_drawn_without_exponents_too():
-    found = campbell(_system(), np.linspace(10.0, 40.0, 8), exponents=False)
-    assert np.all(np.isnan(found.running)) and len(found.crossing_speed)
-    assert found.plot().get_xlabel() == "crank speed [rad/s]"
+def test_the_picture_is_drawn():
+    assert campbell(_system(), np.linspace(10.0, 40.0, 8)).plot().get_xlabel().startswith("crank")
     assert campbell(_system(0.0, 200.0), np.linspace(55.0, 65.0, 5)).plot().get_ylabel()
 
 

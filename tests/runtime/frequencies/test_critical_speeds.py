@@ -9,7 +9,6 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.frequencies import critical_speeds
 from elastolink.runtime.frequencies.critical import label_speeds
-from elastolink.runtime.frequencies.multiplier_maxima import multiplier_maxima
 
 FREQUENCY = np.array([30.0, 71.0])
 
@@ -92,15 +91,6 @@ def test_the_place_of_a_maximum_to_its_error():
     found = critical_speeds(system, (20.0, 40.0), method="response", speeds=31)
     assert len(found.speed) == 1
     assert abs(found.speed[0] - np.sqrt(900.0 - c**2 / 2)) <= found.error[0] < 1e-2
-
-
-def test_multipliers_of_a_constant_frequency_and_their_errors():
-    terms = Term("M", None, np.eye(1)), Term("K", None, np.array([[100.0]]))
-    found = multiplier_maxima(LinearPeriodic(1, terms, {}, lambda values: {}), (1.5, 3.2))
-    exact = 10.0 / np.round(10.0 / found.speed)
-    assert np.round(10.0 / np.sort(found.speed)).tolist() == [6, 5, 4]
-    assert np.all(np.abs(found.speed - exact) <= found.error) and np.max(found.error) < 1e-4
-    np.testing.assert_allclose(found.value, 1.0, atol=1e-9)
 
 
 @pytest.mark.smoke

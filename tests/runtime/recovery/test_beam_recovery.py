@@ -19,7 +19,7 @@ from elastolink.runtime.beams import KINDS, Section, frame, linear_system, linka
 from elastolink.runtime.beams.element_forms import ElementForms
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.trigonometric import even_angles, interpolated
-from elastolink.runtime.recovery import BeamMotion, recover
+from elastolink.runtime.recovery import BeamMotion, recover, stress_operator
 from elastolink.runtime.recovery.beam_forces import recovery, stations_of
 from elastolink.runtime.systems import with_modal_damping
 
@@ -177,16 +177,20 @@ def test_forces_jump_nowhere_between_elements():
 def test_accelerations_from_the_series_and_from_the_equation_agree():
     system = linkage_system(FOUR_BAR, SECTIONS, joint_masses=JOINT_MASSES, elements=1)
     motion = periodic_motion(system, 17.0)
-    made = recovery(system, motion.theta, 5)
-    second = fourier_derivative(len(motion.theta)) @ motion.slope
+    forms = ElementForms(system, motion.theta)
+    made = recovery(forms, stations_of(system.structure, 5))
+    by_series = fourier_derivative(len(motion.theta)) @ motion.slope
+    by_equation = forms.acceleration.values(17.0, motion.q, motion.slope) / 17.0**2
     for name in ("axial", "shear", "moment"):
-        series = made.values(name, 17.0, motion.q, motion.slope, second)
-        equation = made.values(name, 17.0, motion.q, motion.slope)
-        eliminated = made.without_accelerations().forms[name].values(17.0, motion.q, motion.slope)
+        series = made[name].values(17.0, motion.q, motion.slope, by_series)
+        equation = made[name].values(17.0, motion.q, motion.slope, by_equation)
+        short = made[name].eliminated(forms.acceleration)
         size = np.max(np.abs(series))
         # The highest harmonic of an even number of samples has no derivative.
         np.testing.assert_allclose(equation, series, atol=1e-5 * size)
-        np.testing.assert_allclose(eliminated, equation, atol=1e-10 * size)
+        np.testing.assert_allclose(
+            short.values(17.0, motion.q, motion.slope), equation, atol=1e-10 * size
+        )
 
 
 def test_the_two_ways_differ_by_their_error():
@@ -238,7 +242,7 @@ def test_unusable_arguments_are_refused():
         recover(system, motion, method="guess")
     for theta in ("late", [np.nan], [[0.0]], []):
         with pytest.raises(BadInput, match="theta"):
-            recovery(system, theta)
+            stress_operator(system, theta)
     with pytest.raises(BadInput, match="coordinates"):
         recover(turning_bar(rocking, elements=2), motion)
     with pytest.raises(BadInput, match="motion"):

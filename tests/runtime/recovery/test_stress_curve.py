@@ -7,8 +7,7 @@ from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.recovery import stress_curve
 from elastolink.runtime.recovery.stresses import stress
 
-# One range of tables; the slow tests have two.
-SPEEDS, WIDE = np.linspace(18.0, 35.0, 60), np.linspace(18.0, 60.0, 90)
+SPEEDS = np.linspace(18.0, 35.0, 60)
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +29,7 @@ def test_it_passes_its_own_checks_whatever_the_order(system, curve):
     given = [*SPEEDS[::-3], SPEEDS[0], SPEEDS[-1]]
     turned = stress_curve(system, given, stations=5, stability=False)
     assert np.array_equal(turned.maximum[0], turned.maximum[-1])
-    assert turned.stable is None and turned.undecided is None and turned.unstable_ranges == ()
+    assert turned.stable is None and turned.unstable_ranges == ()
     gap = np.abs(turned.maximum[:20] / curve.maximum[::-3] - 1.0)
     assert np.all(gap <= turned.error[:20] + curve.error[::-3])
 
@@ -58,15 +57,7 @@ def test_stability_is_that_of_the_multipliers(system):
     assert np.all(np.abs(found.multiplier - largest) <= found.multiplier_error)
     assert found.stable.tolist() == whole.stable.tolist() == [True, True, False]
     assert found.unstable_ranges == ((86.0, 90.0),)
-    assert not np.any(found.undecided)
     assert "unstable" in [text.get_text() for text in found.plot().get_legend().get_texts()]
-
-
-@pytest.mark.slow
-def test_more_modes_change_it_by_less_than_its_error(system):
-    curve = stress_curve(system, WIDE, stations=5)
-    more = stress_curve(system, WIDE, stations=5, modes=8)
-    assert np.all(np.abs(more.maximum / curve.maximum - 1.0) <= curve.error + more.error)
 
 
 @pytest.mark.parametrize(

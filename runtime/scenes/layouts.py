@@ -32,7 +32,7 @@ from .linkage_tables import (
     rigid_tables,
 )
 from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
-from .schema import Key, Layout, Table
+from .schema import Key, Layout, Table, not_negative
 
 _RIGID = ("kinematics", "forces")
 
@@ -137,7 +137,7 @@ HILL = Layout(
             (
                 Key("lam2", "square of the natural frequency over the crank speed", required=True),
                 Key("mu", "factor of the function", required=True),
-                Key("damping", "K of Smith (7.38)", default=0.0, limit="non-negative"),
+                not_negative("damping", "K of Smith (7.38)", default=0.0),
             ),
             required=True,
         ),

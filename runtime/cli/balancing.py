@@ -129,10 +129,7 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 
 def _case(
-    options: argparse.Namespace,
-    machine: Machine,
-    drive: tuple[float, float],
-    offset: float | None,
+    options: argparse.Namespace, machine: Machine, drive: tuple[float, float], offset: float | None
 ) -> int:
     from ..rigid import balance
 
@@ -156,10 +153,7 @@ def _trade_off(
     first, second = names
     points = _POINTS if options.points is None else options.points
     curve = trade_off(
-        *(machine, drive[0], first, second, points),
-        acceleration=drive[1],
-        offsets=offset,
-        **where,
+        *(machine, drive[0], first, second, points), acceleration=drive[1], offsets=offset, **where
     )
     rows = [
         (f"{x:.6f}", f"{y:.6f}")

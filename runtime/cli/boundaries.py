@@ -73,9 +73,7 @@ def _add_boundaries(commands: Any) -> None:
         help="of the perturbation: uniform through the tip of a region (default), or the series",
     )
     edges.add_argument(
-        "--certified",
-        action="store_true",
-        help="proved enclosures by exact arithmetic",
+        "--certified", action="store_true", help="proved enclosures by exact arithmetic"
     )
 
 

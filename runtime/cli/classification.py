@@ -103,9 +103,7 @@ def _transmission_lines(found: Any) -> list[str]:
     low, high = (math.degrees(value) for value in (found.least, found.greatest))
     band = "within" if found.within_band else "outside"
     first, last = (math.degrees(value) for value in found.band)
-    lines = [
-        f"transmission angle: {low:.6g} to {high:.6g} deg, {band} {first:g} to {last:g} deg",
-    ]
+    lines = [f"transmission angle: {low:.6g} to {high:.6g} deg, {band} {first:g} to {last:g} deg"]
     for name, angle in found.dead_centres.items():
         at = math.degrees(angle)
         lines.append(f"dead centre, {name}: crank at {at:.6g} deg")

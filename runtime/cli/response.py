@@ -44,11 +44,7 @@ def add(commands: Any) -> None:
         help="place on the link, 0 to 1, whose deflection is shown; default where it is largest",
     )
 
-    steady.add_argument(
-        "--method",
-        default=None,
-        help="auto (default) or harmonic_balance",
-    )
+    steady.add_argument("--method", default=None, help="auto (default) or harmonic_balance")
 
 
 def _steady_state(options: argparse.Namespace) -> int:

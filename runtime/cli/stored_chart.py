@@ -23,9 +23,7 @@ _MOST_WORKERS = 1024
 def add_options(chart: argparse.ArgumentParser) -> None:
     """Add what concerns large charts to the subcommand."""
     chart.add_argument(
-        "--workers",
-        metavar="N",
-        help="work in N processes; the answer does not depend on it",
+        "--workers", metavar="N", help="work in N processes; the answer does not depend on it"
     )
     chart.add_argument(
         "--store",

@@ -108,10 +108,7 @@ class PeriodicFunction:
 
     @classmethod
     def from_callable(
-        cls,
-        f: Callable[[Array], ArrayLike],
-        tol: float | None = None,
-        name: str | None = None,
+        cls, f: Callable[[Array], ArrayLike], tol: float | None = None, name: str | None = None
     ) -> PeriodicFunction:
         """Find the Fourier series of a function, doubling the samples until the tail is small.
 

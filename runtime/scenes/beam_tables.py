@@ -41,16 +41,7 @@ MATERIAL = Table(
 MESH = Table(
     "mesh",
     "how the links are divided",
-    (
-        Key(
-            "elements",
-            "elements of every link",
-            "count",
-            default=3,
-            limit="positive",
-            most=200,
-        ),
-    ),
+    (Key("elements", "elements of every link", "count", default=3, limit="positive", most=200),),
 )
 DAMPING = Table(
     "damping",

@@ -51,15 +51,7 @@ RIGID_FOUR_BAR = Layout(
     "four_bar",
     _RIGID,
     rigid_tables(FOUR_BAR_LENGTHS, LINKS[1:]),
-    outputs=(
-        "theta3",
-        "theta4",
-        "omega3",
-        "omega4",
-        "alpha3",
-        "alpha4",
-        "transmission_angle",
-    ),
+    outputs=("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle"),
     links=LINKS[1:],
 )
 

@@ -84,11 +84,7 @@ class Store:
     def _about(self) -> dict[str, Any] | None:
         """Return the manifest of what lies there; None where nothing does."""
         if self.single and self.path.exists():
-            with (
-                self._reading(self.path),
-                self.path.open("rb") as stream,
-                np.load(stream) as held,
-            ):
+            with self._reading(self.path), self.path.open("rb") as stream, np.load(stream) as held:
                 found: dict[str, Any] = json.loads(bytes(held[_ABOUT]))
                 return found
         manifest = self.folder / _MANIFEST

@@ -140,10 +140,7 @@ def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
 
 
 def _chart(
-    system: LinearPeriodic,
-    axes: Mapping[str, Array],
-    options: Mapping[str, Any],
-    outputs: Outputs,
+    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
 ) -> Piece:
     from ..stability import stability_chart
 
@@ -191,10 +188,7 @@ def _by_geometry(
 
 
 def _multipliers(
-    system: LinearPeriodic,
-    axes: Mapping[str, Array],
-    options: Mapping[str, Any],
-    outputs: Outputs,
+    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
 ) -> Piece:
     def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
         from ..periodic import floquet_multipliers
@@ -212,10 +206,7 @@ def _multipliers(
 
 
 def _steady(
-    system: LinearPeriodic,
-    axes: Mapping[str, Array],
-    options: Mapping[str, Any],
-    outputs: Outputs,
+    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
 ) -> Piece:
     def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
         from ..periodic import steady_state

@@ -18,18 +18,12 @@ CLAMPED = ("x", "y", "rotation")
 BAR = Section(area=1e-4, second_moment=1e-9, modulus=1e9, density=1e4)
 
 
-@pytest.mark.parametrize(
-    "exponent",
-    [1, 3, 5, pytest.param(7, marks=pytest.mark.slow), 8],
-)
+@pytest.mark.parametrize("exponent", [1, 3, 5, pytest.param(7, marks=pytest.mark.slow), 8])
 def test_coordinates_that_hardly_differ(exponent):
     """Danger: a basis nearly dependent.  Estimate: that of the multipliers."""
     squares, speed = np.array([2.0, 5.3]), 1.1
     basis = np.array([[1.0, 1.0], [0.0, 10.0**-exponent]])
-    terms = (
-        Term("M", None, basis.T @ basis),
-        Term("K", None, basis.T @ np.diag(squares) @ basis),
-    )
+    terms = (Term("M", None, basis.T @ basis), Term("K", None, basis.T @ np.diag(squares) @ basis))
     system = LinearPeriodic(2, terms, {}, lambda values: {})
     try:
         found = floquet_multipliers(system, speed)

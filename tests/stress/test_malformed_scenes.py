@@ -38,17 +38,8 @@ BROKEN = {
         "natural_frequency": "3 1/s",
         "damping": -0.1,
     },
-    "measured": {
-        "follower_inertias": [1, 2],
-        "follower_inertia_tolerances": [1],
-        "speeds": 3,
-    },
-    "chart": {
-        "x": "sped",
-        "x_range": [1, 2, 3],
-        "y": "follower_inertia",
-        "y_range": ["3 m", 4],
-    },
+    "measured": {"follower_inertias": [1, 2], "follower_inertia_tolerances": [1], "speeds": 3},
+    "chart": {"x": "sped", "x_range": [1, 2, 3], "y": "follower_inertia", "y_range": ["3 m", 4]},
 }
 KEYS = [f"{table}.{key}" for table, v in DOCUMENT.items() if isinstance(v, dict) for key in v]
 

@@ -15,9 +15,5 @@ if TYPE_CHECKING:
     from .report import read_cost as read_cost
 
 __all__, __getattr__, __dir__ = on_first_use(
-    globals(),
-    {
-        "explanation": ("Explanation",),
-        "report": ("explain", "read_cost"),
-    },
+    globals(), {"explanation": ("Explanation",), "report": ("explain", "read_cost")}
 )

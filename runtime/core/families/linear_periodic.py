@@ -479,8 +479,7 @@ def _merged(
 
 
 def _then(
-    make: Callable[[Any], LinearPeriodic] | None,
-    change: Callable[[LinearPeriodic], LinearPeriodic],
+    make: Callable[[Any], LinearPeriodic] | None, change: Callable[[LinearPeriodic], LinearPeriodic]
 ) -> Callable[[Any], LinearPeriodic] | None:
     """Return what makes a system anew and changes it as this one is changed."""
     return None if make is None else partial(_made_then, make, change)

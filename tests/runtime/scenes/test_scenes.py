@@ -358,8 +358,7 @@ def test_an_inertia_that_no_body_has_is_refused(change):
 
 def test_a_point_mass_is_a_body():
     rigid = load_scene(
-        "smith_1972_2122",
-        {"crank.mass": 2.0, "crank.first_moment": 0.2, "crank.inertia": 0.02},
+        "smith_1972_2122", {"crank.mass": 2.0, "crank.first_moment": 0.2, "crank.inertia": 0.02}
     )
     assert rigid.get("crank.inertia") == 0.02
 

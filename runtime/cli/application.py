@@ -36,7 +36,7 @@ from . import (
     stability,
     tolerances,
 )
-from .options import HelpFormatter
+from .options import HelpFormatter, picture
 
 # In the order of the help.
 _GROUPS = (
@@ -114,6 +114,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder = getattr(options, "modules", None)
     try:
         with _module_folder(folder), _short_warnings(prefix), time_taken():
+            picture(options)  # refused before the work starts
             status: int = options.run(options)
             sys.stdout.flush()
             return status

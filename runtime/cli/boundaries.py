@@ -132,7 +132,6 @@ def _regions(given: str | None) -> tuple[int, ...]:
 
 
 def _boundaries(options: argparse.Namespace) -> int:
-    opt.picture(options)
     if options.form and options.order is None:
         opt.refuse_unused(options, ("form",), "--order N")
     regions = _regions(options.regions)
@@ -299,7 +298,6 @@ def _bars(ax: Any, exact: Boundaries, frequency: float) -> None:
 
 
 def _perturb(options: argparse.Namespace) -> int:
-    opt.picture(options)
     regions = _regions(options.regions)
     if options.latex:
         return _formulas(options)

@@ -47,7 +47,6 @@ def _classify(options: argparse.Namespace) -> int:
     from ..linkages.classification import Classification, classify
     from ..linkages.transmission import transmission_angle
 
-    opt.picture(options)
     if options.plot is None:
         opt.refuse_unused(options, ("base_plane",), "--plot FILE beside it")
     linkage: Any = _linkage(options)

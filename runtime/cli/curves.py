@@ -90,7 +90,6 @@ def _add_harmonics(commands: Any) -> None:
 
 
 def _curve(options: argparse.Namespace) -> int:
-    opt.picture(options)
     if options.animate is not None:
         from ..linkages.pictures import check_animation_path
 
@@ -163,20 +162,19 @@ def _described(curve: CouplerCurve) -> list[str]:
 
 
 def _harmonics(options: argparse.Namespace) -> int:
-    opt.picture(options)
     scene = opt.load(options)
     source = _source(options, scene)
     given = {} if options.accuracy is None else {"accuracy": options.accuracy}
     from ..linkages import harmonics
 
     found = harmonics(source, order=options.order, **given)
-    rows = [
-        (str(m), f"{a:.12g}", f"{b:.12g}", f"{size:.6g}", f"{phase:.4f}")
-        for m, (a, b, size, phase) in enumerate(
-            zip(found.a, found.b, found.amplitude, found.phase, strict=True)
-        )
-    ]
-    lines = opt.table(("harmonic", "cosine", "sine", "amplitude", "phase [rad]"), rows)
+    lines = opt.columns(
+        ("harmonic", "", range(len(found.a))),
+        ("cosine", ".12g", found.a),
+        ("sine", ".12g", found.b),
+        ("amplitude", ".6g", found.amplitude),
+        ("phase [rad]", ".4f", found.phase),
+    )
     if found.secular:
         lines.append(f"beside {found.secular:g} times the crank angle")
     return opt.finish(options, found, [*lines, "", f"{found.evaluations} angles"])

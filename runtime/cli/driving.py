@@ -54,7 +54,6 @@ def _run_up(options: argparse.Namespace) -> int:
     from ..rigid import run_up
     from ..scenes.rigid import flywheel
 
-    opt.picture(options)
     scene = opt.load(options)
     machine = scene.machine()
     torque = _torque(options, scene)

@@ -23,6 +23,5 @@ def add(commands: Any) -> None:
 def _explain(options: argparse.Namespace) -> int:
     from .skipping import explain
 
-    opt.picture(options)  # refused before the work starts
     result = explain(options.scene, opt.settings(options.set))
     return opt.finish(options, result, result.lines())

@@ -59,7 +59,6 @@ def _forces(options: argparse.Namespace) -> int:
 
     from ..rigid import rigid_forces
 
-    opt.picture(options)
     if options.plot is None:
         opt.refuse_unused(options, ("joint",), "--plot FILE beside it")
     scene = opt.load(options)

@@ -86,7 +86,6 @@ def _pair(text: str) -> tuple[float, float]:
 def _kinematics(options: argparse.Namespace) -> int:
     import numpy as np
 
-    opt.picture(options)
     if options.animate is not None:
         from ..linkages.pictures import animate, check_animation_path
 
@@ -110,17 +109,16 @@ def _table(motion: Motion) -> list[str]:
 
     count = motion.theta2.size
     chosen = opt.even_rows(count)
-    header, columns = [], []
+    columns = []
     for name in ("theta2", *motion.places, *motion.rates):
         unit = "rad" if name == "theta2" else motion.unit(name)
         values = getattr(motion, name)[chosen]
         if unit == "rad":
             unit, values = "deg", np.degrees(values)
-        header.append(name if unit == "1" else f"{name} [{unit}]")
         form = ".4f" if unit == "deg" else ".6f" if name in motion.rates else ".6g"
         # No minus before a zero.
-        columns.append([format(float(value), f"z{form}") for value in values])
-    lines = [*opt.table(header, list(zip(*columns, strict=True))), ""]
+        columns.append((name if unit == "1" else f"{name} [{unit}]", f"z{form}", values))
+    lines = [*opt.columns(*columns), ""]
     crossing = getattr(motion, "transmission_angle", None)
     if crossing is not None:
         low, high = np.degrees([crossing.min(), crossing.max()])
@@ -200,7 +198,6 @@ def _speed(options: argparse.Namespace, scene: Scene) -> float:
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    opt.picture(options)
     if not 0 < options.revolutions <= 1e6:
         found = f"{options.revolutions:g}"
         raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     import numpy as np
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from ..core.results import Check, Result
@@ -235,11 +234,11 @@ def draw_into(options: argparse.Namespace, draw: Callable[[Axes], Any]) -> None:
     """Write the requested picture, if any."""
     path = picture(options)
     if path is not None:
-        from ..core.plotting import new_figure
+        from ..core.plotting import new_figure, save_figure
 
         figure = new_figure()
         draw(figure.add_subplot())
-        save(figure, path)
+        save_figure(figure, path)
 
 
 def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]]) -> int:
@@ -249,13 +248,6 @@ def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]
         text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
         print(f"elastolink {options.command}: {text}", file=sys.stderr)
     return int(bool(failed))
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure, whole or not at all."""
-    from ..core.plotting import save_figure
-
-    save_figure(figure, path)
 
 
 def print_json(content: Any) -> None:
@@ -301,6 +293,13 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
         cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
         lines.append("  ".join(cells).rstrip())
     return lines
+
+
+def columns(*columns: tuple[str, str, Iterable[Any]]) -> list[str]:
+    """Return the lines of a table of columns: heading, format of its cells, values."""
+    header = [heading for heading, _, _ in columns]
+    cells = ([format(value, form) for value in values] for _, form, values in columns)
+    return table(header, list(zip(*cells, strict=True)))
 
 
 def ranges(result: Result) -> list[str]:

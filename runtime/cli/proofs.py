@@ -52,7 +52,6 @@ def _writable_folder(name: str) -> Path:
 
 def _reproduce(options: argparse.Namespace) -> int:
     folder = _writable_folder(options.out)
-    opt.picture(options)
     from ..gallery import reproduce
 
     result = reproduce(options.document, options.figure, folder, progress=opt.progress(options))

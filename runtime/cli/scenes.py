@@ -41,14 +41,14 @@ def _scenes(options: argparse.Namespace) -> int:
 
     path = opt.picture(options)
     if path is not None:
-        from ..core.plotting import new_figure
+        from ..core.plotting import new_figure, save_figure
 
         names = list_scenes()
         rows = -(-len(names) // 3)
         figure = new_figure(12.0, 3.0 * rows)
         for place, name in enumerate(names, start=1):
             draw_scene(load_scene(name), figure.add_subplot(rows, 3, place))
-        opt.save(figure, path)
+        save_figure(figure, path)
     titles = scene_titles()
     if options.json:
         opt.print_json(
@@ -62,14 +62,8 @@ def _scenes(options: argparse.Namespace) -> int:
 
 
 def _show(options: argparse.Namespace) -> int:
-    path = opt.picture(options)
     scene = opt.load(options)
-    if path is not None:
-        from ..core.plotting import new_figure
-
-        figure = new_figure()
-        draw_scene(scene, figure.add_subplot())
-        opt.save(figure, path)
+    opt.draw_into(options, lambda ax: draw_scene(scene, ax))
     if options.json:
         opt.print_json(scene.to_dict())
     else:

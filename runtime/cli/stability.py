@@ -78,7 +78,6 @@ def add(commands: Any) -> None:
 
 
 def _stability(options: argparse.Namespace) -> int:
-    opt.picture(options)
     scene = opt.load(options)
     if constrained.is_constrained(scene):
         return constrained.stability(options, scene)
@@ -130,7 +129,6 @@ def _crank(speed: float, scene: Scene) -> str:
 
 
 def _chart(options: argparse.Namespace) -> int:
-    opt.picture(options)
     stored_chart.check(options)
     scene = opt.load(options)
     system = scene.linear_system()

@@ -84,7 +84,6 @@ def _tolerances(options: argparse.Namespace) -> int:
 
     from ..linkages.length_tolerances import tolerances
 
-    opt.picture(options)
     scene = opt.load(options)
     subject: Any = scene.machine() if options.forces else scene.mechanism()
     linkage = subject.linkage if options.forces else subject

@@ -18,7 +18,7 @@ from typing import NoReturn
 
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from ..core.progress import time_taken
-from ..core.threads import use_one_thread
+from ..core.threads import environment, use_one_thread
 from . import (
     balancing,
     beams,
@@ -58,7 +58,6 @@ _GROUPS = (
 )
 _BAD_INPUT = 2
 _INTERRUPTED = 130
-_MODULES = "ELASTOLINK_GENERATED"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -152,15 +151,8 @@ def _module_folder(folder: str | None) -> Iterator[None]:
             "a folder with a manifest.json",
             "regenerate-equations writes one",
         )
-    before = os.environ.get(_MODULES)
-    os.environ[_MODULES] = folder
-    try:
+    with environment({"ELASTOLINK_GENERATED": folder}):
         yield
-    finally:
-        if before is None:
-            del os.environ[_MODULES]
-        else:
-            os.environ[_MODULES] = before
 
 
 @contextmanager

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from ..sweeps import Sweep
 
 Axis = tuple[str, list[float]]
-_MOST_WORKERS = 1024
 
 
 def add_options(chart: argparse.ArgumentParser) -> None:
@@ -54,11 +53,10 @@ def workers(options: argparse.Namespace) -> Iterator[Executor | None]:
 def _count(options: argparse.Namespace) -> int:
     if options.workers is None:
         return 1
+    from ..core.workers import check_workers
+
     text = options.workers.strip()
-    if not (text.isdecimal() and 1 <= int(text) <= _MOST_WORKERS):
-        expected = f"a whole number from 1 to {_MOST_WORKERS}"
-        raise bad("--workers", repr(options.workers), expected, "give the number of cores")
-    return int(text)
+    return check_workers(int(text) if text.isdecimal() else text, "--workers")
 
 
 def check(options: argparse.Namespace) -> None:

@@ -21,11 +21,10 @@ from typing import Any
 
 from .errors import ElastolinkError, bad
 from .inputs import require_whole
-from .threads import THREADS
+from .threads import THREADS, environment
 
 # Pieces handed over for each worker: one being done and one waiting.
 _EACH = 2
-_MOST_WORKERS = 1024
 
 
 class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
@@ -167,31 +166,25 @@ def process_pool(workers: int) -> Iterator[Executor]:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    check_workers(workers)
-    before = {name: os.environ.get(name) for name in THREADS}
+    count = check_workers(workers)
+    context = multiprocessing.get_context("spawn")
     # The libraries read it as they load, in the processes that start here.
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(max_workers=int(workers), mp_context=context) as pool:
-            yield pool
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+    with (
+        environment(dict.fromkeys(THREADS, "1")),
+        ProcessPoolExecutor(max_workers=count, mp_context=context) as pool,
+    ):
+        yield pool
 
 
-def check_workers(workers: object) -> None:
-    """Refuse a number of workers that is none.
+def check_workers(workers: object, where: str = "workers") -> int:
+    """Return a number of workers.
 
     Raises
     ------
     BadInput
         If it is not a whole number from 1 to 1024.
     """
-    require_whole("workers", workers, 1, _MOST_WORKERS, "give the number of cores")
+    return require_whole(where, workers, 1, 1024, "give the number of cores")
 
 
 _prepared = threading.local()

@@ -27,7 +27,6 @@ from . import (
     clearance,
     curves,
     driving,
-    explain,
     forces,
     linkages,
     proofs,
@@ -41,7 +40,6 @@ from .options import HelpFormatter, picture
 # In the order of the help.
 _GROUPS = (
     scenes,
-    explain,
     linkages,
     classification,
     curves,

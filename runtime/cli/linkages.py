@@ -12,8 +12,10 @@ from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..linkages import Motion
+    from ..linkages import Linkage, Motion
     from ..scenes import Scene
+
+WHOLE_TURN = "0:360:721deg"
 
 
 def add(commands: Any) -> None:
@@ -126,6 +128,26 @@ def _table(motion: Motion) -> list[str]:
     if motion.relative:
         lines.append("speeds over omega2, accelerations over omega2^2, at constant crank speed")
     return lines
+
+
+def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> list[float]:
+    """Return the crank angles [rad] of ``--angles``: a turn by default, or a range without folds.
+
+    Parameters
+    ----------
+    options : Namespace
+        With ``angles``.
+    linkage : Linkage
+        What turns.
+    margin : float
+        Share of the range that the crank reaches, to stay away from the folds at its ends.
+    """
+    if options.angles is not None or linkage.crank_turns:
+        text = WHOLE_TURN if options.angles is None else options.angles
+        return opt.values(text, "angle", "--angles")
+    low, high = linkage.crank_ranges()[-1]
+    inset = margin * (high - low)
+    return opt.spaced(low + inset, high - inset, 721)
 
 
 def drive_options(parser: argparse.ArgumentParser, default: str) -> None:

@@ -11,13 +11,9 @@ from typing import Any
 from ..core.errors import bad
 from . import options as opt
 
-_REPORTS = (
-    *("chart", "slices", "forces", "mathieu", "perturbation", "rod", "scaling", "stress-curve"),
-)
-
 
 def add(commands: Any) -> None:
-    """Add the two subcommands."""
+    """Add the subcommand."""
     reproduce = opt.command(
         commands,
         "reproduce",

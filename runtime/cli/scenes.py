@@ -1,4 +1,4 @@
-"""``elastolink scenes`` and ``elastolink show``: what there is, and the numbers of one scene."""
+"""``elastolink scenes``, ``show``, ``explain``: what there is, numbers and needs of one scene."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def add(commands: Any) -> None:
-    """Add the two subcommands."""
+    """Add the three subcommands."""
     listing = opt.command(
         commands,
         "scenes",
@@ -34,6 +34,14 @@ def add(commands: Any) -> None:
         example="elastolink show smith_1972_5152_sixteenth_inch --set coupler.damping_ratio=0.01",
     )
     opt.scene_options(showing)
+    explaining = opt.command(
+        commands,
+        "explain",
+        _explain,
+        summary="Tell what a scene needs, and what is not derived, emitted, imported or evaluated.",
+        example="elastolink explain smith_1972_5152_sixteenth_inch --set model.modes=2",
+    )
+    opt.scene_options(explaining)
 
 
 def _scenes(options: argparse.Namespace) -> int:
@@ -69,6 +77,13 @@ def _show(options: argparse.Namespace) -> int:
     else:
         print("\n".join(_lines(scene)))
     return 0
+
+
+def _explain(options: argparse.Namespace) -> int:
+    from .skipping import explain
+
+    result = explain(options.scene, opt.settings(options.set))
+    return opt.finish(options, result, result.lines())
 
 
 def _lines(scene: Scene) -> list[str]:

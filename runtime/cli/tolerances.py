@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import WHOLE_TURN, angles_of, speed_of
 
 if TYPE_CHECKING:
     from ..linkages.length_tolerances import Tolerances, ToleranceTrial
-    from ..linkages.linkage import Linkage
     from ..scenes import Scene
 
-_WHOLE_TURN = "0:360:721deg"
 _DIMENSIONS = {
     "theta2": "angle",
     "mass": "mass",
@@ -50,7 +48,7 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--angles",
         metavar="START:STOP:COUNT[UNIT]",
-        help=f"crank angles; default {_WHOLE_TURN}, or the range that the crank reaches",
+        help=f"crank angles; default {WHOLE_TURN}, or the range that the crank reaches",
     )
     parser.add_argument("--forces", action="store_true", help="forces too; needs a crank speed")
     parser.add_argument(
@@ -87,7 +85,8 @@ def _tolerances(options: argparse.Namespace) -> int:
     scene = opt.load(options)
     subject: Any = scene.machine() if options.forces else scene.mechanism()
     linkage = subject.linkage if options.forces else subject
-    theta = np.array(_angles(options, linkage))
+    # At the folds themselves the sensitivities are infinite: stay a twentieth of the range away.
+    theta = np.array(angles_of(options, linkage, margin=0.05))
     speed, acceleration = _drive(options, scene)
     widths = dict(_width(pair) for pair in options.tolerance)
     if not widths:
@@ -105,18 +104,6 @@ def _tolerances(options: argparse.Namespace) -> int:
         status = 0 if trial.passed else 1
     done = opt.finish(options, found, lines, lambda ax: found.plot(ax, output=options.output))
     return max(status, done)
-
-
-def _angles(options: argparse.Namespace, linkage: Linkage) -> list[float]:
-    """Return the wanted angles; by default a turn, or the first range that the crank reaches."""
-    if options.angles is not None:
-        return opt.values(options.angles, "angle", "--angles")
-    if linkage.crank_turns:
-        return opt.values(_WHOLE_TURN, "angle", "--angles")
-    low, high = linkage.crank_ranges()[-1]
-    # At the folds themselves the sensitivities are infinite: stay a twentieth of the range away.
-    margin = 0.05 * (high - low)
-    return opt.spaced(low + margin, high - margin, 721)
 
 
 def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:

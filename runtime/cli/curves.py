@@ -110,13 +110,7 @@ def _curve(options: argparse.Namespace) -> int:
 
 
 def _point(text: str, linkage: Linkage, link: str) -> tuple[float, float]:
-    """Return the place of a point in its link [m].
-
-    Raises
-    ------
-    BadInput
-        If these are no two lengths, or the link has no length to count plain numbers in.
-    """
+    """Return the place of a point in its link [m]."""
     parts = text.split(",")
     if len(parts) != 2:
         raise bad("--point", repr(text), "ALONG,ACROSS", "write it like 0.5,0.3 or '6 in,2 in'")
@@ -181,13 +175,7 @@ def _harmonics(options: argparse.Namespace) -> int:
 
 
 def _source(options: argparse.Namespace, scene: Scene) -> Source:
-    """Return what is to be analysed: a field of the motion, or else a force.
-
-    Raises
-    ------
-    BadInput
-        If the name is neither.
-    """
+    """Return what is to be analysed: a field of the motion, or else a force."""
     import numpy as np
 
     linkage = scene.mechanism()

@@ -80,13 +80,7 @@ def _given(options: argparse.Namespace, name: str, dimension: str) -> float | No
 
 
 def _torque(options: argparse.Namespace, scene: Scene) -> TorqueLine | float:
-    """Return what drives: the constant torque, or the torque line of options and scene.
-
-    Raises
-    ------
-    BadInput
-        If both kinds are given, or no motor is known.
-    """
+    """Return what drives: the constant torque, or the torque line of options and scene."""
     from ..rigid import TorqueLine
 
     constant = _given(options, "torque", "moment")

@@ -169,11 +169,6 @@ def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
     """Return crank speed and acceleration [rad/s, rad/s^2], from the options or the scene.
 
     Both may have either sign, or be zero.
-
-    Raises
-    ------
-    BadInput
-        If no speed is given, or one of them is no such quantity.
     """
     if options.acceleration is None:
         acceleration = float(scene.get("operation.acceleration", 0.0))
@@ -184,13 +179,7 @@ def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 
 def speed_of(options: argparse.Namespace, scene: Scene) -> float:
-    """Return the crank speed [rad/s]: the option, or ``operation.speed`` of the scene.
-
-    Raises
-    ------
-    BadInput
-        If neither is given, or the speed is not positive.
-    """
+    """Return the crank speed [rad/s]: the option, or ``operation.speed`` of the scene."""
     speed = _speed(options, scene)
     if not speed > 0:
         raise bad("--speed", repr(options.speed), "a positive crank speed", "correct the sign")
@@ -198,13 +187,7 @@ def speed_of(options: argparse.Namespace, scene: Scene) -> float:
 
 
 def refuse_frame(scene: Scene) -> None:
-    """Refuse a scene without a crank.
-
-    Raises
-    ------
-    BadInput
-        If the scene is of a frame.
-    """
+    """Refuse a scene without a crank."""
     if scene.model["mechanism"] == "frame":
         fix = "use frequencies or stress"
         raise bad(f"scene {scene.name}", "a frame, which has no crank", "a linkage", fix)

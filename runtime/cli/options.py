@@ -87,13 +87,7 @@ def scene_options(parser: argparse.ArgumentParser) -> None:
 
 
 def load(options: argparse.Namespace) -> Scene:
-    """Return the scene that the options name, with its overrides.
-
-    Raises
-    ------
-    BadInput
-        If there is no such scene, or anything in it or in an override is wrong.
-    """
+    """Return the scene that the options name, with its overrides."""
     from ..scenes import load_scene
 
     return load_scene(options.scene, overrides=settings(options.set))
@@ -104,11 +98,6 @@ def settings(pairs: Sequence[str]) -> dict[str, Any]:
 
     A value that TOML can read (``3``, ``[1, 2]``, ``"15 in"``) is taken as such, any other one
     (``15 in``) as text.
-
-    Raises
-    ------
-    BadInput
-        If one of them has no equals sign or no key.
     """
     overrides = {}
     for pair in pairs:
@@ -130,11 +119,6 @@ def values(text: str, dimension: str, where: str) -> list[float]:
     """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
 
     The unit may also stand with the ends: ``100rpm:900rpm:200``.
-
-    Raises
-    ------
-    BadInput
-        If the text has another form, an end is no such quantity, or the values do not increase.
     """
     parts = text.split(":")
     match = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
@@ -156,13 +140,7 @@ def spaced(start: float, stop: float, count: int) -> list[float]:
 
 
 def picture(options: argparse.Namespace) -> Path | None:
-    """Return the path of the wanted picture, refused here if it cannot be written.
-
-    Raises
-    ------
-    BadInput
-        If the ending is unknown, or the folder is missing or read-only.
-    """
+    """Return the path of the wanted picture, refused here if it cannot be written."""
     if options.plot is None:
         return None
     from ..core.plotting import check_picture_path

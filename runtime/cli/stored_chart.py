@@ -60,13 +60,7 @@ def _count(options: argparse.Namespace) -> int:
 
 
 def check(options: argparse.Namespace) -> None:
-    """Refuse options that do not go together.
-
-    Raises
-    ------
-    BadInput
-        If boundaries are asked for that a store has not, or an estimate without a store.
-    """
+    """Refuse options that do not go together."""
     _count(options)
     if options.store is None:
         opt.refuse_unused(options, ("estimate",), "--store PATH")

@@ -120,13 +120,7 @@ def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 
 def _width(pair: str) -> tuple[str, float]:
-    """Return name and width of a tolerance in SI units.
-
-    Raises
-    ------
-    BadInput
-        If it has no equals sign, or the width is no such quantity.
-    """
+    """Return name and width of a tolerance in SI units."""
     name, sign, width = pair.partition("=")
     if not sign or not name.strip():
         raise bad("--tolerance", repr(pair), "NAME=WIDTH", "write --tolerance crank='0.05 mm'")

@@ -128,13 +128,7 @@ class Workers:
 
 
 def check_executor(executor: object) -> None:
-    """Refuse what is neither None nor an executor.
-
-    Raises
-    ------
-    BadInput
-        If it is something else.
-    """
+    """Refuse what is neither None nor an executor."""
     if executor is not None and not isinstance(executor, Executor):
         raise bad(
             "executor",
@@ -177,13 +171,7 @@ def process_pool(workers: int) -> Iterator[Executor]:
 
 
 def check_workers(workers: object, where: str = "workers") -> int:
-    """Return a number of workers.
-
-    Raises
-    ------
-    BadInput
-        If it is not a whole number from 1 to 1024.
-    """
+    """Return a number of workers from 1 to 1024; refuse anything else."""
     return require_whole(where, workers, 1, 1024, "give the number of cores")
 
 

@@ -78,13 +78,7 @@ def complete_crank(links: dict[str, Any]) -> None:
 
 
 def complete_rod(rod: dict[str, Any]) -> None:
-    """Fill in the bending stiffness, and zeros where no damping is given.
-
-    Raises
-    ------
-    BadInput
-        If a modulus stands without a second moment of area.
-    """
+    """Fill in the bending stiffness, and zeros where no damping is given."""
     if "modulus" in rod:
         if "second_moment" not in rod:
             expected = "second_moment beside it"

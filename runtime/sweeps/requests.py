@@ -35,13 +35,7 @@ def request_of(
     options: Mapping[str, object],
     outputs: tuple[str, ...] | None,
 ) -> dict[str, Any]:
-    """Return what a manifest says of a request: names, counts and digests, ready for JSON.
-
-    Raises
-    ------
-    BadInput
-        If the subject or an option is of a kind that cannot be told from another.
-    """
+    """Return what a manifest says of a request: names, counts and digests, ready for JSON."""
     from ... import __version__
 
     axes = [
@@ -74,13 +68,7 @@ def digest_of_request(request: Mapping[str, Any]) -> str:
 
 
 def digest(value: object) -> str:
-    """Return a digest that depends on content alone, not on addresses or the order of sets.
-
-    Raises
-    ------
-    BadInput
-        If something in it has no content that could be told.
-    """
+    """Return a digest that depends on content alone, not on addresses or the order of sets."""
     found = hashlib.sha256()
     _feed(found, value, ())
     return found.hexdigest()

@@ -64,13 +64,7 @@ class Store:
         self._parts = self.folder / "pieces"
 
     def finished(self) -> Joined | None:
-        """Return the sweep where it is complete; refuse another one's.
-
-        Raises
-        ------
-        BadInput
-            If the store holds another request, or cannot be read.
-        """
+        """Return the sweep where it is complete; refuse another one's."""
         about = self._about()
         if about is None:
             return None
@@ -143,13 +137,7 @@ class Store:
 
     @contextmanager
     def opened(self) -> Iterator[Store]:
-        """Begin the store, or take it up again; no two processes at once, where that can be told.
-
-        Raises
-        ------
-        BadInput
-            If the place cannot be written, or another process is at it.
-        """
+        """Begin the store, or take it up again; refuse a second process, where one can be told."""
         manifest = self.folder / _MANIFEST
         try:
             self._parts.mkdir(parents=True, exist_ok=True)
@@ -195,13 +183,7 @@ class Store:
         return Piece.from_about(arrays, about)
 
     def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Any) -> Joined:
-        """Join the pieces, one by one through memory, and remove them.
-
-        Raises
-        ------
-        BadInput
-            If a piece has been removed meanwhile.
-        """
+        """Join the pieces, one by one through memory, and remove them."""
         about = {
             "digest": digest_of_request(self.request),
             "request": self.request,

@@ -158,13 +158,7 @@ def planned(
     outputs: tuple[str, ...] | None,
     chunk: int | None,
 ) -> Plan:
-    """Return the plan of a sweep.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
-    """
+    """Return the plan of a sweep."""
     task = task_of(what)
     grid = grid_of(values, task.chunk if chunk is None else check_chunk(chunk), rows=task.rows)
     if isinstance(subject, Scene) and task.of_systems:

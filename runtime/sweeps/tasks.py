@@ -254,13 +254,7 @@ def _each(
 def _own_values(
     function: Callable[..., Any], subject: Any, names: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return which values are the subject's own, and not arguments of the function.
-
-    Raises
-    ------
-    BadInput
-        If one is neither.
-    """
+    """Return which values are the subject's own, and not arguments of the function."""
     try:
         arguments = list(inspect.signature(function).parameters.values())[1:]
     except (TypeError, ValueError):
@@ -293,13 +287,7 @@ def _moved(subject: Any, values: dict[str, float]) -> Any:
 
 
 def _wanted(arrays: dict[str, AnyArray], outputs: Outputs) -> dict[str, AnyArray]:
-    """Return the arrays that are wanted.
-
-    Raises
-    ------
-    BadInput
-        If one of them is not among those that there are.
-    """
+    """Return the arrays that are wanted."""
     if outputs is None:
         return arrays
     missing = [name for name in outputs if name not in arrays]
@@ -344,13 +332,7 @@ NAMED: Mapping[str, Task] = {
 
 
 def task_of(what: str | Callable[..., Any]) -> Task:
-    """Return the task that a name or a function stands for.
-
-    Raises
-    ------
-    BadInput
-        If it is neither the name of a public function nor callable.
-    """
+    """Return the task that a name or a function stands for."""
     if isinstance(what, str):
         if what in NAMED:
             return NAMED[what]

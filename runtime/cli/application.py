@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
+from ... import __version__
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from ..core.progress import time_taken
 from ..core.threads import environment, use_one_thread
@@ -66,17 +67,6 @@ class _Parser(argparse.ArgumentParser):
         self.exit(_BAD_INPUT, f"{self.prog}: {message}; `{self.prog} --help` explains\n")
 
 
-class _Version(argparse.Action):
-    """Print the version; the package is asked only then."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        """Print and leave."""
-        import elastolink
-
-        print(f"elastolink {elastolink.__version__}")
-        parser.exit(0)
-
-
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command; nothing but the standard library is imported."""
     parser = _Parser(
@@ -88,7 +78,12 @@ def build_parser() -> argparse.ArgumentParser:
         ),
         formatter_class=HelpFormatter,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and leave")
+    parser.add_argument(
+        "--version",
+        action="version",
+        version=f"elastolink {__version__}",
+        help="print the version and leave",
+    )
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, parser_class=_Parser
     )

@@ -22,10 +22,7 @@ def add(commands: Any) -> None:
             "  elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png"
         ),
     )
-    opt.scene_options(parser)
-    for action in parser._actions:
-        if action.dest == "scene":
-            action.nargs, action.required, action.default = "?", False, None
+    opt.scene_options(parser, nargs="?")
     parser.add_argument(
         "--lengths", metavar="A,B,C,D", help="frame, crank, coupler, follower, instead of a scene"
     )

@@ -71,9 +71,11 @@ def command(
     return parser
 
 
-def scene_options(parser: argparse.ArgumentParser) -> None:
+def scene_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
     """Add the scene, overrides of its keys, and the folder of emitted modules."""
-    parser.add_argument("scene", metavar="SCENE", help="a built-in name or a .toml file")
+    parser.add_argument(
+        "scene", nargs=nargs, metavar="SCENE", help="a built-in name or a .toml file"
+    )
     parser.add_argument(
         "--set",
         action="append",

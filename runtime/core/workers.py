@@ -15,7 +15,6 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import contextmanager
-from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -111,13 +110,10 @@ class Workers:
         executor = self._executor
         if executor is None:
             raise ValueError("no executor")
-        call = partial(work, self._subject) if self._sent is None else partial(_call, self._sent)
         try:
-            return (
-                executor.submit(call, item)
-                if self._sent is None
-                else executor.submit(call, work, item)
-            )
+            if self._sent is None:
+                return executor.submit(work, self._subject, item)
+            return executor.submit(_call, self._sent, work, item)
         except BrokenExecutor as reason:
             raise _lost(reason) from reason
         except RuntimeError as reason:

@@ -203,8 +203,8 @@ class PeriodicFunction:
         """Return the sum with another function or with a constant."""
         if isinstance(other, PeriodicFunction):
             size = max(len(self.a), len(other.a))
-            a, b = _filled(self.a, size), _filled(self.b, size)
-            a, b = a + _filled(other.a, size), b + _filled(other.b, size)
+            a = _filled(self.a, size) + _filled(other.a, size)
+            b = _filled(self.b, size) + _filled(other.b, size)
             return PeriodicFunction(a, b, self.error + other.error)
         if not isinstance(other, (int, float, np.integer, np.floating)):
             return NotImplemented

@@ -131,16 +131,9 @@ def _table(motion: Motion) -> list[str]:
 
 
 def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> list[float]:
-    """Return the crank angles [rad] of ``--angles``: a turn by default, or a range without folds.
+    """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
 
-    Parameters
-    ----------
-    options : Namespace
-        With ``angles``.
-    linkage : Linkage
-        What turns.
-    margin : float
-        Share of the range that the crank reaches, to stay away from the folds at its ends.
+    At either end of that range, where the linkage folds, a share of it (``margin``) is left out.
     """
     if options.angles is not None or linkage.crank_turns:
         text = WHOLE_TURN if options.angles is None else options.angles

@@ -43,21 +43,7 @@ def command(
     summary: str,
     example: str,
 ) -> argparse.ArgumentParser:
-    """Add a subcommand with a worked example at the end of its help.
-
-    Parameters
-    ----------
-    commands : object
-        What ``add_subparsers`` returned.
-    name : str
-        As it is typed.
-    run : callable
-        Does the work and returns the exit status.
-    summary : str
-        One sentence.
-    example : str
-        Command lines and what they give.
-    """
+    """Add a subcommand that ``run`` does, with worked examples at the end of its help."""
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
@@ -151,17 +137,7 @@ def picture(options: argparse.Namespace) -> Path | None:
 
 
 def refuse_unused(options: argparse.Namespace, names: Sequence[str], without: str) -> None:
-    """Raise BadInput for an option that was given and would do nothing.
-
-    Parameters
-    ----------
-    options : Namespace
-        An option that was not given is None or False there.
-    names : sequence of str
-        The options, as attributes.
-    without : str
-        What they go with, such as ``"--plot FILE"``.
-    """
+    """Refuse an option that was given and does nothing but with what ``without`` names."""
     for name in names:
         given = getattr(options, name)
         if given is not None and given is not False:

@@ -125,20 +125,7 @@ def _several(numbers: tuple[float, ...], dimension: str) -> str:
 
 
 def draw_scene(scene: Scene, ax: Axes) -> Axes:
-    """Draw a scene's linkage at several crank angles, its frame, or a Hill equation's function.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a ``[links]``, a ``[members]`` or a ``[function]`` table.
-    ax : Axes
-        Where to draw.
-
-    Returns
-    -------
-    Axes
-        The same axes.
-    """
+    """Draw a scene's linkage at several crank angles, its frame, or a Hill equation's function."""
     from ..scenes.scene import LINKAGES
 
     ax.set_title(scene.name, fontsize="medium")

@@ -18,7 +18,7 @@ from elastolink.runtime.core.families import (
     Transcendental,
     array_function,
 )
-from elastolink.runtime.core.families.emitted import check_module, parameter_values, stacked
+from elastolink.runtime.core.families.emitted import check_module, parameter_values
 from elastolink.runtime.systems import assemble
 
 
@@ -198,20 +198,13 @@ def module(**changes) -> types.SimpleNamespace:
     return types.SimpleNamespace(**values)
 
 
-def test_entries_are_stacked_behind_the_batch():
-    found = stacked(PLACES, (np.array([1.0, 2.0, 3.0]), 4.0), (3,))
-    assert found["K"].shape == (3, 2, 2)
-    np.testing.assert_array_equal(found["K"][2], [[3.0, 4.0], [4.0, 0.0]])
-    np.testing.assert_array_equal(found["f"], np.zeros((3, 2, 1)))
-    single = stacked({"K": ((1, 1), ((0, 0, 0),))}, 5.0)
-    np.testing.assert_array_equal(single["K"], [[5.0]])
-
-
 def test_functions_of_arrays_broadcast_all_their_arguments():
     function = array_function(module(), "element")
     found = function(np.ones((4, 1)), m=np.array([1.0, 2.0, 3.0]), k=2.0)
     assert found["K"].shape == (4, 3, 2, 2)
     np.testing.assert_array_equal(found["K"][0, 2], [[2.0, -3.0], [-3.0, 0.0]])
+    np.testing.assert_array_equal(found["f"], np.zeros((4, 3, 2, 1)))
+    np.testing.assert_array_equal(function(2.0, 3.0, 4.0)["K"], [[8.0, -3.0], [-3.0, 0.0]])
     np.testing.assert_array_equal(
         array_function(module(), "idle")(np.ones(2))["f"].shape, (2, 2, 1)
     )

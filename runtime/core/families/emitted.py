@@ -96,7 +96,7 @@ def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Arr
             "correct it",
         )
     places: Places = known[name]
-    function: Callable[..., object] = getattr(module, name, _nothing)
+    function: Callable[..., object] = getattr(module, name, nothing)
 
     def arrays(*arguments: ArrayLike, **named: ArrayLike) -> dict[str, Array]:
         given = (*arguments, *named.values())
@@ -107,7 +107,8 @@ def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Arr
     return arrays
 
 
-def _nothing(*arguments: object, **named: object) -> tuple[()]:
+def nothing(*arguments: object, **named: object) -> tuple[()]:
+    """Return no entries: what a function would that was not emitted since all of them are zero."""
     return ()
 
 

@@ -58,19 +58,6 @@ def test_growth_that_overflows_is_unstable(modes):
         assert np.allclose(chart.largest[i, 1:], wanted, rtol=1e-8)
 
 
-def test_one_growing_point_leaves_the_others_decided():
-    """Multipliers from 86 to 1e54 on one line, each known to its own error."""
-    speeds = np.linspace(0.05, 1.0, 20)
-    system = divergent(2)
-    chart = el.stability_chart(system, ("speed", speeds), ("k", [0.5, 1.0]))
-    assert not np.any(chart.stable)
-    assert not np.any(chart.undecided)
-    assert chart.largest.max() > 1e50
-    direct = el.floquet_multipliers(system, speeds[5:], k=0.5)
-    wanted = np.max(np.abs(direct.multipliers), axis=-1)
-    assert np.allclose(chart.largest[0, 5:], wanted, rtol=1e-8)
-
-
 def test_stable_points_beside_overflow_are_found():
     """One chart from a spring that holds to one that pushes, over speeds down to 0.004 rad/s."""
     speeds = np.concatenate([[0.004], np.linspace(0.7, 3.0, 30)])

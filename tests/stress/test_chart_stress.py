@@ -114,31 +114,20 @@ def test_spot_check_catches_a_slack_that_hides_a_resonance(monkeypatch):
     assert not found.checks["spot check"].passed
 
 
-def test_no_damped_end_is_lost():
-    """The ends found, against the changes of the verdict on a fine line of speeds."""
+def test_no_damped_end_is_lost_and_each_lies_on_the_level():
+    """The ends found, against the verdict on a fine line of speeds, and against multipliers."""
     overrides = {"follower.inertia": 0.0022, "coupler.damping_ratio": 0.01}
     system = el.load_scene(RIG, overrides).system()
     speeds = np.linspace(40.0, 160.0, 4001)
     damping = np.linspace(0.6, 12.0, 6)
     found = el.stability_chart(system, ("speed", speeds), ("damping", damping))
     curves = found.exact
-    for j in range(len(damping)):
+    for j, c in enumerate(curves.at):
         change = speeds[np.flatnonzero(np.diff(found.stable[j].astype(int)))]
         ends = np.concatenate([curves.lower[:, j], curves.upper[:, j]])
         ends = np.sort(ends[(ends > speeds[0]) & (ends < speeds[-1])])
         assert len(ends) == len(change) > 0
         assert np.all((ends >= change) & (ends <= change + 0.0301))
-
-
-def test_damped_ends_lie_on_the_level():
-    overrides = {"follower.inertia": 0.0022, "coupler.damping_ratio": 0.01}
-    system = el.load_scene(RIG, overrides).system()
-    curves = el.stability_chart(
-        system, ("speed", [40.0, 160.0]), ("damping", np.array([3.0, 11.1]))
-    ).exact
-    for j, c in enumerate(curves.at):
-        ends = np.concatenate([curves.lower[:, j], curves.upper[:, j]])
-        ends = ends[np.isfinite(ends)]
         direct = el.floquet_multipliers(system, ends, damping=c)
         assert np.max(np.min(np.abs(np.abs(direct.multipliers) - 1.0), axis=-1)) < 1e-8
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
@@ -59,12 +58,6 @@ def request_of(
         "elastolink": __version__,
         "numpy": np.__version__,
     }
-
-
-def digest_of_request(request: Mapping[str, Any]) -> str:
-    """Return the digest of a request."""
-    text = json.dumps(request, sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def digest(value: object) -> str:

@@ -20,7 +20,6 @@ from ..._files import whole_file
 from ..core.errors import bad
 from ..core.results import write_whole
 from .pieces import Grid
-from .requests import digest_of_request
 from .tasks import Piece
 
 AnyArray = NDArray[Any]
@@ -113,16 +112,12 @@ class Store:
 
     def _require_same(self, about: Mapping[str, Any]) -> None:
         held = about.get("request", {})
-        if about.get("digest") == digest_of_request(self.request):
-            return
         keys = sorted({*held, *self.request})
         differing = [key for key in keys if held.get(key) != self.request.get(key)]
-        raise bad(
-            str(self.path),
-            f"a sweep that differs in {', '.join(differing) or 'its digest'}",
-            "the store of this request",
-            "give another store, or the request that this one was begun with",
-        )
+        if differing:
+            found = f"a sweep that differs in {', '.join(differing)}"
+            fix = "give another store, or the request that this one was begun with"
+            raise bad(str(self.path), found, "the store of this request", fix)
 
     def _whole(self, about: Mapping[str, Any]) -> dict[str, AnyArray]:
         """Return the arrays of a complete store, of a folder as maps of its files."""
@@ -145,14 +140,13 @@ class Store:
             fix = "choose another path"
             raise bad(str(self.path), str(refusal.strerror), "a writable place", fix) from refusal
         if not manifest.exists():
-            self._write_manifest({"complete": False})
+            self._write_manifest({"request": self.request, "complete": False})
         with manifest.open("rb") as stream:
             _lock(stream, self.path)
             yield self
 
-    def _write_manifest(self, more: Mapping[str, Any]) -> None:
-        whole = {"digest": digest_of_request(self.request), "request": self.request, **more}
-        text = json.dumps(whole, indent=1, sort_keys=True) + "\n"
+    def _write_manifest(self, about: Mapping[str, Any]) -> None:
+        text = json.dumps(about, indent=1, sort_keys=True) + "\n"
         write_whole(self.folder / _MANIFEST, text.encode())
 
     def _piece(self, number: int) -> Path:
@@ -185,7 +179,6 @@ class Store:
     def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Any) -> Joined:
         """Join the pieces, one by one through memory, and remove them."""
         about = {
-            "digest": digest_of_request(self.request),
             "request": self.request,
             "complete": True,
             "outputs": sorted(shapes),
@@ -197,7 +190,7 @@ class Store:
             for name in sorted(shapes):
                 with whole_file(self.folder / f"{name}.npy") as stream:
                     self._copy(stream, name, *shapes[name])
-            self._write_manifest({k: v for k, v in about.items() if k not in ("digest", "request")})
+            self._write_manifest(about)
         self._clean()
         return Joined(self._whole(about), about)
 

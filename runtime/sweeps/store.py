@@ -9,7 +9,7 @@ import shutil
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -27,14 +27,6 @@ _MANIFEST = "manifest.json"
 _ABOUT = "about"
 # Files that a killed process had begun to write.
 _BEGUN = re.compile(r"\.(.+)\.[a-z0-9_]{8}")
-
-
-@dataclass(frozen=True)
-class Joined:
-    """A whole sweep: its arrays by name, and what the manifest says of it."""
-
-    arrays: Mapping[str, AnyArray]
-    about: Mapping[str, Any]
 
 
 class Store:
@@ -62,7 +54,7 @@ class Store:
         self.folder = path.with_name(path.name + ".parts") if self.single else path
         self._parts = self.folder / "pieces"
 
-    def finished(self) -> Joined | None:
+    def finished(self) -> Piece | None:
         """Return the sweep where it is complete; refuse another one's."""
         about = self._about()
         if about is None:
@@ -72,7 +64,7 @@ class Store:
             return None
         # Killed after the last step it has left its pieces.
         self._clean()
-        return Joined(self._whole(about), about)
+        return Piece.from_about(self._whole(about), about)
 
     def _about(self) -> dict[str, Any] | None:
         """Return the manifest of what lies there; None where nothing does."""
@@ -176,7 +168,7 @@ class Store:
             return None
         return Piece.from_about(arrays, about)
 
-    def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Any) -> Joined:
+    def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Piece) -> Piece:
         """Join the pieces, one by one through memory, and remove them."""
         about = {
             "request": self.request,
@@ -192,7 +184,7 @@ class Store:
                     self._copy(stream, name, *shapes[name])
             self._write_manifest(about)
         self._clean()
-        return Joined(self._whole(about), about)
+        return replace(found, arrays=self._whole(about))
 
     def _join_file(
         self, shapes: Mapping[str, tuple[tuple[int, ...], str]], about: Mapping[str, Any]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
 from importlib import import_module
@@ -23,7 +23,7 @@ AnyArray = NDArray[Any]
 
 @dataclass(frozen=True)
 class Piece:
-    """What was found at a run of the grid's points.
+    """Arrays at a run of the grid's points, or at all of them, and what a result says of itself.
 
     Attributes
     ----------
@@ -44,27 +44,31 @@ class Piece:
     checks: Mapping[str, Check]
 
     def about(self) -> dict[str, Any]:
-        """Return all but the arrays, ready for JSON."""
-        return told_of(self.method, self.error, self.error_norm, self.checks)
+        """Return all but the arrays, ready for JSON, which has no word for infinity."""
+        pairs = {name: [_json(c.value), _json(c.limit)] for name, c in self.checks.items()}
+        return {
+            "method": self.method,
+            "error": _json(self.error),
+            "error_norm": self.error_norm,
+            "checks": pairs,
+        }
 
     @classmethod
     def from_about(cls, arrays: Mapping[str, AnyArray], about: Mapping[str, Any]) -> Piece:
         """Undo :meth:`about`."""
-        error, checks = float(about["error"]), checks_of(about)
-        return cls(arrays, about["method"], error, about["error_norm"], checks)
+        checks = {name: Check(*map(float, pair)) for name, pair in about["checks"].items()}
+        return cls(arrays, about["method"], float(about["error"]), about["error_norm"], checks)
 
-
-def told_of(
-    method: str, error: float, error_norm: str, checks: Mapping[str, Check]
-) -> dict[str, Any]:
-    """Return what a result says of itself, ready for JSON, which has no word for infinity."""
-    pairs = {name: [_json(c.value), _json(c.limit)] for name, c in checks.items()}
-    return {"method": method, "error": _json(error), "error_norm": error_norm, "checks": pairs}
-
-
-def checks_of(about: Mapping[str, Any]) -> dict[str, Check]:
-    """Return the self-checks that :func:`told_of` tells."""
-    return {name: Check(*map(float, pair)) for name, pair in about["checks"].items()}
+    @classmethod
+    def joined(cls, arrays: Mapping[str, AnyArray], parts: Sequence[Piece]) -> Piece:
+        """Return what holds for all parts, with the arrays of all."""
+        return cls(
+            arrays,
+            "; ".join(dict.fromkeys(part.method for part in parts)),
+            _largest([part.error for part in parts]),
+            parts[0].error_norm,
+            _worst(part.checks for part in parts),
+        )
 
 
 def _json(number: float) -> float | str:
@@ -104,7 +108,7 @@ class Task:
     outputs: Outputs = None
 
 
-def worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
+def _worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
     """Return of each self-check the one that came closest to its limit, or went beyond it most."""
     found: dict[str, Check] = {}
     for each in checks:
@@ -135,7 +139,7 @@ def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
         results[0].method,
         _largest([_largest(result.error) for result in results]),
         results[0].error_norm,
-        worst(result.checks for result in results),
+        _worst(result.checks for result in results),
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 from ..core.errors import LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result
+
+if TYPE_CHECKING:
+    from ..periodic import FloquetMultipliers, SteadyState
 
 Array = NDArray[np.float64]
 AnyArray = NDArray[Any]
@@ -161,71 +164,58 @@ def _chart(
 
 
 def _by_geometry(
+    solver: str,
+    arrays_of: Callable[[Any], dict[str, AnyArray]],
     system: LinearPeriodic,
     axes: Mapping[str, Array],
     options: Mapping[str, Any],
     outputs: Outputs,
-    solve: Callable[..., tuple[dict[str, AnyArray], Result]],
 ) -> Piece:
-    """Call a solver with all points of a piece at once, or once for each geometry."""
+    """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry."""
+    from .. import periodic
+
+    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinearRangeWarning)
+            result = getattr(periodic, solver)(made, **values, **options)
+        return _wanted(arrays_of(result), outputs), result
+
     mesh = np.meshgrid(*axes.values(), indexing="ij")
     values = {name: part.ravel() for name, part in zip(axes, mesh, strict=True)}
     shapes = [name for name in values if name in system.geometry]
     rest = {name: value for name, value in values.items() if name not in shapes}
-    count = len(mesh[0].ravel())
     if not shapes:
-        arrays, result = solve(system, **rest, **options)
-        return _of_result(_wanted(arrays, outputs), result)
+        arrays, result = solve(system, **rest)
+        return _of_result(arrays, result)
     table = np.stack([values[name] for name in shapes], axis=-1)
     found: list[tuple[NDArray[np.intp], dict[str, AnyArray], Result]] = []
     for shape in np.unique(table, axis=0):
         own = np.flatnonzero(np.all(table == shape, axis=1))
         made = system.with_geometry(**dict(zip(shapes, shape.tolist(), strict=True)))
-        arrays, result = solve(made, **{k: v[own] for k, v in rest.items()}, **options)
-        found.append((own, _wanted(arrays, outputs), result))
+        found.append((own, *solve(made, **{k: v[own] for k, v in rest.items()})))
     joined = {}
     for name, first in found[0][1].items():
-        joined[name] = np.empty((count, *first.shape[1:]), dtype=first.dtype)
+        joined[name] = np.empty((len(table), *first.shape[1:]), dtype=first.dtype)
         for own, arrays, _ in found:
             joined[name][own] = arrays[name]
     return _of_result(joined, *(result for _, _, result in found))
 
 
-def _multipliers(
-    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
-) -> Piece:
-    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        from ..periodic import floquet_multipliers
-
-        result = floquet_multipliers(made, **values)
-        arrays = {
-            "multipliers": result.multipliers,
-            "error": np.asarray(result.error),
-            "stable": np.asarray(result.stable),
-            "growth": result.growth,
-        }
-        return arrays, result
-
-    return _by_geometry(system, axes, options, outputs, solve)
+def _of_multipliers(found: FloquetMultipliers) -> dict[str, AnyArray]:
+    return {
+        "multipliers": found.multipliers,
+        "error": np.asarray(found.error),
+        "stable": np.asarray(found.stable),
+        "growth": found.growth,
+    }
 
 
-def _steady(
-    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
-) -> Piece:
-    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        from ..periodic import steady_state
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LinearRangeWarning)
-            result = steady_state(made, **values)
-        arrays = {
-            "peak": np.max(np.abs(result.q), axis=-2),
-            "rms": np.sqrt(np.mean(result.q**2, axis=-2)),
-            "error": np.asarray(result.error),
-        }
-        return arrays, result
-
-    return _by_geometry(system, axes, options, outputs, solve)
+def _of_motion(found: SteadyState) -> dict[str, AnyArray]:
+    return {
+        "peak": np.max(np.abs(found.q), axis=-2),
+        "rms": np.sqrt(np.mean(found.q**2, axis=-2)),
+        "error": np.asarray(found.error),
+    }
 
 
 def _each(
@@ -330,8 +320,10 @@ NAMED: Mapping[str, Task] = {
         rows=True,
         outputs=("stable", "largest", "slack", "undecided", "kind"),
     ),
-    "floquet_multipliers": Task("floquet_multipliers", _multipliers, 2048),
-    "steady_state": Task("steady_state", _steady, 64),
+    "floquet_multipliers": Task(
+        "floquet_multipliers", partial(_by_geometry, "floquet_multipliers", _of_multipliers), 2048
+    ),
+    "steady_state": Task("steady_state", partial(_by_geometry, "steady_state", _of_motion), 64),
 }
 
 

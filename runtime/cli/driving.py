@@ -52,7 +52,6 @@ def add(commands: Any) -> None:
 
 def _run_up(options: argparse.Namespace) -> int:
     from ..rigid import run_up
-    from ..scenes.rigid import flywheel
 
     scene = opt.load(options)
     machine = scene.machine()
@@ -68,7 +67,7 @@ def _run_up(options: argparse.Namespace) -> int:
         duration=duration,
         speed0=_given(options, "start-speed", "frequency") or 0.0,
         theta0=_given(options, "start-angle", "angle") or 0.0,
-        flywheel=flywheel(scene),
+        flywheel=float(scene.get("motor.flywheel", 0.0)),
     )
     return opt.finish(options, found, _lines(found))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..core.errors import BadInput, Problem
@@ -58,11 +59,7 @@ SECTION_KEYS = (
     positive("width", "width of a bar across the plane", "length"),
     positive("thickness", "thickness in the plane", "length"),
     positive("shear_stiffness", "k G A", "force"),
-    *(
-        Key(key.name, key.meaning, dimension=key.dimension, limit=key.limit)
-        for key in MATERIAL.keys
-        if key.name != "poisson"
-    ),
+    *(replace(key, default=None) for key in MATERIAL.keys if key.name != "poisson"),
     Key("elements", "number of elements", "count", limit="positive", most=200),
 )
 _NODE_KEYS = (

@@ -20,7 +20,6 @@ from elastolink.runtime.rigid import (
     trade_off,
 )
 from elastolink.runtime.scenes import load_scene
-from elastolink.runtime.scenes.rigid import flywheel, motor
 
 SMITH, ENGINE, SHAPER = "smith_1972_12_6_12_12", "slider_crank_example", "quick_return_example"
 LOOSE = "smith_1972_10_8_10_10"
@@ -35,6 +34,11 @@ COLUMNS = {
 
 def machine():
     return load_scene(SMITH).machine()
+
+
+def motor():
+    table = load_scene(ENGINE)["motor"]
+    return TorqueLine(table["stall_torque"], table["no_load_speed"])
 
 
 def line_of(text, start):
@@ -238,9 +242,9 @@ def test_the_scene_drives_itself(capsys):
     given = ("--revolutions", "3", "--start-angle", "20 deg")
     printed = shown(capsys, "run-up", ENGINE, *given)
     scene = load_scene(ENGINE)
-    assert flywheel(scene) == 0.05
+    assert scene.get("motor.flywheel") == 0.05
     start = math.radians(20.0)
-    found = run_up(scene.machine(), motor(scene), revolutions=3, theta0=start, flywheel=0.05)
+    found = run_up(scene.machine(), motor(), revolutions=3, theta0=start, flywheel=0.05)
     assert f"{found.speed[-1]:.6g}" in printed
     assert f"{found.speed[-1] * 60 / (2 * math.pi):.6g}" in printed
     assert f"{found.fluctuation:.4g}" in printed
@@ -253,7 +257,7 @@ def test_the_scene_drives_itself(capsys):
 def test_options_of_the_motor_go_before_the_scene(capsys):
     given = ("--stall-torque", "30 N*m", "--start-speed", "100 rpm", "--duration", "50 ms")
     found = told(capsys, "run-up", ENGINE, *given)
-    line = TorqueLine(30.0, motor(load_scene(ENGINE)).no_load_speed)
+    line = TorqueLine(30.0, motor().no_load_speed)
     assert found["speed"][0] == pytest.approx(100.0 * math.pi / 30.0, rel=1e-12)
     assert found["torque"][0] == pytest.approx(line(found["speed"][0]), rel=1e-12)
     # Without --revolutions, the duration alone ends it.

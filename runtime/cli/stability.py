@@ -175,17 +175,9 @@ def _marks(scene: Scene, y: tuple[str, list[float]]) -> dict[str, tuple[float, .
 
 def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
     """Return the unstable share, and the ends of each region at the ends of the other axis."""
-    import numpy as np
-
-    nx, ny = len(chart.x), len(chart.y)
-    share = 100.0 * float(np.mean(~chart.stable))
-    complex_share = 100.0 * float(np.mean(chart.kind == 2))
-    lines = [
-        f"{chart.x_name} x {chart.y_name}: {nx} x {ny} points, {share:.3g} % unstable",
-        chart.method,
-    ]
-    if complex_share > 0:
-        lines.append(f"{complex_share:.3g} % by combination (complex multipliers)")
+    names = chart.x_name, chart.y_name
+    first, *lines = stored_chart.shares(names, chart.stable, chart.kind)
+    lines = [first, chart.method, *lines]
     if min(chart.nodes) > 0:
         lines.append(f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes")
     curves = chart.exact

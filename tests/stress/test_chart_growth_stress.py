@@ -9,10 +9,7 @@ import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability.invariants import weighed_characteristic
 from elastolink.runtime.systems.rod import OverhangBasis, PolynomialBasis, rod_system
-
-
-def _scales(values):
-    return {name: np.asarray(value, float) for name, value in values.items()}
+from periodic_systems import named, wave
 
 
 def divergent(modes, first=-1.0):
@@ -26,9 +23,9 @@ def divergent(modes, first=-1.0):
         Term("M", None, np.eye(modes)),
         Term("K", None, held),
         Term("K", "k", own),
-        Term("K", None, lambda theta: np.cos(theta)[:, None, None] * pair),
+        Term("K", None, wave(pair)),
     )
-    return LinearPeriodic(modes, terms, {"k": 1.0}, _scales)
+    return LinearPeriodic(modes, terms, {"k": 1.0}, named("k"))
 
 
 def rod(basis):
@@ -79,9 +76,9 @@ def test_waves_alone_move_a_system_whose_mean_stiffness_vanishes():
     terms = (
         Term("M", None, np.eye(2)),
         Term("K", "k", np.diag([1.0, 2.0])),
-        Term("K", None, lambda theta: np.cos(theta)[:, None, None] * pair),
+        Term("K", None, wave(pair)),
     )
-    system = LinearPeriodic(2, terms, {"k": 1.0}, _scales)
+    system = LinearPeriodic(2, terms, {"k": 1.0}, named("k"))
     speeds, stiff = np.array([0.02, 0.3, 1.0]), np.linspace(-1.0, 1.0, 3)
     chart = el.stability_chart(system, ("speed", speeds), ("k", stiff))
     direct = el.floquet_multipliers(system, speeds[1:], k=0.0)
@@ -126,9 +123,9 @@ def test_error_estimates_of_circulatory_systems_hold():
             Term("M", None, np.eye(4)),
             Term("K", "k", np.diag(rng.uniform(1.0, 20.0, 4))),
             Term("K", None, 0.7 * (turn - turn.T)),
-            Term("K", None, lambda t, w=waves + waves.T: np.cos(t)[:, None, None] * w),
+            Term("K", None, wave(waves + waves.T)),
         )
-        system = LinearPeriodic(4, terms, {"k": 1.0}, _scales)
+        system = LinearPeriodic(4, terms, {"k": 1.0}, named("k"))
         axes = ("speed", np.linspace(0.7, 3.0, 20)), ("k", np.linspace(0.5, 1.5, 5))
         chart = el.stability_chart(system, *axes)
         direct = el.floquet_multipliers(system, chart.x[None, :], k=chart.y[:, None])

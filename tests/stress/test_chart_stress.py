@@ -8,32 +8,30 @@ import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability import chart_sampling as sampling
 from elastolink.runtime.stability import verdict
+from periodic_systems import named, wave
 
 ONE, TWO = np.eye(1), np.eye(2)
 RIG = "smith_1972_5152_sixteenth_inch"
 
 
-def _wave(theta):
-    return np.cos(theta)[:, None, None]
-
-
-def _scales(names):
-    return lambda values: {n: np.asarray(values[n], float) for n in names}
-
-
 def one(m=1.0, c=0.0, k=2.0, b=0.5):
-    terms = (Term("M", "m", ONE), Term("C", "c", ONE), Term("K", "k", ONE), Term("Kg", "b", _wave))
-    return LinearPeriodic(1, terms, {"m": m, "c": c, "k": k, "b": b}, _scales("mckb"))
+    terms = (
+        Term("M", "m", ONE),
+        Term("C", "c", ONE),
+        Term("K", "k", ONE),
+        Term("Kg", "b", wave(ONE)),
+    )
+    return LinearPeriodic(1, terms, {"m": m, "c": c, "k": k, "b": b}, named("mckb"))
 
 
 def two(c=0.0, b=0.5, damping=TWO, pull=((1.0, 0.4), (0.4, 0.7)), squares=(1.0, 3.3)):
     terms = (
         Term("M", None, TWO),
         Term("K", None, np.diag(squares)),
-        Term("Kg", "b", lambda theta: _wave(theta) * np.array(pull)),
+        Term("Kg", "b", wave(pull)),
         Term("C", "c", damping),
     )
-    return LinearPeriodic(2, terms, {"c": c, "b": b}, _scales("cb"))
+    return LinearPeriodic(2, terms, {"c": c, "b": b}, named("cb"))
 
 
 def _fading(theta):

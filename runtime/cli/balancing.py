@@ -33,7 +33,6 @@ def add(commands: Any) -> None:
             " --trade-off shaking_force,torque --plot curve.png"
         ),
     )
-    opt.scene_options(parser)
     drive_options(parser, "default operation.speed")
     parser.add_argument(
         "--case",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
@@ -29,7 +29,7 @@ def add(commands: Any) -> None:
 
 
 def _add_frequencies(commands: Any) -> None:
-    frequencies = _added(
+    frequencies = opt.command(
         commands,
         "frequencies",
         _frequencies,
@@ -37,27 +37,27 @@ def _add_frequencies(commands: Any) -> None:
         example=f"elastolink frequencies {_EXAMPLE} --count 4 --plot frequencies.png",
     )
     frequencies.add_argument("--count", type=int, default=None, help="modes; default 6")
-    critical = _added(
+    critical = opt.command(
         commands,
         "critical-speeds",
         _critical,
         summary="Critical speeds within a range: means over n, multipliers, J_N, the response.",
         example=f"elastolink critical-speeds {_EXAMPLE} --range 20:70 --method mean_frequency",
-        ranged=True,
     )
+    _range_option(critical)
     critical.add_argument("--method", choices=_METHODS, default="mean_frequency")
-    _added(
+    campbell = opt.command(
         commands,
         "campbell",
         _campbell,
         summary="Campbell diagram: frequencies against the crank speed, and the orders that meet.",
         example=f"elastolink campbell {_EXAMPLE} --range 5:70 --plot campbell.png",
-        ranged=True,
     )
+    _range_option(campbell)
 
 
 def _add_stresses(commands: Any) -> None:
-    stress = _added(
+    stress = opt.command(
         commands,
         "stress",
         _stress,
@@ -69,16 +69,16 @@ def _add_stresses(commands: Any) -> None:
     )
     stress.add_argument("--speed", help="'30 rad/s', or START:STOP:COUNT[UNIT]")
     stress.add_argument("--limit", help="allowed stress, such as '250 MPa'")
-    running = _added(
+    running = opt.command(
         commands,
         "running-speed",
         _running,
         summary="A quiet running speed above limiting critical speeds, and how to get there.",
         example=f"elastolink running-speed {_EXAMPLE} --range 5:45 --limit '250 MPa'",
-        ranged=True,
     )
+    _range_option(running)
     running.add_argument("--limit", required=True, help="allowed stress, such as '250 MPa'")
-    through = _added(
+    through = opt.command(
         commands,
         "run-through",
         _through,
@@ -93,23 +93,10 @@ def _add_stresses(commands: Any) -> None:
     through.add_argument("--time", required=True, help="duration of the change, such as '2 s'")
 
 
-def _added(
-    commands: Any,
-    name: str,
-    run: Callable[[argparse.Namespace], int],
-    *,
-    summary: str,
-    example: str,
-    ranged: bool = False,
-) -> argparse.ArgumentParser:
-    """Add a subcommand on a scene, with a range of speeds where it asks for one."""
-    parser = opt.command(commands, name, run, summary=summary, example=example)
-    opt.scene_options(parser)
-    if ranged:
-        parser.add_argument(
-            "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
-        )
-    return parser
+def _range_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
+    )
 
 
 def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:

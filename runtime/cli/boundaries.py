@@ -47,7 +47,6 @@ def _add_boundaries(commands: Any) -> None:
             "  elastolink boundaries smith_1972_5152_sixteenth_inch --set model.modes=2"
         ),
     )
-    opt.scene_options(edges)
     _region_option(edges)
     edges.add_argument(
         "--mu",
@@ -88,7 +87,6 @@ def _add_perturb(commands: Any) -> None:
             "  elastolink perturb hill_example --order 3 --latex"
         ),
     )
-    opt.scene_options(series)
     _region_option(series)
     series.add_argument(
         "--order", type=_order, default=2, metavar="N", help=f"1 to {_HIGHEST}; default %(default)s"

@@ -21,6 +21,7 @@ def add(commands: Any) -> None:
             "elastolink classify smith_1972_12_6_12_12 --plot transmission.png\n"
             "  elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png"
         ),
+        scene=False,
     )
     opt.scene_options(parser, nargs="?")
     parser.add_argument(

@@ -30,7 +30,6 @@ def add(commands: Any) -> None:
             "  elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'"
         ),
     )
-    opt.scene_options(parser)
     parser.add_argument(
         "--clearance",
         action="append",

@@ -33,7 +33,6 @@ def _add_curve(commands: Any) -> None:
             "  elastolink curve slider_crank_example --point 0.5,0.2 --animate motion.gif"
         ),
     )
-    opt.scene_options(curve)
     curve.add_argument(
         "--point",
         default="0.5,0",
@@ -66,7 +65,6 @@ def _add_harmonics(commands: Any) -> None:
             "  elastolink harmonics smith_1972_12_6_12_12 --of torque --speed '10 rad/s'"
         ),
     )
-    opt.scene_options(harmonics)
     harmonics.add_argument(
         "--of",
         required=True,

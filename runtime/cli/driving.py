@@ -27,7 +27,6 @@ def add(commands: Any) -> None:
             "  elastolink run-up slider_crank_example --torque '5 N*m' --duration '0.5 s'"
         ),
     )
-    opt.scene_options(parser)
     quantities = {
         "torque": ("TORQUE", "constant motor torque, e.g. '5 N*m'; default: the scene's motor"),
         "stall-torque": ("TORQUE", "motor torque at rest; default motor.stall_torque"),

@@ -33,7 +33,6 @@ def add(commands: Any) -> None:
             "  elastolink forces slider_crank_example --speed '1500 rpm' --fluctuation 0.02"
         ),
     )
-    opt.scene_options(forces)
     drive_options(forces, "default operation.speed")
     forces.add_argument(
         "--angles",

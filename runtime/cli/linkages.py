@@ -31,7 +31,6 @@ def add(commands: Any) -> None:
             "  elastolink kinematics slider_crank_example --speed '1500 rpm' --animate engine.gif"
         ),
     )
-    opt.scene_options(kinematics)
     kinematics.add_argument(
         "--angles",
         default="0:360:361deg",
@@ -52,7 +51,6 @@ def add(commands: Any) -> None:
             " --revolutions 3 --method DOP853 --plot wave.png"
         ),
     )
-    opt.scene_options(simulate)
     simulate.add_argument(
         "--speed",
         metavar="SPEED",

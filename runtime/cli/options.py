@@ -42,8 +42,9 @@ def command(
     *,
     summary: str,
     example: str,
+    scene: bool = True,
 ) -> argparse.ArgumentParser:
-    """Add a subcommand that ``run`` does, with worked examples at the end of its help."""
+    """Add a subcommand that ``run`` does, on a scene, with worked examples at its help's end."""
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
@@ -54,6 +55,8 @@ def command(
     parser.set_defaults(run=run, command=name)
     parser.add_argument("--json", action="store_true", help="print JSON instead of text")
     parser.add_argument("--plot", metavar="FILE", help="draw it: a .png, .svg or .pdf file")
+    if scene:
+        scene_options(parser)
     return parser
 
 

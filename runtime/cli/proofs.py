@@ -20,6 +20,7 @@ def add(commands: Any) -> None:
         _reproduce,
         summary="Redraw the computed figures of a document, and check the numbers that it quotes.",
         example="elastolink reproduce smith --figure 84 --out gallery",
+        scene=False,
     )
     reproduce.add_argument(
         "document",

@@ -30,7 +30,6 @@ def add(commands: Any) -> None:
             "      --set rod.damping_ratio=0.002 --speed 60:1000:471 --plot resonances.png"
         ),
     )
-    opt.scene_options(steady)
     steady.add_argument(
         "--speed",
         metavar="SPEED",

@@ -24,24 +24,23 @@ def add(commands: Any) -> None:
         _scenes,
         summary="List the built-in scenes.",
         example="elastolink scenes\n  elastolink scenes --plot scenes.pdf   (each one drawn)",
+        scene=False,
     )
     listing.add_argument("--long", action="store_true", help="with the source of each")
-    showing = opt.command(
+    opt.command(
         commands,
         "show",
         _show,
         summary="Show a scene: every number in SI units, with what follows from the given ones.",
         example="elastolink show smith_1972_5152_sixteenth_inch --set coupler.damping_ratio=0.01",
     )
-    opt.scene_options(showing)
-    explaining = opt.command(
+    opt.command(
         commands,
         "explain",
         _explain,
         summary="Tell what a scene needs, and what is not derived, emitted, imported or evaluated.",
         example="elastolink explain smith_1972_5152_sixteenth_inch --set model.modes=2",
     )
-    opt.scene_options(explaining)
 
 
 def _scenes(options: argparse.Namespace) -> int:

@@ -31,7 +31,6 @@ def add(commands: Any) -> None:
             "  elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm"
         ),
     )
-    opt.scene_options(stability)
     stability.add_argument(
         "--speed",
         metavar="SPEED",
@@ -49,7 +48,6 @@ def add(commands: Any) -> None:
             "  elastolink chart mathieu --x lam2=-0.5:30:4000 --y mu=0:4:2500 --store fine.npz"
         ),
     )
-    opt.scene_options(chart)
     chart.add_argument(
         "--order",
         metavar="N",

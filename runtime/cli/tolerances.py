@@ -36,7 +36,6 @@ def add(commands: Any) -> None:
             " --speed '1500 rpm' --monte-carlo 2000"
         ),
     )
-    opt.scene_options(parser)
     parser.add_argument(
         "--tolerance",
         action="append",

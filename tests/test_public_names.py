@@ -51,16 +51,6 @@ def test_a_name_loads_its_own_module_alone():
     assert done.stdout.strip() == "['elastolink.runtime.core', 'elastolink.runtime.core.errors']"
 
 
-def test_the_response_of_a_coupler_loads_nothing_of_beams():
-    code = (
-        "import sys, elastolink as el; el.steady_state, el.floquet_multipliers, el.simulate\n"
-        "parts = ('beams', 'frequencies', 'design', 'dynamic_stiffness')\n"
-        "print([n for n in sys.modules if any(f'.runtime.{part}' in n for part in parts)])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
 @pytest.mark.parametrize("package", PACKAGES)
 def test_no_public_name_is_hidden_by_a_module_of_that_name(package):
     # Importing such a module can put it in the place of what the name stands for.

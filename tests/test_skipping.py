@@ -240,10 +240,10 @@ LOADS = {
         LINKAGES,
         ("periodic", "stability", "hill", "beams", "scenes"),
     ),
-    "multipliers of a coupler": (
-        f"el.floquet_multipliers(el.load_scene('{RIG}').system(), 34.0)",
+    "multipliers and response of a coupler": (
+        f"el.floquet_multipliers(el.load_scene('{RIG}').system(), 34.0); el.simulate",
         LINKAGES | {f"generated.{FAMILY}"},
-        ("stability", "hill", "beams", "periodic.decoupled", "recovery"),
+        ("stability", "hill", "beams", "periodic.decoupled", "recovery", "frequencies", "design"),
     ),
     "beams of one kind": (
         "el.load_scene('aannaque_1996_table_4_1').system()",

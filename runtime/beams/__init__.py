@@ -8,53 +8,34 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..core.lazy import on_first_use
-from .elements import (
-    KINDS,
-    NODAL_VALUES,
-    ElementArrays,
-    element_arrays,
-    section_rotation,
-    shape_functions,
-)
-from .frames import frame, without_stretching
-from .linear import FORMS, linear_system
-from .linkages import beam_linkage, linkage_system
-from .recovery_forms import LinearForm
-from .section import Section
-from .structure import Beam, Node, Structure
 
 if TYPE_CHECKING:
-    from .layered import ElasticLayer, SandwichSection, ViscoelasticLayer, sandwich_section
+    from .elements import KINDS as KINDS
+    from .elements import element_arrays as element_arrays
+    from .elements import section_rotation as section_rotation
+    from .elements import shape_functions as shape_functions
+    from .frames import frame as frame
+    from .frames import without_stretching as without_stretching
+    from .layered import ElasticLayer as ElasticLayer
+    from .layered import ViscoelasticLayer as ViscoelasticLayer
+    from .layered import sandwich_section as sandwich_section
+    from .linear import linear_system as linear_system
+    from .linkages import beam_linkage as beam_linkage
+    from .linkages import linkage_system as linkage_system
+    from .section import Section as Section
+    from .structure import Beam as Beam
+    from .structure import Node as Node
+    from .structure import Structure as Structure
 
-_PUBLIC = {
-    "ElasticLayer": "layered",
-    "SandwichSection": "layered",
-    "ViscoelasticLayer": "layered",
-    "sandwich_section": "layered",
-}
-
-__all__ = [
-    "FORMS",
-    "KINDS",
-    "NODAL_VALUES",
-    "Beam",
-    "ElasticLayer",
-    "ElementArrays",
-    "LinearForm",
-    "Node",
-    "SandwichSection",
-    "Section",
-    "Structure",
-    "ViscoelasticLayer",
-    "beam_linkage",
-    "element_arrays",
-    "frame",
-    "linear_system",
-    "linkage_system",
-    "sandwich_section",
-    "section_rotation",
-    "shape_functions",
-    "without_stretching",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "elements": ("KINDS", "element_arrays", "section_rotation", "shape_functions"),
+        "frames": ("frame", "without_stretching"),
+        "layered": ("ElasticLayer", "ViscoelasticLayer", "sandwich_section"),
+        "linear": ("linear_system",),
+        "linkages": ("beam_linkage", "linkage_system"),
+        "section": ("Section",),
+        "structure": ("Beam", "Node", "Structure"),
+    },
+)

@@ -1,7 +1,15 @@
-"""The ``elastolink`` command, one file per group of subcommands."""
+"""The ``elastolink`` command, one file per group of subcommands.
+
+It loads when it is called: the process that measures what a scene loads must not bring it.
+"""
 
 from __future__ import annotations
 
-from .application import main
+from typing import TYPE_CHECKING
 
-__all__ = ["main"]
+from ..core.lazy import on_first_use
+
+if TYPE_CHECKING:
+    from .application import main as main
+
+__all__, __getattr__, __dir__ = on_first_use(globals(), {"application": ("main",)})

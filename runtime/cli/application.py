@@ -16,9 +16,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
+from ... import __version__
 from ..core.errors import BadInput, ElastolinkError, ElastolinkWarning, bad
 from ..core.progress import time_taken
-from ..core.threads import use_one_thread
+from ..core.threads import environment, use_one_thread
 from . import (
     balancing,
     beams,
@@ -27,7 +28,6 @@ from . import (
     clearance,
     curves,
     driving,
-    explain,
     forces,
     linkages,
     proofs,
@@ -36,12 +36,11 @@ from . import (
     stability,
     tolerances,
 )
-from .options import HelpFormatter
+from .options import HelpFormatter, picture
 
 # In the order of the help.
 _GROUPS = (
     scenes,
-    explain,
     linkages,
     classification,
     curves,
@@ -58,7 +57,6 @@ _GROUPS = (
 )
 _BAD_INPUT = 2
 _INTERRUPTED = 130
-_MODULES = "ELASTOLINK_GENERATED"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -67,17 +65,6 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Write the complaint and leave with status 2."""
         self.exit(_BAD_INPUT, f"{self.prog}: {message}; `{self.prog} --help` explains\n")
-
-
-class _Version(argparse.Action):
-    """Print the version; the package is asked only then."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        """Print and leave."""
-        import elastolink
-
-        print(f"elastolink {elastolink.__version__}")
-        parser.exit(0)
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -91,7 +78,12 @@ def build_parser() -> argparse.ArgumentParser:
         ),
         formatter_class=HelpFormatter,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and leave")
+    parser.add_argument(
+        "--version",
+        action="version",
+        version=f"elastolink {__version__}",
+        help="print the version and leave",
+    )
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, parser_class=_Parser
     )
@@ -114,6 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder = getattr(options, "modules", None)
     try:
         with _module_folder(folder), _short_warnings(prefix), time_taken():
+            picture(options)  # refused before the work starts
             status: int = options.run(options)
             sys.stdout.flush()
             return status
@@ -151,15 +144,8 @@ def _module_folder(folder: str | None) -> Iterator[None]:
             "a folder with a manifest.json",
             "regenerate-equations writes one",
         )
-    before = os.environ.get(_MODULES)
-    os.environ[_MODULES] = folder
-    try:
+    with environment({"ELASTOLINK_GENERATED": folder}):
         yield
-    finally:
-        if before is None:
-            del os.environ[_MODULES]
-        else:
-            os.environ[_MODULES] = before
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from . import options as opt
 from .linkages import drive_of, drive_options
 
 if TYPE_CHECKING:
-    from ..rigid import Balancing, Counterweight, Machine
+    from ..rigid import Balancing, Machine
 
 
 _POINTS = 13
@@ -33,7 +33,6 @@ def add(commands: Any) -> None:
             " --trade-off shaking_force,torque --plot curve.png"
         ),
     )
-    opt.scene_options(parser)
     drive_options(parser, "default operation.speed")
     parser.add_argument(
         "--case",
@@ -79,7 +78,6 @@ def _choices(parser: argparse.ArgumentParser) -> None:
 
 
 def _balance(options: argparse.Namespace) -> int:
-    opt.picture(options)
     chosen = [name for name in ("case", "trade_off") if getattr(options, name) is not None]
     if len(chosen) == 2:
         raise bad("--case", "--trade-off beside it", "one of the two", "leave one out")
@@ -129,10 +127,7 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 
 def _case(
-    options: argparse.Namespace,
-    machine: Machine,
-    drive: tuple[float, float],
-    offset: float | None,
+    options: argparse.Namespace, machine: Machine, drive: tuple[float, float], offset: float | None
 ) -> int:
     from ..rigid import balance
 
@@ -156,22 +151,12 @@ def _trade_off(
     first, second = names
     points = _POINTS if options.points is None else options.points
     curve = trade_off(
-        *(machine, drive[0], first, second, points),
-        acceleration=drive[1],
-        offsets=offset,
-        **where,
+        *(machine, drive[0], first, second, points), acceleration=drive[1], offsets=offset, **where
     )
-    rows = [
-        (f"{x:.6f}", f"{y:.6f}")
-        for x, y in zip(curve.first_values, curve.second_values, strict=True)
-    ]
-    lines = opt.table((first, second), rows)
-    lines += ["", *opt.table(("case", first, second), _case_rows(curve.cases)), ""]
+    lines = opt.columns((first, ".6f", curve.first_values), (second, ".6f", curve.second_values))
+    rows = [(f"({name})", f"{x:.6f}", f"{y:.6f}") for name, (x, y) in curve.cases.items()]
+    lines += ["", *opt.table(("case", first, second), rows), ""]
     return opt.finish(options, curve, lines)
-
-
-def _case_rows(cases: Any) -> list[tuple[str, str, str]]:
-    return [(f"({name})", f"{x:.6f}", f"{y:.6f}") for name, (x, y) in cases.items()]
 
 
 def _lines(found: Balancing) -> list[str]:
@@ -187,18 +172,19 @@ def _lines(found: Balancing) -> list[str]:
         for name, relative in found.relative.items()
     ]
     lines = opt.table((found.measure, "unbalanced", "balanced", "relative", "weight"), rows)
-    weights = [_weight_row(item) for item in found.counterweights.values()]
-    header = ("counterweight", "mass [kg]", "along [m]", "across [m]", "radius [m]")
-    lines += ["", *(opt.table(header, weights) if weights else ["no counterweights"]), ""]
+    weights = found.counterweights.values()
+    placed = opt.columns(
+        ("counterweight", "", [item.link for item in weights]),
+        ("mass [kg]", ".6g", [item.mass for item in weights]),
+        ("along [m]", ".6g", [item.along for item in weights]),
+        ("across [m]", ".6g", [item.across for item in weights]),
+        ("radius [m]", ".6g", [item.disc_radius for item in weights]),
+    )
+    lines += ["", *(placed if weights else ["no counterweights"]), ""]
     if found.weights:
         text = f"weighted sum: {found.value:.8g}, not below {found.lower_bound:.8g} within bounds"
         lines.append(text)
     return lines
-
-
-def _weight_row(item: Counterweight) -> tuple[str, ...]:
-    numbers = (item.mass, item.along, item.across, item.disc_radius)
-    return (item.link, *(f"{number:.6g}" for number in numbers))
 
 
 def _size(text: str | None, dimension: str, where: str) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...derive.spec import BEAM_FORMULATIONS
@@ -13,6 +13,7 @@ from .linkages import refuse_frame, speed_of
 
 if TYPE_CHECKING:
     from ..core.families import LinearPeriodic
+    from ..design.quiet import QuietSpeeds
     from ..recovery.stress_over_speed import StressCurve
     from ..recovery.stresses import StressResult
     from ..scenes import Scene
@@ -28,7 +29,7 @@ def add(commands: Any) -> None:
 
 
 def _add_frequencies(commands: Any) -> None:
-    frequencies = _added(
+    frequencies = opt.command(
         commands,
         "frequencies",
         _frequencies,
@@ -36,27 +37,27 @@ def _add_frequencies(commands: Any) -> None:
         example=f"elastolink frequencies {_EXAMPLE} --count 4 --plot frequencies.png",
     )
     frequencies.add_argument("--count", type=int, default=None, help="modes; default 6")
-    critical = _added(
+    critical = opt.command(
         commands,
         "critical-speeds",
         _critical,
         summary="Critical speeds within a range: means over n, multipliers, J_N, the response.",
         example=f"elastolink critical-speeds {_EXAMPLE} --range 20:70 --method mean_frequency",
-        ranged=True,
     )
+    _range_option(critical)
     critical.add_argument("--method", choices=_METHODS, default="mean_frequency")
-    _added(
+    campbell = opt.command(
         commands,
         "campbell",
         _campbell,
         summary="Campbell diagram: frequencies against the crank speed, and the orders that meet.",
         example=f"elastolink campbell {_EXAMPLE} --range 5:70 --plot campbell.png",
-        ranged=True,
     )
+    _range_option(campbell)
 
 
 def _add_stresses(commands: Any) -> None:
-    stress = _added(
+    stress = opt.command(
         commands,
         "stress",
         _stress,
@@ -68,16 +69,16 @@ def _add_stresses(commands: Any) -> None:
     )
     stress.add_argument("--speed", help="'30 rad/s', or START:STOP:COUNT[UNIT]")
     stress.add_argument("--limit", help="allowed stress, such as '250 MPa'")
-    running = _added(
+    running = opt.command(
         commands,
         "running-speed",
         _running,
         summary="A quiet running speed above limiting critical speeds, and how to get there.",
         example=f"elastolink running-speed {_EXAMPLE} --range 5:45 --limit '250 MPa'",
-        ranged=True,
     )
+    _range_option(running)
     running.add_argument("--limit", required=True, help="allowed stress, such as '250 MPa'")
-    through = _added(
+    through = opt.command(
         commands,
         "run-through",
         _through,
@@ -92,23 +93,10 @@ def _add_stresses(commands: Any) -> None:
     through.add_argument("--time", required=True, help="duration of the change, such as '2 s'")
 
 
-def _added(
-    commands: Any,
-    name: str,
-    run: Callable[[argparse.Namespace], int],
-    *,
-    summary: str,
-    example: str,
-    ranged: bool = False,
-) -> argparse.ArgumentParser:
-    """Add a subcommand on a scene, with a range of speeds where it asks for one."""
-    parser = opt.command(commands, name, run, summary=summary, example=example)
-    opt.scene_options(parser)
-    if ranged:
-        parser.add_argument(
-            "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
-        )
-    return parser
+def _range_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--range", metavar="LOW:HIGH", help="crank speeds, rad/s; default operation.speed_range"
+    )
 
 
 def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
@@ -128,7 +116,6 @@ def _speeds(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 def _of_beams(options: argparse.Namespace, *, moving: bool = False) -> tuple[Scene, LinearPeriodic]:
     """Return the scene and its system, refused where the links are no beams."""
-    opt.picture(options)
     scene = opt.load(options)
     if moving:
         refuse_frame(scene)
@@ -160,18 +147,13 @@ def _limit(text: str) -> float:
 def _frequencies(options: argparse.Namespace) -> int:
     from ..frequencies import natural_frequencies
 
-    opt.picture(options)
     found = natural_frequencies(opt.load(options).linear_system(), count=options.count)
-    rows = [
-        (
-            str(k + 1),
-            f"{found.mean[k]:.7g}",
-            f"{found.frequency[:, k].min():.7g}",
-            f"{found.frequency[:, k].max():.7g}",
-        )
-        for k in range(found.frequency.shape[1])
-    ]
-    lines = opt.table(("mode", "mean [rad/s]", "least", "greatest"), rows)
+    lines = opt.columns(
+        ("mode", "", range(1, found.frequency.shape[1] + 1)),
+        ("mean [rad/s]", ".7g", found.mean),
+        ("least", ".7g", found.frequency.min(axis=0)),
+        ("greatest", ".7g", found.frequency.max(axis=0)),
+    )
     lines.append(f"crossings: {len(found.crossings)}, veerings: {len(found.veerings)}")
     return opt.finish(options, found, lines)
 
@@ -179,18 +161,18 @@ def _frequencies(options: argparse.Namespace) -> int:
 def _critical(options: argparse.Namespace) -> int:
     from ..frequencies import critical_speeds
 
-    opt.picture(options)
     scene = opt.load(options)
     refuse_frame(scene)
     speeds = _speeds(options, scene)
     system = scene.linear_system()
     found = critical_speeds(system, speeds, method=options.method, progress=opt.progress(options))
-    rows = [
-        (f"{speed:.6g}", str(mode), str(n), f"{error:.2g}")
-        for speed, (mode, n), error in zip(found.speed, found.labels, found.error, strict=True)
-    ]
-    header = ("speed [rad/s]", "mode", "n", "error")
-    return opt.finish(options, found, opt.table(header, rows))
+    lines = opt.columns(
+        ("speed [rad/s]", ".6g", found.speed),
+        ("mode", "", [mode for mode, _ in found.labels]),
+        ("n", "", [n for _, n in found.labels]),
+        ("error", ".2g", found.error),
+    )
+    return opt.finish(options, found, lines)
 
 
 def _campbell(options: argparse.Namespace) -> int:
@@ -198,7 +180,6 @@ def _campbell(options: argparse.Namespace) -> int:
 
     from ..frequencies.campbell_diagram import campbell
 
-    opt.picture(options)
     scene = opt.load(options)
     refuse_frame(scene)
     low, high = _speeds(options, scene)
@@ -210,23 +191,19 @@ def _campbell(options: argparse.Namespace) -> int:
 def _stress(options: argparse.Namespace) -> int:
     import numpy as np
 
+    from ..recovery import stress, stress_curve
+
     scene, system = _of_beams(options)
     limit = None if options.limit is None else _limit(options.limit)
     if scene.model["mechanism"] == "frame":
-        from ..recovery.stresses import stress
-
         opt.refuse_unused(options, ("speed",), "a linkage; a frame has no crank")
         standing = stress(system)
         return opt.finish(options, standing, _peaks(standing, limit))
     if options.speed is None or ":" not in options.speed:
-        from ..recovery.stresses import stress
-
         result = stress(system, speed_of(options, scene))
         return opt.finish(options, result, _peaks(result, limit))
     speeds = np.array(opt.values(options.speed, "frequency", "--speed"))
     if limit is None:
-        from ..recovery.stress_over_speed import stress_curve
-
         curve = stress_curve(system, speeds)
         return opt.finish(
             options, curve, [*_curve_lines(curve), *_unstable_lines(curve.unstable_ranges)]
@@ -234,20 +211,23 @@ def _stress(options: argparse.Namespace) -> int:
     from ..design import quiet_speeds
 
     found = quiet_speeds(system, speeds, limit)
+    bands = _numbers(found)
     rows = [
-        (
-            f"{band.low:.5g}",
-            f"{band.high:.5g}",
-            f"{band.best:.5g}",
-            f"{band.ratio:.3g}",
-            "-" if band.above is None else f"{band.above:.5g}",
-        )
-        for band in found.bands
+        (*(f"{value:.5g}" for value in (low, high, best)), f"{ratio:.3g}", _beyond(above))
+        for low, high, best, ratio, above in bands
     ]
     header = ("from [rad/s]", "to", "quietest", "stress/limit", "beyond the critical speed")
-    more = {"bands": [[b.low, b.high, b.best, b.ratio, b.above] for b in found.bands]}
     lines = [*opt.table(header, rows), *_unstable_lines(found.unstable)]
-    return opt.finish(options, found, lines, more=more)
+    return opt.finish(options, found, lines, more={"bands": bands})
+
+
+def _numbers(found: QuietSpeeds) -> list[tuple[float, float, float, float, float | None]]:
+    """Return ends, quietest speed, stress over limit there and critical speed of each band."""
+    return [(b.low, b.high, b.best, b.ratio, b.above) for b in found.bands]
+
+
+def _beyond(speed: float | None) -> str:
+    return "-" if speed is None else f"{speed:.5g}"
 
 
 def _unstable_lines(ranges: Sequence[tuple[float, float]]) -> list[str]:
@@ -308,8 +288,7 @@ def _running(options: argparse.Namespace) -> int:
         )
     if found.best_damping is not None:
         lines.append(f"damping ratio with the least stress there: {found.best_damping:.3g}")
-    more = {"bands": [[b.low, b.high, b.best, b.ratio, b.above] for b in found.quiet.bands]}
-    return opt.finish(options, found, lines, more=more)
+    return opt.finish(options, found, lines, more={"bands": _numbers(found.quiet)})
 
 
 def _through(options: argparse.Namespace) -> int:
@@ -322,5 +301,6 @@ def _through(options: argparse.Namespace) -> int:
         opt.quantity(options.time, "time", "--time"),
     )
     found = run_through(system, profile)
-    rows = [(link, f"{value / 1e6:.5g}") for link, value in found.largest.items()]
-    return opt.finish(options, found, opt.table(("link", "largest stress [MPa]"), rows))
+    stresses = [value / 1e6 for value in found.largest.values()]
+    lines = opt.columns(("link", "", found.largest), ("largest stress [MPa]", ".5g", stresses))
+    return opt.finish(options, found, lines)

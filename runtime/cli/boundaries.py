@@ -47,7 +47,6 @@ def _add_boundaries(commands: Any) -> None:
             "  elastolink boundaries smith_1972_5152_sixteenth_inch --set model.modes=2"
         ),
     )
-    opt.scene_options(edges)
     _region_option(edges)
     edges.add_argument(
         "--mu",
@@ -73,9 +72,7 @@ def _add_boundaries(commands: Any) -> None:
         help="of the perturbation: uniform through the tip of a region (default), or the series",
     )
     edges.add_argument(
-        "--certified",
-        action="store_true",
-        help="proved enclosures by exact arithmetic",
+        "--certified", action="store_true", help="proved enclosures by exact arithmetic"
     )
 
 
@@ -90,7 +87,6 @@ def _add_perturb(commands: Any) -> None:
             "  elastolink perturb hill_example --order 3 --latex"
         ),
     )
-    opt.scene_options(series)
     _region_option(series)
     series.add_argument(
         "--order", type=_order, default=2, metavar="N", help=f"1 to {_HIGHEST}; default %(default)s"
@@ -134,7 +130,6 @@ def _regions(given: str | None) -> tuple[int, ...]:
 
 
 def _boundaries(options: argparse.Namespace) -> int:
-    opt.picture(options)
     if options.form and options.order is None:
         opt.refuse_unused(options, ("form",), "--order N")
     regions = _regions(options.regions)
@@ -301,7 +296,6 @@ def _bars(ax: Any, exact: Boundaries, frequency: float) -> None:
 
 
 def _perturb(options: argparse.Namespace) -> int:
-    opt.picture(options)
     regions = _regions(options.regions)
     if options.latex:
         return _formulas(options)

@@ -21,11 +21,9 @@ def add(commands: Any) -> None:
             "elastolink classify smith_1972_12_6_12_12 --plot transmission.png\n"
             "  elastolink classify --lengths 12,6,12,12 --base-plane --plot plane.png"
         ),
+        scene=False,
     )
-    opt.scene_options(parser)
-    for action in parser._actions:
-        if action.dest == "scene":
-            action.nargs, action.required, action.default = "?", False, None
+    opt.scene_options(parser, nargs="?")
     parser.add_argument(
         "--lengths", metavar="A,B,C,D", help="frame, crank, coupler, follower, instead of a scene"
     )
@@ -47,7 +45,6 @@ def _classify(options: argparse.Namespace) -> int:
     from ..linkages.classification import Classification, classify
     from ..linkages.transmission import transmission_angle
 
-    opt.picture(options)
     if options.plot is None:
         opt.refuse_unused(options, ("base_plane",), "--plot FILE beside it")
     linkage: Any = _linkage(options)
@@ -103,9 +100,7 @@ def _transmission_lines(found: Any) -> list[str]:
     low, high = (math.degrees(value) for value in (found.least, found.greatest))
     band = "within" if found.within_band else "outside"
     first, last = (math.degrees(value) for value in found.band)
-    lines = [
-        f"transmission angle: {low:.6g} to {high:.6g} deg, {band} {first:g} to {last:g} deg",
-    ]
+    lines = [f"transmission angle: {low:.6g} to {high:.6g} deg, {band} {first:g} to {last:g} deg"]
     for name, angle in found.dead_centres.items():
         at = math.degrees(angle)
         lines.append(f"dead centre, {name}: crank at {at:.6g} deg")

@@ -30,7 +30,6 @@ def add(commands: Any) -> None:
             "  elastolink clearance smith_1972_2122 --at 23='0.1 mm' --at 34='0.05 mm'"
         ),
     )
-    opt.scene_options(parser)
     parser.add_argument(
         "--clearance",
         action="append",
@@ -61,7 +60,6 @@ def _clearance(options: argparse.Namespace) -> int:
 
     from ..linkages.clearance import clearance_range
 
-    opt.picture(options)
     cases = _cases(options)
     theta = None
     if options.angles is not None:
@@ -146,12 +144,13 @@ def _table(found: ClearanceRange) -> list[str]:
     unit = "m" if found.unit == "m" else "deg"
     shown = np.asarray if found.unit == "m" else np.degrees
     chosen = opt.even_rows(found.theta2.size)
-    names = {"nominal": "nominal", "lower": "lower", "upper": "upper", "width": "width"}
+    names = {name: name for name in ("nominal", "lower", "upper", "width")}
     names["small"] = "first order"
-    columns = [[format(float(angle), "z.4f") for angle in np.degrees(found.theta2[chosen])]]
-    for name in names:
-        values = shown(getattr(found, name)[chosen])
-        columns.append([format(float(value), "z.7g") for value in values])
-    columns.append(["folds" if folds else "" for folds in found.folds[chosen]])
-    header = ["theta2 [deg]", *(f"{words} [{unit}]" for words in names.values()), ""]
-    return opt.table(header, list(zip(*columns, strict=True)))
+    return opt.columns(
+        ("theta2 [deg]", "z.4f", np.degrees(found.theta2[chosen])),
+        *(
+            (f"{words} [{unit}]", "z.7g", shown(getattr(found, name)[chosen]))
+            for name, words in names.items()
+        ),
+        ("", "", ["folds" if folds else "" for folds in found.folds[chosen]]),
+    )

@@ -22,13 +22,7 @@ def is_constrained(scene: Scene) -> bool:
 
 
 def at_speed(options: argparse.Namespace, scene: Scene) -> FreeFreeRod:
-    """Return the scene's system at the crank speed of the option, or of the scene.
-
-    Raises
-    ------
-    BadInput
-        If the option is no single speed.
-    """
+    """Return the scene's system at the one crank speed of the option or of the scene."""
     from ..scenes import load_scene
     from .linkages import speed_of
 

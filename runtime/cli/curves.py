@@ -33,7 +33,6 @@ def _add_curve(commands: Any) -> None:
             "  elastolink curve slider_crank_example --point 0.5,0.2 --animate motion.gif"
         ),
     )
-    opt.scene_options(curve)
     curve.add_argument(
         "--point",
         default="0.5,0",
@@ -66,7 +65,6 @@ def _add_harmonics(commands: Any) -> None:
             "  elastolink harmonics smith_1972_12_6_12_12 --of torque --speed '10 rad/s'"
         ),
     )
-    opt.scene_options(harmonics)
     harmonics.add_argument(
         "--of",
         required=True,
@@ -90,7 +88,6 @@ def _add_harmonics(commands: Any) -> None:
 
 
 def _curve(options: argparse.Namespace) -> int:
-    opt.picture(options)
     if options.animate is not None:
         from ..linkages.pictures import check_animation_path
 
@@ -111,13 +108,7 @@ def _curve(options: argparse.Namespace) -> int:
 
 
 def _point(text: str, linkage: Linkage, link: str) -> tuple[float, float]:
-    """Return the place of a point in its link [m].
-
-    Raises
-    ------
-    BadInput
-        If these are no two lengths, or the link has no length to count plain numbers in.
-    """
+    """Return the place of a point in its link [m]."""
     parts = text.split(",")
     if len(parts) != 2:
         raise bad("--point", repr(text), "ALONG,ACROSS", "write it like 0.5,0.3 or '6 in,2 in'")
@@ -163,33 +154,26 @@ def _described(curve: CouplerCurve) -> list[str]:
 
 
 def _harmonics(options: argparse.Namespace) -> int:
-    opt.picture(options)
     scene = opt.load(options)
     source = _source(options, scene)
     given = {} if options.accuracy is None else {"accuracy": options.accuracy}
     from ..linkages import harmonics
 
     found = harmonics(source, order=options.order, **given)
-    rows = [
-        (str(m), f"{a:.12g}", f"{b:.12g}", f"{size:.6g}", f"{phase:.4f}")
-        for m, (a, b, size, phase) in enumerate(
-            zip(found.a, found.b, found.amplitude, found.phase, strict=True)
-        )
-    ]
-    lines = opt.table(("harmonic", "cosine", "sine", "amplitude", "phase [rad]"), rows)
+    lines = opt.columns(
+        ("harmonic", "", range(len(found.a))),
+        ("cosine", ".12g", found.a),
+        ("sine", ".12g", found.b),
+        ("amplitude", ".6g", found.amplitude),
+        ("phase [rad]", ".4f", found.phase),
+    )
     if found.secular:
         lines.append(f"beside {found.secular:g} times the crank angle")
     return opt.finish(options, found, [*lines, "", f"{found.evaluations} angles"])
 
 
 def _source(options: argparse.Namespace, scene: Scene) -> Source:
-    """Return what is to be analysed: a field of the motion, or else a force.
-
-    Raises
-    ------
-    BadInput
-        If the name is neither.
-    """
+    """Return what is to be analysed: a field of the motion, or else a force."""
     import numpy as np
 
     linkage = scene.mechanism()

@@ -27,7 +27,6 @@ def add(commands: Any) -> None:
             "  elastolink run-up slider_crank_example --torque '5 N*m' --duration '0.5 s'"
         ),
     )
-    opt.scene_options(parser)
     quantities = {
         "torque": ("TORQUE", "constant motor torque, e.g. '5 N*m'; default: the scene's motor"),
         "stall-torque": ("TORQUE", "motor torque at rest; default motor.stall_torque"),
@@ -52,9 +51,7 @@ def add(commands: Any) -> None:
 
 def _run_up(options: argparse.Namespace) -> int:
     from ..rigid import run_up
-    from ..scenes.rigid import flywheel
 
-    opt.picture(options)
     scene = opt.load(options)
     machine = scene.machine()
     torque = _torque(options, scene)
@@ -69,7 +66,7 @@ def _run_up(options: argparse.Namespace) -> int:
         duration=duration,
         speed0=_given(options, "start-speed", "frequency") or 0.0,
         theta0=_given(options, "start-angle", "angle") or 0.0,
-        flywheel=flywheel(scene),
+        flywheel=float(scene.get("motor.flywheel", 0.0)),
     )
     return opt.finish(options, found, _lines(found))
 
@@ -81,13 +78,7 @@ def _given(options: argparse.Namespace, name: str, dimension: str) -> float | No
 
 
 def _torque(options: argparse.Namespace, scene: Scene) -> TorqueLine | float:
-    """Return what drives: the constant torque, or the torque line of options and scene.
-
-    Raises
-    ------
-    BadInput
-        If both kinds are given, or no motor is known.
-    """
+    """Return what drives: the constant torque, or the torque line of options and scene."""
     from ..rigid import TorqueLine
 
     constant = _given(options, "torque", "moment")

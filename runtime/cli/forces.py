@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
 from . import options as opt
-from .linkages import drive_of, drive_options
+from .linkages import WHOLE_TURN, angles_of, drive_of, drive_options
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ..rigid import ForcePeak, Machine
 
 _JOINTS = ("12", "23", "34", "41", "frame", "torque", "moment")
-_WHOLE_TURN = "0:360:721deg"
 
 
 def add(commands: Any) -> None:
@@ -34,12 +33,11 @@ def add(commands: Any) -> None:
             "  elastolink forces slider_crank_example --speed '1500 rpm' --fluctuation 0.02"
         ),
     )
-    opt.scene_options(forces)
     drive_options(forces, "default operation.speed")
     forces.add_argument(
         "--angles",
         metavar="START:STOP:COUNT[UNIT]",
-        help=f"crank angles; default {_WHOLE_TURN}, or the range that the crank reaches",
+        help=f"crank angles; default {WHOLE_TURN}, or the range that the crank reaches",
     )
     forces.add_argument(
         "--joint",
@@ -57,39 +55,25 @@ def add(commands: Any) -> None:
 def _forces(options: argparse.Namespace) -> int:
     import numpy as np
 
-    from ..rigid import rigid_forces
+    from ..rigid import force_peaks, rigid_forces
 
-    opt.picture(options)
     if options.plot is None:
         opt.refuse_unused(options, ("joint",), "--plot FILE beside it")
     scene = opt.load(options)
     machine = scene.machine()
     speed, acceleration = drive_of(options, scene)
-    theta = np.array(_angles(options, machine))
+    # At the folds themselves the forces are infinite: stay a hundredth of the range away.
+    theta = np.array(angles_of(options, machine.linkage, margin=0.01))
     found = rigid_forces(machine, theta, speed, acceleration)
-    even = _evenness(machine, speed, options.fluctuation)
-    from ..rigid import force_peaks
-
+    even, numbers, beside = _evenness(machine, speed, options.fluctuation)
     peaks = force_peaks(machine, speed, acceleration, span=(float(theta[0]), float(theta[-1])))
-    lines = [*_table(peaks), "", *even.lines]
-    more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **even.numbers}
+    lines = [*_table(peaks), "", *even]
+    more = {"peaks": {name: asdict(peak) for name, peak in peaks.items()}, **numbers}
 
     def draw(ax: Axes) -> Axes:
         return found.plot(ax, joint=options.joint)
 
-    return opt.finish(options, found, lines, draw, more=more, beside=even.results)
-
-
-def _angles(options: argparse.Namespace, machine: Machine) -> list[float]:
-    """Return the wanted angles; by default a turn, or the first range that the crank reaches."""
-    if options.angles is not None:
-        return opt.values(options.angles, "angle", "--angles")
-    if machine.linkage.crank_turns:
-        return opt.values(_WHOLE_TURN, "angle", "--angles")
-    low, high = machine.linkage.crank_ranges()[-1]
-    # At the folds themselves the forces are infinite: stay a hundredth of the range away.
-    margin = 0.01 * (high - low)
-    return opt.spaced(low + margin, high - margin, 721)
+    return opt.finish(options, found, lines, draw, more=more, beside=beside)
 
 
 _LABELS = {
@@ -111,17 +95,10 @@ def _table(peaks: Mapping[str, ForcePeak]) -> list[str]:
     return opt.table(("quantity", "peak", "crank angle [deg]"), rows)
 
 
-@dataclass(frozen=True)
-class _Evenness:
-    """What is told of the torque over a revolution: in words, in numbers, and what was checked."""
-
-    lines: Sequence[str]
-    numbers: Mapping[str, Any] = field(default_factory=dict)
-    results: Sequence[Result] = ()
-
-
-def _evenness(machine: Machine, speed: float, wanted: float | None) -> _Evenness:
-    """Return mean torque, energy fluctuation and flywheel."""
+def _evenness(
+    machine: Machine, speed: float, wanted: float | None
+) -> tuple[list[str], dict[str, Any], tuple[Result, ...]]:
+    """Return mean torque, energy fluctuation and flywheel in lines, in numbers, as results."""
     from ..rigid import flywheel_inertia, torque_fluctuation
 
     for lacking, words, expected, fix in (
@@ -136,7 +113,7 @@ def _evenness(machine: Machine, speed: float, wanted: float | None) -> _Evenness
         if lacking and wanted is not None:
             raise bad("--fluctuation", words, expected, fix)
         if lacking:
-            return _Evenness([f"{words}: no mean torque over a revolution"])
+            return [f"{words}: no mean torque over a revolution"], {}, ()
     steady = torque_fluctuation(machine, speed)
     size = float(abs(steady.torque).max())
     # Round-off of a mean that is zero reads as zero.
@@ -151,7 +128,7 @@ def _evenness(machine: Machine, speed: float, wanted: float | None) -> _Evenness
         "energy_fluctuation_error": steady.error,
     }
     if wanted is None:
-        return _Evenness(lines, numbers, (steady,))
+        return lines, numbers, (steady,)
     wheel = flywheel_inertia(machine, speed, wanted)
     lines.append(
         f"flywheel {wheel.inertia:.6g} kg m^2 for a coefficient of {wheel.fluctuation:.4g}"
@@ -159,4 +136,4 @@ def _evenness(machine: Machine, speed: float, wanted: float | None) -> _Evenness
     )
     names = ("inertia", "first_order", "fluctuation", "motor_torque", "error")
     numbers["flywheel"] = {name: getattr(wheel, name) for name in names}
-    return _Evenness(lines, numbers, (steady, wheel))
+    return lines, numbers, (steady, wheel)

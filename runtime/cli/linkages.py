@@ -12,8 +12,10 @@ from . import constrained
 from . import options as opt
 
 if TYPE_CHECKING:
-    from ..linkages import Motion
+    from ..linkages import Linkage, Motion
     from ..scenes import Scene
+
+WHOLE_TURN = "0:360:721deg"
 
 
 def add(commands: Any) -> None:
@@ -29,7 +31,6 @@ def add(commands: Any) -> None:
             "  elastolink kinematics slider_crank_example --speed '1500 rpm' --animate engine.gif"
         ),
     )
-    opt.scene_options(kinematics)
     kinematics.add_argument(
         "--angles",
         default="0:360:361deg",
@@ -50,7 +51,6 @@ def add(commands: Any) -> None:
             " --revolutions 3 --method DOP853 --plot wave.png"
         ),
     )
-    opt.scene_options(simulate)
     simulate.add_argument(
         "--speed",
         metavar="SPEED",
@@ -86,7 +86,6 @@ def _pair(text: str) -> tuple[float, float]:
 def _kinematics(options: argparse.Namespace) -> int:
     import numpy as np
 
-    opt.picture(options)
     if options.animate is not None:
         from ..linkages.pictures import animate, check_animation_path
 
@@ -110,17 +109,16 @@ def _table(motion: Motion) -> list[str]:
 
     count = motion.theta2.size
     chosen = opt.even_rows(count)
-    header, columns = [], []
+    columns = []
     for name in ("theta2", *motion.places, *motion.rates):
         unit = "rad" if name == "theta2" else motion.unit(name)
         values = getattr(motion, name)[chosen]
         if unit == "rad":
             unit, values = "deg", np.degrees(values)
-        header.append(name if unit == "1" else f"{name} [{unit}]")
         form = ".4f" if unit == "deg" else ".6f" if name in motion.rates else ".6g"
         # No minus before a zero.
-        columns.append([format(float(value), f"z{form}") for value in values])
-    lines = [*opt.table(header, list(zip(*columns, strict=True))), ""]
+        columns.append((name if unit == "1" else f"{name} [{unit}]", f"z{form}", values))
+    lines = [*opt.columns(*columns), ""]
     crossing = getattr(motion, "transmission_angle", None)
     if crossing is not None:
         low, high = np.degrees([crossing.min(), crossing.max()])
@@ -128,6 +126,19 @@ def _table(motion: Motion) -> list[str]:
     if motion.relative:
         lines.append("speeds over omega2, accelerations over omega2^2, at constant crank speed")
     return lines
+
+
+def angles_of(options: argparse.Namespace, linkage: Linkage, *, margin: float) -> list[float]:
+    """Return the crank angles [rad] of ``--angles``: by default a turn, or what the crank reaches.
+
+    At either end of that range, where the linkage folds, a share of it (``margin``) is left out.
+    """
+    if options.angles is not None or linkage.crank_turns:
+        text = WHOLE_TURN if options.angles is None else options.angles
+        return opt.values(text, "angle", "--angles")
+    low, high = linkage.crank_ranges()[-1]
+    inset = margin * (high - low)
+    return opt.spaced(low + inset, high - inset, 721)
 
 
 def drive_options(parser: argparse.ArgumentParser, default: str) -> None:
@@ -149,11 +160,6 @@ def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
     """Return crank speed and acceleration [rad/s, rad/s^2], from the options or the scene.
 
     Both may have either sign, or be zero.
-
-    Raises
-    ------
-    BadInput
-        If no speed is given, or one of them is no such quantity.
     """
     if options.acceleration is None:
         acceleration = float(scene.get("operation.acceleration", 0.0))
@@ -164,13 +170,7 @@ def drive_of(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 
 def speed_of(options: argparse.Namespace, scene: Scene) -> float:
-    """Return the crank speed [rad/s]: the option, or ``operation.speed`` of the scene.
-
-    Raises
-    ------
-    BadInput
-        If neither is given, or the speed is not positive.
-    """
+    """Return the crank speed [rad/s]: the option, or ``operation.speed`` of the scene."""
     speed = _speed(options, scene)
     if not speed > 0:
         raise bad("--speed", repr(options.speed), "a positive crank speed", "correct the sign")
@@ -178,13 +178,7 @@ def speed_of(options: argparse.Namespace, scene: Scene) -> float:
 
 
 def refuse_frame(scene: Scene) -> None:
-    """Refuse a scene without a crank.
-
-    Raises
-    ------
-    BadInput
-        If the scene is of a frame.
-    """
+    """Refuse a scene without a crank."""
     if scene.model["mechanism"] == "frame":
         fix = "use frequencies or stress"
         raise bad(f"scene {scene.name}", "a frame, which has no crank", "a linkage", fix)
@@ -200,7 +194,6 @@ def _speed(options: argparse.Namespace, scene: Scene) -> float:
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    opt.picture(options)
     if not 0 < options.revolutions <= 1e6:
         found = f"{options.revolutions:g}"
         raise bad("--revolutions", found, "a number above 0, at most 1e6", "correct it")

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     import numpy as np
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from ..core.results import Check, Result
@@ -43,22 +42,9 @@ def command(
     *,
     summary: str,
     example: str,
+    scene: bool = True,
 ) -> argparse.ArgumentParser:
-    """Add a subcommand with a worked example at the end of its help.
-
-    Parameters
-    ----------
-    commands : object
-        What ``add_subparsers`` returned.
-    name : str
-        As it is typed.
-    run : callable
-        Does the work and returns the exit status.
-    summary : str
-        One sentence.
-    example : str
-        Command lines and what they give.
-    """
+    """Add a subcommand that ``run`` does, on a scene, with worked examples at its help's end."""
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
@@ -69,12 +55,16 @@ def command(
     parser.set_defaults(run=run, command=name)
     parser.add_argument("--json", action="store_true", help="print JSON instead of text")
     parser.add_argument("--plot", metavar="FILE", help="draw it: a .png, .svg or .pdf file")
+    if scene:
+        scene_options(parser)
     return parser
 
 
-def scene_options(parser: argparse.ArgumentParser) -> None:
+def scene_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
     """Add the scene, overrides of its keys, and the folder of emitted modules."""
-    parser.add_argument("scene", metavar="SCENE", help="a built-in name or a .toml file")
+    parser.add_argument(
+        "scene", nargs=nargs, metavar="SCENE", help="a built-in name or a .toml file"
+    )
     parser.add_argument(
         "--set",
         action="append",
@@ -88,13 +78,7 @@ def scene_options(parser: argparse.ArgumentParser) -> None:
 
 
 def load(options: argparse.Namespace) -> Scene:
-    """Return the scene that the options name, with its overrides.
-
-    Raises
-    ------
-    BadInput
-        If there is no such scene, or anything in it or in an override is wrong.
-    """
+    """Return the scene that the options name, with its overrides."""
     from ..scenes import load_scene
 
     return load_scene(options.scene, overrides=settings(options.set))
@@ -105,11 +89,6 @@ def settings(pairs: Sequence[str]) -> dict[str, Any]:
 
     A value that TOML can read (``3``, ``[1, 2]``, ``"15 in"``) is taken as such, any other one
     (``15 in``) as text.
-
-    Raises
-    ------
-    BadInput
-        If one of them has no equals sign or no key.
     """
     overrides = {}
     for pair in pairs:
@@ -131,11 +110,6 @@ def values(text: str, dimension: str, where: str) -> list[float]:
     """Return evenly spaced values from ``START:STOP:COUNT[UNIT]``.
 
     The unit may also stand with the ends: ``100rpm:900rpm:200``.
-
-    Raises
-    ------
-    BadInput
-        If the text has another form, an end is no such quantity, or the values do not increase.
     """
     parts = text.split(":")
     match = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
@@ -157,13 +131,7 @@ def spaced(start: float, stop: float, count: int) -> list[float]:
 
 
 def picture(options: argparse.Namespace) -> Path | None:
-    """Return the path of the wanted picture, refused here if it cannot be written.
-
-    Raises
-    ------
-    BadInput
-        If the ending is unknown, or the folder is missing or read-only.
-    """
+    """Return the path of the wanted picture, refused here if it cannot be written."""
     if options.plot is None:
         return None
     from ..core.plotting import check_picture_path
@@ -172,17 +140,7 @@ def picture(options: argparse.Namespace) -> Path | None:
 
 
 def refuse_unused(options: argparse.Namespace, names: Sequence[str], without: str) -> None:
-    """Raise BadInput for an option that was given and would do nothing.
-
-    Parameters
-    ----------
-    options : Namespace
-        An option that was not given is None or False there.
-    names : sequence of str
-        The options, as attributes.
-    without : str
-        What they go with, such as ``"--plot FILE"``.
-    """
+    """Refuse an option that was given and does nothing but with what ``without`` names."""
     for name in names:
         given = getattr(options, name)
         if given is not None and given is not False:
@@ -235,11 +193,11 @@ def draw_into(options: argparse.Namespace, draw: Callable[[Axes], Any]) -> None:
     """Write the requested picture, if any."""
     path = picture(options)
     if path is not None:
-        from ..core.plotting import new_figure
+        from ..core.plotting import new_figure, save_figure
 
         figure = new_figure()
         draw(figure.add_subplot())
-        save(figure, path)
+        save_figure(figure, path)
 
 
 def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]]) -> int:
@@ -249,13 +207,6 @@ def exit_status(options: argparse.Namespace, found: Iterable[Mapping[str, Check]
         text = f"self-check failed: {name}: {check.value:.3g} exceeds {check.limit:.3g}"
         print(f"elastolink {options.command}: {text}", file=sys.stderr)
     return int(bool(failed))
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure, whole or not at all."""
-    from ..core.plotting import save_figure
-
-    save_figure(figure, path)
 
 
 def print_json(content: Any) -> None:
@@ -301,6 +252,13 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
         cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
         lines.append("  ".join(cells).rstrip())
     return lines
+
+
+def columns(*columns: tuple[str, str, Iterable[Any]]) -> list[str]:
+    """Return the lines of a table of columns: heading, format of its cells, values."""
+    header = [heading for heading, _, _ in columns]
+    cells = ([format(value, form) for value in values] for _, form, values in columns)
+    return table(header, list(zip(*cells, strict=True)))
 
 
 def ranges(result: Result) -> list[str]:

@@ -11,19 +11,16 @@ from typing import Any
 from ..core.errors import bad
 from . import options as opt
 
-_REPORTS = (
-    *("chart", "slices", "forces", "mathieu", "perturbation", "rod", "scaling", "stress-curve"),
-)
-
 
 def add(commands: Any) -> None:
-    """Add the two subcommands."""
+    """Add the subcommand."""
     reproduce = opt.command(
         commands,
         "reproduce",
         _reproduce,
         summary="Redraw the computed figures of a document, and check the numbers that it quotes.",
         example="elastolink reproduce smith --figure 84 --out gallery",
+        scene=False,
     )
     reproduce.add_argument(
         "document",
@@ -52,7 +49,6 @@ def _writable_folder(name: str) -> Path:
 
 def _reproduce(options: argparse.Namespace) -> int:
     folder = _writable_folder(options.out)
-    opt.picture(options)
     from ..gallery import reproduce
 
     result = reproduce(options.document, options.figure, folder, progress=opt.progress(options))

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 # Of the coordinates of beams, by the end of their names; all others are rotations.
 _UNITS = {**dict.fromkeys(("x", "y", "along", "across"), "m"), "curvature": "1/m"}
-_HEADER = ("speed [rad/s]", "deflection [m]", "at x/length", "multiplier from 1", "motion")
 
 
 def add(commands: Any) -> None:
@@ -31,7 +30,6 @@ def add(commands: Any) -> None:
             "      --set rod.damping_ratio=0.002 --speed 60:1000:471 --plot resonances.png"
         ),
     )
-    opt.scene_options(steady)
     steady.add_argument(
         "--speed",
         metavar="SPEED",
@@ -44,17 +42,12 @@ def add(commands: Any) -> None:
         help="place on the link, 0 to 1, whose deflection is shown; default where it is largest",
     )
 
-    steady.add_argument(
-        "--method",
-        default=None,
-        help="auto (default) or harmonic_balance",
-    )
+    steady.add_argument("--method", default=None, help="auto (default) or harmonic_balance")
 
 
 def _steady_state(options: argparse.Namespace) -> int:
     import numpy as np
 
-    opt.picture(options)
     if options.at is not None and not 0.0 <= options.at <= 1.0:
         raise bad("--at", f"{options.at:g}", "a place from 0 to 1", "divide by the length")
     scene = opt.load(options)
@@ -91,11 +84,11 @@ def _of_beams(options: argparse.Namespace, system: LinearPeriodic, speeds: Array
         raise bad("--speed", f"{len(speeds)} speeds", "one for a linkage of beams", fix)
     result = _solved(options, system, speeds)
     peaks = np.max(np.abs(result.q[0]), axis=0)
-    rows = [
-        (label, f"{peak:.6g}", _UNITS.get(label.rpartition(".")[2], "rad"))
-        for label, peak in zip(system.labels, peaks, strict=True)
-    ]
-    return opt.finish(options, result, opt.table(("coordinate", "largest", ""), rows))
+    units = [_UNITS.get(label.rpartition(".")[2], "rad") for label in system.labels]
+    lines = opt.columns(
+        ("coordinate", "", system.labels), ("largest", ".6g", peaks), ("", "", units)
+    )
+    return opt.finish(options, result, lines)
 
 
 def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:
@@ -108,14 +101,11 @@ def _lines(found: SteadyState, peaks: Array, places: Array) -> list[str]:
     if len(speeds) > opt.MOST_ROWS:
         chosen = opt.highest(peaks)
         title = [f"{len(speeds)} speeds; where the deflection is larger than beside:", ""]
-    rows = [
-        (
-            f"{speeds[i]:.6g}",
-            f"{peaks[i]:.6g}",
-            f"{places[i]:.2f}",
-            f"{found.distance[i]:.3g}",
-            "stable" if found.stable[i] else "unstable",
-        )
-        for i in chosen
-    ]
-    return [*title, *opt.table(_HEADER, rows)]
+    lines = opt.columns(
+        ("speed [rad/s]", ".6g", speeds[chosen]),
+        ("deflection [m]", ".6g", peaks[chosen]),
+        ("at x/length", ".2f", places[chosen]),
+        ("multiplier from 1", ".3g", found.distance[chosen]),
+        ("motion", "", np.where(found.stable[chosen], "stable", "unstable").tolist()),
+    )
+    return [*title, *lines]

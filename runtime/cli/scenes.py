@@ -1,4 +1,4 @@
-"""``elastolink scenes`` and ``elastolink show``: what there is, and the numbers of one scene."""
+"""``elastolink scenes``, ``show``, ``explain``: what there is, numbers and needs of one scene."""
 
 from __future__ import annotations
 
@@ -17,23 +17,30 @@ if TYPE_CHECKING:
 
 
 def add(commands: Any) -> None:
-    """Add the two subcommands."""
+    """Add the three subcommands."""
     listing = opt.command(
         commands,
         "scenes",
         _scenes,
         summary="List the built-in scenes.",
         example="elastolink scenes\n  elastolink scenes --plot scenes.pdf   (each one drawn)",
+        scene=False,
     )
     listing.add_argument("--long", action="store_true", help="with the source of each")
-    showing = opt.command(
+    opt.command(
         commands,
         "show",
         _show,
         summary="Show a scene: every number in SI units, with what follows from the given ones.",
         example="elastolink show smith_1972_5152_sixteenth_inch --set coupler.damping_ratio=0.01",
     )
-    opt.scene_options(showing)
+    opt.command(
+        commands,
+        "explain",
+        _explain,
+        summary="Tell what a scene needs, and what is not derived, emitted, imported or evaluated.",
+        example="elastolink explain smith_1972_5152_sixteenth_inch --set model.modes=2",
+    )
 
 
 def _scenes(options: argparse.Namespace) -> int:
@@ -41,14 +48,14 @@ def _scenes(options: argparse.Namespace) -> int:
 
     path = opt.picture(options)
     if path is not None:
-        from ..core.plotting import new_figure
+        from ..core.plotting import new_figure, save_figure
 
         names = list_scenes()
         rows = -(-len(names) // 3)
         figure = new_figure(12.0, 3.0 * rows)
         for place, name in enumerate(names, start=1):
             draw_scene(load_scene(name), figure.add_subplot(rows, 3, place))
-        opt.save(figure, path)
+        save_figure(figure, path)
     titles = scene_titles()
     if options.json:
         opt.print_json(
@@ -62,19 +69,20 @@ def _scenes(options: argparse.Namespace) -> int:
 
 
 def _show(options: argparse.Namespace) -> int:
-    path = opt.picture(options)
     scene = opt.load(options)
-    if path is not None:
-        from ..core.plotting import new_figure
-
-        figure = new_figure()
-        draw_scene(scene, figure.add_subplot())
-        opt.save(figure, path)
+    opt.draw_into(options, lambda ax: draw_scene(scene, ax))
     if options.json:
         opt.print_json(scene.to_dict())
     else:
         print("\n".join(_lines(scene)))
     return 0
+
+
+def _explain(options: argparse.Namespace) -> int:
+    from .skipping import explain
+
+    result = explain(options.scene, opt.settings(options.set))
+    return opt.finish(options, result, result.lines())
 
 
 def _lines(scene: Scene) -> list[str]:
@@ -116,20 +124,7 @@ def _several(numbers: tuple[float, ...], dimension: str) -> str:
 
 
 def draw_scene(scene: Scene, ax: Axes) -> Axes:
-    """Draw a scene's linkage at several crank angles, its frame, or a Hill equation's function.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a ``[links]``, a ``[members]`` or a ``[function]`` table.
-    ax : Axes
-        Where to draw.
-
-    Returns
-    -------
-    Axes
-        The same axes.
-    """
+    """Draw a scene's linkage at several crank angles, its frame, or a Hill equation's function."""
     from ..scenes.scene import LINKAGES
 
     ax.set_title(scene.name, fontsize="medium")

@@ -31,7 +31,6 @@ def add(commands: Any) -> None:
             "  elastolink stability smith_1972_5152_sixteenth_inch --speed 300:900:61rpm"
         ),
     )
-    opt.scene_options(stability)
     stability.add_argument(
         "--speed",
         metavar="SPEED",
@@ -49,7 +48,6 @@ def add(commands: Any) -> None:
             "  elastolink chart mathieu --x lam2=-0.5:30:4000 --y mu=0:4:2500 --store fine.npz"
         ),
     )
-    opt.scene_options(chart)
     chart.add_argument(
         "--order",
         metavar="N",
@@ -78,7 +76,6 @@ def add(commands: Any) -> None:
 
 
 def _stability(options: argparse.Namespace) -> int:
-    opt.picture(options)
     scene = opt.load(options)
     if constrained.is_constrained(scene):
         return constrained.stability(options, scene)
@@ -130,7 +127,6 @@ def _crank(speed: float, scene: Scene) -> str:
 
 
 def _chart(options: argparse.Namespace) -> int:
-    opt.picture(options)
     stored_chart.check(options)
     scene = opt.load(options)
     system = scene.linear_system()
@@ -177,17 +173,9 @@ def _marks(scene: Scene, y: tuple[str, list[float]]) -> dict[str, tuple[float, .
 
 def _chart_lines(chart: StabilityChart, scene: Scene) -> list[str]:
     """Return the unstable share, and the ends of each region at the ends of the other axis."""
-    import numpy as np
-
-    nx, ny = len(chart.x), len(chart.y)
-    share = 100.0 * float(np.mean(~chart.stable))
-    complex_share = 100.0 * float(np.mean(chart.kind == 2))
-    lines = [
-        f"{chart.x_name} x {chart.y_name}: {nx} x {ny} points, {share:.3g} % unstable",
-        chart.method,
-    ]
-    if complex_share > 0:
-        lines.append(f"{complex_share:.3g} % by combination (complex multipliers)")
+    names = chart.x_name, chart.y_name
+    first, *lines = stored_chart.shares(names, chart.stable, chart.kind)
+    lines = [first, chart.method, *lines]
     if min(chart.nodes) > 0:
         lines.append(f"sampled at {chart.nodes[0]} x {chart.nodes[1]} nodes")
     curves = chart.exact

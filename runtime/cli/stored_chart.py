@@ -15,17 +15,15 @@ if TYPE_CHECKING:
 
     from ..core.families import LinearPeriodic
     from ..sweeps import Sweep
+    from ..sweeps.result import AnyArray
 
 Axis = tuple[str, list[float]]
-_MOST_WORKERS = 1024
 
 
 def add_options(chart: argparse.ArgumentParser) -> None:
     """Add what concerns large charts to the subcommand."""
     chart.add_argument(
-        "--workers",
-        metavar="N",
-        help="work in N processes; the answer does not depend on it",
+        "--workers", metavar="N", help="work in N processes; the answer does not depend on it"
     )
     chart.add_argument(
         "--store",
@@ -56,21 +54,14 @@ def workers(options: argparse.Namespace) -> Iterator[Executor | None]:
 def _count(options: argparse.Namespace) -> int:
     if options.workers is None:
         return 1
+    from ..core.workers import check_workers
+
     text = options.workers.strip()
-    if not (text.isdecimal() and 1 <= int(text) <= _MOST_WORKERS):
-        expected = f"a whole number from 1 to {_MOST_WORKERS}"
-        raise bad("--workers", repr(options.workers), expected, "give the number of cores")
-    return int(text)
+    return check_workers(int(text) if text.isdecimal() else text, "--workers")
 
 
 def check(options: argparse.Namespace) -> None:
-    """Refuse options that do not go together.
-
-    Raises
-    ------
-    BadInput
-        If boundaries are asked for that a store has not, or an estimate without a store.
-    """
+    """Refuse options that do not go together."""
     _count(options)
     if options.store is None:
         opt.refuse_unused(options, ("estimate",), "--store PATH")
@@ -111,15 +102,19 @@ def run(
     return opt.finish(options, chart, _lines(chart, x, y))
 
 
-def _lines(chart: Sweep, x: Axis, y: Axis) -> list[str]:
-    import numpy as np
-
-    unstable = 100.0 * (1.0 - float(np.mean(chart["stable"])))
-    lines = [f"{x[0]} x {y[0]}: {len(x[1])} x {len(y[1])} points, {unstable:.3g} % unstable"]
-    mixed = 100.0 * float(np.mean(chart["kind"] == 2))
+def shares(names: tuple[str, str], stable: AnyArray, kind: AnyArray) -> list[str]:
+    """Return what share of a chart ``(ny, nx)`` is unstable, and how much of it by combination."""
+    ny, nx = stable.shape
+    unstable, mixed = 100.0 * float((~stable).mean()), 100.0 * float((kind == 2).mean())
+    lines = [f"{names[0]} x {names[1]}: {nx} x {ny} points, {unstable:.3g} % unstable"]
     if mixed > 0:
         lines.append(f"{mixed:.3g} % by combination (complex multipliers)")
-    left = 100.0 * float(np.mean(chart["undecided"]))
+    return lines
+
+
+def _lines(chart: Sweep, x: Axis, y: Axis) -> list[str]:
+    lines = shares((x[0], y[0]), chart["stable"], chart["kind"])
+    left = 100.0 * float(chart["undecided"].mean())
     lines.append(f"{left:.3g} % undecided")
     lines.append(
         f"{chart.pieces} pieces, {chart.resumed} of them found there, in {chart.store}: "

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.errors import bad
 from . import options as opt
-from .linkages import speed_of
+from .linkages import WHOLE_TURN, angles_of, speed_of
 
 if TYPE_CHECKING:
     from ..linkages.length_tolerances import Tolerances, ToleranceTrial
-    from ..linkages.linkage import Linkage
     from ..scenes import Scene
 
-_WHOLE_TURN = "0:360:721deg"
 _DIMENSIONS = {
     "theta2": "angle",
     "mass": "mass",
@@ -38,7 +36,6 @@ def add(commands: Any) -> None:
             " --speed '1500 rpm' --monte-carlo 2000"
         ),
     )
-    opt.scene_options(parser)
     parser.add_argument(
         "--tolerance",
         action="append",
@@ -50,7 +47,7 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--angles",
         metavar="START:STOP:COUNT[UNIT]",
-        help=f"crank angles; default {_WHOLE_TURN}, or the range that the crank reaches",
+        help=f"crank angles; default {WHOLE_TURN}, or the range that the crank reaches",
     )
     parser.add_argument("--forces", action="store_true", help="forces too; needs a crank speed")
     parser.add_argument(
@@ -84,11 +81,11 @@ def _tolerances(options: argparse.Namespace) -> int:
 
     from ..linkages.length_tolerances import tolerances
 
-    opt.picture(options)
     scene = opt.load(options)
     subject: Any = scene.machine() if options.forces else scene.mechanism()
     linkage = subject.linkage if options.forces else subject
-    theta = np.array(_angles(options, linkage))
+    # At the folds themselves the sensitivities are infinite: stay a twentieth of the range away.
+    theta = np.array(angles_of(options, linkage, margin=0.05))
     speed, acceleration = _drive(options, scene)
     widths = dict(_width(pair) for pair in options.tolerance)
     if not widths:
@@ -108,18 +105,6 @@ def _tolerances(options: argparse.Namespace) -> int:
     return max(status, done)
 
 
-def _angles(options: argparse.Namespace, linkage: Linkage) -> list[float]:
-    """Return the wanted angles; by default a turn, or the first range that the crank reaches."""
-    if options.angles is not None:
-        return opt.values(options.angles, "angle", "--angles")
-    if linkage.crank_turns:
-        return opt.values(_WHOLE_TURN, "angle", "--angles")
-    low, high = linkage.crank_ranges()[-1]
-    # At the folds themselves the sensitivities are infinite: stay a twentieth of the range away.
-    margin = 0.05 * (high - low)
-    return opt.spaced(low + margin, high - margin, 721)
-
-
 def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
     """Return crank speed and acceleration; without either, rates are over the crank's."""
     speed, acceleration = 1.0, 0.0
@@ -134,13 +119,7 @@ def _drive(options: argparse.Namespace, scene: Scene) -> tuple[float, float]:
 
 
 def _width(pair: str) -> tuple[str, float]:
-    """Return name and width of a tolerance in SI units.
-
-    Raises
-    ------
-    BadInput
-        If it has no equals sign, or the width is no such quantity.
-    """
+    """Return name and width of a tolerance in SI units."""
     name, sign, width = pair.partition("=")
     if not sign or not name.strip():
         raise bad("--tolerance", repr(pair), "NAME=WIDTH", "write --tolerance crank='0.05 mm'")

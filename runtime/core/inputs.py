@@ -30,7 +30,7 @@ def is_whole(value: object, least: int, most: int | None = None) -> TypeGuard[in
 
 
 def require_whole(where: str, value: object, least: int, most: int, fix: str = "correct it") -> int:
-    """Return a whole number within bounds.
+    """Return a whole number within bounds; refuse anything else.
 
     Parameters
     ----------
@@ -42,11 +42,6 @@ def require_whole(where: str, value: object, least: int, most: int, fix: str = "
         Bounds, both allowed.
     fix : str
         What to do where it is none.
-
-    Raises
-    ------
-    BadInput
-        If it is none.
     """
     if not is_whole(value, least, most):
         raise bad(where, repr(value), f"a whole number from {least} to {most}", fix)
@@ -67,14 +62,10 @@ def as_numpy(value: Any) -> Any:
 
 
 def numbers(name: str, value: object) -> NDArray[np.float64]:
-    """Return an argument as an array of floats.
+    """Return an argument as an array of floats; refuse what is not made of real numbers.
 
-    Arrays of other namespaces become NumPy's, wherever NumPy can read them.
-
-    Raises
-    ------
-    BadInput
-        If it is not made of real numbers; text that spells a number is none.
+    Arrays of other namespaces become NumPy's, wherever NumPy can read them; text that spells a
+    number is none.
     """
     try:
         given = np.asarray(as_numpy(value))
@@ -126,13 +117,7 @@ def names_problems(where: str, value: object) -> list[Problem]:
 
 
 def require_positive(where: str, **values: float) -> None:
-    """Refuse values that are not positive numbers.
-
-    Raises
-    ------
-    BadInput
-        With every problem.
-    """
+    """Refuse values that are not positive numbers, all of them in one error."""
     problems = [
         Problem(f"{where}: {name}", repr(value), "a positive number", "give it in SI units")
         for name, value in values.items()
@@ -143,37 +128,19 @@ def require_positive(where: str, **values: float) -> None:
 
 
 def require_kind(where: str, value: object, kind: type, fix: str) -> None:
-    """Refuse what is not an instance of a class.
-
-    Raises
-    ------
-    BadInput
-        If it is not.
-    """
+    """Refuse what is not an instance of a class."""
     if not isinstance(value, kind):
         raise bad(where, type(value).__name__, f"a {kind.__name__}", fix)
 
 
 def require_mapping(where: str, value: object, fix: str) -> None:
-    """Refuse what is no mapping from names.
-
-    Raises
-    ------
-    BadInput
-        If it is none.
-    """
+    """Refuse what is no mapping from names."""
     if not (isinstance(value, Mapping) and all(isinstance(name, str) for name in value)):
         raise bad(where, repr(value), "a mapping from names", fix)
 
 
 def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np.float64]:
-    """Return finite numbers as a row that is not empty; one alone stands for a row of one.
-
-    Raises
-    ------
-    BadInput
-        If they are anything else.
-    """
+    """Return finite numbers as a row that is not empty; one alone is a row of one."""
     row = np.atleast_1d(numbers(where, value))
     if row.ndim != 1 or not row.size or not np.all(np.isfinite(row)):
         raise bad(where, repr(value), f"finite numbers in a row{unit}", "correct them")
@@ -181,13 +148,7 @@ def numbers_in_a_row(where: str, value: ArrayLike, unit: str = "") -> NDArray[np
 
 
 def speed_span(speed_range: tuple[float, float]) -> tuple[float, float]:
-    """Return a range of speeds as floats.
-
-    Raises
-    ------
-    BadInput
-        If it is not a rising pair of positive numbers.
-    """
+    """Return a rising pair of positive speeds as floats; refuse anything else."""
     values = numbers("speed_range", speed_range)
     if values.shape != (2,) or not np.all(np.isfinite(values)) or not 0 < values[0] < values[1]:
         raise bad(

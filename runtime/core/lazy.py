@@ -8,27 +8,28 @@ from typing import Any
 
 
 def on_first_use(
-    namespace: dict[str, Any], public: Mapping[str, str]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return the ``__getattr__`` and ``__dir__`` of a package whose names load when used.
+    namespace: dict[str, Any], public: Mapping[str, tuple[str, ...]]
+) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose names load when used.
 
     Parameters
     ----------
     namespace : dict
         ``globals()`` of the package; a name that was loaded is kept there.
-    public : mapping of str to str
-        From each public name to the module inside the package that has it.
+    public : mapping of str to tuple of str
+        From each module, as it is imported from the package, to its public names.
     """
     package = namespace["__name__"]
+    modules = {name: module for module, names in public.items() for name in names}
 
     def load(name: str) -> Any:
-        if name not in public:
+        if name not in modules:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        value = getattr(import_module(f".{public[name]}", package), name)
+        value = getattr(import_module(f".{modules[name]}", package), name)
         namespace[name] = value
         return value
 
     def names() -> list[str]:
-        return sorted({*namespace, *public})
+        return sorted({*namespace, *modules})
 
-    return load, names
+    return sorted(modules), load, names

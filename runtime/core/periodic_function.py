@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import bad
+from .inputs import numbers_in_a_row
 from .sampling import finite_angles, values_at
 
 Array = NDArray[np.float64]
@@ -56,7 +57,7 @@ class PeriodicFunction:
     Raises
     ------
     BadInput
-        If a coefficient is not finite, an array is not one-dimensional, or ``b[0]`` is not zero.
+        If a coefficient is no finite number, they are not in a row, or ``b[0]`` is not zero.
 
     Notes
     -----
@@ -68,14 +69,15 @@ class PeriodicFunction:
     error: float
 
     def __init__(self, a: ArrayLike = (0.0,), b: ArrayLike = (0.0,), error: float = 0.0) -> None:
-        cos, sin = _coefficients("a", a), _coefficients("b", b)
+        cos = numbers_in_a_row("PeriodicFunction.a", a)
+        sin = numbers_in_a_row("PeriodicFunction.b", b)
         if sin[0] != 0.0:
             raise bad("PeriodicFunction.b[0]", sin[0], "0", "b[m] belongs to sin m theta")
         if not (np.isfinite(error) and error >= 0.0):
             raise bad("PeriodicFunction.error", error, "a finite number >= 0", "correct it")
         size = max(len(cos), len(sin))
-        object.__setattr__(self, "a", _frozen(np.pad(cos, (0, size - len(cos)))))
-        object.__setattr__(self, "b", _frozen(np.pad(sin, (0, size - len(sin)))))
+        object.__setattr__(self, "a", _filled(cos, size))
+        object.__setattr__(self, "b", _filled(sin, size))
         object.__setattr__(self, "error", float(error))
 
     @classmethod
@@ -99,7 +101,7 @@ class PeriodicFunction:
         BadInput
             If the samples are not a non-empty one-dimensional array of finite numbers.
         """
-        samples = _coefficients("values", values)
+        samples = numbers_in_a_row("PeriodicFunction.values", values)
         a, b = _analyse(samples)
         size = np.hypot(a, b)
         top = size[-max(1, len(size) // 8) :] if len(samples) > 2 else np.zeros(1)
@@ -108,10 +110,7 @@ class PeriodicFunction:
 
     @classmethod
     def from_callable(
-        cls,
-        f: Callable[[Array], ArrayLike],
-        tol: float | None = None,
-        name: str | None = None,
+        cls, f: Callable[[Array], ArrayLike], tol: float | None = None, name: str | None = None
     ) -> PeriodicFunction:
         """Find the Fourier series of a function, doubling the samples until the tail is small.
 
@@ -204,10 +203,8 @@ class PeriodicFunction:
         """Return the sum with another function or with a constant."""
         if isinstance(other, PeriodicFunction):
             size = max(len(self.a), len(other.a))
-            a, b = np.zeros(size), np.zeros(size)
-            for item in (self, other):
-                a[: len(item.a)] += item.a
-                b[: len(item.b)] += item.b
+            a = _filled(self.a, size) + _filled(other.a, size)
+            b = _filled(self.b, size) + _filled(other.b, size)
             return PeriodicFunction(a, b, self.error + other.error)
         if not isinstance(other, (int, float, np.integer, np.floating)):
             return NotImplemented
@@ -305,32 +302,11 @@ def _phases(harmonics: int, segments: int, nodes: tuple[float, ...]) -> NDArray[
     return out
 
 
-def _frozen(values: Array) -> Array:
-    values.setflags(write=False)
-    return values
-
-
-def _coefficients(name: str, values: ArrayLike) -> Array:
-    try:
-        out = np.array(values, dtype=float)
-    except (TypeError, ValueError) as reason:
-        raise bad(
-            f"PeriodicFunction.{name}", repr(values)[:60], "a sequence of numbers", "correct it"
-        ) from reason
-    if out.ndim != 1 or out.size == 0:
-        raise bad(
-            f"PeriodicFunction.{name}",
-            f"an array of shape {out.shape}",
-            "one dimension and at least one entry",
-            "pass a flat sequence",
-        )
-    if not np.all(np.isfinite(out)):
-        raise bad(
-            f"PeriodicFunction.{name}",
-            "an entry that is not finite",
-            "finite numbers",
-            "look for a division by zero where it was made",
-        )
+def _filled(values: Array, size: int) -> Array:
+    """Return values, filled with zeros, read-only."""
+    out = np.zeros(size)
+    out[: len(values)] = values
+    out.setflags(write=False)
     return out
 
 

@@ -47,13 +47,7 @@ def multiplier_plane(ax: Axes | None) -> Axes:
 
 
 def check_picture_path(path: str | Path) -> Path:
-    """Return the path of a picture that can be written; refuse it before any work starts.
-
-    Raises
-    ------
-    BadInput
-        If the ending is unknown or the folder does not exist or is read-only.
-    """
+    """Return the path of a picture that can be written; refuse it before any work starts."""
     target = Path(path)
     if target.suffix not in FORMATS:
         raise bad(str(target), repr(target.suffix), f"an ending of {FORMATS}", "rename the file")
@@ -61,13 +55,7 @@ def check_picture_path(path: str | Path) -> Path:
 
 
 def require_writable(target: Path) -> Path:
-    """Return the path of a file that can be written.
-
-    Raises
-    ------
-    BadInput
-        If the folder does not exist or is read-only, or the path is that of a folder.
-    """
+    """Return the path of a file that can be written; refuse any other."""
     import os
 
     if not target.parent.is_dir() or not os.access(target.parent, os.W_OK) or target.is_dir():
@@ -78,13 +66,7 @@ def require_writable(target: Path) -> Path:
 
 
 def save_figure(figure: Figure, path: str | Path) -> Path:
-    """Write a figure as PNG, SVG or PDF, whole or not at all, the same bytes each time.
-
-    Raises
-    ------
-    BadInput
-        If the ending is unknown or the folder cannot be written.
-    """
+    """Write a figure as PNG, SVG or PDF, whole or not at all, the same bytes each time."""
     import matplotlib as mpl
 
     target = check_picture_path(path)

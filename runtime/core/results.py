@@ -199,13 +199,7 @@ class Result:
 
 
 def write_whole(path: Path, content: bytes) -> Path:
-    """Write a file so that it appears whole or not at all.
-
-    Raises
-    ------
-    BadInput
-        If the folder does not exist or cannot be written.
-    """
+    """Write a file whole or not at all; refuse a place that cannot be written."""
     try:
         return _write_whole(path, content)
     except OSError as refusal:

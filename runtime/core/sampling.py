@@ -13,13 +13,7 @@ Array = NDArray[np.float64]
 
 
 def finite_angles(theta: ArrayLike) -> Array:
-    """Return angles as an array of any shape.
-
-    Raises
-    ------
-    BadInput
-        If one of them is not finite.
-    """
+    """Return angles as an array of any shape; refuse any that is not finite."""
     angles = np.asarray(theta, dtype=float)
     if not np.all(np.isfinite(angles)):
         raise bad("theta", "an angle that is not finite", "finite angles", "correct the input")

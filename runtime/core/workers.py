@@ -15,17 +15,15 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import contextmanager
-from functools import partial
 from itertools import islice
 from typing import Any
 
 from .errors import ElastolinkError, bad
 from .inputs import require_whole
-from .threads import THREADS
+from .threads import THREADS, environment
 
 # Pieces handed over for each worker: one being done and one waiting.
 _EACH = 2
-_MOST_WORKERS = 1024
 
 
 class WorkersLost(ElastolinkError):  # noqa: N818 - reads as what it is
@@ -112,13 +110,10 @@ class Workers:
         executor = self._executor
         if executor is None:
             raise ValueError("no executor")
-        call = partial(work, self._subject) if self._sent is None else partial(_call, self._sent)
         try:
-            return (
-                executor.submit(call, item)
-                if self._sent is None
-                else executor.submit(call, work, item)
-            )
+            if self._sent is None:
+                return executor.submit(work, self._subject, item)
+            return executor.submit(_call, self._sent, work, item)
         except BrokenExecutor as reason:
             raise _lost(reason) from reason
         except RuntimeError as reason:
@@ -129,13 +124,7 @@ class Workers:
 
 
 def check_executor(executor: object) -> None:
-    """Refuse what is neither None nor an executor.
-
-    Raises
-    ------
-    BadInput
-        If it is something else.
-    """
+    """Refuse what is neither None nor an executor."""
     if executor is not None and not isinstance(executor, Executor):
         raise bad(
             "executor",
@@ -167,31 +156,19 @@ def process_pool(workers: int) -> Iterator[Executor]:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    check_workers(workers)
-    before = {name: os.environ.get(name) for name in THREADS}
+    count = check_workers(workers)
+    context = multiprocessing.get_context("spawn")
     # The libraries read it as they load, in the processes that start here.
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(max_workers=int(workers), mp_context=context) as pool:
-            yield pool
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+    with (
+        environment(dict.fromkeys(THREADS, "1")),
+        ProcessPoolExecutor(max_workers=count, mp_context=context) as pool,
+    ):
+        yield pool
 
 
-def check_workers(workers: object) -> None:
-    """Refuse a number of workers that is none.
-
-    Raises
-    ------
-    BadInput
-        If it is not a whole number from 1 to 1024.
-    """
-    require_whole("workers", workers, 1, _MOST_WORKERS, "give the number of cores")
+def check_workers(workers: object, where: str = "workers") -> int:
+    """Return a number of workers from 1 to 1024; refuse anything else."""
+    return require_whole(where, workers, 1, 1024, "give the number of cores")
 
 
 _prepared = threading.local()

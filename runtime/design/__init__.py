@@ -7,50 +7,25 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .effects import StressEffect, damping_effect, length_effect
-    from .fatigue_life import Fatigue, Material, fatigue
-    from .procedure import RunningSpeed, running_speed
-    from .quiet import Band, QuietSpeeds, quiet_speeds
-    from .screening import Screening, screen
-    from .speed_profile import SpeedProfile
-    from .transient import Transient, run_through
+    from .effects import damping_effect as damping_effect
+    from .effects import length_effect as length_effect
+    from .fatigue_life import Material as Material
+    from .fatigue_life import fatigue as fatigue
+    from .procedure import running_speed as running_speed
+    from .quiet import quiet_speeds as quiet_speeds
+    from .screening import screen as screen
+    from .speed_profile import SpeedProfile as SpeedProfile
+    from .transient import run_through as run_through
 
-_PUBLIC = {
-    "Band": "quiet",
-    "Fatigue": "fatigue_life",
-    "Material": "fatigue_life",
-    "QuietSpeeds": "quiet",
-    "RunningSpeed": "procedure",
-    "Screening": "screening",
-    "SpeedProfile": "speed_profile",
-    "StressEffect": "effects",
-    "Transient": "transient",
-    "damping_effect": "effects",
-    "fatigue": "fatigue_life",
-    "length_effect": "effects",
-    "quiet_speeds": "quiet",
-    "run_through": "transient",
-    "running_speed": "procedure",
-    "screen": "screening",
-}
-
-__all__ = [
-    "Band",
-    "Fatigue",
-    "Material",
-    "QuietSpeeds",
-    "RunningSpeed",
-    "Screening",
-    "SpeedProfile",
-    "StressEffect",
-    "Transient",
-    "damping_effect",
-    "fatigue",
-    "length_effect",
-    "quiet_speeds",
-    "run_through",
-    "running_speed",
-    "screen",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "effects": ("damping_effect", "length_effect"),
+        "fatigue_life": ("Material", "fatigue"),
+        "procedure": ("running_speed",),
+        "quiet": ("quiet_speeds",),
+        "screening": ("screen",),
+        "speed_profile": ("SpeedProfile",),
+        "transient": ("run_through",),
+    },
+)

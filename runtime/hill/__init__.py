@@ -23,67 +23,35 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .boundaries import Boundaries, hill_boundaries
-    from .certified import CertifiedBoundaries
-    from .derivatives import BoundaryDerivatives, boundary_derivatives
-    from .exponents import CharacteristicExponents, characteristic_exponents
-    from .form import HillForm, hill_form
-    from .half_trace import HalfTrace, discriminant
-    from .mathieu import Mathieu, MathieuCharacteristic
-    from .meissner import Meissner
-    from .perturbation import PerturbationBoundaries, perturbation_boundaries
-    from .series import BoundarySeries, boundary_series
-    from .solutions import BoundarySolution, boundary_solution
-    from .thresholds import Thresholds, critical_damping
+    from .boundaries import Boundaries as Boundaries
+    from .boundaries import hill_boundaries as hill_boundaries
+    from .derivatives import boundary_derivatives as boundary_derivatives
+    from .exponents import characteristic_exponents as characteristic_exponents
+    from .form import HillForm as HillForm
+    from .form import hill_form as hill_form
+    from .half_trace import discriminant as discriminant
+    from .mathieu import Mathieu as Mathieu
+    from .meissner import Meissner as Meissner
+    from .perturbation import PerturbationBoundaries as PerturbationBoundaries
+    from .perturbation import perturbation_boundaries as perturbation_boundaries
+    from .series import BoundarySeries as BoundarySeries
+    from .series import boundary_series as boundary_series
+    from .solutions import boundary_solution as boundary_solution
+    from .thresholds import critical_damping as critical_damping
 
-_PUBLIC = {
-    "Boundaries": "boundaries",
-    "BoundaryDerivatives": "derivatives",
-    "BoundarySeries": "series",
-    "BoundarySolution": "solutions",
-    "CertifiedBoundaries": "certified",
-    "CharacteristicExponents": "exponents",
-    "HalfTrace": "half_trace",
-    "HillForm": "form",
-    "Mathieu": "mathieu",
-    "MathieuCharacteristic": "mathieu",
-    "Meissner": "meissner",
-    "PerturbationBoundaries": "perturbation",
-    "Thresholds": "thresholds",
-    "boundary_derivatives": "derivatives",
-    "boundary_series": "series",
-    "boundary_solution": "solutions",
-    "characteristic_exponents": "exponents",
-    "critical_damping": "thresholds",
-    "discriminant": "half_trace",
-    "hill_boundaries": "boundaries",
-    "hill_form": "form",
-    "perturbation_boundaries": "perturbation",
-}
-
-__all__ = [
-    "Boundaries",
-    "BoundaryDerivatives",
-    "BoundarySeries",
-    "BoundarySolution",
-    "CertifiedBoundaries",
-    "CharacteristicExponents",
-    "HalfTrace",
-    "HillForm",
-    "Mathieu",
-    "MathieuCharacteristic",
-    "Meissner",
-    "PerturbationBoundaries",
-    "Thresholds",
-    "boundary_derivatives",
-    "boundary_series",
-    "boundary_solution",
-    "characteristic_exponents",
-    "critical_damping",
-    "discriminant",
-    "hill_boundaries",
-    "hill_form",
-    "perturbation_boundaries",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "boundaries": ("Boundaries", "hill_boundaries"),
+        "derivatives": ("boundary_derivatives",),
+        "exponents": ("characteristic_exponents",),
+        "form": ("HillForm", "hill_form"),
+        "half_trace": ("discriminant",),
+        "mathieu": ("Mathieu",),
+        "meissner": ("Meissner",),
+        "perturbation": ("PerturbationBoundaries", "perturbation_boundaries"),
+        "series": ("BoundarySeries", "boundary_series"),
+        "solutions": ("boundary_solution",),
+        "thresholds": ("critical_damping",),
+    },
+)

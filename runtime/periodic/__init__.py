@@ -21,53 +21,34 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .motion import Trajectory, simulate
-    from .multipliers import (
-        FloquetMultipliers,
-        Monodromy,
-        cycles_to_settle,
-        floquet_multipliers,
-        monodromy,
-    )
-    from .peaks import SteadyPeaks, steady_peaks
-    from .periodic_motion import SteadyState, steady_state
-    from .prepared import Prepared, prepare
-    from .reduced import ReducedSystem, reduced_system
+    from .motion import Trajectory as Trajectory
+    from .motion import simulate as simulate
+    from .multipliers import FloquetMultipliers as FloquetMultipliers
+    from .multipliers import Monodromy as Monodromy
+    from .multipliers import cycles_to_settle as cycles_to_settle
+    from .multipliers import floquet_multipliers as floquet_multipliers
+    from .multipliers import monodromy as monodromy
+    from .peaks import steady_peaks as steady_peaks
+    from .periodic_motion import SteadyState as SteadyState
+    from .periodic_motion import steady_state as steady_state
+    from .prepared import Prepared as Prepared
+    from .prepared import prepare as prepare
+    from .reduced import reduced_system as reduced_system
 
-_PUBLIC = {
-    "FloquetMultipliers": "multipliers",
-    "Monodromy": "multipliers",
-    "Prepared": "prepared",
-    "ReducedSystem": "reduced",
-    "SteadyPeaks": "peaks",
-    "SteadyState": "periodic_motion",
-    "Trajectory": "motion",
-    "cycles_to_settle": "multipliers",
-    "floquet_multipliers": "multipliers",
-    "monodromy": "multipliers",
-    "prepare": "prepared",
-    "reduced_system": "reduced",
-    "simulate": "motion",
-    "steady_peaks": "peaks",
-    "steady_state": "periodic_motion",
-}
-
-__all__ = [
-    "FloquetMultipliers",
-    "Monodromy",
-    "Prepared",
-    "ReducedSystem",
-    "SteadyPeaks",
-    "SteadyState",
-    "Trajectory",
-    "cycles_to_settle",
-    "floquet_multipliers",
-    "monodromy",
-    "prepare",
-    "reduced_system",
-    "simulate",
-    "steady_peaks",
-    "steady_state",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "motion": ("Trajectory", "simulate"),
+        "multipliers": (
+            "FloquetMultipliers",
+            "Monodromy",
+            "cycles_to_settle",
+            "floquet_multipliers",
+            "monodromy",
+        ),
+        "peaks": ("steady_peaks",),
+        "periodic_motion": ("SteadyState", "steady_state"),
+        "prepared": ("Prepared", "prepare"),
+        "reduced": ("reduced_system",),
+    },
+)

@@ -17,48 +17,25 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .beam_forces import BeamForces, recover
-    from .beam_motion import BeamMotion
-    from .elastic_curve import ElasticCurve, elastic_coupler_curve
-    from .pin_forces import PinReactions, pin_reactions
-    from .strain_energy import BeamEnergies, beam_energies
-    from .stress_over_speed import StressCurve, stress_curve
-    from .stresses import StressPeak, StressResult, stress, stress_operator
+    from .beam_forces import recover as recover
+    from .beam_motion import BeamMotion as BeamMotion
+    from .elastic_curve import ElasticCurve as ElasticCurve
+    from .elastic_curve import elastic_coupler_curve as elastic_coupler_curve
+    from .pin_forces import pin_reactions as pin_reactions
+    from .strain_energy import beam_energies as beam_energies
+    from .stress_over_speed import stress_curve as stress_curve
+    from .stresses import stress as stress
+    from .stresses import stress_operator as stress_operator
 
-_PUBLIC = {
-    "BeamEnergies": "strain_energy",
-    "BeamForces": "beam_forces",
-    "BeamMotion": "beam_motion",
-    "ElasticCurve": "elastic_curve",
-    "PinReactions": "pin_forces",
-    "StressCurve": "stress_over_speed",
-    "StressPeak": "stresses",
-    "StressResult": "stresses",
-    "beam_energies": "strain_energy",
-    "elastic_coupler_curve": "elastic_curve",
-    "pin_reactions": "pin_forces",
-    "recover": "beam_forces",
-    "stress": "stresses",
-    "stress_curve": "stress_over_speed",
-    "stress_operator": "stresses",
-}
-
-__all__ = [
-    "BeamEnergies",
-    "BeamForces",
-    "BeamMotion",
-    "ElasticCurve",
-    "PinReactions",
-    "StressCurve",
-    "StressPeak",
-    "StressResult",
-    "beam_energies",
-    "elastic_coupler_curve",
-    "pin_reactions",
-    "recover",
-    "stress",
-    "stress_curve",
-    "stress_operator",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "beam_forces": ("recover",),
+        "beam_motion": ("BeamMotion",),
+        "elastic_curve": ("ElasticCurve", "elastic_coupler_curve"),
+        "pin_forces": ("pin_reactions",),
+        "strain_energy": ("beam_energies",),
+        "stress_over_speed": ("stress_curve",),
+        "stresses": ("stress", "stress_operator"),
+    },
+)

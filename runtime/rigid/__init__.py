@@ -36,34 +36,24 @@ if TYPE_CHECKING:
     from .peaks import ForcePeak as ForcePeak
     from .peaks import force_peaks as force_peaks
 
-_PUBLIC = {
-    "Balancing": "balancing",
-    "Bounds": "counterweights",
-    "Counterweight": "counterweights",
-    "ForcePeak": "peaks",
-    "Load": "loads",
-    "Machine": "machine",
-    "MassDistribution": "masses",
-    "RigidForces": "forces",
-    "RunUp": "motor_run",
-    "Spring": "loads",
-    "TorqueLine": "motor_run",
-    "TorsionSpring": "loads",
-    "balance": "balancing",
-    "case_counterweights": "counterweights",
-    "driving_torque": "forces",
-    "flywheel_inertia": "flywheel",
-    "force_peaks": "peaks",
-    "pin_forces": "forces",
-    "rigid_forces": "forces",
-    "run_up": "motor_run",
-    "shaking_force": "forces",
-    "shaking_moment": "forces",
-    "torque_fluctuation": "flywheel",
-    "trade_off": "balancing",
-    "with_counterweights": "counterweights",
-}
-
-__all__ = [*_PUBLIC]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "balancing": ("Balancing", "balance", "trade_off"),
+        "counterweights": ("Bounds", "Counterweight", "case_counterweights", "with_counterweights"),
+        "flywheel": ("flywheel_inertia", "torque_fluctuation"),
+        "forces": (
+            "RigidForces",
+            "driving_torque",
+            "pin_forces",
+            "rigid_forces",
+            "shaking_force",
+            "shaking_moment",
+        ),
+        "loads": ("Load", "Spring", "TorsionSpring"),
+        "machine": ("Machine",),
+        "masses": ("MassDistribution",),
+        "motor_run": ("RunUp", "TorqueLine", "run_up"),
+        "peaks": ("ForcePeak", "force_peaks"),
+    },
+)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..core.errors import BadInput, Problem
-from .schema import Key, Table
+from .schema import Key, Table, not_negative, positive
 
 # Terms of the moving beams that a scene may leave out, and names for sets of them.
 DROPPED = ("geometric_stiffness", "turning")
@@ -26,75 +27,51 @@ MATERIAL = Table(
     "material",
     "what the links are made of, where a link does not say otherwise",
     (
-        Key("modulus", "Young's modulus", dimension="stress", limit="positive"),
-        Key("density", "mass per volume", dimension="density", limit="positive"),
-        Key(
+        positive("modulus", "Young's modulus", "stress"),
+        positive("density", "mass per volume", "density"),
+        not_negative(
             "retardation_time",
             "Kelvin-Voigt damping: stress = E (strain + retardation_time d strain/dt)",
-            dimension="time",
+            "time",
             default=0.0,
-            limit="non-negative",
         ),
-        Key("limit_stress", "stress that it bears", dimension="stress", limit="positive"),
-        Key("poisson", "Poisson's ratio, for Timoshenko's beam", limit="non-negative", most=0.5),
+        positive("limit_stress", "stress that it bears", "stress"),
+        not_negative("poisson", "Poisson's ratio, for Timoshenko's beam", most=0.5),
     ),
 )
 MESH = Table(
     "mesh",
     "how the links are divided",
-    (
-        Key(
-            "elements",
-            "elements of every link",
-            "count",
-            default=3,
-            limit="positive",
-            most=200,
-        ),
-    ),
+    (Key("elements", "elements of every link", "count", default=3, limit="positive", most=200),),
 )
 DAMPING = Table(
     "damping",
     "damping of the whole structure",
     (
-        Key("ratio", "of every mode of the structure held still", limit="non-negative"),
-        Key("rayleigh_mass", "a of C = a M + b K", dimension="frequency", limit="non-negative"),
-        Key("rayleigh_stiffness", "b of C = a M + b K", dimension="time", limit="non-negative"),
+        not_negative("ratio", "of every mode of the structure held still"),
+        not_negative("rayleigh_mass", "a of C = a M + b K", "frequency"),
+        not_negative("rayleigh_stiffness", "b of C = a M + b K", "time"),
     ),
 )
 SECTION_KEYS = (
-    Key("area", "cross-section area", dimension="area", limit="positive"),
-    Key("second_moment", "second moment of area", dimension="second_moment", limit="positive"),
-    Key("width", "width of a bar across the plane", dimension="length", limit="positive"),
-    Key("thickness", "thickness in the plane", dimension="length", limit="positive"),
-    Key("shear_stiffness", "k G A", dimension="force", limit="positive"),
-    *(
-        Key(key.name, key.meaning, dimension=key.dimension, limit=key.limit)
-        for key in MATERIAL.keys
-        if key.name != "poisson"
-    ),
+    positive("area", "cross-section area", "area"),
+    positive("second_moment", "second moment of area", "second_moment"),
+    positive("width", "width of a bar across the plane", "length"),
+    positive("thickness", "thickness in the plane", "length"),
+    positive("shear_stiffness", "k G A", "force"),
+    *(replace(key, default=None) for key in MATERIAL.keys if key.name != "poisson"),
     Key("elements", "number of elements", "count", limit="positive", most=200),
 )
 _NODE_KEYS = (
-    Key("mass", "lumped mass", dimension="mass", limit="non-negative"),
-    Key("inertia", "lumped moment of inertia", dimension="inertia", limit="non-negative"),
+    not_negative("mass", "lumped mass", "mass"),
+    not_negative("inertia", "lumped moment of inertia", "inertia"),
     Key("carried_by", "link that the inertia turns with", "text"),
-    Key("stiffness_x", "spring along x", dimension="stiffness", limit="non-negative"),
-    Key("stiffness_y", "spring along y", dimension="stiffness", limit="non-negative"),
-    Key(
-        "stiffness_rotation",
-        "torsion spring",
-        dimension="rotational_stiffness",
-        limit="non-negative",
-    ),
-    Key("damping_x", "damper along x", dimension="damping", limit="non-negative"),
-    Key("damping_y", "damper along y", dimension="damping", limit="non-negative"),
-    Key(
-        "damping_rotation",
-        "torsion damper",
-        dimension="rotational_damping",
-        limit="non-negative",
-    ),
+    not_negative("stiffness_x", "spring along x", "stiffness"),
+    not_negative("stiffness_y", "spring along y", "stiffness"),
+    not_negative("stiffness_rotation", "torsion spring", "rotational_stiffness"),
+    not_negative("damping_x", "damper along x", "damping"),
+    not_negative("damping_y", "damper along y", "damping"),
+    not_negative("damping_rotation", "torsion damper", "rotational_damping"),
     Key(
         "held",
         "what the ground or the shaft holds; left out, what the mechanism says",

@@ -32,7 +32,7 @@ from .linkage_tables import (
     rigid_tables,
 )
 from .rod_tables import ROD, ROD_LINKS, ROD_PARAMETERS
-from .schema import Key, Layout, Table
+from .schema import Key, Layout, Table, not_negative
 
 _RIGID = ("kinematics", "forces")
 
@@ -51,15 +51,7 @@ RIGID_FOUR_BAR = Layout(
     "four_bar",
     _RIGID,
     rigid_tables(FOUR_BAR_LENGTHS, LINKS[1:]),
-    outputs=(
-        "theta3",
-        "theta4",
-        "omega3",
-        "omega4",
-        "alpha3",
-        "alpha4",
-        "transmission_angle",
-    ),
+    outputs=("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle"),
     links=LINKS[1:],
 )
 
@@ -137,7 +129,7 @@ HILL = Layout(
             (
                 Key("lam2", "square of the natural frequency over the crank speed", required=True),
                 Key("mu", "factor of the function", required=True),
-                Key("damping", "K of Smith (7.38)", default=0.0, limit="non-negative"),
+                not_negative("damping", "K of Smith (7.38)", default=0.0),
             ),
             required=True,
         ),

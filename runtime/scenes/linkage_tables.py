@@ -5,34 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from .schema import Key, Table
+from .schema import Key, Table, not_negative, positive
 
 LINKS = ("frame", "crank", "coupler", "follower")
-
-
-def _length(link: str, meaning: str) -> Key:
-    return Key(link, meaning, dimension="length", required=True, limit="positive")
 
 
 FOUR_BAR_LENGTHS = Table(
     "links",
     "lengths between the pins, and which of the two closures",
     (
-        _length("frame", "distance between the fixed pivots"),
-        _length("crank", "length of the driven link"),
-        _length("coupler", "length of the link between crank and follower"),
-        _length("follower", "length of the link to the second fixed pivot"),
+        positive("frame", "distance between the fixed pivots", "length", required=True),
+        positive("crank", "length of the driven link", "length", required=True),
+        positive(
+            "coupler", "length of the link between crank and follower", "length", required=True
+        ),
+        positive(
+            "follower", "length of the link to the second fixed pivot", "length", required=True
+        ),
         Key("assembly", "closure", "text", default="open", choices=("open", "crossed")),
     ),
     required=True,
 )
 _MASS_KEYS = (
-    Key("mass", "mass of the link", dimension="mass", limit="positive"),
-    Key(
-        "weight", "weight of the link, at gravity.acceleration", dimension="force", limit="positive"
-    ),
+    positive("mass", "mass of the link", "mass"),
+    positive("weight", "weight of the link, at gravity.acceleration", "force"),
 )
-_INERTIA = Key("inertia", "about the link's first joint", dimension="inertia", limit="positive")
+_INERTIA = positive("inertia", "about the link's first joint", "inertia")
 _FIRST_MOMENT = Key(
     "first_moment",
     "mass times distance of its centre from the first joint",
@@ -41,17 +39,9 @@ _FIRST_MOMENT = Key(
 GRAVITY = Table(
     "gravity",
     "what turns a weight into a mass",
-    (
-        Key(
-            "acceleration",
-            "acceleration of free fall",
-            dimension="acceleration",
-            default=9.80665,
-            limit="positive",
-        ),
-    ),
+    (positive("acceleration", "acceleration of free fall", "acceleration", default=9.80665),),
 )
-_SPEED = Key("speed", "crank speed", dimension="frequency", limit="positive")
+_SPEED = positive("speed", "crank speed", "frequency")
 OPERATION = Table(
     "operation",
     "how the machine runs",
@@ -80,7 +70,7 @@ MEASURED = Table(
             "inertia",
             limit="non-negative",
         ),
-        Key("natural_frequency", "of the coupler", dimension="frequency", limit="positive"),
+        positive("natural_frequency", "of the coupler", "frequency"),
         Key("log_decrement", "lowest and highest", "quantities", limit="non-negative", length=2),
         Key("speeds", "crank speeds of resonances", "quantities", "frequency", limit="positive"),
         Key(
@@ -93,27 +83,17 @@ COUPLER = Table(
     "coupler",
     "the flexible coupler",
     (
-        Key(
-            "bending_stiffness",
-            "EI, in the plane of motion",
-            dimension="bending_stiffness",
-            required=True,
-            limit="positive",
+        positive(
+            "bending_stiffness", "EI, in the plane of motion", "bending_stiffness", required=True
         ),
-        Key("mass_per_length", "mass per length", dimension="mass_per_length", limit="positive"),
-        Key(
+        positive("mass_per_length", "mass per length", "mass_per_length"),
+        positive(
             "natural_frequency",
             "first frequency as a pinned beam at rest; gives mu = EI (pi/l3)^4 / Omega^2",
-            dimension="frequency",
-            limit="positive",
+            "frequency",
         ),
-        Key(
-            "damping",
-            "distributed viscous damping",
-            dimension="damping_per_length",
-            limit="non-negative",
-        ),
-        Key("damping_ratio", "of the first mode at rest", limit="non-negative"),
+        not_negative("damping", "distributed viscous damping", "damping_per_length"),
+        not_negative("damping_ratio", "of the first mode at rest"),
         replace(_INERTIA, meaning="about the crank pin; a uniform bar's by default"),
         replace(_FIRST_MOMENT, meaning="about the crank pin; a uniform bar's by default"),
     ),
@@ -134,10 +114,6 @@ def rigid_link(link: str, *, inertia_required: bool = False) -> Table:
     )
 
 
-def _positive(name: str, meaning: str, dimension: str) -> Key:
-    return Key(name, meaning, dimension=dimension, limit="positive")
-
-
 def _body(link: str) -> Table:
     """Return the table of a rigid link whose mass may lie anywhere."""
     return Table(
@@ -145,11 +121,11 @@ def _body(link: str) -> Table:
         f"mass of the {link}; where it lies and turns, in axes along the link at its first joint",
         (
             *_MASS_KEYS,
-            _positive("density", "density; with width and thickness it gives the mass", "density"),
-            _positive("width", "width of a bar across the plane", "length"),
-            _positive("thickness", "thickness of a bar in the plane", "length"),
+            positive("density", "density; with width and thickness it gives the mass", "density"),
+            positive("width", "width of a bar across the plane", "length"),
+            positive("thickness", "thickness of a bar in the plane", "length"),
             _INERTIA,
-            _positive("inertia_about_centre", "about the centre of mass", "inertia"),
+            positive("inertia_about_centre", "about the centre of mass", "inertia"),
             _FIRST_MOMENT,
             replace(
                 _FIRST_MOMENT,
@@ -220,9 +196,9 @@ _MOTOR = Table(
     "motor",
     "what drives the crank: a torque that falls in a straight line with speed, and a flywheel",
     (
-        _positive("stall_torque", "torque at rest", "moment"),
-        _positive("no_load_speed", "speed at which no torque is left", "frequency"),
-        Key("flywheel", "inertia on the crank shaft", dimension="inertia", limit="non-negative"),
+        positive("stall_torque", "torque at rest", "moment"),
+        positive("no_load_speed", "speed at which no torque is left", "frequency"),
+        not_negative("flywheel", "inertia on the crank shaft", "inertia"),
     ),
 )
 
@@ -252,10 +228,10 @@ def _acting(links: tuple[str, ...]) -> tuple[Table, ...]:
             Key("first_at", "point in that link's axes", "quantities", "length", length=2),
             Key("second", "link of the second end", "text", required=True, choices=ends),
             Key("second_at", "point in that link's axes", "quantities", "length", length=2),
-            Key("stiffness", "stiffness", dimension="stiffness", limit="non-negative"),
-            Key("free_length", "length without force", dimension="length", limit="non-negative"),
+            not_negative("stiffness", "stiffness", "stiffness"),
+            not_negative("free_length", "length without force", "length"),
             Key("preload", "tension at the free length", dimension="force"),
-            Key("damping", "viscous damping", dimension="damping", limit="non-negative"),
+            not_negative("damping", "viscous damping", "damping"),
         ),
         named=True,
     )
@@ -265,10 +241,10 @@ def _acting(links: tuple[str, ...]) -> tuple[Table, ...]:
         (
             Key("first", "one link", "text", required=True, choices=ends),
             Key("second", "the other link", "text", required=True, choices=ends),
-            Key("stiffness", "stiffness", dimension="rotational_stiffness", limit="non-negative"),
+            not_negative("stiffness", "stiffness", "rotational_stiffness"),
             Key("free_angle", "angle of the second against the first", dimension="angle"),
             Key("preload", "couple at the free angle", dimension="moment"),
-            Key("damping", "viscous damping", dimension="rotational_damping", limit="non-negative"),
+            not_negative("damping", "viscous damping", "rotational_damping"),
         ),
         named=True,
     )
@@ -285,8 +261,8 @@ SLIDER_CRANK_LENGTHS = Table(
     "links",
     "lengths between the pins, and on which side of the crank pin the slider is",
     (
-        _length("crank", "length of the driven link"),
-        _length("coupler", "length of the link between crank and slider"),
+        positive("crank", "length of the driven link", "length", required=True),
+        positive("coupler", "length of the link between crank and slider", "length", required=True),
         Key(
             "offset",
             "distance of the slider's line from the crank pivot, to the left",
@@ -301,9 +277,14 @@ QUICK_RETURN_LENGTHS = Table(
     "links",
     "lengths between the pins, and of the rod",
     (
-        _length("frame", "distance between the pivots of crank and rod"),
-        _length("crank", "length of the driven link"),
-        _length("rod", "length of the rod, which a block on the crank pin slides along"),
+        positive("frame", "distance between the pivots of crank and rod", "length", required=True),
+        positive("crank", "length of the driven link", "length", required=True),
+        positive(
+            "rod",
+            "length of the rod, which a block on the crank pin slides along",
+            "length",
+            required=True,
+        ),
     ),
     required=True,
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..core.errors import bad
 
 if TYPE_CHECKING:
-    from ..rigid import Load, Machine, MassDistribution, Spring, TorqueLine, TorsionSpring
+    from ..rigid import Load, Machine, MassDistribution, Spring, TorsionSpring
     from .scene import Scene
 
 _MASS = ("mass", "first_moment", "transverse_moment", "inertia")
@@ -49,21 +49,6 @@ def machine(scene: Scene) -> Machine:
     springs += [_torsion(table) for table in scene.get("torsion_springs", {}).values()]
     loads = [_load(table) for table in scene.get("loads", {}).values()]
     return Machine(linkage, masses, weight, tuple(loads), tuple(springs))
-
-
-def motor(scene: Scene) -> TorqueLine | None:
-    """Return the torque line of the scene's motor, or None where it has none."""
-    from ..rigid import TorqueLine
-
-    table = scene.get("motor", {})
-    if not {"stall_torque", "no_load_speed"} <= set(table):
-        return None
-    return TorqueLine(table["stall_torque"], table["no_load_speed"])
-
-
-def flywheel(scene: Scene) -> float:
-    """Return the inertia [kg m^2] of the scene's flywheel on the crank shaft, zero without one."""
-    return float(scene.get("motor", {}).get("flywheel", 0.0))
 
 
 def _known(scene: Scene, link: str) -> bool:

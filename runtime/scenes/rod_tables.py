@@ -5,27 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.errors import BadInput, Problem
-from .schema import Key, Table
+from .schema import Key, Table, not_negative, positive
 
 ROD_LINKS = Table(
     "links",
     "lengths between the pins, and of the rod",
     (
-        Key(
-            "frame",
-            "distance between the pivots of crank and rod",
-            dimension="length",
-            required=True,
-            limit="positive",
-        ),
-        Key("crank", "length of the driven link", dimension="length", limit="positive"),
-        Key("crank_ratio", "crank over frame, eps", limit="positive"),
-        Key(
+        positive("frame", "distance between the pivots of crank and rod", "length", required=True),
+        positive("crank", "length of the driven link", "length"),
+        positive("crank_ratio", "crank over frame, eps"),
+        positive(
             "rod",
             "length of the rod, which a block on the crank pin slides along",
-            dimension="length",
+            "length",
             required=True,
-            limit="positive",
         ),
     ),
     required=True,
@@ -35,42 +28,20 @@ ROD = Table(
     "rod",
     "the flexible rod",
     (
-        Key(
-            "bending_stiffness",
-            "EI, in the plane of motion",
-            dimension="bending_stiffness",
-            limit="positive",
+        positive("bending_stiffness", "EI, in the plane of motion", "bending_stiffness"),
+        positive("modulus", "E; with second_moment it gives EI", "stress"),
+        positive("second_moment", "I, in the plane of motion", "second_moment"),
+        positive("mass_per_length", "mass per length", "mass_per_length", required=True),
+        not_negative(
+            "damping", "viscous damping of the rod's own motion, per length", "damping_per_length"
         ),
-        Key("modulus", "E; with second_moment it gives EI", dimension="stress", limit="positive"),
-        Key(
-            "second_moment",
-            "I, in the plane of motion",
-            dimension="second_moment",
-            limit="positive",
-        ),
-        Key(
-            "mass_per_length",
-            "mass per length",
-            dimension="mass_per_length",
-            required=True,
-            limit="positive",
-        ),
-        Key(
-            "damping",
-            "viscous damping of the rod's own motion, per length",
-            dimension="damping_per_length",
-            limit="non-negative",
-        ),
-        Key(
+        not_negative(
             "relaxation_time",
             "Kelvin-Voigt damping: the moment is EI (v'' + relaxation_time d v''/dt)",
-            dimension="time",
-            limit="non-negative",
+            "time",
         ),
-        Key(
-            "damping_ratio",
-            "of the first mode with the block at frame's distance, by damping_law",
-            limit="non-negative",
+        not_negative(
+            "damping_ratio", "of the first mode with the block at frame's distance, by damping_law"
         ),
         Key(
             "damping_law",
@@ -107,13 +78,7 @@ def complete_crank(links: dict[str, Any]) -> None:
 
 
 def complete_rod(rod: dict[str, Any]) -> None:
-    """Fill in the bending stiffness, and zeros where no damping is given.
-
-    Raises
-    ------
-    BadInput
-        If a modulus stands without a second moment of area.
-    """
+    """Fill in the bending stiffness, and zeros where no damping is given."""
     if "modulus" in rod:
         if "second_moment" not in rod:
             expected = "second_moment beside it"

@@ -66,10 +66,6 @@ class ReadOnlyTable(Mapping[str, Any]):
         """Return the number of keys."""
         return len(self._values)
 
-    def __contains__(self, key: object) -> bool:
-        """Return True where the table holds the key."""
-        return key in self._values
-
     def __eq__(self, other: object) -> bool:
         """Compare by content."""
         return isinstance(other, Mapping) and self._values == dict(other)

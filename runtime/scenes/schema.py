@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 Kind = Literal["quantity", "quantities", "count", "counts", "text", "texts"]
 Range = Literal["any", "positive", "non-negative"]
@@ -53,6 +53,16 @@ class Key:
     rising: bool = False
     least: int | None = None
     most: float | None = None
+
+
+def positive(name: str, meaning: str, dimension: str = "dimensionless", **more: Any) -> Key:
+    """Return the key of a quantity above 0; ``more`` are further fields of :class:`Key`."""
+    return Key(name, meaning, dimension=dimension, limit="positive", **more)
+
+
+def not_negative(name: str, meaning: str, dimension: str = "dimensionless", **more: Any) -> Key:
+    """Return the key of a quantity of 0 or more; ``more`` are further fields of :class:`Key`."""
+    return Key(name, meaning, dimension=dimension, limit="non-negative", **more)
 
 
 @dataclass(frozen=True)

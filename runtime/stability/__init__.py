@@ -21,46 +21,23 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .boundary_speeds import SpeedBoundaries, speed_boundaries
-    from .chart import EdgeCurves, StabilityChart, stability_chart
-    from .chart_boundaries import BoundaryCurves
-    from .edges import StabilityEdges, stability_edges
-    from .from_feet import TongueCurves, tongue_curves
-    from .meetings import Resonance, resonances
-    from .tongues import Tongue, tongue
+    from .boundary_speeds import speed_boundaries as speed_boundaries
+    from .chart import StabilityChart as StabilityChart
+    from .chart import stability_chart as stability_chart
+    from .edges import StabilityEdges as StabilityEdges
+    from .edges import stability_edges as stability_edges
+    from .from_feet import tongue_curves as tongue_curves
+    from .meetings import resonances as resonances
+    from .tongues import tongue as tongue
 
-_PUBLIC = {
-    "BoundaryCurves": "chart_boundaries",
-    "EdgeCurves": "chart",
-    "Resonance": "meetings",
-    "SpeedBoundaries": "boundary_speeds",
-    "StabilityChart": "chart",
-    "StabilityEdges": "edges",
-    "Tongue": "tongues",
-    "TongueCurves": "from_feet",
-    "resonances": "meetings",
-    "speed_boundaries": "boundary_speeds",
-    "stability_chart": "chart",
-    "stability_edges": "edges",
-    "tongue": "tongues",
-    "tongue_curves": "from_feet",
-}
-
-__all__ = [
-    "BoundaryCurves",
-    "EdgeCurves",
-    "Resonance",
-    "SpeedBoundaries",
-    "StabilityChart",
-    "StabilityEdges",
-    "Tongue",
-    "TongueCurves",
-    "resonances",
-    "speed_boundaries",
-    "stability_chart",
-    "stability_edges",
-    "tongue",
-    "tongue_curves",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "boundary_speeds": ("speed_boundaries",),
+        "chart": ("StabilityChart", "stability_chart"),
+        "edges": ("StabilityEdges", "stability_edges"),
+        "from_feet": ("tongue_curves",),
+        "meetings": ("resonances",),
+        "tongues": ("tongue",),
+    },
+)

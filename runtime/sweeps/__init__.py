@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..core.lazy import on_first_use
-from ..core.workers import WorkersLost, process_pool
 
-_PUBLIC = {
-    "Sweep": "result",
-    "SweepEstimate": "estimate",
-    "estimate_sweep": "estimate",
-    "sweep": "sweeping",
-}
+if TYPE_CHECKING:
+    from ..core.workers import WorkersLost as WorkersLost
+    from ..core.workers import process_pool as process_pool
+    from .estimate import estimate_sweep as estimate_sweep
+    from .result import Sweep as Sweep
+    from .sweeping import sweep as sweep
 
-__all__ = ["Sweep", "SweepEstimate", "WorkersLost", "estimate_sweep", "process_pool", "sweep"]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        ".core.workers": ("WorkersLost", "process_pool"),
+        "estimate": ("estimate_sweep",),
+        "result": ("Sweep",),
+        "sweeping": ("sweep",),
+    },
+)

@@ -75,13 +75,7 @@ class Grid:
 
 
 def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) -> Grid:
-    """Return the grid of a sweep, cut into pieces of about ``chunk`` points.
-
-    Raises
-    ------
-    BadInput
-        If there is no axis, or one is empty, not finite, or not in a line.
-    """
+    """Return the grid of a sweep, cut into pieces of about ``chunk`` points."""
     if not isinstance(values, Mapping) or not values:
         fix = 'give values={"speed": numpy.linspace(...)}'
         raise bad("values", repr(values)[:60], "values along at least one named axis", fix)
@@ -112,13 +106,7 @@ def grid_of(values: Mapping[str, ArrayLike], chunk: int, *, rows: bool = False) 
 
 
 def check_chunk(chunk: Any) -> int:
-    """Return the wanted number of points of a piece.
-
-    Raises
-    ------
-    BadInput
-        If it is not a whole number of at least 1.
-    """
+    """Return the wanted number of points of a piece."""
     whole = isinstance(chunk, (int, np.integer)) and not isinstance(chunk, bool)
     if not whole or int(chunk) < 1:
         raise bad("chunk", repr(chunk), "a whole number of points, 1 or more", "leave it out")

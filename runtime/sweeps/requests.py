@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
@@ -35,13 +34,7 @@ def request_of(
     options: Mapping[str, object],
     outputs: tuple[str, ...] | None,
 ) -> dict[str, Any]:
-    """Return what a manifest says of a request: names, counts and digests, ready for JSON.
-
-    Raises
-    ------
-    BadInput
-        If the subject or an option is of a kind that cannot be told from another.
-    """
+    """Return what a manifest says of a request: names, counts and digests, ready for JSON."""
     from ... import __version__
 
     axes = [
@@ -67,20 +60,8 @@ def request_of(
     }
 
 
-def digest_of_request(request: Mapping[str, Any]) -> str:
-    """Return the digest of a request."""
-    text = json.dumps(request, sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
 def digest(value: object) -> str:
-    """Return a digest that depends on content alone, not on addresses or the order of sets.
-
-    Raises
-    ------
-    BadInput
-        If something in it has no content that could be told.
-    """
+    """Return a digest that depends on content alone, not on addresses or the order of sets."""
     found = hashlib.sha256()
     _feed(found, value, ())
     return found.hexdigest()

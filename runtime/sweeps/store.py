@@ -9,7 +9,7 @@ import shutil
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -20,7 +20,6 @@ from ..._files import whole_file
 from ..core.errors import bad
 from ..core.results import write_whole
 from .pieces import Grid
-from .requests import digest_of_request
 from .tasks import Piece
 
 AnyArray = NDArray[Any]
@@ -28,14 +27,6 @@ _MANIFEST = "manifest.json"
 _ABOUT = "about"
 # Files that a killed process had begun to write.
 _BEGUN = re.compile(r"\.(.+)\.[a-z0-9_]{8}")
-
-
-@dataclass(frozen=True)
-class Joined:
-    """A whole sweep: its arrays by name, and what the manifest says of it."""
-
-    arrays: Mapping[str, AnyArray]
-    about: Mapping[str, Any]
 
 
 class Store:
@@ -63,14 +54,8 @@ class Store:
         self.folder = path.with_name(path.name + ".parts") if self.single else path
         self._parts = self.folder / "pieces"
 
-    def finished(self) -> Joined | None:
-        """Return the sweep where it is complete; refuse another one's.
-
-        Raises
-        ------
-        BadInput
-            If the store holds another request, or cannot be read.
-        """
+    def finished(self) -> Piece | None:
+        """Return the sweep where it is complete; refuse another one's."""
         about = self._about()
         if about is None:
             return None
@@ -79,16 +64,12 @@ class Store:
             return None
         # Killed after the last step it has left its pieces.
         self._clean()
-        return Joined(self._whole(about), about)
+        return Piece.from_about(self._whole(about), about)
 
     def _about(self) -> dict[str, Any] | None:
         """Return the manifest of what lies there; None where nothing does."""
         if self.single and self.path.exists():
-            with (
-                self._reading(self.path),
-                self.path.open("rb") as stream,
-                np.load(stream) as held,
-            ):
+            with self._reading(self.path), self.path.open("rb") as stream, np.load(stream) as held:
                 found: dict[str, Any] = json.loads(bytes(held[_ABOUT]))
                 return found
         manifest = self.folder / _MANIFEST
@@ -123,16 +104,12 @@ class Store:
 
     def _require_same(self, about: Mapping[str, Any]) -> None:
         held = about.get("request", {})
-        if about.get("digest") == digest_of_request(self.request):
-            return
         keys = sorted({*held, *self.request})
         differing = [key for key in keys if held.get(key) != self.request.get(key)]
-        raise bad(
-            str(self.path),
-            f"a sweep that differs in {', '.join(differing) or 'its digest'}",
-            "the store of this request",
-            "give another store, or the request that this one was begun with",
-        )
+        if differing:
+            found = f"a sweep that differs in {', '.join(differing)}"
+            fix = "give another store, or the request that this one was begun with"
+            raise bad(str(self.path), found, "the store of this request", fix)
 
     def _whole(self, about: Mapping[str, Any]) -> dict[str, AnyArray]:
         """Return the arrays of a complete store, of a folder as maps of its files."""
@@ -147,13 +124,7 @@ class Store:
 
     @contextmanager
     def opened(self) -> Iterator[Store]:
-        """Begin the store, or take it up again; no two processes at once, where that can be told.
-
-        Raises
-        ------
-        BadInput
-            If the place cannot be written, or another process is at it.
-        """
+        """Begin the store, or take it up again; refuse a second process, where one can be told."""
         manifest = self.folder / _MANIFEST
         try:
             self._parts.mkdir(parents=True, exist_ok=True)
@@ -161,14 +132,13 @@ class Store:
             fix = "choose another path"
             raise bad(str(self.path), str(refusal.strerror), "a writable place", fix) from refusal
         if not manifest.exists():
-            self._write_manifest({"complete": False})
+            self._write_manifest({"request": self.request, "complete": False})
         with manifest.open("rb") as stream:
             _lock(stream, self.path)
             yield self
 
-    def _write_manifest(self, more: Mapping[str, Any]) -> None:
-        whole = {"digest": digest_of_request(self.request), "request": self.request, **more}
-        text = json.dumps(whole, indent=1, sort_keys=True) + "\n"
+    def _write_manifest(self, about: Mapping[str, Any]) -> None:
+        text = json.dumps(about, indent=1, sort_keys=True) + "\n"
         write_whole(self.folder / _MANIFEST, text.encode())
 
     def _piece(self, number: int) -> Path:
@@ -198,16 +168,9 @@ class Store:
             return None
         return Piece.from_about(arrays, about)
 
-    def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Any) -> Joined:
-        """Join the pieces, one by one through memory, and remove them.
-
-        Raises
-        ------
-        BadInput
-            If a piece has been removed meanwhile.
-        """
+    def join(self, shapes: Mapping[str, tuple[tuple[int, ...], str]], found: Piece) -> Piece:
+        """Join the pieces, one by one through memory, and remove them."""
         about = {
-            "digest": digest_of_request(self.request),
             "request": self.request,
             "complete": True,
             "outputs": sorted(shapes),
@@ -219,9 +182,9 @@ class Store:
             for name in sorted(shapes):
                 with whole_file(self.folder / f"{name}.npy") as stream:
                     self._copy(stream, name, *shapes[name])
-            self._write_manifest({k: v for k, v in about.items() if k not in ("digest", "request")})
+            self._write_manifest(about)
         self._clean()
-        return Joined(self._whole(about), about)
+        return replace(found, arrays=self._whole(about))
 
     def _join_file(
         self, shapes: Mapping[str, tuple[tuple[int, ...], str]], about: Mapping[str, Any]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import bad, warn_of_large_deflection
 from ..core.families import LinearPeriodic
 from ..core.progress import bar
-from ..core.results import Check, provenance
+from ..core.results import provenance
 from ..core.workers import Workers, check_executor
 from ..scenes import Scene
 from .pieces import Grid, check_chunk, grid_of
 from .requests import request_of
 from .result import Sweep
-from .store import Joined, Store
-from .tasks import NAMED, Outputs, Piece, Task, checks_of, task_of, told_of, worst
+from .store import Store
+from .tasks import NAMED, Outputs, Piece, Task, task_of
 
 AnyArray = NDArray[Any]
 
@@ -158,13 +158,7 @@ def planned(
     outputs: tuple[str, ...] | None,
     chunk: int | None,
 ) -> Plan:
-    """Return the plan of a sweep.
-
-    Raises
-    ------
-    BadInput
-        If an argument is unusable.
-    """
+    """Return the plan of a sweep."""
     task = task_of(what)
     grid = grid_of(values, task.chunk if chunk is None else check_chunk(chunk), rows=task.rows)
     if isinstance(subject, Scene) and task.of_systems:
@@ -238,7 +232,7 @@ class Summary:
     """What is told of all pieces, whatever order they come in."""
 
     def __init__(self) -> None:
-        self._told: dict[int, tuple[str, float, str, Mapping[str, Check]]] = {}
+        self._parts: dict[int, Piece] = {}
         self.shapes: dict[str, tuple[tuple[int, ...], str]] = {}
 
     def add(self, number: int, piece: Piece) -> None:
@@ -252,16 +246,11 @@ class Summary:
                 "arrays of the same names, shapes and types",
                 "name the outputs that have them, as outputs=(...)",
             )
-        self._told[number] = (piece.method, piece.error, piece.error_norm, piece.checks)
+        self._parts[number] = replace(piece, arrays={})
 
-    def about(self) -> dict[str, Any]:
-        """Return method, error and checks, ready for JSON."""
-        told = [self._told[number] for number in sorted(self._told)]
-        errors = [error for _, error, _, _ in told if not np.isnan(error)]
-        checks = worst(checks for _, _, _, checks in told)
-        method = "; ".join(dict.fromkeys(method for method, _, _, _ in told))
-        error = max(errors) if errors else float("nan")
-        return told_of(method, error, told[0][2], checks)
+    def whole(self, arrays: Mapping[str, AnyArray]) -> Piece:
+        """Return the arrays of all pieces with what holds for all of them."""
+        return Piece.joined(arrays, [self._parts[number] for number in sorted(self._parts)])
 
 
 def _in_memory(plan: Plan, executor: Executor | None, progress: bool) -> Sweep:
@@ -275,7 +264,7 @@ def _in_memory(plan: Plan, executor: Executor | None, progress: bool) -> Sweep:
                 arrays[name] = np.empty((grid.points, *array.shape[1:]), dtype=array.dtype)
             arrays[name][grid.run(number)] = array
     whole = {name: array.reshape(*grid.shape, *array.shape[1:]) for name, array in arrays.items()}
-    return _assembled(plan, Joined(dict(sorted(whole.items())), summary.about()), None, 0)
+    return _assembled(plan, summary.whole(dict(sorted(whole.items()))), None, 0)
 
 
 def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress: bool) -> Sweep:
@@ -290,22 +279,21 @@ def _through_store(plan: Plan, kept: Store, executor: Executor | None, progress:
     for number, piece in _pieces(plan, executor, wanted, progress):
         summary.add(number, piece)
         kept.write(number, piece)
-    joined = kept.join(summary.shapes, summary)
+    joined = kept.join(summary.shapes, summary.whole({}))
     return _assembled(plan, joined, kept.path, plan.grid.pieces - len(wanted))
 
 
-def _assembled(plan: Plan, joined: Joined, place: Path | None, resumed: int) -> Sweep:
-    about = joined.about
+def _assembled(plan: Plan, whole: Piece, place: Path | None, resumed: int) -> Sweep:
     known = plan.subject.provenance if isinstance(plan.subject, LinearPeriodic) else {}
     return Sweep(
-        method=about["method"],
-        error=float(about["error"]),
-        error_norm=about["error_norm"],
-        checks=checks_of(about),
+        method=whole.method,
+        error=whole.error,
+        error_norm=whole.error_norm,
+        checks=whole.checks,
         provenance=provenance(known),
         what=plan.task.name,
         axes=dict(zip(plan.grid.names, plan.grid.axes, strict=True)),
-        outputs=joined.arrays,
+        outputs=whole.arrays,
         pieces=plan.grid.pieces,
         resumed=resumed,
         store=place,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,16 @@ from ..core.errors import LinearRangeWarning, bad
 from ..core.families import LinearPeriodic
 from ..core.results import Check, Result
 
+if TYPE_CHECKING:
+    from ..periodic import FloquetMultipliers, SteadyState
+
 Array = NDArray[np.float64]
 AnyArray = NDArray[Any]
 
 
 @dataclass(frozen=True)
 class Piece:
-    """What was found at a run of the grid's points.
+    """Arrays at a run of the grid's points, or at all of them, and what a result says of itself.
 
     Attributes
     ----------
@@ -44,27 +47,31 @@ class Piece:
     checks: Mapping[str, Check]
 
     def about(self) -> dict[str, Any]:
-        """Return all but the arrays, ready for JSON."""
-        return told_of(self.method, self.error, self.error_norm, self.checks)
+        """Return all but the arrays, ready for JSON, which has no word for infinity."""
+        pairs = {name: [_json(c.value), _json(c.limit)] for name, c in self.checks.items()}
+        return {
+            "method": self.method,
+            "error": _json(self.error),
+            "error_norm": self.error_norm,
+            "checks": pairs,
+        }
 
     @classmethod
     def from_about(cls, arrays: Mapping[str, AnyArray], about: Mapping[str, Any]) -> Piece:
         """Undo :meth:`about`."""
-        error, checks = float(about["error"]), checks_of(about)
-        return cls(arrays, about["method"], error, about["error_norm"], checks)
+        checks = {name: Check(*map(float, pair)) for name, pair in about["checks"].items()}
+        return cls(arrays, about["method"], float(about["error"]), about["error_norm"], checks)
 
-
-def told_of(
-    method: str, error: float, error_norm: str, checks: Mapping[str, Check]
-) -> dict[str, Any]:
-    """Return what a result says of itself, ready for JSON, which has no word for infinity."""
-    pairs = {name: [_json(c.value), _json(c.limit)] for name, c in checks.items()}
-    return {"method": method, "error": _json(error), "error_norm": error_norm, "checks": pairs}
-
-
-def checks_of(about: Mapping[str, Any]) -> dict[str, Check]:
-    """Return the self-checks that :func:`told_of` tells."""
-    return {name: Check(*map(float, pair)) for name, pair in about["checks"].items()}
+    @classmethod
+    def joined(cls, arrays: Mapping[str, AnyArray], parts: Sequence[Piece]) -> Piece:
+        """Return what holds for all parts, with the arrays of all."""
+        return cls(
+            arrays,
+            "; ".join(dict.fromkeys(part.method for part in parts)),
+            _largest([part.error for part in parts]),
+            parts[0].error_norm,
+            _worst(part.checks for part in parts),
+        )
 
 
 def _json(number: float) -> float | str:
@@ -104,7 +111,7 @@ class Task:
     outputs: Outputs = None
 
 
-def worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
+def _worst(checks: Iterable[Mapping[str, Check]]) -> dict[str, Check]:
     """Return of each self-check the one that came closest to its limit, or went beyond it most."""
     found: dict[str, Check] = {}
     for each in checks:
@@ -135,15 +142,12 @@ def _of_result(arrays: Mapping[str, AnyArray], *results: Result) -> Piece:
         results[0].method,
         _largest([_largest(result.error) for result in results]),
         results[0].error_norm,
-        worst(result.checks for result in results),
+        _worst(result.checks for result in results),
     )
 
 
 def _chart(
-    system: LinearPeriodic,
-    axes: Mapping[str, Array],
-    options: Mapping[str, Any],
-    outputs: Outputs,
+    system: LinearPeriodic, axes: Mapping[str, Array], options: Mapping[str, Any], outputs: Outputs
 ) -> Piece:
     from ..stability import stability_chart
 
@@ -160,77 +164,58 @@ def _chart(
 
 
 def _by_geometry(
+    solver: str,
+    arrays_of: Callable[[Any], dict[str, AnyArray]],
     system: LinearPeriodic,
     axes: Mapping[str, Array],
     options: Mapping[str, Any],
     outputs: Outputs,
-    solve: Callable[..., tuple[dict[str, AnyArray], Result]],
 ) -> Piece:
-    """Call a solver with all points of a piece at once, or once for each geometry."""
+    """Call a solver of :mod:`..periodic` with all points of a piece, or once for each geometry."""
+    from .. import periodic
+
+    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinearRangeWarning)
+            result = getattr(periodic, solver)(made, **values, **options)
+        return _wanted(arrays_of(result), outputs), result
+
     mesh = np.meshgrid(*axes.values(), indexing="ij")
     values = {name: part.ravel() for name, part in zip(axes, mesh, strict=True)}
     shapes = [name for name in values if name in system.geometry]
     rest = {name: value for name, value in values.items() if name not in shapes}
-    count = len(mesh[0].ravel())
     if not shapes:
-        arrays, result = solve(system, **rest, **options)
-        return _of_result(_wanted(arrays, outputs), result)
+        arrays, result = solve(system, **rest)
+        return _of_result(arrays, result)
     table = np.stack([values[name] for name in shapes], axis=-1)
     found: list[tuple[NDArray[np.intp], dict[str, AnyArray], Result]] = []
     for shape in np.unique(table, axis=0):
         own = np.flatnonzero(np.all(table == shape, axis=1))
         made = system.with_geometry(**dict(zip(shapes, shape.tolist(), strict=True)))
-        arrays, result = solve(made, **{k: v[own] for k, v in rest.items()}, **options)
-        found.append((own, _wanted(arrays, outputs), result))
+        found.append((own, *solve(made, **{k: v[own] for k, v in rest.items()})))
     joined = {}
     for name, first in found[0][1].items():
-        joined[name] = np.empty((count, *first.shape[1:]), dtype=first.dtype)
+        joined[name] = np.empty((len(table), *first.shape[1:]), dtype=first.dtype)
         for own, arrays, _ in found:
             joined[name][own] = arrays[name]
     return _of_result(joined, *(result for _, _, result in found))
 
 
-def _multipliers(
-    system: LinearPeriodic,
-    axes: Mapping[str, Array],
-    options: Mapping[str, Any],
-    outputs: Outputs,
-) -> Piece:
-    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        from ..periodic import floquet_multipliers
-
-        result = floquet_multipliers(made, **values)
-        arrays = {
-            "multipliers": result.multipliers,
-            "error": np.asarray(result.error),
-            "stable": np.asarray(result.stable),
-            "growth": result.growth,
-        }
-        return arrays, result
-
-    return _by_geometry(system, axes, options, outputs, solve)
+def _of_multipliers(found: FloquetMultipliers) -> dict[str, AnyArray]:
+    return {
+        "multipliers": found.multipliers,
+        "error": np.asarray(found.error),
+        "stable": np.asarray(found.stable),
+        "growth": found.growth,
+    }
 
 
-def _steady(
-    system: LinearPeriodic,
-    axes: Mapping[str, Array],
-    options: Mapping[str, Any],
-    outputs: Outputs,
-) -> Piece:
-    def solve(made: LinearPeriodic, **values: Any) -> tuple[dict[str, AnyArray], Result]:
-        from ..periodic import steady_state
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LinearRangeWarning)
-            result = steady_state(made, **values)
-        arrays = {
-            "peak": np.max(np.abs(result.q), axis=-2),
-            "rms": np.sqrt(np.mean(result.q**2, axis=-2)),
-            "error": np.asarray(result.error),
-        }
-        return arrays, result
-
-    return _by_geometry(system, axes, options, outputs, solve)
+def _of_motion(found: SteadyState) -> dict[str, AnyArray]:
+    return {
+        "peak": np.max(np.abs(found.q), axis=-2),
+        "rms": np.sqrt(np.mean(found.q**2, axis=-2)),
+        "error": np.asarray(found.error),
+    }
 
 
 def _each(
@@ -263,13 +248,7 @@ def _each(
 def _own_values(
     function: Callable[..., Any], subject: Any, names: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return which values are the subject's own, and not arguments of the function.
-
-    Raises
-    ------
-    BadInput
-        If one is neither.
-    """
+    """Return which values are the subject's own, and not arguments of the function."""
     try:
         arguments = list(inspect.signature(function).parameters.values())[1:]
     except (TypeError, ValueError):
@@ -302,13 +281,7 @@ def _moved(subject: Any, values: dict[str, float]) -> Any:
 
 
 def _wanted(arrays: dict[str, AnyArray], outputs: Outputs) -> dict[str, AnyArray]:
-    """Return the arrays that are wanted.
-
-    Raises
-    ------
-    BadInput
-        If one of them is not among those that there are.
-    """
+    """Return the arrays that are wanted."""
     if outputs is None:
         return arrays
     missing = [name for name in outputs if name not in arrays]
@@ -347,19 +320,15 @@ NAMED: Mapping[str, Task] = {
         rows=True,
         outputs=("stable", "largest", "slack", "undecided", "kind"),
     ),
-    "floquet_multipliers": Task("floquet_multipliers", _multipliers, 2048),
-    "steady_state": Task("steady_state", _steady, 64),
+    "floquet_multipliers": Task(
+        "floquet_multipliers", partial(_by_geometry, "floquet_multipliers", _of_multipliers), 2048
+    ),
+    "steady_state": Task("steady_state", partial(_by_geometry, "steady_state", _of_motion), 64),
 }
 
 
 def task_of(what: str | Callable[..., Any]) -> Task:
-    """Return the task that a name or a function stands for.
-
-    Raises
-    ------
-    BadInput
-        If it is neither the name of a public function nor callable.
-    """
+    """Return the task that a name or a function stands for."""
     if isinstance(what, str):
         if what in NAMED:
             return NAMED[what]

@@ -13,29 +13,19 @@ from typing import TYPE_CHECKING
 from ..core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from ..core.families.modal_damping import with_modal_damping
-    from ..core.modules import EmittedModule, find_module
-    from .assembly import assemble
-    from .rod.floating import free_free_rod
-    from .rod.linear import rod_system
+    from ..core.families.modal_damping import with_modal_damping as with_modal_damping
+    from ..core.modules import find_module as find_module
+    from .assembly import assemble as assemble
+    from .rod.floating import free_free_rod as free_free_rod
+    from .rod.linear import rod_system as rod_system
 
-_PUBLIC = {
-    "EmittedModule": ".core.modules",
-    "assemble": "assembly",
-    "find_module": ".core.modules",
-    "free_free_rod": "rod.floating",
-    "rod_system": "rod.linear",
-    "with_modal_damping": ".core.families.modal_damping",
-}
-
-__all__ = [
-    "EmittedModule",
-    "assemble",
-    "find_module",
-    "free_free_rod",
-    "rod_system",
-    "with_modal_damping",
-]
-
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        ".core.families.modal_damping": ("with_modal_damping",),
+        ".core.modules": ("find_module",),
+        "assembly": ("assemble",),
+        "rod.floating": ("free_free_rod",),
+        "rod.linear": ("rod_system",),
+    },
+)

@@ -15,20 +15,21 @@ def named(names):
 
 
 def wave(matrix, harmonic=1, phase=0.0):
-    """Return a matrix times a cosine of the crank angle."""
-    return lambda theta: np.cos(harmonic * theta + phase)[:, None, None] * np.array(matrix)
+    """Return a matrix, or a vector, times a cosine of the crank angle."""
+    flat = (1,) * np.ndim(matrix)
+    return lambda theta: np.cos(harmonic * theta + phase).reshape(-1, *flat) * np.array(matrix)
 
 
-def mathieu(**values) -> LinearPeriodic:
-    """y'' + 2 K y' + (lam2 + mu cos theta) y = 0 at every speed."""
+def mathieu(period=2 * np.pi, **values) -> LinearPeriodic:
+    """y'' + 2 K y' + (lam2 + mu cos(2 pi theta / period)) y = 0 at every speed."""
     numbers = {"lam2": 1.3, "mu": 0.4, "K2": 0.0, **values}
     terms = (
         Term("M", None, np.eye(1)),
         Term("K", "lam2", np.eye(1), power=2),
-        Term("Kg", "mu", lambda theta: np.cos(theta)[:, None, None], power=2),
+        Term("Kg", "mu", wave(np.eye(1), 2 * np.pi / period), power=2),
         Term("C", "K2", np.eye(1), power=1),
     )
-    return LinearPeriodic(1, terms, numbers, named(numbers))
+    return LinearPeriodic(1, terms, numbers, named(numbers), period=period)
 
 
 def is_growing(system, speed, limit, **parameters):

@@ -8,32 +8,30 @@ import pytest
 from elastolink.runtime.core.families import LinearPeriodic, Term
 from elastolink.runtime.stability import chart_sampling as sampling
 from elastolink.runtime.stability import verdict
+from periodic_systems import named, wave
 
 ONE, TWO = np.eye(1), np.eye(2)
 RIG = "smith_1972_5152_sixteenth_inch"
 
 
-def _wave(theta):
-    return np.cos(theta)[:, None, None]
-
-
-def _scales(names):
-    return lambda values: {n: np.asarray(values[n], float) for n in names}
-
-
 def one(m=1.0, c=0.0, k=2.0, b=0.5):
-    terms = (Term("M", "m", ONE), Term("C", "c", ONE), Term("K", "k", ONE), Term("Kg", "b", _wave))
-    return LinearPeriodic(1, terms, {"m": m, "c": c, "k": k, "b": b}, _scales("mckb"))
+    terms = (
+        Term("M", "m", ONE),
+        Term("C", "c", ONE),
+        Term("K", "k", ONE),
+        Term("Kg", "b", wave(ONE)),
+    )
+    return LinearPeriodic(1, terms, {"m": m, "c": c, "k": k, "b": b}, named("mckb"))
 
 
 def two(c=0.0, b=0.5, damping=TWO, pull=((1.0, 0.4), (0.4, 0.7)), squares=(1.0, 3.3)):
     terms = (
         Term("M", None, TWO),
         Term("K", None, np.diag(squares)),
-        Term("Kg", "b", lambda theta: _wave(theta) * np.array(pull)),
+        Term("Kg", "b", wave(pull)),
         Term("C", "c", damping),
     )
-    return LinearPeriodic(2, terms, {"c": c, "b": b}, _scales("cb"))
+    return LinearPeriodic(2, terms, {"c": c, "b": b}, named("cb"))
 
 
 def _fading(theta):
@@ -114,31 +112,20 @@ def test_spot_check_catches_a_slack_that_hides_a_resonance(monkeypatch):
     assert not found.checks["spot check"].passed
 
 
-def test_no_damped_end_is_lost():
-    """The ends found, against the changes of the verdict on a fine line of speeds."""
+def test_no_damped_end_is_lost_and_each_lies_on_the_level():
+    """The ends found, against the verdict on a fine line of speeds, and against multipliers."""
     overrides = {"follower.inertia": 0.0022, "coupler.damping_ratio": 0.01}
     system = el.load_scene(RIG, overrides).system()
     speeds = np.linspace(40.0, 160.0, 4001)
     damping = np.linspace(0.6, 12.0, 6)
     found = el.stability_chart(system, ("speed", speeds), ("damping", damping))
     curves = found.exact
-    for j in range(len(damping)):
+    for j, c in enumerate(curves.at):
         change = speeds[np.flatnonzero(np.diff(found.stable[j].astype(int)))]
         ends = np.concatenate([curves.lower[:, j], curves.upper[:, j]])
         ends = np.sort(ends[(ends > speeds[0]) & (ends < speeds[-1])])
         assert len(ends) == len(change) > 0
         assert np.all((ends >= change) & (ends <= change + 0.0301))
-
-
-def test_damped_ends_lie_on_the_level():
-    overrides = {"follower.inertia": 0.0022, "coupler.damping_ratio": 0.01}
-    system = el.load_scene(RIG, overrides).system()
-    curves = el.stability_chart(
-        system, ("speed", [40.0, 160.0]), ("damping", np.array([3.0, 11.1]))
-    ).exact
-    for j, c in enumerate(curves.at):
-        ends = np.concatenate([curves.lower[:, j], curves.upper[:, j]])
-        ends = ends[np.isfinite(ends)]
         direct = el.floquet_multipliers(system, ends, damping=c)
         assert np.max(np.min(np.abs(np.abs(direct.multipliers) - 1.0), axis=-1)) < 1e-8
 

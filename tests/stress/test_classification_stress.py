@@ -78,11 +78,7 @@ def judge(lengths):
     assert max(found.closing_distances.values()) <= 0.0
 
 
-QUIET = {
-    "deadline": None,
-    "derandomize": True,
-    "suppress_health_check": [HealthCheck.too_slow],
-}
+QUIET = {"deadline": None, "derandomize": True, "suppress_health_check": [HealthCheck.too_slow]}
 
 
 @settings(max_examples=300, **QUIET)

@@ -141,11 +141,7 @@ def test_units_do_not_matter(scale):
     power = float(np.exp2(np.round(np.log2(scale))))
     plain = Circle(gravity=10.0, start=3.0, mass=1.0)
     other = Circle(
-        gravity=10.0,
-        start=3.0,
-        mass=power,
-        row=1.0 / power,
-        oblique=np.diag([1.0, power]),
+        gravity=10.0, start=3.0, mass=power, row=1.0 / power, oblique=np.diag([1.0, power])
     )
     a = constrained_motion(plain.system, *plain.state, 1.0, samples=4)
     b = constrained_motion(other.system, *other.state, 1.0, samples=4)

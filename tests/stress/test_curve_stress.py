@@ -18,42 +18,28 @@ def no_nan(result):
         assert not np.any(np.isnan(value)), name
 
 
-@settings(max_examples=10, deadline=None, derandomize=True)
-@given(size, size, size, size, share, share, st.sampled_from(["coupler", "crank", "follower"]))
-def test_any_four_bar_is_traced_or_refused(frame, crank, coupler, follower, along, across, link):
+linkages = st.one_of(
+    st.tuples(
+        st.tuples(st.just(FourBar), size, size, size, size),
+        st.sampled_from(["coupler", "crank", "follower"]),
+    ),
+    st.tuples(st.tuples(st.just(SliderCrank), size, size, st.floats(-50, 50)), st.just("coupler")),
+    st.tuples(st.tuples(st.just(QuickReturn), size, size, size), st.sampled_from(["block", "rod"])),
+)
+
+
+@settings(max_examples=26, deadline=None, derandomize=True)
+@given(linkages, share, share, st.integers(0, 1))
+def test_any_linkage_is_traced_or_refused(drawn, along, across, circuit):
+    (kind, *lengths), link = drawn
     try:
-        linkage = FourBar(frame, crank, coupler, follower)
-        curve = coupler_curve(linkage, along, across, link=link, points=64)
+        curve = coupler_curve(kind(*lengths), along, across, link=link, points=64, circuit=circuit)
     except BadInput as refusal:
         assert "\n" not in str(refusal) or len(refusal.problems) > 1
         return
     no_nan(curve)
     curve.require()
     assert curve.length > 0
-
-
-@settings(max_examples=8, deadline=None, derandomize=True)
-@given(size, size, st.floats(-50, 50), share, share, st.integers(0, 1))
-def test_any_slider_crank_is_traced_or_refused(crank, coupler, offset, along, across, circuit):
-    try:
-        linkage = SliderCrank(crank, coupler, offset)
-        curve = coupler_curve(linkage, along, across, points=64, circuit=circuit)
-    except BadInput:
-        return
-    no_nan(curve)
-    curve.require()
-
-
-@settings(max_examples=8, deadline=None, derandomize=True)
-@given(size, size, size, share, share, st.sampled_from(["block", "rod"]))
-def test_any_quick_return_is_traced_or_refused(frame, crank, rod, along, across, link):
-    try:
-        linkage = QuickReturn(frame, crank, rod)
-        curve = coupler_curve(linkage, along, across, link=link, points=64)
-    except BadInput:
-        return
-    no_nan(curve)
-    curve.require()
 
 
 @pytest.mark.parametrize("off", [1e-3, 1e-12])

@@ -9,24 +9,12 @@ from elastolink.runtime.periodic import floquet_multipliers, monodromy, simulate
 from elastolink.runtime.stability.boundary_speeds import speed_boundaries
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from periodic_systems import named
-
-
-def _mathieu(period: float = 2 * np.pi) -> LinearPeriodic:
-    numbers = {"lam2": 1.0, "mu": 0.0, "K2": 0.0}
-    rate = 2 * np.pi / period
-    terms = (
-        Term("M", None, np.eye(1)),
-        Term("K", "lam2", np.eye(1), power=2),
-        Term("Kg", "mu", lambda theta: np.cos(rate * theta)[:, None, None], power=2),
-        Term("C", "K2", np.eye(1), power=1),
-    )
-    return LinearPeriodic(1, terms, numbers, named(numbers), period=period)
+from periodic_systems import mathieu, named, wave
 
 
 @pytest.mark.parametrize("waves", [100.25, 5000.3])
 def test_thousands_of_oscillations_per_revolution(waves):
-    found = monodromy(_mathieu(), 1.0, lam2=waves**2, rtol=1e-13)
+    found = monodromy(mathieu(mu=0.0), 1.0, lam2=waves**2, rtol=1e-13)
     phase = 8 * np.arctan(np.longdouble(1)) * np.longdouble(waves)
     c, s = float(np.cos(phase)), float(np.sin(phase))
     exact = np.array([[c, s / waves], [-s * waves, c]])
@@ -39,7 +27,7 @@ def test_thousands_of_oscillations_per_revolution(waves):
 
 
 def test_fast_waves_over_many_revolutions():
-    system = _mathieu().with_parameters(lam2=500.5**2)
+    system = mathieu(mu=0.0).with_parameters(lam2=500.5**2)
     run = simulate(system, 1.0, 20.0, initial=(0.01, 0.0), samples=36)
     exact = 0.01 * np.cos(500.5 * run.theta)
     actual = np.max(np.abs(run.q[:, 0] - exact)) / 0.01
@@ -49,7 +37,7 @@ def test_fast_waves_over_many_revolutions():
 @pytest.mark.parametrize("power", [2, 100, 300])
 def test_growth_by_powers_of_ten(power):
     rate = power * np.log(10.0) / (2 * np.pi)
-    found = floquet_multipliers(_mathieu(), 1.0, lam2=-(rate**2))
+    found = floquet_multipliers(mathieu(mu=0.0), 1.0, lam2=-(rate**2))
     np.testing.assert_allclose(found.multipliers.real, [10.0**power, 10.0**-power], rtol=1e-11)
     assert np.all(np.abs(found.multipliers - [10.0**power, 10.0**-power]) <= found.error)
     assert found.passed
@@ -80,7 +68,7 @@ def test_marginal_multipliers_stay_on_the_circle_within_their_error():
             (
                 Term("M", None, np.eye(1)),
                 Term("K", None, np.eye(1)),
-                Term("Kg", None, lambda theta: 0.1 * np.cos(theta)[:, None, None]),
+                Term("Kg", None, wave([[0.1]])),
             ),
             {},
             lambda values: {},
@@ -88,7 +76,7 @@ def test_marginal_multipliers_stay_on_the_circle_within_their_error():
         -1,
         speed_range=(1.5, 3.0),
     ).speed
-    system = _mathieu()
+    system = mathieu(mu=0.0)
     offsets = np.concatenate([-np.logspace(-12, -2, 40), np.logspace(-12, -2, 40)])
     for edge, inward in ((low, 1.0), (high, -1.0)):
         speed = edge + offsets * (high - low)
@@ -136,13 +124,12 @@ def test_many_degrees_of_freedom():
     rng = np.random.default_rng(11)
     basis, _ = np.linalg.qr(rng.standard_normal((n, n)))
     springs = basis @ np.diag(np.arange(1, n + 1.0) ** 2) @ basis.T
-    wave = basis @ np.diag(rng.uniform(-0.5, 0.5, n)) @ basis.T
     skew = rng.standard_normal((n, n))
     terms = (
         Term("M", None, np.eye(n)),
         Term("A", None, 0.1 * (skew - skew.T)),
         Term("K", None, springs),
-        Term("Kg", None, lambda theta: np.cos(theta)[:, None, None] * wave),
+        Term("Kg", None, wave(basis @ np.diag(rng.uniform(-0.5, 0.5, n)) @ basis.T)),
     )
     system = LinearPeriodic(n, terms, {}, lambda values: {})
     found = floquet_multipliers(system, np.array([1.1, 3.3]))
@@ -187,9 +174,9 @@ def test_units_do_not_matter(length, mass):
 @pytest.mark.parametrize("turns", [0.5, 1 / 3])
 def test_other_periods(turns):
     period = 2 * np.pi * turns
-    found = monodromy(_mathieu(period), 1.0, lam2=2.0, mu=0.5)
+    found = monodromy(mathieu(period), 1.0, lam2=2.0, mu=0.5)
     # Scale the angle: y'' + (lam2 turns^2 + mu turns^2 cos x) y over 2 pi.
-    other = monodromy(_mathieu(), 1.0, lam2=2.0 * turns**2, mu=0.5 * turns**2)
+    other = monodromy(mathieu(mu=0.0), 1.0, lam2=2.0 * turns**2, mu=0.5 * turns**2)
     units = np.array([[1.0, turns], [1 / turns, 1.0]])
     np.testing.assert_allclose(found.matrix, other.matrix * units, atol=1e-12)
 

@@ -6,11 +6,7 @@ import frame_truth
 import numpy as np
 import pytest
 from elastolink.runtime.beams import Section, frame
-from elastolink.runtime.frequencies import (
-    dynamic_stiffness,
-    element_matrices,
-    wittrick_williams,
-)
+from elastolink.runtime.frequencies import dynamic_stiffness, element_matrices, wittrick_williams
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigvalsh

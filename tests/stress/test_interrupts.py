@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -130,12 +129,15 @@ def test_a_written_file_has_the_rights_of_any_other(tmp_path):
     assert whole.stat().st_mode == ordinary.stat().st_mode
 
 
-def _interrupt(folder, jobs, delay):
-    """Start a full run in a group of its own, as a terminal does, and interrupt the group."""
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="process groups are interrupted otherwise there")
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_interrupted_process_says_one_line_and_leaves_the_truth(jobs, tmp_path):
+    """A full run in a group of its own, as a terminal starts it, and the group interrupted."""
     process = subprocess.Popen(
         [
             *(sys.executable, "-c", CODE, *SEVERAL),
-            *("--out", str(folder), "--jobs", str(jobs), "--force"),
+            *("--out", str(tmp_path), "--jobs", str(jobs), "--force"),
         ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -144,33 +146,13 @@ def _interrupt(folder, jobs, delay):
         # A runner that ignores interrupts itself hands that on.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    started = process.stdout.readline() if delay is None else ""
-    time.sleep(delay or 0.0)
+    assert process.stdout.readline().startswith("[1/")  # the first finished module
     os.killpg(process.pid, signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    return process.returncode, started + out, err
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(os.name == "nt", reason="process groups are interrupted otherwise there")
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_an_interrupted_process_says_one_line_and_leaves_the_truth(jobs, tmp_path):
-    status, out, err = _interrupt(tmp_path, jobs, None)  # after the first finished module
-    assert out.startswith("[1/")
-    assert status == 130
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
     assert err == "regenerate-equations: interrupted; finished files are whole\n"
     assert_truthful(tmp_path)
     assert read_manifest(tmp_path)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(os.name == "nt", reason="process groups are interrupted otherwise there")
-def test_an_interrupt_at_any_time_leaves_the_truth(tmp_path):
-    for step in range(4):
-        folder = tmp_path / str(step)
-        _interrupt(folder, 1, 0.4 + 0.8 * step)
-        if folder.exists():
-            assert_truthful(folder)
 
 
 @pytest.mark.slow

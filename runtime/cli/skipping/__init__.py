@@ -10,25 +10,10 @@ from typing import TYPE_CHECKING
 from ...core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .explanation import EmittedUse, Explanation, Stage
-    from .report import EmittedCost, explain, read_cost
+    from .explanation import Explanation as Explanation
+    from .report import explain as explain
+    from .report import read_cost as read_cost
 
-_PUBLIC = {
-    "EmittedCost": "report",
-    "EmittedUse": "explanation",
-    "Explanation": "explanation",
-    "Stage": "explanation",
-    "explain": "report",
-    "read_cost": "report",
-}
-
-__all__ = [
-    "EmittedCost",
-    "EmittedUse",
-    "Explanation",
-    "Stage",
-    "explain",
-    "read_cost",
-]
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(), {"explanation": ("Explanation",), "report": ("explain", "read_cost")}
+)

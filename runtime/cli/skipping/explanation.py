@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ...core.plotting import axes_or_new
@@ -120,11 +120,11 @@ class Explanation(Result):
     emitted: Mapping[str, EmittedUse]
     packaged: tuple[int, int, int]
     stages: Mapping[str, Stage]
-    array_kinds: Mapping[str, str]
-    powers: Mapping[str, tuple[str, ...]]
-    samples: int
-    angles: int
-    harmonics: int
+    array_kinds: Mapping[str, str] = field(default_factory=dict)
+    powers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    samples: int = 0
+    angles: int = 0
+    harmonics: int = 0
 
     @property
     def skipped_arrays(self) -> tuple[str, ...]:

@@ -9,10 +9,9 @@ import re
 import subprocess
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from ...core.results import Check, provenance
 from ...periodic.equation import SPEED_POWER, equation_of
 from ...scenes import Scene, load_scene
 from .explanation import EmittedUse, Explanation, Stage
+from .probe import emitted
 
 # What must not load, whatever is asked of a scene; reading units takes pint, which takes Jinja2.
 _UNWANTED = ("sympy", "jinja2", "mpmath", "matplotlib")
@@ -76,12 +76,39 @@ def explain(
     speed = None if system is None else _speed(loaded, system)
     counted = _counted({**request, "speed": speed})
     known = _known()
-    costs = _costs(counted, known)
+    costs = {
+        entry.module: read_cost(folder / f"{entry.module}.py") for folder, entry in known.values()
+    }
+    entries = {key: entry for key, (_, entry) in known.items()}
+    called = {_bare(call[0]) for stage in counted for call in stage["calls"]}
+    serving = sorted(called & set(costs))
+    stages = {found["name"]: _stage(found, costs) for found in counted}
+    unwanted = sum(_unwanted(stage) for stage in stages.values())
+    evaluated: dict[str, Any] = {}
     if isinstance(system, LinearPeriodic):
-        evaluated = of_linear(system, 1.0 if speed is None else speed)
-    else:
-        evaluated = Evaluated() if system is None else of_entries(costs)
-    return _explanation(loaded, counted, known, costs, evaluated)
+        evaluated = _of_linear(system, 1.0 if speed is None else speed)
+    elif system is not None:
+        evaluated = {"array_kinds": _filled_entries([costs[name] for name in serving])}
+    return Explanation(
+        scene=loaded.name,
+        model=loaded.model_spec().name(),
+        terms=_terms(loaded),
+        outputs=_outputs(loaded),
+        emitted={name: _use(costs[name], loaded, entries, costs, stages) for name in serving},
+        packaged=(
+            len(costs),
+            sum(cost.size for cost in costs.values()),
+            sum(cost.total for cost in costs.values()),
+        ),
+        stages=stages,
+        **evaluated,
+        method="manifests and headers read, a process counted",
+        error=0.0,
+        error_norm="counts, exact",
+        error_kind="bound",
+        checks={"packages that load and solve nothing": Check(float(unwanted), 0.0)},
+        provenance=provenance({"scene": loaded.name, "scene_digest": loaded.digest()}),
+    )
 
 
 def _system(scene: Scene) -> Any:
@@ -133,61 +160,10 @@ def _known() -> dict[str, tuple[Path, Entry]]:
     return found
 
 
-def _costs(
-    counted: list[dict[str, Any]], known: Mapping[str, tuple[Path, Entry]]
-) -> dict[str, EmittedCost]:
-    """Return the costs of the emitted modules that some stage called, by module."""
-    called = {_bare(call[0]) for stage in counted for call in stage["calls"]}
-    by_name = {entry.module: folder for folder, entry in known.values()}
-    return {
-        name: read_cost(by_name[name] / f"{name}.py") for name in sorted(called) if name in by_name
-    }
-
-
 def _bare(module: str) -> str:
     """Return an emitted module's own name: outside the package its hash is part of another."""
     prefix = "elastolink_emitted_"
     return module.removeprefix(prefix).rpartition("_")[0] if module.startswith(prefix) else module
-
-
-def _explanation(
-    scene: Scene,
-    counted: list[dict[str, Any]],
-    known: Mapping[str, tuple[Path, Entry]],
-    costs: Mapping[str, EmittedCost],
-    evaluated: Evaluated,
-) -> Explanation:
-    stages = {found["name"]: _stage(found, costs) for found in counted}
-    unwanted = sum(_unwanted(stage) for stage in stages.values())
-    entries = {entry.module: entry.spec for _, entry in known.values()}
-    packaged = [read_cost(folder / f"{entry.module}.py") for folder, entry in known.values()]
-    return Explanation(
-        scene=scene.name,
-        model=scene.model_spec().name(),
-        terms=_terms(scene),
-        outputs=_outputs(scene),
-        emitted={
-            name: _use(cost, _as_used(entries[name], scene.model_spec()), known, counted)
-            for name, cost in costs.items()
-        },
-        packaged=(
-            len(packaged),
-            sum(cost.size for cost in packaged),
-            sum(cost.total for cost in packaged),
-        ),
-        stages=stages,
-        array_kinds=evaluated.arrays,
-        powers=evaluated.powers,
-        samples=evaluated.samples,
-        angles=evaluated.angles,
-        harmonics=evaluated.harmonics,
-        method="manifests and headers read, a process counted",
-        error=0.0,
-        error_norm="counts, exact",
-        error_kind="bound",
-        checks={"packages that load and solve nothing": Check(float(unwanted), 0.0)},
-        provenance=provenance({"scene": scene.name, "scene_digest": scene.digest()}),
-    )
 
 
 def _stage(found: Mapping[str, Any], costs: Mapping[str, EmittedCost]) -> Stage:
@@ -201,7 +177,7 @@ def _stage(found: Mapping[str, Any], costs: Mapping[str, EmittedCost]) -> Stage:
     return Stage(
         modules=len(names),
         size=sum(found["modules"].values()),
-        emitted=tuple(_last(name) for name in names if _is_emitted(name)),
+        emitted=tuple(_bare(name.rpartition(".")[2]) for name in names if emitted(name)),
         numpy=found["others"]["numpy"],
         scipy=found["others"]["scipy"],
         heavy=tuple(found["heavy"]),
@@ -215,14 +191,6 @@ def _stage(found: Mapping[str, Any], costs: Mapping[str, EmittedCost]) -> Stage:
 def _unwanted(stage: Stage) -> int:
     """Return how many packages loaded that nothing at run time has a use for."""
     return sum(name in _UNWANTED and _BROUGHT.get(name) not in stage.heavy for name in stage.heavy)
-
-
-def _is_emitted(name: str) -> bool:
-    return name.startswith(("elastolink.generated.", "elastolink_emitted_"))
-
-
-def _last(name: str) -> str:
-    return _bare(name.rpartition(".")[2])
 
 
 def _choices(spec: ModelSpec) -> tuple[str, ...]:
@@ -249,29 +217,25 @@ def _terms(scene: Scene) -> dict[str, str]:
 
 def _outputs(scene: Scene) -> dict[str, str]:
     wanted = set(scene.model["outputs"]) or set(scene.layout.outputs)
-    return {
-        name: "wanted" if name in wanted else "not wanted" for name in sorted(scene.layout.outputs)
-    }
-
-
-def _as_used(spec: ModelSpec, wanted: ModelSpec) -> ModelSpec:
-    """Return the spec of a module, with the terms that it leaves out itself for a scene."""
-    general = wanted.with_(drop=(), modes=spec.modes)
-    return spec.with_(drop=wanted.drop) if spec == general else spec
+    known = sorted(scene.layout.outputs)
+    return {name: "wanted" if name in wanted else "not wanted" for name in known}
 
 
 def _use(
     cost: EmittedCost,
-    spec: ModelSpec,
-    known: Mapping[str, tuple[Path, Entry]],
-    counted: list[dict[str, Any]],
+    scene: Scene,
+    entries: Mapping[str, Entry],
+    costs: Mapping[str, EmittedCost],
+    stages: Mapping[str, Stage],
 ) -> EmittedUse:
     """Put a module beside the one of the same formulation that leaves nothing out."""
-    whole = known.get(spec.with_(drop=(), balanced=(), outputs=()).key())
-    full = read_cost(whole[0] / f"{whole[1].module}.py") if whole else None
-    called = {
-        call[1] for stage in counted for call in stage["calls"] if _bare(call[0]) == cost.module
-    }
+    spec = next(entry.spec for entry in entries.values() if entry.module == cost.module)
+    wanted = scene.model_spec()
+    if spec == wanted.with_(drop=(), modes=spec.modes):
+        spec = spec.with_(drop=wanted.drop)  # a general module leaves the terms out itself
+    whole = entries.get(spec.with_(drop=(), balanced=(), outputs=()).key())
+    full = costs[whole.module] if whole else None
+    called = {name for stage in stages.values() for name in stage.calls}
     return EmittedUse(
         kept=tuple(term for term in sorted(_choices(spec)) if term not in spec.drop),
         dropped=spec.drop,
@@ -280,7 +244,7 @@ def _use(
         full_size=full.size if full else None,
         full_operations=full.total if full else None,
         functions=cost.operations,
-        called=tuple(name for name in cost.operations if name in called),
+        called=tuple(n for n in cost.operations if f"{cost.module}.{n}" in called),
         left_out=cost.left_out,
     )
 
@@ -288,7 +252,7 @@ def _use(
 # What an emitted module costs, read from its text: nothing of it is imported or run.
 _COUNT = re.compile(r"^ {4}(\w+): (\d+) operations?$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"Left out of the energies: ([^.]*)\.")
-_TABLES = ("FAMILY", "TERMS", "ARRAYS")
+_TABLES = ("FAMILY", "ARRAYS")
 
 
 @dataclass(frozen=True)
@@ -305,9 +269,6 @@ class EmittedCost:
         Bytes of its text.
     operations : mapping of str to int
         Arithmetic operations per evaluation of each function, from its header.
-    terms : tuple of tuple
-        Rows of a linear-periodic module: array, power of the speed, scale, function of angle,
-        modal array.
     entries : mapping of str to (int, int)
         Of each array of explicit entries, by ``function.array``: entries that are evaluated, and
         entries in all; the others are zero.
@@ -319,7 +280,6 @@ class EmittedCost:
     family: str
     size: int
     operations: Mapping[str, int]
-    terms: tuple[tuple[Any, ...], ...]
     entries: Mapping[str, tuple[int, int]]
     left_out: tuple[str, ...]
 
@@ -354,9 +314,12 @@ def read_cost(path: Path) -> EmittedCost:
         module=path.stem,
         family=tables.get("FAMILY", ""),
         size=len(text.encode()),
-        operations=MappingProxyType(counts),
-        terms=tuple(tables.get("TERMS", ())),
-        entries=MappingProxyType(_entries(tables.get("ARRAYS", {}))),
+        operations=counts,
+        entries={
+            f"{function}.{name}": (len(filled), rows * columns)
+            for function, arrays in tables.get("ARRAYS", {}).items()
+            for name, ((rows, columns), filled) in arrays.items()
+        },
         left_out=tuple(left_out.group(1).split(", ")) if left_out else (),
     )
 
@@ -372,60 +335,29 @@ def _tables(tree: ast.Module) -> dict[str, Any]:
     return found
 
 
-def _entries(arrays: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
-    return {
-        f"{function}.{name}": (len(filled), rows * columns)
-        for function, tables in arrays.items()
-        for name, ((rows, columns), filled) in tables.items()
-    }
+def _of_linear(system: LinearPeriodic, speed: float) -> dict[str, Any]:
+    """Return what a linear-periodic system evaluates, as fields of an :class:`Explanation`.
 
-
-# Which arrays are never evaluated, and which all points of a sweep share.
-
-
-@dataclass(frozen=True)
-class Evaluated:
-    """What a system evaluates; fields as in :class:`.explanation.Explanation`."""
-
-    arrays: Mapping[str, str] = field(default_factory=dict)
-    powers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    samples: int = 0
-    angles: int = 0
-    harmonics: int = 0
-
-
-def of_linear(system: LinearPeriodic, speed: float) -> Evaluated:
-    """Tell the arrays of a linear-periodic system apart.
-
-    Parameters
-    ----------
-    system : LinearPeriodic
-        At its own parameters: what they make zero counts as zero.
-    speed : float
-        Crank speed [rad/s] at which harmonics are judged.
+    What the system's own parameters make zero counts as zero; harmonics are judged at ``speed``.
     """
     alive = _alive(system)
-    arrays = {}
+    kinds = {}
     for array in MATRICES + VECTORS:
-        own = [row for row, term in enumerate(system.terms) if term.array == array]
-        acting = [system.terms[row] for row in own if row in alive]
-        if not own:
-            arrays[array] = "absent"
-        elif not acting:
-            arrays[array] = "zero"
-        else:
-            constant = all(term.constant for term in acting)
-            arrays[array] = "constant" if constant else "periodic"
+        rows = [row for row, term in enumerate(system.terms) if term.array == array]
+        acting = [system.terms[row] for row in rows if row in alive]
+        constant = all(term.constant for term in acting)
+        kind = ("constant" if constant else "periodic") if acting else "zero"
+        kinds[array] = kind if rows else "absent"
     steady = [row for row in alive if system.terms[row].array in SPEED_POWER]
     moving = [row for row in steady if not system.terms[row].constant]
     equation = equation_of(system, speed, forcing=True) if moving else None
-    return Evaluated(
-        arrays=arrays,
-        powers=_powers(system, alive),
-        samples=len(steady),
-        angles=len(equation.even_angles()) if equation else 0,
-        harmonics=equation.reach if equation else 0,
-    )
+    return {
+        "array_kinds": kinds,
+        "powers": _powers(system, alive),
+        "samples": len(steady),
+        "angles": len(equation.even_angles()) if equation else 0,
+        "harmonics": equation.reach if equation else 0,
+    }
 
 
 def _alive(system: LinearPeriodic) -> list[int]:
@@ -454,13 +386,11 @@ def _powers(system: LinearPeriodic, alive: list[int]) -> dict[str, tuple[str, ..
     return {key: tuple(sorted(names)) for key, names in sorted(found.items(), reverse=True)}
 
 
-def of_entries(costs: Mapping[str, EmittedCost]) -> Evaluated:
-    """Count the entries that constrained systems evaluate; the rest is zero."""
-    return Evaluated(
-        arrays={
-            array: f"{filled} of {entries}"
-            for cost in costs.values()
-            if cost.family == "constrained"
-            for array, (filled, entries) in cost.entries.items()
-        }
-    )
+def _filled_entries(costs: list[EmittedCost]) -> dict[str, str]:
+    """Return how many entries of each array a constrained system evaluates; the rest is zero."""
+    return {
+        array: f"{filled} of {entries}"
+        for cost in costs
+        if cost.family == "constrained"
+        for array, (filled, entries) in cost.entries.items()
+    }

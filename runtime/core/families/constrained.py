@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import bad
-from .emitted import Places, Values, array_function, dropped_names, parameter_values, stacked
+from .emitted import Places, Values, dropped_names, nothing, parameter_values, stacked
 from .linear_periodic import Array
 from .multipliers import solve_multipliers
 
@@ -142,11 +142,8 @@ class Constrained:
         else:
             numbers, labels = {}, module.COORDINATES
 
-        def at(name: str) -> Callable[..., Mapping[str, Array]]:
-            if numbers:
-                return _AtModalState(module, name, given, values, numbers)
-            state = _AtState(module, name, given, values)
-            return state if len(kept) == len(module.MULTIPLIERS) else _Released(state, tuple(kept))
+        def at(name: str) -> _AtState:
+            return _AtState(module, name, given, values, numbers, tuple(kept))
 
         return cls(
             len(labels),
@@ -187,62 +184,9 @@ class Constrained:
         )
 
 
-@dataclass(frozen=True)
-class _AtState:
-    """An emitted function of the state's components as one of whole vectors."""
-
-    module: ModuleType
-    name: str
-    given: Mapping[str, External]
-    values: Mapping[str, ArrayLike]
-
-    @cached_property
-    def _single(self) -> tuple[Callable[..., object], _Places] | None:
-        """The bare function and where its numbers go; None where parameters are arrays."""
-        function = getattr(self.module, self.name, None)
-        if function is None or not all(isinstance(v, float) for v in self.values.values()):
-            return None
-        return function, _Places.of(self.module.ARRAYS[self.name])
-
-    @cached_property
-    def _batched(self) -> Callable[..., Mapping[str, Array]]:
-        return array_function(self.module, self.name)
-
-    def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
-        """Evaluate at coordinates, more vectors, and time last."""
-        *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
-        passed = {name: self.given[name](vectors[0], time) for name in self.module.EXTERNAL}
-        alone = time.ndim == 0 and all(vector.ndim == 1 for vector in vectors)
-        if alone and self._single is not None:
-            # Plain floats are five times faster than arrays of no dimension.
-            function, places = self._single
-            state = [number for vector in vectors for number in vector.tolist()]
-            try:
-                return places.filled(function(*state, float(time), **passed, **self.values))
-            except (OverflowError, ZeroDivisionError):
-                pass  # plain floats refuse what arrays return as infinite
-        columns = [vector[..., i] for vector in vectors for i in range(vector.shape[-1])]
-        return self._batched(*columns, time, **passed, **self.values)
-
-
+# Arrays of an emitted module with a row for each constraint, beside its Jacobians.
 _OF_CONSTRAINTS = ("constraints", "velocity_rhs", "gamma")
-
-
-@dataclass(frozen=True)
-class _Released:
-    """An emitted function of a state without the constraints that are left out."""
-
-    state: _AtState
-    kept: tuple[int, ...]
-
-    def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
-        rows = list(self.kept)
-        return {
-            name: array[..., rows, :]
-            if name in _OF_CONSTRAINTS or name.startswith("jacobian")
-            else array
-            for name, array in self.state(*arguments).items()
-        }
+_OF_COORDINATES = 3  # vectors: coordinates, their rates, their accelerations; multipliers follow
 
 
 def _mode_numbers(module: ModuleType, given: Values, dropped: Collection[str]) -> dict[str, Array]:
@@ -255,22 +199,86 @@ def _mode_numbers(module: ModuleType, given: Values, dropped: Collection[str]) -
 
 
 @dataclass(frozen=True)
-class _AtModalState:
-    """An emitted function for any number of modes, whose last coordinate is one of each mode."""
+class _AtState:
+    """An emitted function of the state's components as one of whole vectors.
+
+    Of a module for any number of modes the last coordinate is one of each mode, and ``numbers`` are
+    what multiplies them; else there are none.  ``kept`` are the constraints that are not released.
+    """
 
     module: ModuleType
     name: str
     given: Mapping[str, External]
     values: Mapping[str, ArrayLike]
     numbers: Mapping[str, Array]
+    kept: tuple[int, ...]
+
+    def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
+        """Evaluate at coordinates, more vectors, and time last."""
+        *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
+        written, places, blocks = self._layout
+        arrays = row = None
+        if self._plain and time.ndim == 0 and all(vector.ndim == 1 for vector in vectors):
+            try:  # plain floats are several times faster than arrays of no dimension
+                row = self._row(vectors, time, np.ndarray.tolist)
+                arrays = places.filled(row)
+            except (OverflowError, ZeroDivisionError):
+                pass  # they refuse what arrays return as infinite
+        if arrays is None or row is None:
+            shapes = [np.shape(value) for value in self.values.values()]
+            shapes += [vector.shape[:-1] for vector in vectors]
+            row = self._row(vectors, time, _columns)
+            arrays = stacked(written, row, np.broadcast_shapes(time.shape, *shapes))
+        first = len(self.module.COORDINATES) - 1
+        for name, start, matrix in blocks:
+            factor = np.asarray(row[start])[..., None, None]
+            arrays[name][..., first:, first:] += factor * matrix
+        return arrays
+
+    @cached_property
+    def _plain(self) -> bool:
+        return all(isinstance(value, float) for value in self.values.values())
+
+    @cached_property
+    def _number_lists(self) -> list[Any]:
+        return [array.tolist() for array in self.numbers.values()]
+
+    def _row(
+        self, vectors: list[Array], time: Array, listed: Callable[[Array], list[Any]]
+    ) -> tuple[Any, ...]:
+        """Call the function with vectors as lists of components, and write out what it returns."""
+        first = len(self.module.COORDINATES) - 1
+        taken: list[Any] = []
+        for number, vector in enumerate(vectors):
+            components = listed(vector)
+            if self.numbers and number < _OF_COORDINATES:
+                components = [*components[:first], components[first:]]
+            taken += components
+        taken.append(time[()] if time.ndim else float(time))
+        for name in self.module.EXTERNAL:
+            value = self.given[name](vectors[0], time)
+            taken.append(listed(np.asarray(value)) if self.numbers else value)
+        function = getattr(self.module, self.name, nothing)
+        returned = function(*taken, *self.values.values(), *self._number_lists)
+        if not isinstance(returned, tuple):
+            return (returned,)
+        if not self.numbers:
+            return returned
+        row: list[Any] = []
+        for value in returned:
+            row += value if isinstance(value, list) else [value]
+        return tuple(row)
 
     @cached_property
     def _layout(self) -> tuple[Places, _Places, tuple[tuple[str, int, Array], ...]]:
         """Where the numbers go with all modes written out, and those that multiply matrices."""
+        arrays = self.module.ARRAYS[self.name]
+        if not self.numbers:
+            written = {name: self._of_kept(name, *places) for name, places in arrays.items()}
+            return written, _Places.of(written), ()
         first = len(self.module.COORDINATES) - 1
         matrices = {name: n if n.ndim == 2 else np.diag(n) for name, n in self.numbers.items()}
         count = len(next(iter(matrices.values())))
-        arrays = self.module.ARRAYS[self.name]
         # What is returned is written out in one row: a sequence has a place for each mode.
         sequences = {
             at
@@ -280,7 +288,7 @@ class _AtModalState:
         }
         size = 1 + max((at for _, filled in arrays.values() for _, _, at, *_ in filled), default=-1)
         starts = np.cumsum([0] + [count if at in sequences else 1 for at in range(size)])
-        written: dict[str, Any] = {}
+        whole: dict[str, Any] = {}
         blocks = []
         for name, (shape, filled) in arrays.items():
             entries: list[tuple[int, int, int]] = []
@@ -296,60 +304,16 @@ class _AtModalState:
                 else:
                     entries.append((i, j, start))
             full = tuple(n + count - 1 if n > first else n for n in shape)
-            written[name] = (full, tuple(entries))
-        return written, _Places.of(written), tuple(blocks)
+            whole[name] = (full, tuple(entries))
+        return whole, _Places.of(whole), tuple(blocks)
 
-    def __call__(self, *arguments: ArrayLike) -> Mapping[str, Array]:
-        """Evaluate at coordinates, more vectors, and time last."""
-        *vectors, time = (np.asarray(argument, dtype=float) for argument in arguments)
-        written, places, blocks = self._layout
-        first = len(self.module.COORDINATES) - 1
-        alone = time.ndim == 0 and all(vector.ndim == 1 for vector in vectors)
-        if alone and all(isinstance(value, float) for value in self.values.values()):
-            try:  # plain floats are several times faster than arrays of no dimension
-                row = self._row(vectors, time, np.ndarray.tolist)
-                arrays = places.filled(row)
-            except (OverflowError, ZeroDivisionError):
-                row = self._row(vectors, time, _columns)  # plain floats refuse what is infinite
-                arrays = stacked(written, row)
-        else:
-            batch = np.broadcast_shapes(time.shape, *(vector.shape[:-1] for vector in vectors))
-            row = self._row(vectors, time, _columns)
-            arrays = stacked(written, row, batch)
-        for name, start, matrix in blocks:
-            factor = np.asarray(row[start])[..., None, None]
-            arrays[name][..., first:, first:] += factor * matrix
-        return arrays
-
-    def _row(
-        self, vectors: list[Array], time: Array, listed: Callable[[Array], list[Any]]
-    ) -> tuple[Any, ...]:
-        """Call the function with vectors as lists of components, and write out what it returns."""
-        first = len(self.module.COORDINATES) - 1
-        taken: list[Any] = []
-        for vector in vectors[:_OF_COORDINATES]:
-            components = listed(vector)
-            taken += [*components[:first], components[first:]]
-        for vector in vectors[_OF_COORDINATES:]:
-            taken += listed(vector)
-        taken.append(time[()] if time.ndim else float(time))
-        for name in self.module.EXTERNAL:
-            taken.append(listed(np.asarray(self.given[name](vectors[0], time))))
-        function = getattr(self.module, self.name)
-        row: list[Any] = []
-        for value in function(*taken, *self.values.values(), *self._number_lists):
-            if isinstance(value, list):
-                row += value
-            else:
-                row.append(value)
-        return tuple(row)
-
-    @cached_property
-    def _number_lists(self) -> list[Any]:
-        return [array.tolist() for array in self.numbers.values()]
-
-
-_OF_COORDINATES = 3  # vectors: coordinates, their rates, their accelerations; multipliers follow
+    def _of_kept(self, name: str, shape: tuple[int, int], filled: Any) -> tuple[Any, Any]:
+        """Return shape and places of an array without the rows of released constraints."""
+        if name not in _OF_CONSTRAINTS and not name.startswith("jacobian"):
+            return shape, filled
+        rows = {row: place for place, row in enumerate(self.kept)}
+        entries = tuple((rows[i], j, at) for i, j, at in filled if i in rows)
+        return (len(rows), shape[1]), entries
 
 
 def _columns(vectors: Array) -> list[Any]:

@@ -27,11 +27,6 @@ def check_module(module: ModuleType, family: str, given: Values) -> tuple[str, .
         The family that is wanted.
     given : mapping
         Values by name.
-
-    Raises
-    ------
-    BadInput
-        If the family differs or a parameter has no value.
     """
     found = getattr(module, "FAMILY", None)
     if found != family:
@@ -44,20 +39,14 @@ def check_module(module: ModuleType, family: str, given: Values) -> tuple[str, .
 
 
 def parameter_values(module: ModuleType, family: str, given: Values) -> dict[str, Any]:
-    """Return the module's parameters as floats, or as arrays where a sweep gives arrays.
-
-    Raises
-    ------
-    BadInput
-        As :func:`check_module`.
-    """
+    """Return the module's parameters as floats, or as arrays where a sweep gives arrays."""
     names = check_module(module, family, given)
     arrays = {name: np.asarray(given[name], dtype=float) for name in names}
     return {name: value if value.ndim else float(value) for name, value in arrays.items()}
 
 
 def dropped_names(module: ModuleType, drop: Collection[str]) -> tuple[Any, ...]:
-    """Return what vanishes or changes in a general module where terms are left out.
+    """Return what vanishes or changes in a general module that can leave terms out.
 
     Parameters
     ----------
@@ -65,11 +54,6 @@ def dropped_names(module: ModuleType, drop: Collection[str]) -> tuple[Any, ...]:
         Emitted for all terms, with the table ``DROPS``.
     drop : collection of str
         Terms to leave out.
-
-    Raises
-    ------
-    BadInput
-        If the module cannot leave them out.
     """
     if not drop:
         return ()
@@ -112,7 +96,7 @@ def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Arr
             "correct it",
         )
     places: Places = known[name]
-    function: Callable[..., object] = getattr(module, name, _nothing)
+    function: Callable[..., object] = getattr(module, name, nothing)
 
     def arrays(*arguments: ArrayLike, **named: ArrayLike) -> dict[str, Array]:
         given = (*arguments, *named.values())
@@ -123,7 +107,8 @@ def array_function(module: ModuleType, name: str) -> Callable[..., dict[str, Arr
     return arrays
 
 
-def _nothing(*arguments: object, **named: object) -> tuple[()]:
+def nothing(*arguments: object, **named: object) -> tuple[()]:
+    """Return no entries: what a function would that was not emitted since all of them are zero."""
     return ()
 
 

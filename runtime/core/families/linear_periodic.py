@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -387,8 +388,8 @@ class LinearPeriodic:
             terms=self.terms + terms,
             parameters={**self.parameters, **extra},
             scales=merged if extra else self.scales,
-            rebuild=_then(self.rebuild, partial(_with_terms, terms, extra)),
-            remesh=_then(self.remesh, partial(_with_terms, terms, extra)),
+            rebuild=_then(self.rebuild, methodcaller("with_terms", *terms, scales=extra)),
+            remesh=_then(self.remesh, methodcaller("with_terms", *terms, scales=extra)),
         )
 
     def with_changed_terms(self, change: Callable[[Term], Term]) -> LinearPeriodic:
@@ -406,8 +407,8 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(change(term) for term in self.terms),
-            rebuild=_then(self.rebuild, partial(_with_changed_terms, change)),
-            remesh=_then(self.remesh, partial(_with_changed_terms, change)),
+            rebuild=_then(self.rebuild, methodcaller("with_changed_terms", change)),
+            remesh=_then(self.remesh, methodcaller("with_changed_terms", change)),
         )
 
     def without(self, *arrays: str) -> LinearPeriodic:
@@ -415,8 +416,8 @@ class LinearPeriodic:
         return replace(
             self,
             terms=tuple(term for term in self.terms if term.array not in arrays),
-            rebuild=_then(self.rebuild, partial(_without, arrays)),
-            remesh=_then(self.remesh, partial(_without, arrays)),
+            rebuild=_then(self.rebuild, methodcaller("without", *arrays)),
+            remesh=_then(self.remesh, methodcaller("without", *arrays)),
         )
 
     @cached_property
@@ -479,8 +480,7 @@ def _merged(
 
 
 def _then(
-    make: Callable[[Any], LinearPeriodic] | None,
-    change: Callable[[LinearPeriodic], LinearPeriodic],
+    make: Callable[[Any], LinearPeriodic] | None, change: Callable[[LinearPeriodic], LinearPeriodic]
 ) -> Callable[[Any], LinearPeriodic] | None:
     """Return what makes a system anew and changes it as this one is changed."""
     return None if make is None else partial(_made_then, make, change)
@@ -492,20 +492,6 @@ def _made_then(
     given: object,
 ) -> LinearPeriodic:
     return change(make(given))
-
-
-def _with_terms(
-    terms: tuple[Term, ...], extra: Mapping[str, float], system: LinearPeriodic
-) -> LinearPeriodic:
-    return system.with_terms(*terms, scales=extra)
-
-
-def _with_changed_terms(change: Callable[[Term], Term], system: LinearPeriodic) -> LinearPeriodic:
-    return system.with_changed_terms(change)
-
-
-def _without(arrays: tuple[str, ...], system: LinearPeriodic) -> LinearPeriodic:
-    return system.without(*arrays)
 
 
 def _told(value: ArrayLike) -> str:

@@ -12,40 +12,25 @@ from typing import TYPE_CHECKING
 from ...core.lazy import on_first_use
 
 if TYPE_CHECKING:
-    from .basis import MovingBasis
-    from .floating import FreeFreeRod, free_free_rod
-    from .free_free import FreeFreeBasis, FreeFreeModes
-    from .linear import rod_system
-    from .overhang import OverhangBasis, OverhangFrequencies, overhang_roots
-    from .polynomials import PolynomialBasis, TwoSegmentBasis
+    from .basis import MovingBasis as MovingBasis
+    from .floating import FreeFreeRod as FreeFreeRod
+    from .floating import free_free_rod as free_free_rod
+    from .free_free import FreeFreeBasis as FreeFreeBasis
+    from .free_free import FreeFreeModes as FreeFreeModes
+    from .linear import rod_system as rod_system
+    from .overhang import OverhangBasis as OverhangBasis
+    from .overhang import overhang_roots as overhang_roots
+    from .polynomials import PolynomialBasis as PolynomialBasis
+    from .polynomials import TwoSegmentBasis as TwoSegmentBasis
 
-_PUBLIC = {
-    "FreeFreeBasis": "free_free",
-    "FreeFreeModes": "free_free",
-    "FreeFreeRod": "floating",
-    "MovingBasis": "basis",
-    "OverhangBasis": "overhang",
-    "OverhangFrequencies": "overhang",
-    "PolynomialBasis": "polynomials",
-    "TwoSegmentBasis": "polynomials",
-    "free_free_rod": "floating",
-    "overhang_roots": "overhang",
-    "rod_system": "linear",
-}
-
-__all__ = [
-    "FreeFreeBasis",
-    "FreeFreeModes",
-    "FreeFreeRod",
-    "MovingBasis",
-    "OverhangBasis",
-    "OverhangFrequencies",
-    "PolynomialBasis",
-    "TwoSegmentBasis",
-    "free_free_rod",
-    "overhang_roots",
-    "rod_system",
-]
-
-
-__getattr__, __dir__ = on_first_use(globals(), _PUBLIC)
+__all__, __getattr__, __dir__ = on_first_use(
+    globals(),
+    {
+        "basis": ("MovingBasis",),
+        "floating": ("FreeFreeRod", "free_free_rod"),
+        "free_free": ("FreeFreeBasis", "FreeFreeModes"),
+        "linear": ("rod_system",),
+        "overhang": ("OverhangBasis", "overhang_roots"),
+        "polynomials": ("PolynomialBasis", "TwoSegmentBasis"),
+    },
+)

@@ -11,19 +11,23 @@ def run(capsys, *arguments):
         status = main([str(argument) for argument in arguments])
     except SystemExit as left:
         status = left.code
-    out, err = capsys.readouterr()
-    return status, out, err
+    return status, *capsys.readouterr()
+
+
+def shown(capsys, *arguments):
+    """Return what a command prints that ends well and complains of nothing."""
+    status, out, err = run(capsys, *arguments)
+    assert (status, err) == (0, "")
+    return out
 
 
 def told(capsys, *arguments):
-    """Return the JSON that a command prints."""
-    status, out, _ = run(capsys, *arguments, "--json")
-    assert status == 0
-    return json.loads(out)
+    """Return the JSON of a command that ends well."""
+    return json.loads(shown(capsys, *arguments, "--json"))
 
 
 def refused(capsys, *arguments):
-    """Check that a command line is refused in one line, and return the complaint."""
+    """Return the complaint, which is one line without a traceback."""
     status, out, err = run(capsys, *arguments)
     assert status == 2 and out == ""
     assert err.startswith("elastolink") and len(err.splitlines()) == 1

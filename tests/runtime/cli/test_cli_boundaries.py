@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import elastolink as el
 import numpy as np
 import pytest
-from elastolink.runtime.cli import main
+from command_runs import refused, shown, told
 
 RIG = "smith_1972_101104_sixteenth_inch"
-
-
-def run(*words):
-    return main([*words])
-
-
-def told(capsys, *arguments: str):
-    assert run(*arguments, "--json") == 0
-    return json.loads(capsys.readouterr().out)
 
 
 def test_hill_scene(capsys) -> None:
@@ -30,14 +20,14 @@ def test_hill_scene(capsys) -> None:
     assert np.allclose(answer["lower"], exact.lower, rtol=0.0, atol=1e-14)
     third = el.perturbation_boundaries(f, [0.0, 0.2, 0.4], (1, 2, 3, 4), order=3)
     assert np.allclose(answer["perturbation"][0]["upper"], third.upper, rtol=0.0, atol=1e-14)
-    assert run("boundaries", "mathieu", "--mu", "0.2", "--order", "3", "--regions", "1") == 0
-    printed = capsys.readouterr().out
+    given = ("--mu", "0.2", "--order", "3", "--regions", "1")
+    printed = shown(capsys, "boundaries", "mathieu", *given)
     assert f"{exact.lower[0, 1]:.12g}" in printed and "order 3 from" in printed
 
 
 def test_a_flag_instead_of_a_number(capsys) -> None:
-    assert run("boundaries", "mathieu", "--mu", "3", "--order", "2", "--regions", "2") == 0
-    printed = capsys.readouterr().out
+    given = ("--mu", "3", "--order", "2", "--regions", "2")
+    printed = shown(capsys, "boundaries", "mathieu", *given)
     assert "outside the range in which its orders converge" in printed
 
 
@@ -54,15 +44,14 @@ def test_crank_speeds_of_one_mode(capsys) -> None:
         for (lam2,) in row:
             speed = answer["natural_frequency"] / math.sqrt(lam2)
             assert min(abs(speeds.speed - speed)) < 1e-9 * speed
-    assert run("boundaries", RIG, "--regions", "2:4") == 0
-    assert "natural frequency 1560 rpm" in capsys.readouterr().out
+    printed = shown(capsys, "boundaries", RIG, "--regions", "2:4")
+    assert "natural frequency 1560 rpm" in printed
 
 
 def test_all_regions_of_several_modes(capsys, tmp_path) -> None:
     picture = tmp_path / "edges.png"
     given = ("boundaries", RIG, "--set", "model.modes=2", "--speed", "740rpm:780rpm")
-    assert run(*given, "--plot", str(picture)) == 0
-    printed = capsys.readouterr().out
+    printed = shown(capsys, *given, "--plot", picture)
     assert "region 4 of mode 1" in printed and "sum of 1 and 2" in printed
     assert picture.stat().st_size > 5000
 
@@ -72,19 +61,16 @@ def test_coefficients(capsys) -> None:
     # NIST DLMF 28.6.1, with a = 4 lam2 and q = 2 mu.
     assert series[0]["upper"][1] == pytest.approx(-0.5, abs=1e-15)
     assert series[0]["upper"][3] == pytest.approx(7 / 32, rel=1e-14)
-    assert run("perturb", "hill_example", "--regions", "1") == 0
-    assert "with damping K = 0.04 mu" in capsys.readouterr().out
-    assert run("perturb", RIG, "--order", "3", "--regions", "4") == 0
-    assert "mu multiplies all that changes with the crank angle" in capsys.readouterr().out
+    printed = shown(capsys, "perturb", "hill_example", "--regions", "1")
+    assert "with damping K = 0.04 mu" in printed
+    printed = shown(capsys, "perturb", RIG, "--order", "3", "--regions", "4")
+    assert "mu multiplies all that changes with the crank angle" in printed
 
 
 def test_formulas(capsys) -> None:
-    assert run("perturb", "mathieu", "--order", "3", "--latex") == 0
-    text = capsys.readouterr().out
+    text = shown(capsys, "perturb", "mathieu", "--order", "3", "--latex")
     assert text.count("{") == text.count("}") and r"B_{3} &= " in text
 
 
 def test_an_order_out_of_range(capsys) -> None:
-    with pytest.raises(SystemExit):
-        run("perturb", "mathieu", "--order", "9")
-    assert "expected 1 to 8" in capsys.readouterr().err
+    assert "expected 1 to 8" in refused(capsys, "perturb", "mathieu", "--order", "9")

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import json
-import pickle
-import sys
 from importlib import import_module
 from pathlib import Path
 
@@ -204,16 +201,6 @@ def test_the_counter_sees_calls_points_and_modules(monkeypatch):
     assert "elastolink.generated.four_bar_kinematics" in first["modules"]
     assert second["calls"] == [] and second["modules"] == {}
     assert not any("skipping" in name for name in first["modules"])
-
-
-def test_the_counting_process_answers_in_json(monkeypatch, capsys):
-    scene = el.load_scene("mathieu")
-    request = {"scene": pickle.dumps(scene), "speed": 1.0}
-    stream = io.TextIOWrapper(io.BytesIO(pickle.dumps(request)))
-    monkeypatch.setattr(sys, "stdin", stream)
-    probe.main()
-    stages = json.loads(capsys.readouterr().out)
-    assert [stage["name"] for stage in stages] == ["scene", "system", "floquet_multipliers"]
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import types
 import numpy as np
 import pytest
 import scipy.linalg
+from constrained_truth import Circle
 from elastolink.generated import four_bar_coupler_complete, hill_plain
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.families import (
@@ -18,16 +19,9 @@ from elastolink.runtime.core.families import (
     Transcendental,
     array_function,
 )
-from elastolink.runtime.core.families.emitted import check_module, parameter_values, stacked
+from elastolink.runtime.core.families.emitted import check_module, parameter_values
 from elastolink.runtime.systems import assemble
-
-
-def named(*names: str):
-    return lambda values: {name: np.asarray(values[name], dtype=float) for name in names}
-
-
-def wave(matrix):
-    return lambda theta: np.cos(theta).reshape(-1, *(1,) * np.ndim(matrix)) * np.array(matrix)
+from periodic_systems import named, wave
 
 
 def system(**changes) -> LinearPeriodic:
@@ -42,7 +36,7 @@ def system(**changes) -> LinearPeriodic:
         "size": 2,
         "terms": terms,
         "parameters": {"mass": 2.0, "load": 0.5},
-        "scales": named("mass", "load"),
+        "scales": named(("mass", "load")),
         **changes,
     }
     return LinearPeriodic(**values)
@@ -114,7 +108,7 @@ def test_labels_are_given_or_counted():
 )
 def test_unusable_terms_are_refused(term, message):
     with pytest.raises(BadInput, match=message):
-        LinearPeriodic(2, (term,), {}, named())
+        LinearPeriodic(2, (term,), {}, named(()))
 
 
 def test_unknown_parameters_are_refused():
@@ -125,37 +119,11 @@ def test_unknown_parameters_are_refused():
 # Constrained ---------------------------------------------------------------------------------
 
 
-def pendulum(mass: float = 2.0, gravity: float = 10.0) -> Constrained:
-    """A bob on a rod of length 1 in x and y, written by hand."""
-
-    def violation(q, t):
-        x, y = np.moveaxis(np.asarray(q), -1, 0)
-        return {
-            "constraints": ((x**2 + y**2 - 1) / 2)[..., None, None],
-            "jacobian": np.asarray(q)[..., None, :],
-        }
-
-    def dynamics(q, qd, t):
-        q, qd = np.asarray(q), np.asarray(qd)
-        zero = np.zeros((*q.shape, 1))
-        weight = np.broadcast_to(np.array([[0.0], [-mass * gravity]]), zero.shape)
-        return {
-            "mass": np.broadcast_to(mass * np.eye(2), (*q.shape, 2)),
-            "rest": zero,
-            "forces": weight,
-            "jacobian": q[..., None, :],
-            "velocity_rhs": zero[..., :1, :],
-            "gamma": -np.sum(qd**2, axis=-1)[..., None, None],
-        }
-
-    return Constrained(2, 1, dynamics, violation)
-
-
 def test_pendulum_by_hand():
     angle, turning = np.linspace(-3.0, 3.0, 7), 1.7
     q = np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
     qd = turning * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    qdd, multipliers = pendulum().accelerations(q, qd)
+    qdd, multipliers = Circle().system.accelerations(q, qd)
     along = np.sum(qdd * qd, axis=-1) / turning
     np.testing.assert_allclose(along, -10.0 * np.sin(angle), atol=1e-13)
     # tension = m (g cos a + omega^2) pulls inwards
@@ -198,20 +166,13 @@ def module(**changes) -> types.SimpleNamespace:
     return types.SimpleNamespace(**values)
 
 
-def test_entries_are_stacked_behind_the_batch():
-    found = stacked(PLACES, (np.array([1.0, 2.0, 3.0]), 4.0), (3,))
-    assert found["K"].shape == (3, 2, 2)
-    np.testing.assert_array_equal(found["K"][2], [[3.0, 4.0], [4.0, 0.0]])
-    np.testing.assert_array_equal(found["f"], np.zeros((3, 2, 1)))
-    single = stacked({"K": ((1, 1), ((0, 0, 0),))}, 5.0)
-    np.testing.assert_array_equal(single["K"], [[5.0]])
-
-
 def test_functions_of_arrays_broadcast_all_their_arguments():
     function = array_function(module(), "element")
     found = function(np.ones((4, 1)), m=np.array([1.0, 2.0, 3.0]), k=2.0)
     assert found["K"].shape == (4, 3, 2, 2)
     np.testing.assert_array_equal(found["K"][0, 2], [[2.0, -3.0], [-3.0, 0.0]])
+    np.testing.assert_array_equal(found["f"], np.zeros((4, 3, 2, 1)))
+    np.testing.assert_array_equal(function(2.0, 3.0, 4.0)["K"], [[8.0, -3.0], [-3.0, 0.0]])
     np.testing.assert_array_equal(
         array_function(module(), "idle")(np.ones(2))["f"].shape, (2, 2, 1)
     )

@@ -40,8 +40,7 @@ def test_both_readings_of_the_stiff_rods_mass():
 @pytest.mark.parametrize("formulation", LINEAR)
 def test_a_linear_formulation_is_its_basis(formulation):
     scene = load_scene(
-        FLEXIBLE,
-        {"model.formulation": formulation, "model.modes": 2, "links.crank_ratio": 0.15},
+        FLEXIBLE, {"model.formulation": formulation, "model.modes": 2, "links.crank_ratio": 0.15}
     )
     system = scene.system()
     assert isinstance(system, LinearPeriodic)

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from ..core.periodic_function import PeriodicFunction
     from ..hill import Boundaries, BoundarySeries, HillForm, PerturbationBoundaries
-    from ..hill.perturbation import Form
     from ..scenes import Scene
 
     Array = NDArray[np.float64]
@@ -66,11 +65,6 @@ def _add_boundaries(commands: Any) -> None:
         type=_order,
         metavar="N",
         help=f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}",
-    )
-    edges.add_argument(
-        "--form",
-        choices=("uniform", "series"),
-        help="of the perturbation: uniform through the tip of a region (default), or the series",
     )
     edges.add_argument(
         "--certified",
@@ -135,8 +129,6 @@ def _regions(given: str | None) -> tuple[int, ...]:
 
 def _boundaries(options: argparse.Namespace) -> int:
     opt.picture(options)
-    if options.form and options.order is None:
-        opt.refuse_unused(options, ("form",), "--order N")
     regions = _regions(options.regions)
     scene = opt.load(options)
     if scene.model["mechanism"] == "hill":
@@ -194,10 +186,7 @@ def _solved(
     exact = hill_boundaries(f, mu, regions, damping=damping, **more)
     if options.order is None:
         return exact, []
-    form: Form = options.form or "uniform"
-    return exact, [
-        perturbation_boundaries(f, mu, regions, order=options.order, damping=damping, form=form)
-    ]
+    return exact, [perturbation_boundaries(f, mu, regions, order=options.order, damping=damping)]
 
 
 def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
@@ -212,7 +201,7 @@ def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, .
             return _of_mode(options, form, regions)
     opt.refuse_unused(
         options,
-        ("regions", "order", "form", "certified"),
+        ("regions", "order", "certified"),
         "one undamped mode, and no range of speeds",
     )
     from ..stability import stability_edges

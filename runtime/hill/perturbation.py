@@ -8,7 +8,7 @@ ratio at which the components fall, show what is left out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import comb
 from typing import ClassVar, Literal, NamedTuple
@@ -28,7 +28,6 @@ from .transfer import EPS
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
-Form = Literal["uniform", "series"]
 
 # The series is taken to converge while its components fall at least so fast from one to the next,
 # and while what is left out stays below this share of the distance to the next level.
@@ -51,8 +50,6 @@ class PerturbationBoundaries(Boundaries):
     ----------
     order : int
         Highest total degree kept; K counts as a parameter of the first order.
-    form : str
-        ``"uniform"`` or ``"series"``.
     parameters : ndarray, shape (p, *mu.shape)
         Values of the parameters; ``mu`` is the first of them.
     outside : ndarray of bool, shape (len(regions), *mu.shape)
@@ -64,7 +61,6 @@ class PerturbationBoundaries(Boundaries):
     """
 
     order: int
-    form: str
     parameters: Array
     outside: Mask
     closed: Mask
@@ -83,7 +79,6 @@ def perturbation_boundaries(
     regions: Sequence[int] = (1, 2),
     order: int = 1,
     damping: ArrayLike = 0.0,
-    form: Form = "uniform",
     outside: Literal["nan", "value"] = "nan",
 ) -> PerturbationBoundaries:
     """Return the boundaries of unstable regions to an order in the parameters (and K).
@@ -103,10 +98,6 @@ def perturbation_boundaries(
         1 to 8: highest total degree in the parameters and K that is kept.
     damping : array_like
         K of Smith (7.38), at least zero; broadcasts with mu.
-    form : {"uniform", "series"}
-        ``"uniform"``: ``lam2 = n^2/4 + Re A -+ sqrt(|B|^2 - (Im A)^2)`` with A and B to the
-        order, which holds right through the tip of a damped tongue and where c_n vanishes.
-        ``"series"``: the root is expanded as well, ``n^2/4 + alpha_1 mu + alpha_2 mu^2 ...``.
     outside : {"nan", "value"}
         What stands where the orders do not visibly converge: NaN, or the number all the same,
         with an infinite error.
@@ -130,17 +121,18 @@ def perturbation_boundaries(
     Notes
     -----
     Smith (7.23)-(7.25), (7.35), (7.37), (7.46)-(7.50), (8.39)-(8.43), to any order by Bloch's
-    recursion (:mod:`.bloch`).  The error is made of the two orders that follow, of a geometric
-    remainder at the ratio at which the orders are seen to fall, of round-off and of the error of
-    f, all carried through the square root.  An entry is flagged where that ratio, with a margin of
-    a quarter, reaches 0.9, or the error half the distance to the neighbouring level of the same
+    recursion (:mod:`.bloch`): ``lam2 = n^2/4 + Re A -+ sqrt(|B|^2 - (Im A)^2)`` with A and B to the
+    order, which holds right through the tip of a damped tongue and where c_n vanishes, unlike the
+    power series of the root (:func:`.boundary_series`).  The error is made of the two orders that
+    follow, of a geometric remainder at the ratio at which the orders are seen to fall, of round-off
+    and of the error of f, all carried through the square root.  An entry is flagged where that
+    ratio, with a margin of a quarter, reaches 0.9, or the error half the distance to the
+    neighbouring level of the same
     period.
     """
     functions, values = parameters_of(f, mu)
     numbers = check_regions(regions)
     check_order(order)
-    if form not in ("uniform", "series"):
-        raise bad("form", repr(form), "'uniform' or 'series'", "choose one")
     if outside not in ("nan", "value"):
         raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
     amps, k, shape = amplitudes_of(values, damping)
@@ -155,7 +147,7 @@ def perturbation_boundaries(
             operator = points.operator(n)
             for start in range(0, count, _CHUNK):
                 part = slice(start, start + _CHUNK)
-                ends, split = points.ends(operator, part, uniform if form == "uniform" else series)
+                ends, split = points.ends(operator, part)
                 share = max(share, split)
                 half = ends.half
                 if outside == "nan" and ends.outside.any():
@@ -173,7 +165,7 @@ def perturbation_boundaries(
         checks["error over half the width"] = Check(share, 1.0)
     at = flat.reshape(len(flat), *shape)
     return PerturbationBoundaries(
-        method=f"perturbation, order {order}, {form}",
+        method=f"perturbation, order {order}",
         error=error.reshape(full),
         error_norm="absolute, entrywise, for either end",
         checks=checks,
@@ -184,7 +176,6 @@ def perturbation_boundaries(
         mu=np.asarray(at[0]),
         damping=np.asarray(at[-1]),
         order=int(order),
-        form=form,
         parameters=at[:-1],
         outside=flagged.reshape(full),
         closed=closed.reshape(full),
@@ -278,12 +269,7 @@ class _Points:
             )
         return effective_operator(self.functions, n, order, self.damped)
 
-    def ends(
-        self,
-        operator: EffectiveOperator,
-        part: slice,
-        form: Callable[[Components], SeriesEnds],
-    ) -> tuple[SeriesEnds, float]:
+    def ends(self, operator: EffectiveOperator, part: slice) -> tuple[SeriesEnds, float]:
         """Return the ends at some points, and the largest share of the error in half the width."""
         points = self.points[:, part] if self.damped else self.points[:-1, part]
         k, n = self.points[-1, part], operator.n
@@ -292,7 +278,7 @@ class _Points:
         a, b = operator.components(points)
         noise = 4.0 * EPS * (0.25 * n * n + self.reach[part] + n * k) + self.data[part]
         strength = self.strength[part] + 2.0 * k * (n + 1)
-        ends = form(Components(n, self.order, a, b, noise, strength, k > 0.0))
+        ends = uniform(Components(n, self.order, a, b, noise, strength, k > 0.0))
         split = np.abs(b[: self.order].sum(axis=0))
         wide = (split > noise) & ~ends.outside & np.isfinite(ends.half)
         shares = np.where(wide, ends.error / split, 0.0)
@@ -400,59 +386,18 @@ class Sums(NamedTuple):
 
 
 def uniform(parts: Components) -> SeriesEnds:
-    """Return the ends from the sums of A and B themselves, right through the tip of a tongue."""
+    """Return the ends from the sums of A and B, right through the tip of a tongue."""
     sums = Sums.of(parts)
-    if parts.region == 0:
-        return _judged(parts, sums, np.zeros_like(sums.centre), sums.moved, sums.ratio)
-    half, error = sums.root()
-    half[parts.damped & (sums.square < 0.0)] = np.nan
-    return _judged(parts, sums, half, sums.moved + error, sums.ratio)
-
-
-def series(parts: Components) -> SeriesEnds:
-    """Return the ends from the root of S expanded along the ray of the parameters.
-
-    Smith's alpha_1, alpha_2, ...; S begins with the degree 2 s, and the expansion fails where that
-    first component is not the dominant one: near the tip of a damped tongue, and where c_n almost
-    vanishes.
-    """
-    order, count = parts.order, len(parts.diagonal)
-    sums = Sums.of(parts)
-    left, ratio = np.zeros_like(sums.centre), sums.ratio.copy()
-    half = np.zeros_like(sums.centre)
-    leading = _leading(parts) if parts.region else np.full(half.shape, count + 1)
-    for s in range(1, count + 1):
-        here = leading == s
-        if not here.any():
-            continue
-        # A slice costs no copy.
-        these = slice(None) if here.all() else here
-        roots, sign, ripple = root_components(
-            parts.diagonal[:, these].imag, parts.coupling[:, these], s
-        )
-        kept = max(order - s + 1, 0)
-        terms = np.abs(roots)
-        fall = _CAUTION * _root_ratio(terms)
-        beyond = _DOUBT * terms[kept:].sum(axis=0) + _geometric(terms, fall)
-        left[these] = beyond + ripple * parts.noise[these]
-        total = np.asarray(roots[:kept].sum(axis=0))
-        half[these] = np.where((sign < 0.0) & (kept > 0), np.nan, total)
-        ratio[these] = np.maximum(ratio[these], fall)
-    # The first component decides by its sign; where the sums are sure of the opposite it misleads.
-    misled = parts.damped & np.where(np.isnan(half), sums.fewest > 0.0, sums.most < 0.0)
-    ratio[misled] = np.inf
+    half, error = np.zeros_like(sums.centre), sums.moved
+    undecided = np.zeros(half.shape, dtype=bool)
     if parts.region:
-        # The uniform form is at hand: what lies between the two, and its own error.
-        other, error = sums.root()
-        left = np.maximum(left, np.abs(np.nan_to_num(half) - other) + error)
-    return _judged(parts, sums, half, sums.moved + left, ratio)
-
-
-def _judged(parts: Components, sums: Sums, half: Array, error: Array, ratio: Array) -> SeriesEnds:
-    inside = (ratio < CONTRACTION) & (error < _SHARE * parts.distance)
+        half, spread = sums.root()
+        half[parts.damped & (sums.square < 0.0)] = np.nan
+        error = sums.moved + spread
+        undecided = parts.damped & (sums.fewest < 0.0) & (sums.most >= 0.0)
+    inside = (sums.ratio < CONTRACTION) & (error < _SHARE * parts.distance)
     inside &= np.isfinite(sums.centre)
-    undecided = inside & parts.damped & (sums.fewest < 0.0) & (sums.most >= 0.0)
-    return SeriesEnds(sums.centre, half, error, ~inside, undecided & (parts.region > 0))
+    return SeriesEnds(sums.centre, half, error, ~inside, undecided & inside)
 
 
 def contraction(sizes: Array, reference: Array | float) -> Array:
@@ -469,51 +414,6 @@ def contraction(sizes: Array, reference: Array | float) -> Array:
     last = np.maximum(sizes[-1], sizes[-2])
     before = np.maximum(sizes[-3], sizes[-4] if count > 3 else reference)
     return np.asarray(np.maximum(ratio, np.sqrt(last / np.maximum(before, np.finfo(float).tiny))))
-
-
-def _leading(parts: Components) -> NDArray[np.intp]:
-    """Return the degree s at which S begins, one more than there are where it vanishes."""
-    b, drag = np.abs(parts.coupling), np.abs(parts.diagonal.imag)
-    degree = np.arange(len(b))[:, None]
-    # A coupling below so much of the largest that it could be is taken for round-off of zero.
-    floor = 1e-14 * parts.strength * (parts.strength / parts.distance) ** degree
-    floor[0] = 0.0
-    # Without damping Im A is of higher order than B.
-    there = (b > floor) | ((drag > floor) & parts.damped)
-    return np.where(there.any(axis=0), there.argmax(axis=0) + 1, len(b) + 1)
-
-
-def root_components(drag: Array, coupling: Complex, s: int) -> tuple[Array, Array, Array]:
-    """Return the components s ... M of the root of +-S, that sign, and what magnifies errors."""
-    count, first = len(drag) - s + 1, s - 1
-    scale = np.abs(coupling[first]) + np.abs(drag[first])
-    # A power of two, so that squares stay within the range of doubles and no digit changes.
-    unit = np.ldexp(1.0, np.frexp(scale)[1])
-    real, imaginary, drag = coupling.real / unit, coupling.imag / unit, drag / unit
-    squares = np.zeros((count, drag.shape[1]))
-    for j in range(count):
-        for i in range(first, first + j // 2 + 1):
-            other = 2 * first + j - i
-            product = real[i] * real[other] + imaginary[i] * imaginary[other]
-            product -= drag[i] * drag[other]
-            squares[j] += product if i == other else 2.0 * product
-    # The root of a negative first component is imaginary, and with it all the others.
-    sign = np.sign(squares[0])
-    out = np.zeros(squares.shape)
-    out[0] = np.sqrt(np.abs(squares[0]))
-    for j in range(1, count):
-        inner = sum((out[i] * out[j - i] for i in range(1, j)), np.zeros(drag.shape[1]))
-        out[j] = (sign * squares[j] - inner) / (2.0 * out[0])
-    return out * unit, sign, np.asarray(scale / unit / out[0])
-
-
-def _root_ratio(terms: Array) -> Array:
-    """Return the ratio at which the components of the root fall, relative to its first one."""
-    first = np.maximum(terms[0], np.finfo(float).tiny)
-    ratio: Array = np.zeros(terms.shape[1:])
-    for k in {1, len(terms) - 2, len(terms) - 1} & set(range(1, len(terms))):
-        ratio = np.maximum(ratio, (terms[k] / first) ** (1.0 / k))
-    return ratio
 
 
 def _geometric(sizes: Array, ratio: Array) -> Array:

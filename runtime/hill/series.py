@@ -19,7 +19,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import ArrayLike, NDArray
 
 from ...generated import hill_recursion
 from ..core.errors import bad
@@ -28,8 +29,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from .bloch import HIGHEST_ORDER, effective_operator
 from .boundaries import hill_boundaries
-from .checks import check_function, check_regions
-from .perturbation import root_components
+from .checks import check_function, check_regions, finite
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -84,6 +84,33 @@ class BoundarySeries(Result):
         "error": ("end", "power"),
     }
 
+    def __call__(self, mu: ArrayLike, order: int | None = None) -> tuple[Array, Array]:
+        """Return ``n^2/4 + alpha_1 mu + ...`` of both boundaries.
+
+        Parameters
+        ----------
+        mu : array_like
+            Any shape.
+        order : int, optional
+            Highest power of mu, by default all that are known.
+
+        Returns
+        -------
+        lower, upper : ndarray
+            In the shape of mu, in the order that they have at small positive mu.
+
+        Raises
+        ------
+        BadInput
+            If mu is not finite.
+        """
+        x = finite("mu", mu)
+        lower, upper = (
+            0.25 * self.region**2 + x * polyval(x, alpha[:order])
+            for alpha in (self.lower, self.upper)
+        )
+        return lower, upper
+
     def latex(self, any_region: bool = False) -> str:
         """Return both boundaries as a formula, to the order; see :func:`boundary_latex`.
 
@@ -107,15 +134,13 @@ class BoundarySeries(Result):
         ax = axes_or_new(ax)
         mu = np.linspace(0.0, 1.0, 101)
         exact = hill_boundaries(self.function, mu, (self.region,), damping=self.damping_ratio * mu)
-        start = 0.25 * self.region**2
-        pairs = ((exact.upper[0], self.upper), (exact.lower[0], self.lower))
-        for end, alpha in pairs if self.region else pairs[:1]:
-            named = "exact" if alpha is self.upper else None
-            ax.plot(end, mu, color="black", lw=1.6, label=named)
+        for side, exact_end in enumerate((exact.lower[0], exact.upper[0])):
+            if side == 0 and not self.region:
+                continue
+            ax.plot(exact_end, mu, color="black", lw=1.6, label="exact" if side else None)
             for k in range(1, self.order + 1):
-                partial = start + sum(alpha[j] * mu ** (j + 1) for j in range(k))
-                label = f"order {k}" if named else None
-                ax.plot(partial, mu, "--", color=f"C{k - 1}", lw=1.0, label=label)
+                label = f"order {k}" if side else None
+                ax.plot(self(mu, k)[side], mu, "--", color=f"C{k - 1}", lw=1.0, label=label)
         known = np.concatenate([exact.lower[0], exact.upper[0]])
         known = known[np.isfinite(known)]
         room = 0.3 * np.ptp(known) + 0.1
@@ -233,16 +258,31 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
         doubt[k - 1] = least
     if not s:
         return np.stack([middle, half]), 0, doubt
-    root, sign, _ = root_components(drag, b, s)
-    if sign[0] <= 0.0:
-        closing = np.abs(b[s - 1, 0]) / n
+    drag, coupling = drag[s - 1 :, 0], b[s - 1 :, 0]
+    root = _root(drag, coupling)
+    if root is None:
+        closing = np.abs(coupling[0]) / n
         expected = f"less than {closing:.6g}, where the damping closes region {n}"
         raise bad("damping_ratio", f"{ratio:g}", expected, "take less damping")
-    nudged = b.copy()
-    nudged[s - 1] *= 1.0 + _LEADING
-    half[s - 1 :] = root[:, 0]
-    doubt[s - 1 :] += np.abs(root_components(drag, nudged, s)[0] - root)[:, 0]
+    half[s - 1 :] = root
+    nudged = _root(drag, np.concatenate([coupling[:1] * (1.0 + _LEADING), coupling[1:]]))
+    doubt[s - 1 :] += np.abs(nudged - root)
     return np.stack([middle, half]), s, doubt
+
+
+def _root(drag: Array, coupling: NDArray[np.complex128]) -> Array | None:
+    """Return the power series of the root of ``|B|^2 - (Im A)^2``; None where that is negative."""
+    # A power of two, so that squares stay within the range of doubles and no digit changes.
+    unit = np.ldexp(1.0, np.frexp(np.abs(coupling[0]) + np.abs(drag[0]))[1])
+    b, a = coupling / unit, drag / unit
+    squares = (np.convolve(b, b.conj()).real - np.convolve(a, a))[: len(a)]
+    if squares[0] <= 0.0:
+        return None
+    root = np.sqrt(squares[:1])
+    for square in squares[1:]:
+        inner = np.dot(root[1:], root[:0:-1])
+        root = np.append(root, (square - inner) / (2.0 * root[0]))
+    return np.asarray(unit * root)
 
 
 # ---------------------------------------------------------------- formulas

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import boundary_series, perturbation_boundaries
+from elastolink.runtime.hill import boundary_series
 from elastolink.runtime.hill.bloch import effective_operator, wave_columns
 from elastolink.runtime.hill.series import HIGHEST_FORMULA, boundary_latex, solution_latex
 from smith_chapter_8.exact import exact_operator, exact_series
@@ -25,17 +25,15 @@ MATHIEU = el.PeriodicFunction(a=[0.0, 1.0])
 
 
 @pytest.mark.parametrize("n", [0, 1, 2, 3, 5])
-@pytest.mark.parametrize("ratio", [0.0, 0.005])
-def test_remainder_falls_with_the_next_power(n, ratio):
-    order = 3
+@pytest.mark.parametrize(("order", "ratio"), [(2, 0.0), (3, 0.0), (3, 0.005)])
+def test_remainder_falls_with_the_next_power(n, order, ratio):
     if n == 5 and ratio:
         return
     found = boundary_series(MIXED, n, order, ratio)
     gaps = []
     for mu in (0.02, 0.01):
         exact = el.hill_boundaries(MIXED, mu, (n,), damping=ratio * mu)
-        powers = mu ** np.arange(1, order + 1)
-        ends = 0.25 * n * n + np.array([found.lower @ powers, found.upper @ powers])
+        ends = np.array(found(mu))
         true = (exact.lower[0], exact.upper[0])
         gaps.append(abs(ends[1] - true[1]) if n == 0 else np.abs(ends - true).max())
     assert np.log2(gaps[0] / gaps[1]) == pytest.approx(order + 1, abs=0.25)
@@ -321,17 +319,9 @@ def test_the_published_coefficients(name):
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_run_time_series(name):
-    """Both the coefficients of the run time and the steps between the orders of its boundaries."""
     m, side = parted(name)
     exact = np.array([float(x) for x in from_operator(name)])
     found = boundary_series(DOUBLE, m, ORDER)
     ours = 4 * (found.upper if side > 0 else found.lower)
     eps = np.finfo(float).eps
     np.testing.assert_allclose(ours, exact, rtol=4 * eps, atol=4 * eps * abs(exact).max() ** 2)
-    if m == 0 and side < 0:
-        return
-    values = [m * m]
-    for order in range(1, ORDER + 1):
-        ends = perturbation_boundaries(DOUBLE, 1.0, (m,), order, form="series", outside="value")
-        values.append(4 * (ends.upper if side > 0 else ends.lower)[0])
-    np.testing.assert_allclose(np.diff(values), exact, rtol=0, atol=8 * eps * max(1, m * m))

@@ -187,7 +187,8 @@ def test_integrals_agree_where_the_block_is_at_the_tip():
     np.testing.assert_allclose(basis.array("moment", xi)[0], moment, rtol=1e-14)
     mean = sign * np.sqrt(2) * (1 - sign) / (n * np.pi)
     np.testing.assert_allclose(basis.array("mean", xi)[0], mean, atol=1e-15)
-    np.testing.assert_allclose(basis.root_rates(xi)[0], -n * np.pi, rtol=1e-14)
+    rates = basis.roots(xi) * basis.end_values(xi)["rate"]
+    np.testing.assert_allclose(rates[0], -n * np.pi, rtol=1e-14)
 
 
 def test_drift_rate_is_the_derivative_of_the_drift():
@@ -215,11 +216,9 @@ def test_the_protocol_is_kept():
     for name in (*PRODUCTS, "moment", "mean"):
         found = basis.array(name, places)
         assert found.shape == ((5, 3) if name in ("moment", "mean") else (5, 3, 3))
-        assert found is basis.array(name, places.copy())
-        with pytest.raises(ValueError, match="read-only"):
-            found[...] = 0.0
-    for k in range(20):  # more than are kept
-        basis.array("drift", places + 0.001 * k)
+    assert basis.array("drift", places) is basis.array("drift", places.copy())
+    with pytest.raises(ValueError, match="read-only"):
+        basis.array("drift", places)[...] = 0.0
     assert basis.shapes(np.array([0.2]), places, 3).shape == (5, 1, 3)
     assert OverhangBasis(1).array("drift", places).shape == (5, 1, 1)
 

@@ -255,7 +255,6 @@ def _equations(
     """Return the equations of the emitted module for so many modes."""
     emitted = find_module(ModelSpec("quick_return", "free_free", ("rod",), modes.size, dropped))
     at_block = _AtBlock(modes, linkage, float(parameters["speed"]))
-    inward, retreat = modes.shortening
     return Constrained.from_module(
         emitted.module,
         parameters,
@@ -263,8 +262,8 @@ def _equations(
         modes={
             "left": modes.left_values,
             "stiffness": modes.roots**4,
-            "inward": inward,
-            "retreat": retreat,
+            "inward": modes.slope_integrals["inward"],
+            "retreat": modes.slope_integrals["retreat"],
         },
         drop=emitted.dropped,
         provenance={**origin, **emitted.provenance},

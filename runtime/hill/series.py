@@ -341,61 +341,16 @@ def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> st
             *_parts("A", "n", "n", order, region, damped),
             *_parts("B", "n", "0", order, region, damped),
         ]
-    return _aligned([*lines, *_where(order, region, damped)])
+    body = " \\\\\n".join([*lines, *_where(order, region, damped)])
+    return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
 
 
-def solution_latex(order: int, n: int | None = None, damped: bool = False) -> str:
-    """Return the solution on a boundary as a formula, to an order.
-
-    Parameters
-    ----------
-    order : int
-        1 to 5.
-    n, damped
-        As for :func:`boundary_latex`.
-
-    Returns
-    -------
-    str
-        An ``aligned`` environment: y with the two amplitudes u, w of the resonant harmonics, and
-        the homogeneous parts of the other harmonics ``v_m``.
-
-    Raises
-    ------
-    BadInput
-        If the order or the region is out of range.
-
-    Notes
-    -----
-    Smith (7.14), (7.29)-(7.30) is order 1.  The amplitudes are an eigenvector of
-    ``[[A, B], [conj B, conj A]]``.
-    """
-    region = _checked(order, n, HIGHEST_FORMULA - 1)
-    wave = rf"e^{{i (m - {region}/2) \theta}}"
-    if region == "0":
-        lines = [r"y &= 1 + \sum_{m} v_{m} e^{i m \theta}"]
-    else:
-        plus, minus = (rf"e^{{{sign}i {region} \theta/2}}" for sign in ("", "-"))
-        mirrored = rf"\bar{{v}}_{{{region}-m}}"
-        lines = [
-            rf"y &= u {plus} + w {minus} + \sum_{{m}} \left(u v_{{m}} + w {mirrored}\right) {wave}"
-        ]
-    lines.append(rf"v_{{m}} &= {_sum_of('v', order, ',m')}")
-    end = "0" if region == "0" else "n"
-    for k in range(1, order + 1):
-        lines += _written(f"v_{{{k},m}}", _terms(k + 1, "m", end, damped, region), region, damped)
-    return _aligned([*lines, *_where(order + 1, region, damped)])
-
-
-def _checked(order: int, n: int | None, highest: int = HIGHEST_FORMULA) -> str:
+def _checked(order: int, n: int | None) -> str:
     """Return the region as it is written."""
-    if not is_whole(order, 1, highest):
-        raise bad(
-            "order",
-            repr(order),
-            f"a whole number from 1 to {highest}",
-            "the terms of higher orders are many: use perturbation_boundaries for their values",
-        )
+    if not is_whole(order, 1, HIGHEST_FORMULA):
+        expected = f"a whole number from 1 to {HIGHEST_FORMULA}"
+        fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
+        raise bad("order", repr(order), expected, fix)
     if n is None:
         return "n"
     if not is_whole(n, 0):
@@ -409,13 +364,8 @@ def _fraction(n: int) -> str:
     return rf"\frac{{{n * n}}}{{4}}"
 
 
-def _sum_of(letter: str, order: int, more: str = "") -> str:
-    return " + ".join(f"{letter}_{{{k}{more}}}" for k in range(1, order + 1))
-
-
-def _aligned(lines: list[str]) -> str:
-    body = " \\\\\n".join(lines)
-    return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
+def _sum_of(letter: str, order: int) -> str:
+    return " + ".join(f"{letter}_{{{k}}}" for k in range(1, order + 1))
 
 
 def _where(order: int, region: str, damped: bool) -> Iterator[str]:
@@ -426,14 +376,11 @@ def _where(order: int, region: str, damped: bool) -> Iterator[str]:
         if order > 2 and not damped:
             yield r"\text{in the sums: } c_{m-l} &= 0 \quad (m = l)"
         if damped:
+            drag = "2 i m" if region == "0" else f"i (2 m - {region})"
             yield (
                 r"v_{m,l} &= c_{m-l} \quad (m \neq l), \qquad "
-                rf"v_{{m,m}} = {_drag('m', region)}"
+                rf"v_{{m,m}} = {drag} K"
             )
-
-
-def _drag(m: str, region: str) -> str:
-    return rf"2 i {m} K" if region == "0" else rf"i (2 {m} - {region}) K"
 
 
 def _parts(
@@ -447,22 +394,13 @@ def _parts(
 
 
 def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Terms:
-    """Return the words of an order between two harmonics, sums over P written out.
-
-    An end ``"m"`` stands for a harmonic that is not resonant: the column instead of the operator.
-    """
+    """Return the words of an order between two harmonics, sums over P written out."""
     found: Counter[tuple[_Chain, ...]] = Counter()
     resonant = ("0",) if region == "0" else ("0", "n")
     for coefficient, word in hill_recursion.WORDS[order]:
         stops = word.split(" V ")[1:-1]
         powers = [0 if stop == "P" else _power(stop) for stop in stops]
         sign = coefficient * (-1) ** (order + sum(powers))
-        head: tuple[_Chain, ...] = ()
-        if end == "m":
-            # Omega_k is what stands behind "P V" in h_(k+1): its first letter is a power of R.
-            if not powers[0]:
-                continue
-            sign, head, powers = -sign, (_Chain("m", "m", (powers[0],)),), powers[1:]
         for chains in _paths(end, start, powers, resonant):
             still = [chain for chain in chains if not chain.powers and chain.end == chain.start]
             if still and (not damped or region == "0"):
@@ -471,7 +409,7 @@ def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Term
             # What damping does to the harmonic 0 is the opposite of what it does to n.
             turned = still.count(_Chain("0", "0", ()))
             kept = tuple(_Chain("n", "n", ()) if c == _Chain("0", "0", ()) else c for c in kept)
-            found[(*head, *sorted(kept))] += sign * (-1) ** turned
+            found[tuple(sorted(kept))] += sign * (-1) ** turned
     return {key: value for key, value in sorted(found.items()) if value}
 
 
@@ -528,14 +466,12 @@ def _written(
 
 
 def _product(chains: tuple[_Chain, ...], region: str, damped: bool) -> str:
-    """Return a product of chains; sums in parentheses where they are not alone."""
+    """Return a product of chains; sums last, in parentheses where they are not alone."""
     counts = Counter(chains)
-    # The harmonic m of a column is not one to sum over.
-    column = chains[0].end == chains[0].start == "m"
     factors = []
-    for chain, count in sorted(counts.items(), key=_sums_last):
-        text = _chain_latex(chain, region, damped, column)
-        if chain.powers and len(counts) + count > 2 and chain.start != "m":
+    for chain, count in sorted(counts.items(), key=lambda item: (bool(item[0].powers), item[0])):
+        text = _chain_latex(chain, region, damped)
+        if chain.powers and len(counts) + count > 2:
             text = rf"\left({text}\right)"
         elif count > 1 and " " in text:
             text = f"({text})"
@@ -543,18 +479,10 @@ def _product(chains: tuple[_Chain, ...], region: str, damped: bool) -> str:
     return " ".join(factors)
 
 
-def _sums_last(item: tuple[_Chain, int]) -> tuple[bool, _Chain]:
-    chain = item[0]
-    return bool(chain.powers) and chain.start != "m", chain
-
-
-def _chain_latex(chain: _Chain, region: str, damped: bool, column: bool) -> str:
+def _chain_latex(chain: _Chain, region: str, damped: bool) -> str:
     """Return a chain as a sum over the harmonics between."""
-    if chain.start == "m":
-        return rf"\frac{{1}}{{{_level('m', chain.powers[0], region)}}}"
     names = [f"m_{i}" for i in range(1, len(chain.powers) + 1)]
-    if len(names) == 1 and not column:
-        names = ["m"]
+    names = ["m"] if len(names) == 1 else names
     stops = [chain.end, *names, chain.start]
     steps = " ".join(_step(end, start, region, damped) for end, start in pairwise(stops))
     if not names:

@@ -111,24 +111,6 @@ class BoundarySolution(Result):
             total = total * z + c
         return np.asarray((total * first).real)
 
-    def latex(self, any_region: bool = False) -> str:
-        """Return the solution to its order as a formula; see :func:`.series.solution_latex`.
-
-        Parameters
-        ----------
-        any_region : bool
-            True to have the letter n, for any region from 1, in place of the number.
-
-        Raises
-        ------
-        BadInput
-            If the solution is the exact one, or the order above 5.
-        """
-        from .series import solution_latex
-
-        region = None if any_region else self.n
-        return solution_latex(self.order or 0, region, self.damping > 0.0)
-
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the solution over a period."""
         from ..core.plotting import axes_or_new

@@ -152,9 +152,8 @@ class _TwoSided:
 
     size: int
 
-    @property
-    def degree(self) -> int:
-        """Largest degree of these polynomials in xi, and of the integrands in eta less 4."""
+    def _degrees(self, name: str) -> tuple[int, int]:
+        """Return the degree of these polynomials in xi, and that of the integrands in eta."""
         raise NotImplementedError
 
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:
@@ -209,7 +208,8 @@ class _TwoSided:
 @lru_cache(maxsize=128)
 def _table(basis: _TwoSided, name: str) -> Array:
     """Return the Chebyshev coefficients of an array's parts, ``(parts, degree + 1, n, n)``."""
-    count = basis.degree + 1
+    degree, of_integrands = basis._degrees(name)
+    count = degree + 1
     half = np.longdouble(0.5)
     angle = (np.arange(count) + half) * (4 * np.arctan(2 * half) / count)
     place = np.cos(angle / 2) ** 2
@@ -217,7 +217,7 @@ def _table(basis: _TwoSided, name: str) -> Array:
     turns[0] /= 2
     parts = []
     for sides, factor in basis._parts(name, place):
-        values = integrals(name, basis._sampler, sides, place, 2 * basis.size + 8)
+        values = integrals(name, basis._sampler, sides, place, of_integrands)
         values /= factor.reshape(-1, *[1] * (values.ndim - 1))
         parts.append(np.tensordot(turns, values, axes=1))
     table = np.stack(parts).astype(np.float64)
@@ -274,15 +274,13 @@ class PolynomialBasis(_TwoSided):
         object.__setattr__(self, "size", size)
 
     @property
-    def degree(self) -> int:
-        """Largest degree in xi of an array over its power of xi."""
-        return 2 * self.size + 4
-
-    @property
     def labels(self) -> tuple[str, ...]:
         """One name per shape."""
         word = "Jacobi" if self.orthogonal else "power"
         return tuple(f"{word} {k}" for k in range(self.size))
+
+    def _degrees(self, name: str) -> tuple[int, int]:
+        return 2 * self.size + 4, 2 * self.size + 4
 
     def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
         return [((LEFT, RIGHT), xi ** _POWER_OF_PLACE[name])]
@@ -359,8 +357,6 @@ class TwoSegmentBasis(_TwoSided):
     """
 
     size: int
-    # Of the weights of tension and moment in xi.
-    degree = 2
 
     def __post_init__(self) -> None:
         """Refuse a size that is none."""
@@ -379,6 +375,10 @@ class TwoSegmentBasis(_TwoSided):
             fix = "lengthen the rod: it has to pass the block"
             raise bad("place", 1.0, "places x1/L below 1", fix)
         return xi
+
+    def _degrees(self, name: str) -> tuple[int, int]:
+        # In xi those of the weights alone.
+        return {"tension": 2, "moment": 1}.get(name, 0), 2 * self.size + 8
 
     def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
         left, right = _POWERS_OF_SIDES[name]

@@ -13,8 +13,8 @@ import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.hill import boundary_series
-from elastolink.runtime.hill.bloch import effective_operator, wave_columns
-from elastolink.runtime.hill.series import HIGHEST_FORMULA, boundary_latex, solution_latex
+from elastolink.runtime.hill.bloch import effective_operator
+from elastolink.runtime.hill.series import HIGHEST_FORMULA, boundary_latex
 from smith_chapter_8.exact import exact_operator, exact_series
 from smith_chapter_8.surd import ExactHarmonics
 from strained_truth import PUBLISHED, published
@@ -115,7 +115,7 @@ def lines(text):
 RULE = r"\text{in the sums: } c_{m-l}"
 
 
-def evaluate(sums, name, f, n, order, m=None):
+def evaluate(sums, name, f, n, order):
     """Read a sum as Python: indices as arguments, a space as a product.
 
     The coefficient between equal harmonics is the mean, unless the formula says that it is 0.
@@ -156,7 +156,7 @@ def evaluate(sums, name, f, n, order, m=None):
         inner = text[match.end() - 1 : end]
         text = f"{text[: match.start()]}total(lambda {match[1]}: {inner}){text[end:]}"
     names = {"c": harmonic, "b": lambda k: np.conj(harmonic(k)), "v": v, "total": total}
-    return eval(text, {**names, "n": n, "m": m, "i": 1j, "K": DRAG})
+    return eval(text, {**names, "n": n, "i": 1j, "K": DRAG})
 
 
 @pytest.mark.parametrize("letter", [True, False])
@@ -184,26 +184,11 @@ def test_high_orders_read_back(order):
         assert found == pytest.approx(value, abs=1e-13)
 
 
-@pytest.mark.parametrize("damped", [False, True])
-@pytest.mark.parametrize("n", [0, 1, 2])
-def test_formulas_of_the_solution_read_back(n, damped):
-    order = 3
-    columns = wave_columns(F, n, order, DRAG if damped else 0.0)
-    harmonics = np.arange(columns.shape[1]) - (columns.shape[1] - n - 1) // 2
-    found = lines(solution_latex(order, n or 0, damped))
-    for m, column in zip(harmonics.tolist(), columns.T, strict=True):
-        if m * (m - n):
-            for k in range(1, order + 1):
-                value = evaluate(found, f"v_{{{k},m}}", F, n, order, int(m))
-                assert value == pytest.approx(column[k], abs=1e-13)
-
-
-@pytest.mark.parametrize("text", [boundary_latex, solution_latex])
 @pytest.mark.parametrize("n", [None, 0, 1, 12])
 @pytest.mark.parametrize("damped", [False, True])
-def test_braces_and_environments_are_balanced(text, n, damped):
-    for order in range(1, HIGHEST_FORMULA):
-        found = text(order, n, damped)
+def test_braces_and_environments_are_balanced(n, damped):
+    for order in range(1, HIGHEST_FORMULA + 1):
+        found = boundary_latex(order, n, damped)
         depth = 0
         for sign in found:
             depth += {"{": 1, "}": -1}.get(sign, 0)
@@ -225,16 +210,14 @@ def test_the_first_orders_are_what_one_writes_by_hand():
     assert lines(boundary_latex(1, 2, True))["A_{1}"] == "-c_{0} - i 2 K"
     assert r"\lambda^2 &= \frac{9}{4} + " in boundary_latex(1, 3)
     assert r"\lambda^2 &= 4 + " in boundary_latex(1, 4)
-    assert lines(solution_latex(1))["v_{1,m}"] == r"\frac{1}{m (m-n)} c_{m-n}"
 
 
 MISUSE = {
     "order 0": (lambda: boundary_latex(0), "order"),
     "order 7": (lambda: boundary_latex(7), "use perturbation_boundaries"),
-    "order 6": (lambda: solution_latex(6), "from 1 to 5"),
     "order as a truth": (lambda: boundary_latex(True), "order"),
     "region": (lambda: boundary_latex(1, -1), "region"),
-    "half region": (lambda: solution_latex(1, 0.5), "region"),
+    "half region": (lambda: boundary_latex(1, 0.5), "region"),
 }
 
 

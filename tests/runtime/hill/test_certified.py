@@ -300,14 +300,6 @@ def test_mu_is_large(mu):
         assert gap >= 0
 
 
-def test_beyond_what_can_be_settled_is_refused():
-    for certified in (False, True):
-        with pytest.raises(BadInput, match="2048 harmonics"):
-            hill_boundaries(COSINE, 1e9, (1,), certified=certified)
-        with pytest.raises(BadInput, match="at most 2048"):
-            hill_boundaries(COSINE, 1.0, (4000,), certified=certified)
-
-
 def test_large_sparse_problems_agree_with_the_dense_ones():
     """Band and dense reductions at the same size, in both problems."""
     f = PeriodicFunction([0.1, 1.0, -0.3], [0.0, 0.4, 0.2])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import boundary_derivatives, hill_boundaries
+from elastolink.runtime.hill import boundary_derivatives, critical_damping, hill_boundaries
 
 COSINE = PeriodicFunction([0.0, 1.0])
 GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
@@ -116,10 +116,14 @@ def test_closed_regions_give_nan():
     assert np.isnan(found.lower).all() and np.isnan(found.error).all()
 
 
-@pytest.mark.parametrize("direction", ["c2", "b0", "a", "a-1", 3, None, "lam2"])
-def test_an_unknown_direction_is_refused(direction):
-    with pytest.raises(BadInput, match=r"directions\[0\]"):
+@pytest.mark.parametrize(
+    "direction",
+    ["c2", "b0", "a", "a-1", 3, None, "lam2", "a99999999999", "b5000", "a" + "9" * 5000, "a\u0663"],
+)
+def test_an_unknown_direction_is_refused_in_one_line(direction):
+    with pytest.raises(BadInput, match=r"directions\[0\]") as told:
         boundary_derivatives(COSINE, 1.0, (1,), (direction,))
+    assert "\n" not in str(told.value)
 
 
 def test_nothing_asked_nothing_given():
@@ -128,18 +132,9 @@ def test_nothing_asked_nothing_given():
     assert boundary_derivatives(COSINE, np.zeros(0), (1,)).lower.shape == (1, 1, 0)
 
 
-@pytest.mark.parametrize("name", ["a99999999999", "b5000", "a" + "9" * 5000, "a\u0663"])
-def test_coefficients_beyond_all_harmonics_are_refused(name):
-    with pytest.raises(BadInput, match=r"directions\[0\]") as told:
-        boundary_derivatives(COSINE, 0.3, (1,), (name,))
-    assert "\n" not in str(told.value)
-
-
 @pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-11])
 def test_estimates_next_to_the_tip(short):
     """The ends move as ``centre -+ c sqrt(K0 - K)``: both slopes times what is left are known."""
-    from elastolink.runtime.hill import critical_damping
-
     top = float(critical_damping(COSINE, 1.0, (1,)).damping[0])
     k = top * (1.0 - short)
     found = boundary_derivatives(COSINE, 1.0, (1,), ("K",), k)
@@ -157,8 +152,6 @@ def test_estimates_next_to_the_tip(short):
 
 
 def test_no_derivatives_where_doubles_see_no_two_ends():
-    from elastolink.runtime.hill import critical_damping
-
     top = float(critical_damping(COSINE, 1.0, (1,)).damping[0])
     for steps in range(-12, 13):
         found = boundary_derivatives(COSINE, 1.0, (1,), ("mu", "K"), top * (1.0 + steps * 2e-16))

@@ -248,56 +248,12 @@ def from_operator(name):
     return [4 * value for value in (found.upper if side > 0 else found.lower)]
 
 
-def product(one, other):
-    out = [Fraction(0)] * (ORDER + 1)
-    for i, x in enumerate(one):
-        for j, y in enumerate(other[: ORDER + 1 - i]):
-            out[i + j] += x * y
-    return out
-
-
-def inverse(series):
-    out = [1 / series[0]]
-    for k in range(1, ORDER + 1):
-        out.append(-sum(series[j] * out[k - j] for j in range(1, k + 1)) / series[0])
-    return out
-
-
-def from_continued_fraction(name):
-    """Expand DLMF 28.6.16-28.6.19 in q, each round of the iteration with an order more."""
-    m, side = parted(name)
-    square = [Fraction(int(k == 2)) for k in range(ORDER + 1)]
-
-    def level(k, a):
-        own = [Fraction(k * k if j == 0 else 0) - x for j, x in enumerate(a)]
-        if k == 1:
-            own[1] += side
-        return own
-
-    def less(one, other):
-        return [x - y for x, y in zip(one, other, strict=True)]
-
-    a = [Fraction(m * m)] + [Fraction(0)] * ORDER
-    for _ in range(ORDER + 1):
-        above = below = [Fraction(0)] * (ORDER + 1)
-        for k in range(m + 2 * ORDER, m, -2):
-            above = product(square, inverse(less(level(k, a), above)))
-        for k in range(m % 2 or (0 if side > 0 else 2), m, 2):
-            twice = [x * (2 if k == 0 else 1) for x in square]
-            below = product(twice, inverse(less(level(k, a), below)))
-        # 0 = m^2 [+ side q] - a - above - below; the constant meets cos 2 z twice from below too.
-        both = [x + y * (2 if m == 0 else 1) for x, y in zip(below, above, strict=True)]
-        a = [x - y for x, y in zip(level(m, [Fraction(0)] * (ORDER + 1)), both, strict=True)]
-    return a[1:]
-
-
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_published_coefficients(name):
     expected = published(name)
     assert len(expected) == {"0": 8, "1": 8, "2": 8, "3": 7}.get(name[1], 6)
     found = from_operator(name)
     assert found[: len(expected)] == expected and len(found) == ORDER
-    assert found == from_continued_fraction(name)
 
 
 @pytest.mark.parametrize("name", PUBLISHED)

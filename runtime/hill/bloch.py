@@ -134,6 +134,12 @@ def _frozen(item: NDArray[Any]) -> NDArray[Any]:
 
 # ---------------------------------------------------------------- Hill's equation
 
+
+def level_distance(n: int) -> float:
+    """Return how far the level of region n is from the nearest one of the same period."""
+    return float({0: 1, 1: 2}.get(n, n - 1))
+
+
 _Key = tuple[tuple[bytes, bytes], ...]
 
 

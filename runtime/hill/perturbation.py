@@ -20,7 +20,7 @@ from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
-from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
+from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Boundaries
 from .checks import arguments, check_function, check_regions
 from .transfer import EPS
@@ -127,15 +127,13 @@ def perturbation_boundaries(
     follow, of a geometric remainder at the ratio at which the orders are seen to fall, of round-off
     and of the error of f, all carried through the square root.  An entry is flagged where that
     ratio, with a margin of a quarter, reaches 0.9, or the error half the distance to the
-    neighbouring level of the same
-    period.
+    neighbouring level of the same period.
     """
-    functions, values = parameters_of(f, mu)
+    functions, amps, k, shape = parameters_of(f, mu, damping)
     numbers = check_regions(regions)
     check_order(order)
     if outside not in ("nan", "value"):
         raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
-    amps, k, shape = amplitudes_of(values, damping)
     flat = np.stack([np.broadcast_to(item, shape).ravel() for item in (*amps, k)])
     count = flat.shape[1]
     lower, upper, error = np.empty((3, len(numbers), count))
@@ -191,16 +189,17 @@ def check_order(order: object) -> None:
 
 
 def parameters_of(
-    f: PeriodicFunction | Sequence[PeriodicFunction], mu: ArrayLike | Sequence[ArrayLike]
-) -> tuple[tuple[PeriodicFunction, ...], tuple[ArrayLike, ...]]:
-    """Return functions and the values of their parameters, one each."""
+    f: PeriodicFunction | Sequence[PeriodicFunction],
+    mu: ArrayLike | Sequence[ArrayLike],
+    damping: ArrayLike,
+) -> tuple[tuple[PeriodicFunction, ...], tuple[Array, ...], Array, tuple[int, ...]]:
+    """Return functions, their parameters, the damping, and the shape that these broadcast to."""
     if isinstance(f, PeriodicFunction):
-        return (f,), (mu,)  # type: ignore[return-value]
+        (amp, k), shape = arguments(mu=mu, damping=damping)  # type: ignore[arg-type]
+        return (f,), (amp,), k, shape
     if not isinstance(f, Sequence) or not f:
         check_function(f)
-    functions = tuple(f)
-    for item in functions:
-        check_function(item)
+    functions = tuple(check_function(item) for item in f)
     if not isinstance(mu, Sequence | np.ndarray) or len(mu) != len(functions):
         raise bad(
             "mu",
@@ -208,16 +207,9 @@ def parameters_of(
             f"one entry for each of the {len(functions)} functions",
             "pass mu=[eps_1, eps_2, ...]",
         )
-    return functions, tuple(mu)
-
-
-def amplitudes_of(
-    values: tuple[ArrayLike, ...], damping: ArrayLike
-) -> tuple[list[Array], Array, tuple[int, ...]]:
-    """Return the parameters as arrays, the damping, and the shape that they broadcast to."""
-    named = {f"mu[{i}]" if len(values) > 1 else "mu": v for i, v in enumerate(values)}
+    named = {f"mu[{i}]" if len(mu) > 1 else "mu": value for i, value in enumerate(mu)}
     (*amps, k), shape = arguments(**named, damping=damping)
-    return amps, k, shape
+    return functions, tuple(amps), k, shape
 
 
 def combined(functions: tuple[PeriodicFunction, ...], values: Array) -> PeriodicFunction:
@@ -278,10 +270,10 @@ class _Points:
         a, b = operator.components(points)
         noise = 4.0 * EPS * (0.25 * n * n + self.reach[part] + n * k) + self.data[part]
         strength = self.strength[part] + 2.0 * k * (n + 1)
-        ends = uniform(Components(n, self.order, a, b, noise, strength, k > 0.0))
-        split = np.abs(b[: self.order].sum(axis=0))
-        wide = (split > noise) & ~ends.outside & np.isfinite(ends.half)
-        shares = np.where(wide, ends.error / split, 0.0)
+        sums = Sums.of(n, self.order, a, b, noise, strength)
+        ends = sums.ends(k > 0.0)
+        wide = (sums.split > noise) & ~ends.outside & np.isfinite(ends.half)
+        shares = np.where(wide, ends.error / sums.split, 0.0)
         return ends, float(shares.max(initial=0.0)) if n else 0.0
 
 
@@ -303,31 +295,10 @@ class SeriesEnds(NamedTuple):
     """True where open and closed are both within what is left out."""
 
 
-class Components(NamedTuple):
-    """Components of A and B at points, and what is known about their errors."""
-
-    region: int
-    order: int
-    diagonal: Complex
-    """``A_k``, shape (N + 2, n); the real part of ``A_1`` is the shift ``-mean``, exact."""
-    coupling: Complex
-    """``B_k``, likewise."""
-    noise: Array
-    """Error of A and B from round-off and from the data."""
-    strength: Array
-    """Majorant of the periodic part and the drag."""
-    damped: Mask
-    """Where K > 0: there alone may a region be closed."""
-
-    @property
-    def distance(self) -> float:
-        """Distance of the resonant level from the nearest one of the same period."""
-        return float({0: 1, 1: 2}.get(self.region, self.region - 1))
-
-
 class Sums(NamedTuple):
     """Sums of the components to the order, and estimates of what is left out of them."""
 
+    region: int
     centre: Array
     """``n^2/4 + Re A``."""
     drag: Array
@@ -368,36 +339,38 @@ class Sums(NamedTuple):
         return half, np.maximum(outer, inner)
 
     @classmethod
-    def of(cls, parts: Components) -> Sums:
-        """Sum up."""
-        order, a, b = parts.order, parts.diagonal, parts.coupling
-        sizes = np.abs(a) + np.abs(b)
+    def of(cls, n: int, order: int, a: Complex, b: Complex, noise: Array, strength: Array) -> Sums:
+        """Sum up A and B of region n from their components ``(N + 2, n)``.
+
+        ``noise`` is their error from round-off and from the data, ``strength`` a majorant of the
+        periodic part and the drag.
+        """
+        distance, sizes = level_distance(n), np.abs(a) + np.abs(b)
+        # The real part of the first one is the shift by the mean, which is exact.
         sizes[0] = np.abs(a[0].imag) + np.abs(b[0])
-        ratio = _CAUTION * contraction(sizes, parts.distance)
+        ratio = _CAUTION * contraction(sizes, distance)
         # Orders of one parity say nothing of the other: a step of V and R at its largest does.
-        step = np.minimum(2.0 * parts.strength / parts.distance, 0.2)
-        rest = _geometric(sizes, np.maximum(ratio, step)) + parts.noise
+        step = np.minimum(2.0 * strength / distance, 0.2)
+        rest = _geometric(sizes, np.maximum(ratio, step)) + noise
         moved = _DOUBT * np.abs(a[order:].real).sum(axis=0) + rest
         turned = _DOUBT * np.abs(a[order:].imag).sum(axis=0) + rest
         spread = _DOUBT * np.abs(b[order:]).sum(axis=0) + rest
-        centre = 0.25 * parts.region**2 + a[:order].real.sum(axis=0)
+        centre = 0.25 * n**2 + a[:order].real.sum(axis=0)
         drag, split = np.abs(a[:order].imag.sum(axis=0)), np.abs(b[:order].sum(axis=0))
-        return cls(centre, drag, split, moved, turned, spread, ratio)
+        return cls(n, centre, drag, split, moved, turned, spread, ratio)
 
-
-def uniform(parts: Components) -> SeriesEnds:
-    """Return the ends from the sums of A and B, right through the tip of a tongue."""
-    sums = Sums.of(parts)
-    half, error = np.zeros_like(sums.centre), sums.moved
-    undecided = np.zeros(half.shape, dtype=bool)
-    if parts.region:
-        half, spread = sums.root()
-        half[parts.damped & (sums.square < 0.0)] = np.nan
-        error = sums.moved + spread
-        undecided = parts.damped & (sums.fewest < 0.0) & (sums.most >= 0.0)
-    inside = (sums.ratio < CONTRACTION) & (error < _SHARE * parts.distance)
-    inside &= np.isfinite(sums.centre)
-    return SeriesEnds(sums.centre, half, error, ~inside, undecided & inside)
+    def ends(self, damped: Mask) -> SeriesEnds:
+        """Return the ends, right through the tip of a tongue; only where damped may one close."""
+        half, error = np.zeros_like(self.centre), self.moved
+        undecided = np.zeros(half.shape, dtype=bool)
+        if self.region:
+            half, spread = self.root()
+            half[damped & (self.square < 0.0)] = np.nan
+            error = self.moved + spread
+            undecided = damped & (self.fewest < 0.0) & (self.most >= 0.0)
+        inside = (self.ratio < CONTRACTION) & (error < _SHARE * level_distance(self.region))
+        inside &= np.isfinite(self.centre)
+        return SeriesEnds(self.centre, half, error, ~inside, undecided & inside)
 
 
 def contraction(sizes: Array, reference: Array | float) -> Array:

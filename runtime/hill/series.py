@@ -27,7 +27,7 @@ from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
-from .bloch import HIGHEST_ORDER, effective_operator
+from .bloch import HIGHEST_ORDER, effective_operator, level_distance
 from .boundaries import hill_boundaries
 from .checks import check_function, check_regions, finite
 from .transfer import EPS
@@ -225,7 +225,7 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
     Whether its terms cancel is seen with other phases of the harmonics.
     """
     reach = float(f.amplitudes[1:].sum())
-    given = k * f.error * (reach / float({1: 2}.get(n, n - 1))) ** (k - 1)
+    given = k * f.error * (reach / level_distance(n)) ** (k - 1)
     if size > _CLEAR * reach**k:
         return given
     point = np.array([[1.0], [0.0]])

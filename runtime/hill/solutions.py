@@ -22,19 +22,11 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import finite_angles
-from .bloch import BEYOND, effective_operator, wave_columns
+from .bloch import BEYOND, effective_operator, level_distance, wave_columns
 from .boundaries import hill_boundaries
 from .checks import LARGEST, check_regions
 from .fourier_matrix import stacked
-from .perturbation import (
-    Components,
-    amplitudes_of,
-    check_order,
-    combined,
-    contraction,
-    parameters_of,
-    uniform,
-)
+from .perturbation import Sums, check_order, combined, contraction, parameters_of
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -166,12 +158,11 @@ def boundary_solution(
     Smith (7.13)-(7.36), (7.41)-(7.47): the columns of Bloch's wave operator and the eigenvector
     of the effective operator.
     """
-    functions, values = parameters_of(f, mu)
+    functions, amps, k, shape = parameters_of(f, mu, damping)
     (number,) = check_regions((n,))
     if end not in ("lower", "upper") or (end == "lower" and number == 0):
         expected = "'upper'" if number == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
-    amps, k, shape = amplitudes_of(values, damping)
     if shape:
         raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
     point = np.array([float(v) for v in amps])
@@ -259,10 +250,9 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
     a, b = (item[:, None] for item in operator.components(at))
     reach = f.bound() + n * damping
     noise = np.array([4.0 * EPS * (0.25 * n * n + reach) + f.error])
-    parts = Components(n, order, a, b, noise, noise + reach, np.array([damped]))
     with np.errstate(all="ignore"):
-        ends = uniform(parts)
-        fall = float(contraction(np.abs(a) + np.abs(b), parts.distance)[0])
+        ends = Sums.of(n, order, a, b, noise, noise + reach).ends(np.array([damped]))
+        fall = float(contraction(np.abs(a) + np.abs(b), level_distance(n))[0])
     if ends.outside[0]:
         raise bad(
             "boundary_solution",

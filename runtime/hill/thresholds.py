@@ -18,10 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
-from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
+from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
 from .checks import arguments, axes_over, check_function, check_regions
-from .perturbation import CONTRACTION, Components, Sums
+from .perturbation import CONTRACTION, Sums
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -216,13 +216,13 @@ def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: 
     n, order = operator.n, operator.order - BEYOND
     a, b = operator.components(np.stack([mu, damping]))
     strength = np.abs(mu) * float(f.amplitudes[1:].sum())
-    distance = float({1: 2}.get(n, n - 1))
+    distance = level_distance(n)
     noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
     for k in range(len(b)):
         # Components that vanish term by term carry no round-off either.
         if np.any(operator.coupling[k] != 0.0):
             noise = noise + 8.0 * EPS * strength * (strength / distance) ** k
-    return Sums.of(Components(n, order, a, b, noise, strength, np.ones(mu.shape, dtype=bool)))
+    return Sums.of(n, order, a, b, noise, strength)
 
 
 # ---------------------------------------------------------------- the critical damping

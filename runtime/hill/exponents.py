@@ -16,7 +16,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .boundaries import half_trace_check, sample_of
 from .checks import LARGEST, arguments, axes_over, check_function, check_regions
-from .fourier_matrix import CHUNK, truncation
+from .fourier_matrix import chunks, truncation
 from .half_trace import discriminant
 from .meissner import Meissner
 from .transfer import EPS
@@ -223,9 +223,7 @@ def _eigenvalues(
     c = 0.5 * (f.a[inside] - 1j * np.sign(apart) * f.b[inside])
     c[(np.abs(apart) > f.harmonics) | (apart == 0)] = 0.0
     lam2 = np.empty((len(bands), mu.size))
-    step = max(1, CHUNK // (m.size * m.size))
-    for start in range(0, mu.size, step):
-        part = slice(start, start + step)
+    for part in chunks(mu.size, m.size):
         stack = -mu[part, None, None] * c
         stack[:, np.arange(m.size), np.arange(m.size)] += np.square(m + folded[part, None])
         lam2[:, part] = np.linalg.eigvalsh(stack)[:, list(bands)].T

@@ -7,6 +7,7 @@ In the basis cos k theta, sin k theta (k whole, or half-whole: ``odd``) the matr
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from math import ceil, sqrt
 from typing import Any, NamedTuple
@@ -24,8 +25,21 @@ Index = NDArray[np.intp]
 
 # What the cut leaves out by default: below the round-off of eigenvalues of size 1e3.
 _LEFT_OUT = 1e-13
-# Entries of a stack of matrices, so that it stays in the cache.
-CHUNK = 2**18
+
+
+def chunks(count: int, size: int) -> Iterator[slice]:
+    """Yield parts of a stack of so many square matrices, so small that each stays in the cache."""
+    step = max(1, 2**18 // (size * size))
+    for start in range(0, count, step):
+        yield slice(start, start + step)
+
+
+def by_parity(regions: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
+    """Yield the parity of each problem that has regions, and their places in the sequence."""
+    for odd in (0, 1):
+        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
+        if rows:
+            yield odd, rows
 
 
 class Truncation(NamedTuple):

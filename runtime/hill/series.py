@@ -301,32 +301,12 @@ _Terms = dict[tuple[_Chain, ...], int]
 
 
 def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> str:
-    """Return both boundaries of a region as a formula, to an order.
+    """Return both boundaries of a region as a formula, to an order from 1 to 6.
 
-    Parameters
-    ----------
-    order : int
-        1 to 6.
-    n : int, optional
-        Number of the region; by default the letter n, for any region from 1.
-    damped : bool
-        True to have ``2 K y'`` in the equation.
-
-    Returns
-    -------
-    str
-        An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous
-        parts of A and B.  Sums run over all whole numbers other than 0 and n; between equal
-        harmonics stands what damping does, or nothing.
-
-    Raises
-    ------
-    BadInput
-        If the order or the region is out of range.
-
-    Notes
-    -----
-    Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
+    An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous parts of
+    A and B.  Sums run over all whole numbers other than 0 and n; between equal harmonics stands
+    what damping does, or nothing.  Without a number of the region the letter n stands for any from
+    1.  Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
     """
     region = _checked(order, n)
     if region == "0":

@@ -304,17 +304,12 @@ def banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float) -> Array:
 Complex = NDArray[np.complex128]
 
 
-def left_and_right(whole: Array) -> tuple[Complex, Complex, Complex]:
-    """Return the eigenvalues of a matrix with left and right eigenvectors as columns."""
+def real_pairs(whole: Array) -> tuple[Array, Array, Array]:
+    """Return the real eigenvalues, rising, with right and left vectors of norm 1 as columns."""
     import scipy.linalg
 
     solved: Any = scipy.linalg.eig(whole, left=True, check_finite=False)
-    return solved[0], solved[1], solved[2]
-
-
-def real_pairs(whole: Array) -> tuple[Array, Array, Array]:
-    """Return the real eigenvalues, rising, with right and left vectors of norm 1 as columns."""
-    values, lefts, rights = left_and_right(whole)
+    values, lefts, rights = solved
     real = np.flatnonzero(values.imag == 0.0)
     order = real[np.argsort(values[real].real)]
     right, left = (

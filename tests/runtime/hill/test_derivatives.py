@@ -101,16 +101,6 @@ def test_the_sum_rule_of_the_mean():
     np.testing.assert_allclose(found.upper[0], expected, rtol=0, atol=1e-14)
 
 
-def test_euler_relation_ties_the_coefficients_to_mu():
-    """Lam2 depends on the products mu a_m, mu b_m alone: mu d/dmu = sum a_m d/da_m + b_m d/db_m."""
-    names = [f"{kind}{m}" for kind in "ab" for m in range(4) if (kind, m) != ("b", 0)]
-    found = boundary_derivatives(GENERAL, 0.8, REGIONS, ("mu", *names))
-    weights = np.concatenate([GENERAL.a, GENERAL.b[1:]])
-    for end in (found.lower, found.upper):
-        total = np.tensordot(weights, end[1:], axes=1)
-        assert np.all(np.abs(total - 0.8 * end[0]) <= 2 * found.error.sum(axis=0) + 1e-15)
-
-
 def test_closed_regions_give_nan():
     found = boundary_derivatives(COSINE, 0.1, REGIONS, ("mu", "K"), 0.3)
     assert np.isnan(found.lower).all() and np.isnan(found.error).all()

@@ -170,23 +170,6 @@ def test_regions_vanish_where_both_intervals_hold_whole_half_waves(n, lengths):
         assert between.width[0] > 1e-3
 
 
-def square_wave(harmonics):
-    m = np.arange(harmonics + 1)
-    wave = np.where(m % 2 == 1, 4.0 / (np.pi * np.maximum(m, 1)) * np.where(m % 4 == 1, 1, -1), 0.0)
-    return PeriodicFunction(wave)
-
-
-def test_boundaries_of_the_truncated_square_wave_tend_to_them():
-    regions, mu = (0, 1, 2, 3, 4), np.array([0.3, 1.1])
-    exact = meissner_boundaries(mu, regions)
-    gaps = []
-    for harmonics in (15, 31, 63):
-        near = hill_boundaries(square_wave(harmonics), mu, regions)
-        gaps.append(np.max(np.abs(near.upper - exact.upper)))
-    # What is left out has coefficients 1/m, felt through 1/m^2: the third power of 1/m.
-    assert np.all(np.log2(np.divide(gaps[:-1], gaps[1:])) > 2.7)
-
-
 def test_a_region_that_damping_closed_is_stable_throughout():
     bare = meissner_boundaries(0.7, (3,))
     assert np.isnan(meissner_boundaries(0.7, (3,), damping=0.2).upper[0])

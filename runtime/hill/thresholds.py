@@ -180,27 +180,17 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
     """Return the critical damping to order 8, ``|B| = |Im A|``, and where that does not settle."""
     operator = effective_operator((f,), n, HIGHEST + BEYOND, damped=True)
 
-    def gap(k: Array) -> Array:
-        sums = _sums(operator, f, mu, k)
-        return sums.split - sums.drag
+    def excess(k: Array, which: Index) -> Array:
+        a, b = operator.components(np.stack([mu[which], k]))
+        drag, split = a[:HIGHEST].imag.sum(axis=0), b[:HIGHEST].sum(axis=0)
+        return np.asarray(np.abs(drag) - np.abs(split))
 
     with np.errstate(all="ignore"):
-        first = gap(np.zeros_like(mu)) / n
+        split = -excess(np.zeros_like(mu), np.arange(mu.size))
         # Where the components overflow there is nothing to start from, and the ratio flags it.
-        start = np.where(np.isfinite(first), np.maximum(first, 0.0), 0.0)
-        before, value_before = np.zeros_like(mu), first * n
-        k = start
-        rate = np.full(mu.shape, float(n))
-        for _ in range(40):
-            value = gap(k)
-            step = k - before
-            steep = (value_before - value) / np.where(step == 0.0, 1.0, step)
-            rate = np.where((step != 0.0) & (steep > 0.25 * n) & (steep < 4.0 * n), steep, rate)
-            new = np.clip(k + value / rate, 0.0, 4.0 * start)
-            new = np.where(np.isfinite(new), new, k)
-            before, value_before, k = k, value, new
-            if np.all(np.abs(k - before) <= 2.0 * EPS * k):
-                break
+        split = np.where(np.isfinite(split), split, 0.0)
+        k = crossing(excess, np.zeros_like(mu), 4.0 * split / n)
+        rate = np.where(k > 0.0, np.clip(split / k, 0.25 * n, 4.0 * n), n)
         sums = _sums(operator, f, mu, k)
         left = sums.turned + sums.spread
         outside = ~(sums.ratio < CONTRACTION) | ~(left < 0.5 * max(n - 1, 1))

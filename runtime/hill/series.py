@@ -259,25 +259,23 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
     if not s:
         return np.stack([middle, half]), 0, doubt
     drag, coupling = drag[s - 1 :, 0], b[s - 1 :, 0]
-    root = _root(drag, coupling)
-    if root is None:
+    if np.abs(coupling[0]) <= np.abs(drag[0]):
         closing = np.abs(coupling[0]) / n
         expected = f"less than {closing:.6g}, where the damping closes region {n}"
         raise bad("damping_ratio", f"{ratio:g}", expected, "take less damping")
+    root = _root(drag, coupling)
     half[s - 1 :] = root
     nudged = _root(drag, np.concatenate([coupling[:1] * (1.0 + _LEADING), coupling[1:]]))
     doubt[s - 1 :] += np.abs(nudged - root)
     return np.stack([middle, half]), s, doubt
 
 
-def _root(drag: Array, coupling: NDArray[np.complex128]) -> Array | None:
-    """Return the power series of the root of ``|B|^2 - (Im A)^2``; None where that is negative."""
+def _root(drag: Array, coupling: NDArray[np.complex128]) -> Array:
+    """Return the power series of the root of ``|B|^2 - (Im A)^2``, which begins positive."""
     # A power of two, so that squares stay within the range of doubles and no digit changes.
     unit = np.ldexp(1.0, np.frexp(np.abs(coupling[0]) + np.abs(drag[0]))[1])
     b, a = coupling / unit, drag / unit
     squares = (np.convolve(b, b.conj()).real - np.convolve(a, a))[: len(a)]
-    if squares[0] <= 0.0:
-        return None
     root = np.sqrt(squares[:1])
     for square in squares[1:]:
         inner = np.dot(root[1:], root[:0:-1])

@@ -16,6 +16,7 @@ from elastolink.runtime.hill import (
     hill_boundaries,
 )
 from elastolink.runtime.hill.fourier_matrix import stacked, truncation
+from hill_functions import general
 
 COSINE = PeriodicFunction([0.0, 1.0])
 
@@ -212,20 +213,13 @@ def test_shapes_export_and_refusals(tmp_path):
     assert hill_boundaries(GENERAL, 1.0, (), certified=True).upper.shape == (0,)
 
 
-def random_function(rng):
-    count = int(rng.choice([1, 2, 4, 12, 30]))
-    size = rng.uniform(0.3, 0.95) ** np.arange(count + 1)
-    a, b = rng.normal(size=(2, count + 1)) * size
-    a[0] = b[0] = 0.0
-    return PeriodicFunction(a, b)
-
-
 def test_the_bound_of_the_truncation_holds_and_is_of_use():
     """Matrices cut early, against certified ends: never below, never above by more than said."""
     rng = np.random.default_rng(31)
     shares = []
     for _ in range(12):
-        f, mu = random_function(rng), float(10 ** rng.uniform(-1, 1.5))
+        f = general(int(rng.choice([1, 2, 4, 12, 30])), rng.uniform(0.3, 0.95), rng)
+        f, mu = f + -f.mean, float(10 ** rng.uniform(-1, 1.5))
         goal = float(10 ** rng.uniform(-9, -2))
         cut = truncation(f, mu, 4, goal=goal)
         assert cut.left_out <= goal * 1.0001

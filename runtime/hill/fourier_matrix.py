@@ -304,6 +304,16 @@ def banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float) -> Array:
 Complex = NDArray[np.complex128]
 
 
+def couplings(f: PeriodicFunction, size: int) -> Complex:
+    """Return ``-c_(k-l)`` for all pairs of so many harmonics exp(i k theta), the mean left out."""
+    c = np.zeros(size, dtype=complex)
+    kept = min(f.harmonics + 1, size)
+    c[:kept] = -0.5 * (f.a - 1j * f.b)[:kept]
+    c[0] = 0.0
+    apart = np.subtract.outer(np.arange(size), np.arange(size))
+    return np.where(apart >= 0, c[np.abs(apart)], c[np.abs(apart)].conj())
+
+
 def real_pairs(whole: Array) -> tuple[Array, Array, Array]:
     """Return the real eigenvalues, rising, with right and left vectors of norm 1 as columns."""
     import scipy.linalg

@@ -25,7 +25,7 @@ from ..core.sampling import finite_angles
 from .bloch import BEYOND, effective_operator, level_distance, wave_columns
 from .boundaries import hill_boundaries
 from .checks import LARGEST, check_regions
-from .fourier_matrix import stacked
+from .fourier_matrix import couplings, stacked
 from .perturbation import Sums, check_order, combined, contraction, parameters_of
 from .transfer import EPS
 
@@ -383,7 +383,7 @@ class _Others:
         self.slack, self.drag = slack + f.error, -2.0 * damping * k
         # Roundings of one factor of a path: the coefficient, the elimination, its way back.
         self.steps = 4.0 * (n + 2.0) * EPS
-        self.coupling = _couplings(f, k.size)
+        self.coupling = couplings(f, k.size)
         self.sizes = np.abs(self.coupling)
         self.levels = k * k - lam2 - f.mean + 1j * self.drag
         matrix = self.coupling[np.ix_(rest, rest)]
@@ -435,13 +435,3 @@ class _Others:
         apart = max(gap - self.slack, 1e-300)
         error = min(error, float(largest) * 2.0 * (residual + predicted) / apart)
         return _Solution(self.lam2, v, error, residual, predicted, degenerate)
-
-
-def _couplings(f: PeriodicFunction, size: int) -> Complex:
-    """Return ``-c_(k-l)`` for all pairs of harmonics, the mean left out."""
-    c = np.zeros(size, dtype=complex)
-    kept = min(f.harmonics + 1, size)
-    c[:kept] = -0.5 * (f.a - 1j * f.b)[:kept]
-    c[0] = 0.0
-    apart = np.subtract.outer(np.arange(size), np.arange(size))
-    return np.where(apart >= 0, c[np.abs(apart)], c[np.abs(apart)].conj())

@@ -192,11 +192,6 @@ def effective_operator(
 
     The parameters multiply the functions ``parts``; where ``damped``, K of ``2 K y'`` is the last
     one.  Smith (7.16)-(7.36) and (8.39)-(8.43) to any order and number of parameters.
-
-    Raises
-    ------
-    BadInput
-        If coefficients overflow.
     """
     return _operator(_key(parts), int(n), int(order), bool(damped))
 

@@ -342,13 +342,7 @@ def half_trace_check(
 def _damped(
     f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
-    """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0.
-
-    Raises
-    ------
-    BadInput
-        If K is beyond 1e100.
-    """
+    """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0."""
     if float(k.max()) > 1e100:
         # The square of K is added to lam2.
         raise bad("damping", f"{k.max():.3g}", "K up to 1e+100", "scale the equation")

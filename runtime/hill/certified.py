@@ -413,10 +413,7 @@ def _root_above(value: Fraction) -> Fraction:
 def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) -> list[Ball]:
     """Enclose the eigenvalues number first ... last, which stand clear of all others.
 
-    Raises
-    ------
-    BadInput
-        If the residuals are too large for the distance from the others.
+    Refused where the residuals are too large for the distance from the others.
     """
     waves = [wave(coarse.odd, coarse.vectors[:, j]) for j in range(first, last + 1)]
     images = [operator(x) for x in waves]

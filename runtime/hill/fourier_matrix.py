@@ -85,11 +85,6 @@ def truncation(
 
     and both terms are sums of ``M_k^2`` over the harmonics left out.  (Rayleigh and Ritz: what is
     left out never lowers the eigenvalues of the matrix below the true ones.)
-
-    Raises
-    ------
-    BadInput
-        If more than 2048 harmonics would be needed.
     """
     if not reach < 1e300:
         raise _too_large(reach, f)

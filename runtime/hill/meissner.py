@@ -187,11 +187,6 @@ def meissner_ends(f: Meissner, mu: Array, n: int) -> tuple[Array, Array, Array]:
 
     By bisection on the phase of the solution, which rises with lam2, so that no boundary is missed
     or taken for another.
-
-    Raises
-    ------
-    BadInput
-        If there are not two levels, or mu is so large that a solution grows by more than exp(600).
     """
     levels, lengths = f.two()
     most = float(np.abs(mu).max(initial=0.0))

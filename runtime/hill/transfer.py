@@ -235,13 +235,7 @@ def normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
 
 
 def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
-    """Expand the transfer matrices over a box ``(low, high)`` of each parameter.
-
-    Raises
-    ------
-    BadInput
-        If the box needs more than 65536 segments.
-    """
+    """Expand the transfer matrices over a box ``(low, high)`` of each parameter."""
     reach = max(abs(mu[0]), abs(mu[1]))
     short = f.truncated(0.02 * EPS / max(reach, 0.02))
     bound = float(np.sum(short.amplitudes))

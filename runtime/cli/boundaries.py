@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from ..core.periodic_function import PeriodicFunction
     from ..hill import Boundaries, BoundarySeries, HillForm, PerturbationBoundaries
-    from ..hill.perturbation import Form
     from ..scenes import Scene
 
     Array = NDArray[np.float64]
@@ -65,11 +64,6 @@ def _add_boundaries(commands: Any) -> None:
         type=_order,
         metavar="N",
         help=f"beside the exact ones those by perturbation, order 1 to {_HIGHEST}",
-    )
-    edges.add_argument(
-        "--form",
-        choices=("uniform", "series"),
-        help="of the perturbation: uniform through the tip of a region (default), or the series",
     )
     edges.add_argument(
         "--certified", action="store_true", help="proved enclosures by exact arithmetic"
@@ -130,8 +124,6 @@ def _regions(given: str | None) -> tuple[int, ...]:
 
 
 def _boundaries(options: argparse.Namespace) -> int:
-    if options.form and options.order is None:
-        opt.refuse_unused(options, ("form",), "--order N")
     regions = _regions(options.regions)
     scene = opt.load(options)
     if scene.model["mechanism"] == "hill":
@@ -189,10 +181,7 @@ def _solved(
     exact = hill_boundaries(f, mu, regions, damping=damping, **more)
     if options.order is None:
         return exact, []
-    form: Form = options.form or "uniform"
-    return exact, [
-        perturbation_boundaries(f, mu, regions, order=options.order, damping=damping, form=form)
-    ]
+    return exact, [perturbation_boundaries(f, mu, regions, order=options.order, damping=damping)]
 
 
 def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, ...]) -> int:
@@ -207,7 +196,7 @@ def _of_linkage(options: argparse.Namespace, scene: Scene, regions: tuple[int, .
             return _of_mode(options, form, regions)
     opt.refuse_unused(
         options,
-        ("regions", "order", "form", "certified"),
+        ("regions", "order", "certified"),
         "one undamped mode, and no range of speeds",
     )
     from ..stability import stability_edges

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.periodic_function import PeriodicFunction
 from ..hill import (
-    Boundaries,
+    boundary_series,
     critical_damping,
     discriminant,
     hill_boundaries,
@@ -35,9 +35,15 @@ _DAMPINGS = (0.0, 0.02, 0.05, 0.1)
 _REGION, _REACH, _SMALL = 2, 0.6, 1e-4
 
 
-def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Boundaries:
-    """Return Smith's series to an order, (7.25) and (7.37), drawn beyond where it is good."""
-    return perturbation_boundaries(f, mu, regions, order=order, form="series", outside="value")
+def _exact(f: PeriodicFunction, mu: Array, regions: Sequence[int]) -> Array:
+    """Return the exact lower and upper ends, ``(2, len(regions), len(mu))``."""
+    found = hill_boundaries(f, mu, regions)
+    return np.stack([found.lower, found.upper])
+
+
+def _to_order(f: PeriodicFunction, mu: Array, regions: Sequence[int], order: int) -> Array:
+    """Return Smith's series (7.25) or (7.37) likewise, drawn beyond where it is good."""
+    return np.stack([boundary_series(f, n, order)(mu) for n in regions], axis=1)
 
 
 def _largest(one: Array, other: Array) -> float:
@@ -52,7 +58,7 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
     # A signed measure that stays of order one keeps the contour smooth.
     excess = np.tanh(np.abs(half) - 1.0)
     ax.contourf(lam2, mu, excess.T, levels=[0.0, 2.0], colors=[_UNSTABLE])
-    exact = hill_boundaries(f, mu, regions)
+    exact = _exact(f, mu, regions)
     first, second = (_to_order(f, mu, regions, order) for order in (1, 2))
     for i in range(len(regions)):
         for ends, style, colour, label in (
@@ -60,14 +66,11 @@ def figure_34(axes: Sequence[Axes]) -> Drawn:
             (first, "--", _FIRST, "first order"),
             (second, ":", _SECOND, "second order"),
         ):
-            for end, named in ((ends.lower[i], label), (ends.upper[i], None)):
+            for end, named in ((ends[0, i], label), (ends[1, i], None)):
                 ax.plot(end, mu, style, color=colour, lw=1.3, label=named if i == 0 else None)
     _chart_axes(ax, (lam2[0], lam2[-1]), mu[-1], r"$\lambda^2 = (\Omega/\omega_2)^2$")
     ax.grid(visible=False)
-    gaps = [
-        max(_largest(near.lower[0], exact.lower[0]), _largest(near.upper[0], exact.upper[0]))
-        for near in (first, second)
-    ]
+    gaps = [_largest(near[:, 0], exact[:, 0]) for near in (first, second)]
     return Drawn(_start_values(f), {"first": gaps[0], "second": gaps[1]})
 
 
@@ -90,17 +93,17 @@ def figure_35(axes: Sequence[Axes]) -> Drawn:
     for ax, crank in zip(axes, (0.5, 1.5, 3.0, 4.0), strict=True):
         linkage = FourBar(frame=6.0, crank=crank, coupler=6.0, follower=6.0)
         f = _series(linkage, "f3")
-        exact, second = hill_boundaries(f, mu, regions), _to_order(f, mu, regions, 2)
+        exact, second = _exact(f, mu, regions), _to_order(f, mu, regions, 2)
         for i in range(len(regions)):
-            ax.fill_betweenx(mu, exact.lower[i], exact.upper[i], color=_UNSTABLE, lw=0)
+            ax.fill_betweenx(mu, exact[0, i], exact[1, i], color=_UNSTABLE, lw=0)
             for ends, style, colour, width, label in (
                 (exact, "-", _EXACT, 1.0, "exact"),
                 (second, ":", _SECOND, 1.3, "second order"),
             ):
-                for end, named in ((ends.lower[i], label), (ends.upper[i], None)):
+                for end, named in ((ends[0, i], label), (ends[1, i], None)):
                     named = named if i == 0 else None
                     ax.plot(end, mu, style, color=colour, lw=width, label=named)
-        widths.append(exact.upper[:, -1] - exact.lower[:, -1])
+        widths.append(exact[1, :, -1] - exact[0, :, -1])
         ax.set(xlim=(-1.0, 3.2), ylim=(0.0, 1.0))
         ax.grid(visible=False)
         panel_title(ax, f"crank {crank:g}")

@@ -134,6 +134,12 @@ def _frozen(item: NDArray[Any]) -> NDArray[Any]:
 
 # ---------------------------------------------------------------- Hill's equation
 
+
+def level_distance(n: int) -> float:
+    """Return how far the level of region n is from the nearest one of the same period."""
+    return float({0: 1, 1: 2}.get(n, n - 1))
+
+
 _Key = tuple[tuple[bytes, bytes], ...]
 
 
@@ -186,11 +192,6 @@ def effective_operator(
 
     The parameters multiply the functions ``parts``; where ``damped``, K of ``2 K y'`` is the last
     one.  Smith (7.16)-(7.36) and (8.39)-(8.43) to any order and number of parameters.
-
-    Raises
-    ------
-    BadInput
-        If coefficients overflow.
     """
     return _operator(_key(parts), int(n), int(order), bool(damped))
 

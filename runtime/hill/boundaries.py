@@ -32,7 +32,7 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, DeferredChecks, Result, provenance
 from .checks import arguments, axes_over, check_function, check_regions
-from .fourier_matrix import CHUNK, banded, stacked, truncation
+from .fourier_matrix import banded, by_parity, chunks, stacked, truncation
 from .half_trace import discriminant, growth_rate
 from .meissner import Meissner, meissner_ends
 from .transfer import EPS
@@ -45,26 +45,17 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-# Matrices larger than this, and so many times larger than their band, are reduced as bands.
-_BANDED, _SPARSE = 160, 4
 # Ends whose half trace is compared with its level, and the step of the differences there.  The
 # errors are estimates, and slope and curvature come from differences.
 _SAMPLE, _STEP, LIMIT = 24, 1e-4, 4.0
 # exp(2 pi 80) leaves room for the rest of the arithmetic in doubles.
 _GROWTH = 80.0
-# The square of K is added to lam2.
-_LARGEST = 1e100
-# Logarithms of ratios beyond this are all alike.
-_FAR = 700.0
-# Proposals of the error of a crossing, each so many times the one before.
-_STEPS, _RATIO = 40, 3.0
 # Half the length over which a narrow region is resolved, and what narrow means: far enough from
 # all nodes that the half trace less its level keeps its digits there.
 _RESOLVED, _NARROW = 0.25, 0.01
 _NODES, _MOST_NODES = 16, 256
 # Half traces at a time: beyond some thousand scattered points they would be interpolated.
 _POINTS = 4096
-_TAIL = 1e-13
 # Beyond this excess of the half trace over its level the exponent is a mere logarithm.
 _LOGARITHMIC = 1e12
 
@@ -247,10 +238,7 @@ def _undamped(f: PeriodicFunction, mu: Array, regions: tuple[int, ...]) -> Ends:
     ends = Ends.nothing((len(regions), mu.size))
     cut = truncation(f, float(np.abs(mu).max()), max(regions))
     mean = -f.a[0] * mu
-    for odd in (0, 1):
-        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
-        if not rows:
-            continue
+    for odd, rows in by_parity(regions):
         count = max(regions[i] for i in rows) + 1
         values = _spectra(f, odd, cut.harmonic + odd, mu, count)
         values += mean[:, None]
@@ -265,14 +253,11 @@ def _undamped(f: PeriodicFunction, mu: Array, regions: tuple[int, ...]) -> Ends:
 def _spectra(f: PeriodicFunction, odd: int, harmonic: int, mu: Array, count: int) -> Array:
     """Return the lowest eigenvalues of ``k^2 - mu (f - mean)``, shape ``(n, count)``."""
     size = 2 * harmonic + 1 - odd
-    if size > _BANDED and _SPARSE * (2 * f.harmonics + 1) < size:
+    # Large matrices with a narrow band are reduced as bands.
+    if size > 160 and 4 * (2 * f.harmonics + 1) < size:
         return np.stack([_banded(f, odd, harmonic, float(m), count) for m in mu])
-    step = max(1, CHUNK // (size * size))
-    out = np.empty((mu.size, count))
-    for start in range(0, mu.size, step):
-        part = slice(start, start + step)
-        out[part] = np.linalg.eigvalsh(stacked(f, odd, harmonic, mu[part]))[:, :count]
-    return out
+    stacks = (stacked(f, odd, harmonic, mu[part]) for part in chunks(mu.size, size))
+    return np.concatenate([np.linalg.eigvalsh(stack)[:, :count] for stack in stacks])
 
 
 def _banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float, count: int) -> Array:
@@ -357,15 +342,10 @@ def half_trace_check(
 def _damped(
     f: PeriodicFunction | Meissner, mu: Array, k: Array, regions: tuple[int, ...], sharp: Ends
 ) -> Ends:
-    """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0.
-
-    Raises
-    ------
-    BadInput
-        If K is beyond 1e100.
-    """
-    if float(k.max()) > _LARGEST:
-        raise bad("damping", f"{k.max():.3g}", f"K up to {_LARGEST:g}", "scale the equation")
+    """Return the ends for mu and K ``(n,)`` from the undamped ones, which serve where K = 0."""
+    if float(k.max()) > 1e100:
+        # The square of K is added to lam2.
+        raise bad("damping", f"{k.max():.3g}", "K up to 1e+100", "scale the equation")
     ends = Ends(sharp.lower.copy(), sharp.upper.copy(), sharp.error.copy(), sharp.undecided.copy())
     # Beyond this K the condition of the eigenvalues, of the size of exp(2 pi K) at worst, matters.
     strong = (k > 0.0) if isinstance(f, Meissner) else (k > 0.5)
@@ -398,10 +378,7 @@ def _from_matrix(
     local = cut.left_out + rounding + f.error * np.abs(mu)
     slack = 4.0 * local
     ends = Ends.nothing(low.shape)
-    for odd in (0, 1):
-        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
-        if not rows:
-            continue
+    for odd, rows in by_parity(regions):
         values = _complex_spectra(f, odd, cut.harmonic + odd, mu, k)
         place = values.real - shift[:, None]
         real = np.where(values.imag == 0.0, place, np.nan)
@@ -445,14 +422,10 @@ def _complex_spectra(
     f: PeriodicFunction, odd: int, harmonic: int, mu: Array, k: Array
 ) -> NDArray[np.complex128]:
     """Return all eigenvalues of ``k^2 - 2 K d/d theta - mu f``, shape ``(n, size)``."""
-    size = 2 * harmonic + 1 - odd
-    out = np.empty((mu.size, size), dtype=complex)
-    step = max(1, CHUNK // (size * size))
-    for start in range(0, mu.size, step):
-        part = slice(start, start + step)
-        stack = stacked(f, odd, harmonic, mu[part], k[part])
-        out[part] = np.linalg.eigvals(stack) - (f.a[0] * mu[part])[:, None]
-    return out
+    parts = chunks(mu.size, 2 * harmonic + 1 - odd)
+    stacks = (stacked(f, odd, harmonic, mu[part], k[part]) for part in parts)
+    values = np.concatenate([np.linalg.eigvals(stack) for stack in stacks])
+    return np.asarray(values - (f.a[0] * mu)[:, None], dtype=complex)
 
 
 # ---------------------------------------------------------------- strong damping
@@ -468,10 +441,10 @@ class _Level:
     k: Array
 
     def share(self, lam2: Array, which: Index) -> Array:
-        """Return the logarithm of half trace over level, clipped."""
+        """Return the logarithm of half trace over level, clipped where all are alike."""
         half = discriminant(self.f, lam2, self.mu[which], self.k[which])
         share = self.sign * half.value / half.level
-        return np.asarray(np.log(np.clip(share, np.exp(-_FAR), np.exp(_FAR))))
+        return np.asarray(np.log(np.clip(share, 1e-304, 1e304)))
 
     def sure(self, lam2: Array, which: Index, above: bool) -> Mask:
         """Return True where the half trace is above, or below, by more than its error."""
@@ -488,7 +461,8 @@ class _Level:
         )
         size = np.maximum(np.abs(place), self.k * self.k) + 1.0
         error, left = 2.0 * EPS * size, np.arange(place.size)
-        for _ in range(_STEPS):
+        # Proposals of the error, each three times the one before.
+        for _ in range(40):
             step = turned[left] * error[left]
             within, beyond = place[left] + step, place[left] - step
             # Between the undamped end and the extremum there is a crossing in any case.
@@ -499,7 +473,7 @@ class _Level:
             left = left[~good]
             if not left.size:
                 break
-            error[left] *= _RATIO
+            error[left] *= 3.0
         return place, error
 
 
@@ -640,7 +614,7 @@ def _wide(f: PeriodicFunction | Meissner, n: int, mu: Array, sharp: Ends) -> Arr
         value, error = _excess(f, n, m + h * nodes(count)[:, None], mu[left], drag[left])
         c = analysis(count) @ value
         tail, most = np.abs(c[-2:]).sum(axis=0), np.abs(value).max(axis=0)
-        done = (tail <= _TAIL * most + error.max(axis=0)) | (count >= _MOST_NODES)
+        done = (tail <= 1e-13 * most + error.max(axis=0)) | (count >= _MOST_NODES)
         if done.any():
             place = _peak(c[:, done])
             x = np.maximum(_at(c[:, done], place), 0.0)

@@ -30,7 +30,15 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
 from .boundaries import Boundaries
-from .fourier_matrix import Truncation, exponentials, layout, real_pairs, stacked, truncation
+from .fourier_matrix import (
+    Truncation,
+    by_parity,
+    exponentials,
+    layout,
+    real_pairs,
+    stacked,
+    truncation,
+)
 
 Array = NDArray[np.float64]
 # Integers of any length.  A wave holds real and imaginary parts, ``(2, L)``, of the coefficients of
@@ -190,10 +198,8 @@ def _slice(
     """
     mean = Fraction(mu) * Fraction(float(f.a[0]))
     out: dict[int, Ends | bool | None] = {}
-    for odd in (0, 1):
-        numbers = sorted({n for n in regions if n % 2 == odd})
-        if not numbers:
-            continue
+    for odd, rows in by_parity(regions):
+        numbers = sorted({regions[i] for i in rows})
         coarse = spectrum(f, mu, odd, numbers[-1] + 2, k * k)
         if k > 0.0:
             problem = DampedProblem(f, mu, k, coarse)
@@ -407,10 +413,7 @@ def _root_above(value: Fraction) -> Fraction:
 def enclosures(coarse: Spectrum, operator: HillOperator, first: int, last: int) -> list[Ball]:
     """Enclose the eigenvalues number first ... last, which stand clear of all others.
 
-    Raises
-    ------
-    BadInput
-        If the residuals are too large for the distance from the others.
+    Refused where the residuals are too large for the distance from the others.
     """
     waves = [wave(coarse.odd, coarse.vectors[:, j]) for j in range(first, last + 1)]
     images = [operator(x) for x in waves]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import Result, provenance
 from .boundaries import hill_boundaries
 from .checks import LARGEST, arguments, check_function, check_regions
-from .fourier_matrix import Truncation, layout, matrix, real_pairs, stacked, truncation
+from .fourier_matrix import layout, matrix, real_pairs, stacked, truncation
 from .transfer import EPS
 
 Array = NDArray[np.float64]
@@ -191,79 +191,30 @@ def _direction(f: PeriodicFunction, item: object, place: int) -> _Direction:
     return _Direction(str(item), function, by_mu=True)
 
 
-class _Vectors(NamedTuple):
-    """Real eigenvalues, right and left vectors of norm 1 and their residuals, all as columns."""
-
-    values: Array
-    rights: Array
-    lefts: Array
-    residual: Array
-    squares: Array
-
-    @classmethod
-    def of(cls, whole: Array, squares: Array, symmetric: bool) -> _Vectors:
-        """Compute them for one matrix."""
-        if symmetric:
-            values, rights = np.linalg.eigh(whole)
-            return cls(values, rights, rights, _residuals(whole, values, rights), squares)
-        values, right, left = real_pairs(whole)
-        residual = _residuals(whole, values, right) + _residuals(whole.T, values, left)
-        return cls(values, right, left, residual, squares)
-
-    def tilt(self, group: tuple[int, ...], further: float) -> float:
-        """Estimate the error of the vectors of a group.
-
-        The residual of harmonic k counts over the distance of k^2, or that of the nearest
-        eigenvalue outside the group; ``further`` is an error of the matrix itself.
-        """
-        others = np.delete(self.values, group)
-        most = 0.0
-        for i in group:
-            near = max(float(np.abs(others - self.values[i]).min(initial=np.inf)), 5e-324)
-            apart = np.maximum(np.abs(self.squares - self.values[i]), near)
-            most = max(most, float(np.linalg.norm(self.residual[:, i] / apart)) + further / near)
-        return most + EPS
-
-    def mixing(self, i: int) -> float:
-        """Estimate the share of the nearest other solution in one, next to the tip of a region.
-
-        Damping lets the two come together: their distance and the inner product of the other's
-        two vectors, both small there, divide the residual.
-        """
-        apart = np.abs(np.delete(self.values, i) - self.values[i])
-        if not apart.size:
-            return 0.0
-        j = int(apart.argmin())
-        other = j + (j >= i)
-        right, left = self.rights[:, other], self.lefts[:, other]
-        if abs(float(right @ self.rights[:, i])) < _ALIKE:
-            return 0.0
-        felt = float((np.abs(left) + np.abs(right)) @ self.residual[:, i])
-        return felt / max(float(apart[j]) * abs(float(left @ right)), 5e-324)
-
-
-def _residuals(whole: Array, values: Array, vectors: Array) -> Array:
-    return np.asarray(np.abs(whole @ vectors - vectors * values))
-
-
 class _Slice:
-    """One problem, of either parity, at one mu and K, with its eigenvectors."""
+    """One problem, of either parity, at one mu and K, with its real eigenvalues and vectors."""
 
     def __init__(self, f: PeriodicFunction, mu: float, k: float, odd: int, highest: int) -> None:
         self.f, self.mu, self.k, self.odd = f, mu, k, odd
-        self.cut = self._cut(highest + 2)
+        try:
+            # Far below a rounding, so that the truncation need not be weighed against it.
+            self.cut = truncation(f, abs(mu), highest + 2, k * k, goal=1e-20)
+        except BadInput:
+            self.cut = truncation(f, abs(mu), highest + 2, k * k)
         # The highest k that matters to the solutions.
         self.level = 0.5 * (highest + 2) + (abs(mu) * f.bound()) ** 0.5
         self.harmonic = self.cut.harmonic + odd
         whole = stacked(f, odd, self.harmonic, np.array([mu]), k)[0]
-        self.vectors = _Vectors.of(whole, layout(odd, self.harmonic).squares, symmetric=not k)
-
-    def _cut(self, highest: int) -> Truncation:
-        try:
-            # Far below a rounding, so that the truncation need not be weighed against it.
-            return truncation(self.f, abs(self.mu), highest, self.k * self.k, goal=1e-20)
-        except BadInput:
-            return truncation(self.f, abs(self.mu), highest, self.k * self.k)
+        self.squares = layout(odd, self.harmonic).squares
+        # Vectors of norm 1 and their residuals, as columns.
+        if k:
+            self.values, self.rights, self.lefts = real_pairs(whole)
+        else:
+            self.values, self.rights = np.linalg.eigh(whole)
+            self.lefts = self.rights
+        self.residual = np.abs(whole @ self.rights - self.rights * self.values)
+        if k:
+            self.residual += np.abs(whole.T @ self.lefts - self.lefts * self.values)
 
     def derivatives(
         self, wanted: Sequence[_Direction], n: int, ends: tuple[float, float], error: float
@@ -272,10 +223,9 @@ class _Slice:
         out = np.full((3, len(wanted)), np.nan)
         if np.isnan(ends[1]):
             return out, False
-        vectors = self.vectors
         changes = [item.change(self.odd, self.harmonic, self.mu) for item in wanted]
         if n and not self.k and ends[1] - ends[0] <= 4.0 * error:
-            pair = vectors.rights[:, n - 1 : n + 1]
+            pair = self.rights[:, n - 1 : n + 1]
             for j, (item, change) in enumerate(zip(wanted, changes, strict=True)):
                 if item.function is not None:
                     out[:2, j] = np.linalg.eigvalsh(pair.T @ change @ pair)
@@ -283,15 +233,15 @@ class _Slice:
             return out, True
         mean = self.mu * self.f.a[0]
         sides = (0, 1) if n else (1,)
-        if vectors.values.size < len(sides):
+        if self.values.size < len(sides):
             return out, False
-        columns = [int(np.abs(vectors.values - mean - ends[side]).argmin()) for side in sides]
-        if len(set(columns)) < len(columns):
+        columns = {int(np.abs(self.values - mean - ends[i]).argmin()): i for i in sides}
+        if len(columns) < len(sides):
             # The two are a complex pair in doubles: the tip is nearer than they resolve.
             return out, False
         out[2] = 0.0
-        for side, i in zip(sides, columns, strict=True):
-            right, left = vectors.rights[:, i], vectors.lefts[:, i]
+        for i, side in columns.items():
+            right, left = self.rights[:, i], self.lefts[:, i]
             # Exact orthogonality would be a tip met exactly: then everything below overflows.
             share = float(left @ right) or 5e-324
             for j, (item, change) in enumerate(zip(wanted, changes, strict=True)):
@@ -302,10 +252,38 @@ class _Slice:
     def _error(self, item: _Direction, group: tuple[int, ...], share: float) -> float:
         """Return the norm of the change times the error of both vectors, magnified by damping."""
         size = item.size(self.level, self.mu)
+        given = item.function.error if item.function is not None else 0.0
+        # The residuals are round-off themselves.
+        mixing = 4.0 * self._mixing(group[0]) if self.k else 0.0
+        return float(size * ((self._tilt(group) + EPS) / (share * share) + mixing / share) + given)
+
+    def _tilt(self, group: tuple[int, ...]) -> float:
+        """Estimate the error of the vectors of a group.
+
+        The residual of harmonic k counts over the distance of k^2, or that of the nearest
+        eigenvalue outside the group.
+        """
         # What the truncation adds to lam2 is analytic in the parameter: so small is its slope too.
         further = self.f.error * abs(self.mu) + 100.0 * self.cut.left_out
-        given = item.function.error if item.function is not None else 0.0
-        tilt = self.vectors.tilt(group, further)
-        # The residuals are round-off themselves.
-        mixing = 4.0 * self.vectors.mixing(group[0]) if self.k else 0.0
-        return float(size * ((tilt + EPS) / (share * share) + mixing / share) + given)
+        others = np.delete(self.values, group)
+        most = 0.0
+        for i in group:
+            near = max(float(np.abs(others - self.values[i]).min(initial=np.inf)), 5e-324)
+            apart = np.maximum(np.abs(self.squares - self.values[i]), near)
+            most = max(most, float(np.linalg.norm(self.residual[:, i] / apart)) + further / near)
+        return most + EPS
+
+    def _mixing(self, i: int) -> float:
+        """Estimate the share of the nearest other solution in one, next to the tip of a region.
+
+        Damping lets the two come together: their distance and the inner product of the other's
+        two vectors, both small there, divide the residual.
+        """
+        apart = np.abs(self.values - self.values[i])
+        apart[i] = np.inf
+        other = int(apart.argmin())
+        right, left = self.rights[:, other], self.lefts[:, other]
+        if other == i or abs(float(right @ self.rights[:, i])) < _ALIKE:
+            return 0.0
+        felt = float((np.abs(left) + np.abs(right)) @ self.residual[:, i])
+        return felt / max(float(apart[other]) * abs(float(left @ right)), 5e-324)

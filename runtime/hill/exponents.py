@@ -16,7 +16,7 @@ from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
 from .boundaries import half_trace_check, sample_of
 from .checks import LARGEST, arguments, axes_over, check_function, check_regions
-from .fourier_matrix import CHUNK, truncation
+from .fourier_matrix import chunks, couplings, truncation
 from .half_trace import discriminant
 from .meissner import Meissner
 from .transfer import EPS
@@ -218,15 +218,10 @@ def _eigenvalues(
     # Between 0 and 1/2: a reflection of theta, or another count of the harmonics.
     folded = np.abs(nu - np.rint(nu))
     m = np.arange(-cut.harmonic - 1, cut.harmonic + 1)
-    apart = m[:, None] - m
-    inside = np.minimum(np.abs(apart), f.harmonics)
-    c = 0.5 * (f.a[inside] - 1j * np.sign(apart) * f.b[inside])
-    c[(np.abs(apart) > f.harmonics) | (apart == 0)] = 0.0
+    coupling = couplings(f, m.size)
     lam2 = np.empty((len(bands), mu.size))
-    step = max(1, CHUNK // (m.size * m.size))
-    for start in range(0, mu.size, step):
-        part = slice(start, start + step)
-        stack = -mu[part, None, None] * c
+    for part in chunks(mu.size, m.size):
+        stack = mu[part, None, None] * coupling
         stack[:, np.arange(m.size), np.arange(m.size)] += np.square(m + folded[part, None])
         lam2[:, part] = np.linalg.eigvalsh(stack)[:, list(bands)].T
     # nu itself is rounded when it is folded.

@@ -7,6 +7,7 @@ In the basis cos k theta, sin k theta (k whole, or half-whole: ``odd``) the matr
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from math import ceil, sqrt
 from typing import Any, NamedTuple
@@ -24,8 +25,21 @@ Index = NDArray[np.intp]
 
 # What the cut leaves out by default: below the round-off of eigenvalues of size 1e3.
 _LEFT_OUT = 1e-13
-# Entries of a stack of matrices, so that it stays in the cache.
-CHUNK = 2**18
+
+
+def chunks(count: int, size: int) -> Iterator[slice]:
+    """Yield parts of a stack of so many square matrices, so small that each stays in the cache."""
+    step = max(1, 2**18 // (size * size))
+    for start in range(0, count, step):
+        yield slice(start, start + step)
+
+
+def by_parity(regions: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
+    """Yield the parity of each problem that has regions, and their places in the sequence."""
+    for odd in (0, 1):
+        rows = [i for i, n in enumerate(regions) if n % 2 == odd]
+        if rows:
+            yield odd, rows
 
 
 class Truncation(NamedTuple):
@@ -71,11 +85,6 @@ def truncation(
 
     and both terms are sums of ``M_k^2`` over the harmonics left out.  (Rayleigh and Ritz: what is
     left out never lowers the eigenvalues of the matrix below the true ones.)
-
-    Raises
-    ------
-    BadInput
-        If more than 2048 harmonics would be needed.
     """
     if not reach < 1e300:
         raise _too_large(reach, f)
@@ -290,17 +299,22 @@ def banded(f: PeriodicFunction, odd: int, harmonic: int, mu: float) -> Array:
 Complex = NDArray[np.complex128]
 
 
-def left_and_right(whole: Array) -> tuple[Complex, Complex, Complex]:
-    """Return the eigenvalues of a matrix with left and right eigenvectors as columns."""
-    import scipy.linalg
-
-    solved: Any = scipy.linalg.eig(whole, left=True, check_finite=False)
-    return solved[0], solved[1], solved[2]
+def couplings(f: PeriodicFunction, size: int) -> Complex:
+    """Return ``-c_(k-l)`` for all pairs of so many harmonics exp(i k theta), the mean left out."""
+    c = np.zeros(size, dtype=complex)
+    kept = min(f.harmonics + 1, size)
+    c[:kept] = -0.5 * (f.a - 1j * f.b)[:kept]
+    c[0] = 0.0
+    apart = np.subtract.outer(np.arange(size), np.arange(size))
+    return np.where(apart >= 0, c[np.abs(apart)], c[np.abs(apart)].conj())
 
 
 def real_pairs(whole: Array) -> tuple[Array, Array, Array]:
     """Return the real eigenvalues, rising, with right and left vectors of norm 1 as columns."""
-    values, lefts, rights = left_and_right(whole)
+    import scipy.linalg
+
+    solved: Any = scipy.linalg.eig(whole, left=True, check_finite=False)
+    values, lefts, rights = solved
     real = np.flatnonzero(values.imag == 0.0)
     order = real[np.argsort(values[real].real)]
     right, left = (

@@ -295,46 +295,10 @@ class _Series(NamedTuple):
 
 def _series(polynomials: Transfer, limits: Box) -> _Series | int:
     """Interpolate over a box; the number of the axis to split where that would not do."""
-    edges = _edges(polynomials, limits)
-    if isinstance(edges, int):
-        return edges
-    n, m = edges.counts
-    rounding = max(4.0 * EPS * edges.largest, 0.1 * edges.noise)
-    for _ in range(4):
-        x, y = _nodes(limits[:2], n), _nodes(limits[2:], m)
-        values = polynomials.half_trace(np.repeat(x, m), np.tile(y, n)).reshape(n, m)
-        above = max(1.0, float(np.abs(values).max()) / edges.largest)
-        c = chebyshev.coefficients2(values)
-        size = np.abs(c)
-        rows = float(size[-2:].sum()) if n > 1 else 0.0
-        columns = float(size[:, -2:].sum()) if m > 1 else 0.0
-        # Every entry carries round-off: that much of a tail does not show a lack of nodes.
-        ok_rows = rows <= 2.0 * rounding * above * m
-        ok_columns = columns <= 2.0 * rounding * above * n
-        if ok_rows and ok_columns:
-            # Errors of the nodal values stay where they are, but for a few per cent.
-            everywhere = rows + columns + 2.0 * EPS * float(size.sum())
-            everywhere += 0.05 * above * edges.noise
-            return _Series(c, everywhere, 1.5 * above * edges.profile, edges.defect)
-        n, m = (n if ok_rows else ceil(1.2 * n) + 2), (m if ok_columns else ceil(1.2 * m) + 2)
-    return 0 if not ok_rows else 1
-
-
-class _Edges(NamedTuple):
-    """The four edges of a box: nodes needed, largest value, errors, determinants."""
-
-    counts: tuple[int, int]
-    largest: float
-    noise: float
-    profile: Array
-    defect: float
-
-
-def _edges(polynomials: Transfer, limits: Box) -> _Edges | int:
-    """Sample the four edges of a box; the number of an axis that should be split first."""
     x0, x1, y0, y1 = limits
     n = _guess(x1 - x0, x0) if x1 > x0 else 1
     m = _guess(polynomials.swing, 0.0) if y1 > y0 else 1
+    # The edges show how fast the half trace grows, how many nodes it needs, and its errors.
     while True:
         x, y = _nodes((x0, x1), n), _nodes((y0, y1), m)
         points_x = np.concatenate([x, x, np.full(m, x0), np.full(m, x1)])
@@ -346,23 +310,39 @@ def _edges(polynomials: Transfer, limits: Box) -> _Edges | int:
         if max(growth) > _GROWTH:
             return int(growth[1] > growth[0])
         largest, noise = float(max(s.max() for s in size)), float(error.max())
+        spectra = [np.abs(line @ chebyshev.analysis(line.shape[1]).T).max(axis=0) for line in lines]
         tolerance = max(2.0 * EPS * largest, 0.05 * noise)
-        needed = [
-            chebyshev.length(
-                np.abs(line @ chebyshev.analysis(line.shape[1]).T).max(axis=0), tolerance
-            )
-            for line in lines
-        ]
+        needed = [chebyshev.length(sizes, tolerance) for sizes in spectra]
         short = [count > 1 and need > count - 3 for count, need in zip((n, m), needed, strict=True)]
         if not any(short):
-            profile = np.pad(error[: 2 * n].reshape(2, n).max(axis=0), 1, mode="edge")
-            profile = np.maximum(np.maximum(profile[:-2], profile[2:]), profile[1:-1])
-            # Two more: the last two show whether the inside needs more than the edges.
-            counts = (min(needed[0] + 2, n), min(needed[1] + 2, m))
-            return _Edges(counts, largest, noise, profile, float(defect.max()))
+            break
         n, m = (2 * n if short[0] else n), (2 * m if short[1] else m)
         if max(n, m) > _MOST_NODES:
             return int(m > n)
+    profile = np.pad(error[: 2 * n].reshape(2, n).max(axis=0), 1, mode="edge")
+    profile = 1.5 * np.maximum(np.maximum(profile[:-2], profile[2:]), profile[1:-1])
+    rounding = max(4.0 * EPS * largest, 0.1 * noise)
+    # The last two of some more nodes show whether the inside needs more than the edges.
+    for more in (2, 16, 48):
+        rows, columns = (
+            need + more if k > 1 else 1 for need, k in zip(needed, (n, m), strict=True)
+        )
+        x, y = _nodes((x0, x1), rows), _nodes((y0, y1), columns)
+        values = polynomials.half_trace(np.repeat(x, columns), np.tile(y, rows))
+        c = chebyshev.coefficients2(values.reshape(rows, columns))
+        above = max(1.0, float(np.abs(values).max()) / largest)
+        sizes = np.abs(c)
+        tails = [
+            float(sizes[-2:].sum()) if rows > 1 else 0.0,
+            float(sizes[:, -2:].sum()) if columns > 1 else 0.0,
+        ]
+        # Every entry carries round-off: that much of a tail does not show a lack of nodes.
+        allowed = 2.0 * rounding * above
+        if tails[0] <= allowed * columns and tails[1] <= allowed * rows:
+            # Errors of the nodal values stay where they are, but for a few per cent.
+            everywhere = sum(tails) + 2.0 * EPS * float(sizes.sum()) + 0.05 * above * noise
+            return _Series(c, everywhere, above * profile, float(defect.max()))
+    return 0 if tails[0] > allowed * columns else 1
 
 
 def _nodes(limits: tuple[float, float], count: int) -> Array:

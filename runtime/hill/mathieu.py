@@ -57,11 +57,6 @@ class Mathieu:
         """``-q / 2``."""
         return -0.5 * finite("q", self.q)
 
-    @classmethod
-    def from_hill(cls, lam2: ArrayLike, mu: ArrayLike) -> Mathieu:
-        """Return the equation with given lam2 and mu of f = cos theta."""
-        return cls(4.0 * finite("lam2", lam2), -2.0 * finite("mu", mu))
-
     @staticmethod
     def characteristic(m: int, q: ArrayLike, kind: Kind = "a") -> MathieuCharacteristic:
         """Return the characteristic value a_m(q) or b_m(q).

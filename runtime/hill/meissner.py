@@ -19,8 +19,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import hill_meissner
 from ..core.errors import bad
-from ..core.inputs import is_whole
-from ..core.periodic_function import PeriodicFunction
 from .checks import finite
 from .transfer import EPS, Exponents, normalised, product
 
@@ -33,7 +31,6 @@ _CHUNK = 2**19
 # cosh of more leaves the range of doubles; longer intervals are cut.
 _STEEPEST = 300.0
 _MOST_INTERVALS = 2**16
-_MOST_HARMONICS = 100_000
 
 
 @dataclass(frozen=True)
@@ -92,34 +89,6 @@ class Meissner:
         place = np.mod(finite("theta", theta), 2.0 * pi)
         ends = np.cumsum(self.lengths)[:-1]
         return np.asarray(np.take(self.levels, np.searchsorted(ends, place, side="right")))
-
-    def function(self, harmonics: int = 64) -> PeriodicFunction:
-        """Return the Fourier series cut after a harmonic, for solvers that want one.
-
-        The coefficients fall like 1/m.  Beside a jump the sum stays half the jump away from f
-        whatever the number of harmonics, and so ``error`` is half the largest jump: for half
-        traces and boundaries far too much.
-
-        Raises
-        ------
-        BadInput
-            If ``harmonics`` is not a whole number from 1 to 100000.
-        """
-        if not is_whole(harmonics, 1, _MOST_HARMONICS):
-            expected = f"a whole number from 1 to {_MOST_HARMONICS}"
-            raise bad("harmonics", repr(harmonics), expected, "correct it")
-        m = np.arange(1, harmonics + 1)
-        a, b = np.zeros((2, harmonics + 1))
-        a[0] = self.mean
-        jumps = np.array(self.levels) - np.roll(self.levels, -1)
-        for jump, end in zip(jumps[:-1], np.cumsum(self.lengths)[:-1], strict=True):
-            # Whole turns are taken off before the multiplication by pi: exact zeros stay zeros.
-            turn = np.mod(m * (end / pi), 2.0)
-            size = jump / (pi * m)
-            a[1:] += size * np.where(turn % 1.0 == 0.0, 0.0, np.sin(turn * pi))
-            b[1:] += size * (2.0 * np.sin(0.5 * turn * pi) ** 2)
-        noise = 4.0 * EPS * (abs(self.mean) + float(np.abs(jumps).sum()) * harmonics)
-        return PeriodicFunction(a, b, error=0.5 * float(np.abs(jumps).max()) + noise)
 
     def two(self) -> tuple[Array, Array]:
         """Return levels and lengths where they are two, or refuse."""
@@ -218,11 +187,6 @@ def meissner_ends(f: Meissner, mu: Array, n: int) -> tuple[Array, Array, Array]:
 
     By bisection on the phase of the solution, which rises with lam2, so that no boundary is missed
     or taken for another.
-
-    Raises
-    ------
-    BadInput
-        If there are not two levels, or mu is so large that a solution grows by more than exp(600).
     """
     levels, lengths = f.two()
     most = float(np.abs(mu).max(initial=0.0))

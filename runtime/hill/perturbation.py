@@ -8,7 +8,7 @@ ratio at which the components fall, show what is left out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import comb
 from typing import ClassVar, Literal, NamedTuple
@@ -20,7 +20,7 @@ from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, provenance
-from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
+from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Boundaries
 from .checks import arguments, check_function, check_regions
 from .transfer import EPS
@@ -28,7 +28,6 @@ from .transfer import EPS
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
-Form = Literal["uniform", "series"]
 
 # The series is taken to converge while its components fall at least so fast from one to the next,
 # and while what is left out stays below this share of the distance to the next level.
@@ -51,8 +50,6 @@ class PerturbationBoundaries(Boundaries):
     ----------
     order : int
         Highest total degree kept; K counts as a parameter of the first order.
-    form : str
-        ``"uniform"`` or ``"series"``.
     parameters : ndarray, shape (p, *mu.shape)
         Values of the parameters; ``mu`` is the first of them.
     outside : ndarray of bool, shape (len(regions), *mu.shape)
@@ -64,7 +61,6 @@ class PerturbationBoundaries(Boundaries):
     """
 
     order: int
-    form: str
     parameters: Array
     outside: Mask
     closed: Mask
@@ -83,7 +79,6 @@ def perturbation_boundaries(
     regions: Sequence[int] = (1, 2),
     order: int = 1,
     damping: ArrayLike = 0.0,
-    form: Form = "uniform",
     outside: Literal["nan", "value"] = "nan",
 ) -> PerturbationBoundaries:
     """Return the boundaries of unstable regions to an order in the parameters (and K).
@@ -103,10 +98,6 @@ def perturbation_boundaries(
         1 to 8: highest total degree in the parameters and K that is kept.
     damping : array_like
         K of Smith (7.38), at least zero; broadcasts with mu.
-    form : {"uniform", "series"}
-        ``"uniform"``: ``lam2 = n^2/4 + Re A -+ sqrt(|B|^2 - (Im A)^2)`` with A and B to the
-        order, which holds right through the tip of a damped tongue and where c_n vanishes.
-        ``"series"``: the root is expanded as well, ``n^2/4 + alpha_1 mu + alpha_2 mu^2 ...``.
     outside : {"nan", "value"}
         What stands where the orders do not visibly converge: NaN, or the number all the same,
         with an infinite error.
@@ -130,20 +121,19 @@ def perturbation_boundaries(
     Notes
     -----
     Smith (7.23)-(7.25), (7.35), (7.37), (7.46)-(7.50), (8.39)-(8.43), to any order by Bloch's
-    recursion (:mod:`.bloch`).  The error is made of the two orders that follow, of a geometric
-    remainder at the ratio at which the orders are seen to fall, of round-off and of the error of
-    f, all carried through the square root.  An entry is flagged where that ratio, with a margin of
-    a quarter, reaches 0.9, or the error half the distance to the neighbouring level of the same
-    period.
+    recursion (:mod:`.bloch`): ``lam2 = n^2/4 + Re A -+ sqrt(|B|^2 - (Im A)^2)`` with A and B to the
+    order, which holds right through the tip of a damped tongue and where c_n vanishes, unlike the
+    power series of the root (:func:`.boundary_series`).  The error is made of the two orders that
+    follow, of a geometric remainder at the ratio at which the orders are seen to fall, of round-off
+    and of the error of f, all carried through the square root.  An entry is flagged where that
+    ratio, with a margin of a quarter, reaches 0.9, or the error half the distance to the
+    neighbouring level of the same period.
     """
-    functions, values = parameters_of(f, mu)
+    functions, amps, k, shape = parameters_of(f, mu, damping)
     numbers = check_regions(regions)
     check_order(order)
-    if form not in ("uniform", "series"):
-        raise bad("form", repr(form), "'uniform' or 'series'", "choose one")
     if outside not in ("nan", "value"):
         raise bad("outside", repr(outside), "'nan' or 'value'", "choose one")
-    amps, k, shape = amplitudes_of(values, damping)
     flat = np.stack([np.broadcast_to(item, shape).ravel() for item in (*amps, k)])
     count = flat.shape[1]
     lower, upper, error = np.empty((3, len(numbers), count))
@@ -155,7 +145,7 @@ def perturbation_boundaries(
             operator = points.operator(n)
             for start in range(0, count, _CHUNK):
                 part = slice(start, start + _CHUNK)
-                ends, split = points.ends(operator, part, uniform if form == "uniform" else series)
+                ends, split = points.ends(operator, part)
                 share = max(share, split)
                 half = ends.half
                 if outside == "nan" and ends.outside.any():
@@ -173,7 +163,7 @@ def perturbation_boundaries(
         checks["error over half the width"] = Check(share, 1.0)
     at = flat.reshape(len(flat), *shape)
     return PerturbationBoundaries(
-        method=f"perturbation, order {order}, {form}",
+        method=f"perturbation, order {order}",
         error=error.reshape(full),
         error_norm="absolute, entrywise, for either end",
         checks=checks,
@@ -184,7 +174,6 @@ def perturbation_boundaries(
         mu=np.asarray(at[0]),
         damping=np.asarray(at[-1]),
         order=int(order),
-        form=form,
         parameters=at[:-1],
         outside=flagged.reshape(full),
         closed=closed.reshape(full),
@@ -200,16 +189,17 @@ def check_order(order: object) -> None:
 
 
 def parameters_of(
-    f: PeriodicFunction | Sequence[PeriodicFunction], mu: ArrayLike | Sequence[ArrayLike]
-) -> tuple[tuple[PeriodicFunction, ...], tuple[ArrayLike, ...]]:
-    """Return functions and the values of their parameters, one each."""
+    f: PeriodicFunction | Sequence[PeriodicFunction],
+    mu: ArrayLike | Sequence[ArrayLike],
+    damping: ArrayLike,
+) -> tuple[tuple[PeriodicFunction, ...], tuple[Array, ...], Array, tuple[int, ...]]:
+    """Return functions, their parameters, the damping, and the shape that these broadcast to."""
     if isinstance(f, PeriodicFunction):
-        return (f,), (mu,)  # type: ignore[return-value]
+        (amp, k), shape = arguments(mu=mu, damping=damping)  # type: ignore[arg-type]
+        return (f,), (amp,), k, shape
     if not isinstance(f, Sequence) or not f:
         check_function(f)
-    functions = tuple(f)
-    for item in functions:
-        check_function(item)
+    functions = tuple(check_function(item) for item in f)
     if not isinstance(mu, Sequence | np.ndarray) or len(mu) != len(functions):
         raise bad(
             "mu",
@@ -217,16 +207,9 @@ def parameters_of(
             f"one entry for each of the {len(functions)} functions",
             "pass mu=[eps_1, eps_2, ...]",
         )
-    return functions, tuple(mu)
-
-
-def amplitudes_of(
-    values: tuple[ArrayLike, ...], damping: ArrayLike
-) -> tuple[list[Array], Array, tuple[int, ...]]:
-    """Return the parameters as arrays, the damping, and the shape that they broadcast to."""
-    named = {f"mu[{i}]" if len(values) > 1 else "mu": v for i, v in enumerate(values)}
+    named = {f"mu[{i}]" if len(mu) > 1 else "mu": value for i, value in enumerate(mu)}
     (*amps, k), shape = arguments(**named, damping=damping)
-    return amps, k, shape
+    return functions, tuple(amps), k, shape
 
 
 def combined(functions: tuple[PeriodicFunction, ...], values: Array) -> PeriodicFunction:
@@ -278,12 +261,7 @@ class _Points:
             )
         return effective_operator(self.functions, n, order, self.damped)
 
-    def ends(
-        self,
-        operator: EffectiveOperator,
-        part: slice,
-        form: Callable[[Components], SeriesEnds],
-    ) -> tuple[SeriesEnds, float]:
+    def ends(self, operator: EffectiveOperator, part: slice) -> tuple[SeriesEnds, float]:
         """Return the ends at some points, and the largest share of the error in half the width."""
         points = self.points[:, part] if self.damped else self.points[:-1, part]
         k, n = self.points[-1, part], operator.n
@@ -292,10 +270,10 @@ class _Points:
         a, b = operator.components(points)
         noise = 4.0 * EPS * (0.25 * n * n + self.reach[part] + n * k) + self.data[part]
         strength = self.strength[part] + 2.0 * k * (n + 1)
-        ends = form(Components(n, self.order, a, b, noise, strength, k > 0.0))
-        split = np.abs(b[: self.order].sum(axis=0))
-        wide = (split > noise) & ~ends.outside & np.isfinite(ends.half)
-        shares = np.where(wide, ends.error / split, 0.0)
+        sums = Sums.of(n, self.order, a, b, noise, strength)
+        ends = sums.ends(k > 0.0)
+        wide = (sums.split > noise) & ~ends.outside & np.isfinite(ends.half)
+        shares = np.where(wide, ends.error / sums.split, 0.0)
         return ends, float(shares.max(initial=0.0)) if n else 0.0
 
 
@@ -317,31 +295,10 @@ class SeriesEnds(NamedTuple):
     """True where open and closed are both within what is left out."""
 
 
-class Components(NamedTuple):
-    """Components of A and B at points, and what is known about their errors."""
-
-    region: int
-    order: int
-    diagonal: Complex
-    """``A_k``, shape (N + 2, n); the real part of ``A_1`` is the shift ``-mean``, exact."""
-    coupling: Complex
-    """``B_k``, likewise."""
-    noise: Array
-    """Error of A and B from round-off and from the data."""
-    strength: Array
-    """Majorant of the periodic part and the drag."""
-    damped: Mask
-    """Where K > 0: there alone may a region be closed."""
-
-    @property
-    def distance(self) -> float:
-        """Distance of the resonant level from the nearest one of the same period."""
-        return float({0: 1, 1: 2}.get(self.region, self.region - 1))
-
-
 class Sums(NamedTuple):
     """Sums of the components to the order, and estimates of what is left out of them."""
 
+    region: int
     centre: Array
     """``n^2/4 + Re A``."""
     drag: Array
@@ -382,77 +339,38 @@ class Sums(NamedTuple):
         return half, np.maximum(outer, inner)
 
     @classmethod
-    def of(cls, parts: Components) -> Sums:
-        """Sum up."""
-        order, a, b = parts.order, parts.diagonal, parts.coupling
-        sizes = np.abs(a) + np.abs(b)
+    def of(cls, n: int, order: int, a: Complex, b: Complex, noise: Array, strength: Array) -> Sums:
+        """Sum up A and B of region n from their components ``(N + 2, n)``.
+
+        ``noise`` is their error from round-off and from the data, ``strength`` a majorant of the
+        periodic part and the drag.
+        """
+        distance, sizes = level_distance(n), np.abs(a) + np.abs(b)
+        # The real part of the first one is the shift by the mean, which is exact.
         sizes[0] = np.abs(a[0].imag) + np.abs(b[0])
-        ratio = _CAUTION * contraction(sizes, parts.distance)
+        ratio = _CAUTION * contraction(sizes, distance)
         # Orders of one parity say nothing of the other: a step of V and R at its largest does.
-        step = np.minimum(2.0 * parts.strength / parts.distance, 0.2)
-        rest = _geometric(sizes, np.maximum(ratio, step)) + parts.noise
+        step = np.minimum(2.0 * strength / distance, 0.2)
+        rest = _geometric(sizes, np.maximum(ratio, step)) + noise
         moved = _DOUBT * np.abs(a[order:].real).sum(axis=0) + rest
         turned = _DOUBT * np.abs(a[order:].imag).sum(axis=0) + rest
         spread = _DOUBT * np.abs(b[order:]).sum(axis=0) + rest
-        centre = 0.25 * parts.region**2 + a[:order].real.sum(axis=0)
+        centre = 0.25 * n**2 + a[:order].real.sum(axis=0)
         drag, split = np.abs(a[:order].imag.sum(axis=0)), np.abs(b[:order].sum(axis=0))
-        return cls(centre, drag, split, moved, turned, spread, ratio)
+        return cls(n, centre, drag, split, moved, turned, spread, ratio)
 
-
-def uniform(parts: Components) -> SeriesEnds:
-    """Return the ends from the sums of A and B themselves, right through the tip of a tongue."""
-    sums = Sums.of(parts)
-    if parts.region == 0:
-        return _judged(parts, sums, np.zeros_like(sums.centre), sums.moved, sums.ratio)
-    half, error = sums.root()
-    half[parts.damped & (sums.square < 0.0)] = np.nan
-    return _judged(parts, sums, half, sums.moved + error, sums.ratio)
-
-
-def series(parts: Components) -> SeriesEnds:
-    """Return the ends from the root of S expanded along the ray of the parameters.
-
-    Smith's alpha_1, alpha_2, ...; S begins with the degree 2 s, and the expansion fails where that
-    first component is not the dominant one: near the tip of a damped tongue, and where c_n almost
-    vanishes.
-    """
-    order, count = parts.order, len(parts.diagonal)
-    sums = Sums.of(parts)
-    left, ratio = np.zeros_like(sums.centre), sums.ratio.copy()
-    half = np.zeros_like(sums.centre)
-    leading = _leading(parts) if parts.region else np.full(half.shape, count + 1)
-    for s in range(1, count + 1):
-        here = leading == s
-        if not here.any():
-            continue
-        # A slice costs no copy.
-        these = slice(None) if here.all() else here
-        roots, sign, ripple = root_components(
-            parts.diagonal[:, these].imag, parts.coupling[:, these], s
-        )
-        kept = max(order - s + 1, 0)
-        terms = np.abs(roots)
-        fall = _CAUTION * _root_ratio(terms)
-        beyond = _DOUBT * terms[kept:].sum(axis=0) + _geometric(terms, fall)
-        left[these] = beyond + ripple * parts.noise[these]
-        total = np.asarray(roots[:kept].sum(axis=0))
-        half[these] = np.where((sign < 0.0) & (kept > 0), np.nan, total)
-        ratio[these] = np.maximum(ratio[these], fall)
-    # The first component decides by its sign; where the sums are sure of the opposite it misleads.
-    misled = parts.damped & np.where(np.isnan(half), sums.fewest > 0.0, sums.most < 0.0)
-    ratio[misled] = np.inf
-    if parts.region:
-        # The uniform form is at hand: what lies between the two, and its own error.
-        other, error = sums.root()
-        left = np.maximum(left, np.abs(np.nan_to_num(half) - other) + error)
-    return _judged(parts, sums, half, sums.moved + left, ratio)
-
-
-def _judged(parts: Components, sums: Sums, half: Array, error: Array, ratio: Array) -> SeriesEnds:
-    inside = (ratio < CONTRACTION) & (error < _SHARE * parts.distance)
-    inside &= np.isfinite(sums.centre)
-    undecided = inside & parts.damped & (sums.fewest < 0.0) & (sums.most >= 0.0)
-    return SeriesEnds(sums.centre, half, error, ~inside, undecided & (parts.region > 0))
+    def ends(self, damped: Mask) -> SeriesEnds:
+        """Return the ends, right through the tip of a tongue; only where damped may one close."""
+        half, error = np.zeros_like(self.centre), self.moved
+        undecided = np.zeros(half.shape, dtype=bool)
+        if self.region:
+            half, spread = self.root()
+            half[damped & (self.square < 0.0)] = np.nan
+            error = self.moved + spread
+            undecided = damped & (self.fewest < 0.0) & (self.most >= 0.0)
+        inside = (self.ratio < CONTRACTION) & (error < _SHARE * level_distance(self.region))
+        inside &= np.isfinite(self.centre)
+        return SeriesEnds(self.centre, half, error, ~inside, undecided & inside)
 
 
 def contraction(sizes: Array, reference: Array | float) -> Array:
@@ -469,51 +387,6 @@ def contraction(sizes: Array, reference: Array | float) -> Array:
     last = np.maximum(sizes[-1], sizes[-2])
     before = np.maximum(sizes[-3], sizes[-4] if count > 3 else reference)
     return np.asarray(np.maximum(ratio, np.sqrt(last / np.maximum(before, np.finfo(float).tiny))))
-
-
-def _leading(parts: Components) -> NDArray[np.intp]:
-    """Return the degree s at which S begins, one more than there are where it vanishes."""
-    b, drag = np.abs(parts.coupling), np.abs(parts.diagonal.imag)
-    degree = np.arange(len(b))[:, None]
-    # A coupling below so much of the largest that it could be is taken for round-off of zero.
-    floor = 1e-14 * parts.strength * (parts.strength / parts.distance) ** degree
-    floor[0] = 0.0
-    # Without damping Im A is of higher order than B.
-    there = (b > floor) | ((drag > floor) & parts.damped)
-    return np.where(there.any(axis=0), there.argmax(axis=0) + 1, len(b) + 1)
-
-
-def root_components(drag: Array, coupling: Complex, s: int) -> tuple[Array, Array, Array]:
-    """Return the components s ... M of the root of +-S, that sign, and what magnifies errors."""
-    count, first = len(drag) - s + 1, s - 1
-    scale = np.abs(coupling[first]) + np.abs(drag[first])
-    # A power of two, so that squares stay within the range of doubles and no digit changes.
-    unit = np.ldexp(1.0, np.frexp(scale)[1])
-    real, imaginary, drag = coupling.real / unit, coupling.imag / unit, drag / unit
-    squares = np.zeros((count, drag.shape[1]))
-    for j in range(count):
-        for i in range(first, first + j // 2 + 1):
-            other = 2 * first + j - i
-            product = real[i] * real[other] + imaginary[i] * imaginary[other]
-            product -= drag[i] * drag[other]
-            squares[j] += product if i == other else 2.0 * product
-    # The root of a negative first component is imaginary, and with it all the others.
-    sign = np.sign(squares[0])
-    out = np.zeros(squares.shape)
-    out[0] = np.sqrt(np.abs(squares[0]))
-    for j in range(1, count):
-        inner = sum((out[i] * out[j - i] for i in range(1, j)), np.zeros(drag.shape[1]))
-        out[j] = (sign * squares[j] - inner) / (2.0 * out[0])
-    return out * unit, sign, np.asarray(scale / unit / out[0])
-
-
-def _root_ratio(terms: Array) -> Array:
-    """Return the ratio at which the components of the root fall, relative to its first one."""
-    first = np.maximum(terms[0], np.finfo(float).tiny)
-    ratio: Array = np.zeros(terms.shape[1:])
-    for k in {1, len(terms) - 2, len(terms) - 1} & set(range(1, len(terms))):
-        ratio = np.maximum(ratio, (terms[k] / first) ** (1.0 / k))
-    return ratio
 
 
 def _geometric(sizes: Array, ratio: Array) -> Array:

@@ -19,17 +19,17 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import ArrayLike, NDArray
 
 from ...generated import hill_recursion
 from ..core.errors import bad
 from ..core.inputs import is_whole
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
-from .bloch import HIGHEST_ORDER, effective_operator
+from .bloch import HIGHEST_ORDER, effective_operator, level_distance
 from .boundaries import hill_boundaries
-from .checks import check_function, check_regions
-from .perturbation import root_components
+from .checks import check_function, check_regions, finite
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -84,6 +84,33 @@ class BoundarySeries(Result):
         "error": ("end", "power"),
     }
 
+    def __call__(self, mu: ArrayLike, order: int | None = None) -> tuple[Array, Array]:
+        """Return ``n^2/4 + alpha_1 mu + ...`` of both boundaries.
+
+        Parameters
+        ----------
+        mu : array_like
+            Any shape.
+        order : int, optional
+            Highest power of mu, by default all that are known.
+
+        Returns
+        -------
+        lower, upper : ndarray
+            In the shape of mu, in the order that they have at small positive mu.
+
+        Raises
+        ------
+        BadInput
+            If mu is not finite.
+        """
+        x = finite("mu", mu)
+        lower, upper = (
+            0.25 * self.region**2 + x * polyval(x, alpha[:order])
+            for alpha in (self.lower, self.upper)
+        )
+        return lower, upper
+
     def latex(self, any_region: bool = False) -> str:
         """Return both boundaries as a formula, to the order; see :func:`boundary_latex`.
 
@@ -107,15 +134,13 @@ class BoundarySeries(Result):
         ax = axes_or_new(ax)
         mu = np.linspace(0.0, 1.0, 101)
         exact = hill_boundaries(self.function, mu, (self.region,), damping=self.damping_ratio * mu)
-        start = 0.25 * self.region**2
-        pairs = ((exact.upper[0], self.upper), (exact.lower[0], self.lower))
-        for end, alpha in pairs if self.region else pairs[:1]:
-            named = "exact" if alpha is self.upper else None
-            ax.plot(end, mu, color="black", lw=1.6, label=named)
+        for side, exact_end in enumerate((exact.lower[0], exact.upper[0])):
+            if side == 0 and not self.region:
+                continue
+            ax.plot(exact_end, mu, color="black", lw=1.6, label="exact" if side else None)
             for k in range(1, self.order + 1):
-                partial = start + sum(alpha[j] * mu ** (j + 1) for j in range(k))
-                label = f"order {k}" if named else None
-                ax.plot(partial, mu, "--", color=f"C{k - 1}", lw=1.0, label=label)
+                label = f"order {k}" if side else None
+                ax.plot(self(mu, k)[side], mu, "--", color=f"C{k - 1}", lw=1.0, label=label)
         known = np.concatenate([exact.lower[0], exact.upper[0]])
         known = known[np.isfinite(known)]
         room = 0.3 * np.ptp(known) + 0.1
@@ -200,7 +225,7 @@ def _uncertain(f: PeriodicFunction, n: int, k: int, size: float) -> float:
     Whether its terms cancel is seen with other phases of the harmonics.
     """
     reach = float(f.amplitudes[1:].sum())
-    given = k * f.error * (reach / float({1: 2}.get(n, n - 1))) ** (k - 1)
+    given = k * f.error * (reach / level_distance(n)) ** (k - 1)
     if size > _CLEAR * reach**k:
         return given
     point = np.array([[1.0], [0.0]])
@@ -233,16 +258,29 @@ def _alphas(f: PeriodicFunction, n: int, order: int, ratio: float) -> tuple[Arra
         doubt[k - 1] = least
     if not s:
         return np.stack([middle, half]), 0, doubt
-    root, sign, _ = root_components(drag, b, s)
-    if sign[0] <= 0.0:
-        closing = np.abs(b[s - 1, 0]) / n
+    drag, coupling = drag[s - 1 :, 0], b[s - 1 :, 0]
+    if np.abs(coupling[0]) <= np.abs(drag[0]):
+        closing = np.abs(coupling[0]) / n
         expected = f"less than {closing:.6g}, where the damping closes region {n}"
         raise bad("damping_ratio", f"{ratio:g}", expected, "take less damping")
-    nudged = b.copy()
-    nudged[s - 1] *= 1.0 + _LEADING
-    half[s - 1 :] = root[:, 0]
-    doubt[s - 1 :] += np.abs(root_components(drag, nudged, s)[0] - root)[:, 0]
+    root = _root(drag, coupling)
+    half[s - 1 :] = root
+    nudged = _root(drag, np.concatenate([coupling[:1] * (1.0 + _LEADING), coupling[1:]]))
+    doubt[s - 1 :] += np.abs(nudged - root)
     return np.stack([middle, half]), s, doubt
+
+
+def _root(drag: Array, coupling: NDArray[np.complex128]) -> Array:
+    """Return the power series of the root of ``|B|^2 - (Im A)^2``, which begins positive."""
+    # A power of two, so that squares stay within the range of doubles and no digit changes.
+    unit = np.ldexp(1.0, np.frexp(np.abs(coupling[0]) + np.abs(drag[0]))[1])
+    b, a = coupling / unit, drag / unit
+    squares = (np.convolve(b, b.conj()).real - np.convolve(a, a))[: len(a)]
+    root = np.sqrt(squares[:1])
+    for square in squares[1:]:
+        inner = np.dot(root[1:], root[:0:-1])
+        root = np.append(root, (square - inner) / (2.0 * root[0]))
+    return np.asarray(unit * root)
 
 
 # ---------------------------------------------------------------- formulas
@@ -261,32 +299,12 @@ _Terms = dict[tuple[_Chain, ...], int]
 
 
 def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> str:
-    """Return both boundaries of a region as a formula, to an order.
+    """Return both boundaries of a region as a formula, to an order from 1 to 6.
 
-    Parameters
-    ----------
-    order : int
-        1 to 6.
-    n : int, optional
-        Number of the region; by default the letter n, for any region from 1.
-    damped : bool
-        True to have ``2 K y'`` in the equation.
-
-    Returns
-    -------
-    str
-        An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous
-        parts of A and B.  Sums run over all whole numbers other than 0 and n; between equal
-        harmonics stands what damping does, or nothing.
-
-    Raises
-    ------
-    BadInput
-        If the order or the region is out of range.
-
-    Notes
-    -----
-    Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
+    An ``aligned`` environment (amsmath), without dollar signs: lam2, then the homogeneous parts of
+    A and B.  Sums run over all whole numbers other than 0 and n; between equal harmonics stands
+    what damping does, or nothing.  Without a number of the region the letter n stands for any from
+    1.  Smith (7.25), (7.35), (7.49) are orders 1 and 2, expanded in the parameter.
     """
     region = _checked(order, n)
     if region == "0":
@@ -301,61 +319,16 @@ def boundary_latex(order: int, n: int | None = None, damped: bool = False) -> st
             *_parts("A", "n", "n", order, region, damped),
             *_parts("B", "n", "0", order, region, damped),
         ]
-    return _aligned([*lines, *_where(order, region, damped)])
+    body = " \\\\\n".join([*lines, *_where(order, region, damped)])
+    return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
 
 
-def solution_latex(order: int, n: int | None = None, damped: bool = False) -> str:
-    """Return the solution on a boundary as a formula, to an order.
-
-    Parameters
-    ----------
-    order : int
-        1 to 5.
-    n, damped
-        As for :func:`boundary_latex`.
-
-    Returns
-    -------
-    str
-        An ``aligned`` environment: y with the two amplitudes u, w of the resonant harmonics, and
-        the homogeneous parts of the other harmonics ``v_m``.
-
-    Raises
-    ------
-    BadInput
-        If the order or the region is out of range.
-
-    Notes
-    -----
-    Smith (7.14), (7.29)-(7.30) is order 1.  The amplitudes are an eigenvector of
-    ``[[A, B], [conj B, conj A]]``.
-    """
-    region = _checked(order, n, HIGHEST_FORMULA - 1)
-    wave = rf"e^{{i (m - {region}/2) \theta}}"
-    if region == "0":
-        lines = [r"y &= 1 + \sum_{m} v_{m} e^{i m \theta}"]
-    else:
-        plus, minus = (rf"e^{{{sign}i {region} \theta/2}}" for sign in ("", "-"))
-        mirrored = rf"\bar{{v}}_{{{region}-m}}"
-        lines = [
-            rf"y &= u {plus} + w {minus} + \sum_{{m}} \left(u v_{{m}} + w {mirrored}\right) {wave}"
-        ]
-    lines.append(rf"v_{{m}} &= {_sum_of('v', order, ',m')}")
-    end = "0" if region == "0" else "n"
-    for k in range(1, order + 1):
-        lines += _written(f"v_{{{k},m}}", _terms(k + 1, "m", end, damped, region), region, damped)
-    return _aligned([*lines, *_where(order + 1, region, damped)])
-
-
-def _checked(order: int, n: int | None, highest: int = HIGHEST_FORMULA) -> str:
+def _checked(order: int, n: int | None) -> str:
     """Return the region as it is written."""
-    if not is_whole(order, 1, highest):
-        raise bad(
-            "order",
-            repr(order),
-            f"a whole number from 1 to {highest}",
-            "the terms of higher orders are many: use perturbation_boundaries for their values",
-        )
+    if not is_whole(order, 1, HIGHEST_FORMULA):
+        expected = f"a whole number from 1 to {HIGHEST_FORMULA}"
+        fix = "the terms of higher orders are many: use perturbation_boundaries for their values"
+        raise bad("order", repr(order), expected, fix)
     if n is None:
         return "n"
     if not is_whole(n, 0):
@@ -369,13 +342,8 @@ def _fraction(n: int) -> str:
     return rf"\frac{{{n * n}}}{{4}}"
 
 
-def _sum_of(letter: str, order: int, more: str = "") -> str:
-    return " + ".join(f"{letter}_{{{k}{more}}}" for k in range(1, order + 1))
-
-
-def _aligned(lines: list[str]) -> str:
-    body = " \\\\\n".join(lines)
-    return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
+def _sum_of(letter: str, order: int) -> str:
+    return " + ".join(f"{letter}_{{{k}}}" for k in range(1, order + 1))
 
 
 def _where(order: int, region: str, damped: bool) -> Iterator[str]:
@@ -386,14 +354,11 @@ def _where(order: int, region: str, damped: bool) -> Iterator[str]:
         if order > 2 and not damped:
             yield r"\text{in the sums: } c_{m-l} &= 0 \quad (m = l)"
         if damped:
+            drag = "2 i m" if region == "0" else f"i (2 m - {region})"
             yield (
                 r"v_{m,l} &= c_{m-l} \quad (m \neq l), \qquad "
-                rf"v_{{m,m}} = {_drag('m', region)}"
+                rf"v_{{m,m}} = {drag} K"
             )
-
-
-def _drag(m: str, region: str) -> str:
-    return rf"2 i {m} K" if region == "0" else rf"i (2 {m} - {region}) K"
 
 
 def _parts(
@@ -407,22 +372,13 @@ def _parts(
 
 
 def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Terms:
-    """Return the words of an order between two harmonics, sums over P written out.
-
-    An end ``"m"`` stands for a harmonic that is not resonant: the column instead of the operator.
-    """
+    """Return the words of an order between two harmonics, sums over P written out."""
     found: Counter[tuple[_Chain, ...]] = Counter()
     resonant = ("0",) if region == "0" else ("0", "n")
     for coefficient, word in hill_recursion.WORDS[order]:
         stops = word.split(" V ")[1:-1]
         powers = [0 if stop == "P" else _power(stop) for stop in stops]
         sign = coefficient * (-1) ** (order + sum(powers))
-        head: tuple[_Chain, ...] = ()
-        if end == "m":
-            # Omega_k is what stands behind "P V" in h_(k+1): its first letter is a power of R.
-            if not powers[0]:
-                continue
-            sign, head, powers = -sign, (_Chain("m", "m", (powers[0],)),), powers[1:]
         for chains in _paths(end, start, powers, resonant):
             still = [chain for chain in chains if not chain.powers and chain.end == chain.start]
             if still and (not damped or region == "0"):
@@ -431,7 +387,7 @@ def _terms(order: int, end: str, start: str, damped: bool, region: str) -> _Term
             # What damping does to the harmonic 0 is the opposite of what it does to n.
             turned = still.count(_Chain("0", "0", ()))
             kept = tuple(_Chain("n", "n", ()) if c == _Chain("0", "0", ()) else c for c in kept)
-            found[(*head, *sorted(kept))] += sign * (-1) ** turned
+            found[tuple(sorted(kept))] += sign * (-1) ** turned
     return {key: value for key, value in sorted(found.items()) if value}
 
 
@@ -488,14 +444,12 @@ def _written(
 
 
 def _product(chains: tuple[_Chain, ...], region: str, damped: bool) -> str:
-    """Return a product of chains; sums in parentheses where they are not alone."""
+    """Return a product of chains; sums last, in parentheses where they are not alone."""
     counts = Counter(chains)
-    # The harmonic m of a column is not one to sum over.
-    column = chains[0].end == chains[0].start == "m"
     factors = []
-    for chain, count in sorted(counts.items(), key=_sums_last):
-        text = _chain_latex(chain, region, damped, column)
-        if chain.powers and len(counts) + count > 2 and chain.start != "m":
+    for chain, count in sorted(counts.items(), key=lambda item: (bool(item[0].powers), item[0])):
+        text = _chain_latex(chain, region, damped)
+        if chain.powers and len(counts) + count > 2:
             text = rf"\left({text}\right)"
         elif count > 1 and " " in text:
             text = f"({text})"
@@ -503,18 +457,10 @@ def _product(chains: tuple[_Chain, ...], region: str, damped: bool) -> str:
     return " ".join(factors)
 
 
-def _sums_last(item: tuple[_Chain, int]) -> tuple[bool, _Chain]:
-    chain = item[0]
-    return bool(chain.powers) and chain.start != "m", chain
-
-
-def _chain_latex(chain: _Chain, region: str, damped: bool, column: bool) -> str:
+def _chain_latex(chain: _Chain, region: str, damped: bool) -> str:
     """Return a chain as a sum over the harmonics between."""
-    if chain.start == "m":
-        return rf"\frac{{1}}{{{_level('m', chain.powers[0], region)}}}"
     names = [f"m_{i}" for i in range(1, len(chain.powers) + 1)]
-    if len(names) == 1 and not column:
-        names = ["m"]
+    names = ["m"] if len(names) == 1 else names
     stops = [chain.end, *names, chain.start]
     steps = " ".join(_step(end, start, region, damped) for end, start in pairwise(stops))
     if not names:

@@ -22,19 +22,11 @@ from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import Check, Result, provenance
 from ..core.sampling import finite_angles
-from .bloch import BEYOND, effective_operator, wave_columns
+from .bloch import BEYOND, effective_operator, level_distance, wave_columns
 from .boundaries import hill_boundaries
 from .checks import LARGEST, check_regions
-from .fourier_matrix import stacked
-from .perturbation import (
-    Components,
-    amplitudes_of,
-    check_order,
-    combined,
-    contraction,
-    parameters_of,
-    uniform,
-)
+from .fourier_matrix import couplings, stacked
+from .perturbation import Sums, check_order, combined, contraction, parameters_of
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -111,24 +103,6 @@ class BoundarySolution(Result):
             total = total * z + c
         return np.asarray((total * first).real)
 
-    def latex(self, any_region: bool = False) -> str:
-        """Return the solution to its order as a formula; see :func:`.series.solution_latex`.
-
-        Parameters
-        ----------
-        any_region : bool
-            True to have the letter n, for any region from 1, in place of the number.
-
-        Raises
-        ------
-        BadInput
-            If the solution is the exact one, or the order above 5.
-        """
-        from .series import solution_latex
-
-        region = None if any_region else self.n
-        return solution_latex(self.order or 0, region, self.damping > 0.0)
-
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the solution over a period."""
         from ..core.plotting import axes_or_new
@@ -184,12 +158,11 @@ def boundary_solution(
     Smith (7.13)-(7.36), (7.41)-(7.47): the columns of Bloch's wave operator and the eigenvector
     of the effective operator.
     """
-    functions, values = parameters_of(f, mu)
+    functions, amps, k, shape = parameters_of(f, mu, damping)
     (number,) = check_regions((n,))
     if end not in ("lower", "upper") or (end == "lower" and number == 0):
         expected = "'upper'" if number == 0 else "'lower' or 'upper'"
         raise bad("end", repr(end), expected, "region 0 has an upper end alone")
-    amps, k, shape = amplitudes_of(values, damping)
     if shape:
         raise bad("mu, damping", f"arrays of shape {shape}", "numbers", "call once for each point")
     point = np.array([float(v) for v in amps])
@@ -277,10 +250,9 @@ def _to_order(f: PeriodicFunction, n: int, end: End, order: int, damping: float)
     a, b = (item[:, None] for item in operator.components(at))
     reach = f.bound() + n * damping
     noise = np.array([4.0 * EPS * (0.25 * n * n + reach) + f.error])
-    parts = Components(n, order, a, b, noise, noise + reach, np.array([damped]))
     with np.errstate(all="ignore"):
-        ends = uniform(parts)
-        fall = float(contraction(np.abs(a) + np.abs(b), parts.distance)[0])
+        ends = Sums.of(n, order, a, b, noise, noise + reach).ends(np.array([damped]))
+        fall = float(contraction(np.abs(a) + np.abs(b), level_distance(n))[0])
     if ends.outside[0]:
         raise bad(
             "boundary_solution",
@@ -411,7 +383,7 @@ class _Others:
         self.slack, self.drag = slack + f.error, -2.0 * damping * k
         # Roundings of one factor of a path: the coefficient, the elimination, its way back.
         self.steps = 4.0 * (n + 2.0) * EPS
-        self.coupling = _couplings(f, k.size)
+        self.coupling = couplings(f, k.size)
         self.sizes = np.abs(self.coupling)
         self.levels = k * k - lam2 - f.mean + 1j * self.drag
         matrix = self.coupling[np.ix_(rest, rest)]
@@ -463,13 +435,3 @@ class _Others:
         apart = max(gap - self.slack, 1e-300)
         error = min(error, float(largest) * 2.0 * (residual + predicted) / apart)
         return _Solution(self.lam2, v, error, residual, predicted, degenerate)
-
-
-def _couplings(f: PeriodicFunction, size: int) -> Complex:
-    """Return ``-c_(k-l)`` for all pairs of harmonics, the mean left out."""
-    c = np.zeros(size, dtype=complex)
-    kept = min(f.harmonics + 1, size)
-    c[:kept] = -0.5 * (f.a - 1j * f.b)[:kept]
-    c[0] = 0.0
-    apart = np.subtract.outer(np.arange(size), np.arange(size))
-    return np.where(apart >= 0, c[np.abs(apart)], c[np.abs(apart)].conj())

@@ -18,10 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import BadInput, bad
 from ..core.periodic_function import PeriodicFunction
 from ..core.results import BROADCAST, Check, DeferredChecks, Result, provenance
-from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator
+from .bloch import BEYOND, HIGHEST, EffectiveOperator, effective_operator, level_distance
 from .boundaries import Ends, crossing, hill_boundaries, largest_exponent, sample_of
 from .checks import arguments, axes_over, check_function, check_regions
-from .perturbation import CONTRACTION, Components, Sums
+from .perturbation import CONTRACTION, Sums
 from .transfer import EPS
 
 if TYPE_CHECKING:
@@ -180,27 +180,17 @@ def _to_order(f: PeriodicFunction, n: int, mu: Array) -> tuple[Closing, Mask]:
     """Return the critical damping to order 8, ``|B| = |Im A|``, and where that does not settle."""
     operator = effective_operator((f,), n, HIGHEST + BEYOND, damped=True)
 
-    def gap(k: Array) -> Array:
-        sums = _sums(operator, f, mu, k)
-        return sums.split - sums.drag
+    def excess(k: Array, which: Index) -> Array:
+        a, b = operator.components(np.stack([mu[which], k]))
+        drag, split = a[:HIGHEST].imag.sum(axis=0), b[:HIGHEST].sum(axis=0)
+        return np.asarray(np.abs(drag) - np.abs(split))
 
     with np.errstate(all="ignore"):
-        first = gap(np.zeros_like(mu)) / n
+        split = -excess(np.zeros_like(mu), np.arange(mu.size))
         # Where the components overflow there is nothing to start from, and the ratio flags it.
-        start = np.where(np.isfinite(first), np.maximum(first, 0.0), 0.0)
-        before, value_before = np.zeros_like(mu), first * n
-        k = start
-        rate = np.full(mu.shape, float(n))
-        for _ in range(40):
-            value = gap(k)
-            step = k - before
-            steep = (value_before - value) / np.where(step == 0.0, 1.0, step)
-            rate = np.where((step != 0.0) & (steep > 0.25 * n) & (steep < 4.0 * n), steep, rate)
-            new = np.clip(k + value / rate, 0.0, 4.0 * start)
-            new = np.where(np.isfinite(new), new, k)
-            before, value_before, k = k, value, new
-            if np.all(np.abs(k - before) <= 2.0 * EPS * k):
-                break
+        split = np.where(np.isfinite(split), split, 0.0)
+        k = crossing(excess, np.zeros_like(mu), 4.0 * split / n)
+        rate = np.where(k > 0.0, np.clip(split / k, 0.25 * n, 4.0 * n), n)
         sums = _sums(operator, f, mu, k)
         left = sums.turned + sums.spread
         outside = ~(sums.ratio < CONTRACTION) | ~(left < 0.5 * max(n - 1, 1))
@@ -216,13 +206,13 @@ def _sums(operator: EffectiveOperator, f: PeriodicFunction, mu: Array, damping: 
     n, order = operator.n, operator.order - BEYOND
     a, b = operator.components(np.stack([mu, damping]))
     strength = np.abs(mu) * float(f.amplitudes[1:].sum())
-    distance = float({1: 2}.get(n, n - 1))
+    distance = level_distance(n)
     noise = f.error * np.abs(mu) + 8.0 * EPS * np.abs(a.imag).sum(axis=0)
     for k in range(len(b)):
         # Components that vanish term by term carry no round-off either.
         if np.any(operator.coupling[k] != 0.0):
             noise = noise + 8.0 * EPS * strength * (strength / distance) ** k
-    return Sums.of(Components(n, order, a, b, noise, strength, np.ones(mu.shape, dtype=bool)))
+    return Sums.of(n, order, a, b, noise, strength)
 
 
 # ---------------------------------------------------------------- the critical damping
@@ -279,17 +269,12 @@ def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) ->
     reach = float(f.amplitudes[1:].sum())
     scale = max(max(regions, default=1), float(flat.max(initial=0.0)))
     top = _FARTHEST * scale**2 / reach if reach > 0.0 else 0.0
-    rows = []
-    for n in regions:
-        row = _Opening(partial(_closing, f, n), n, flat)
-        if flat.size and top:
-            row.search(top)
-        rows.append(row)
+    rows = [_opening(partial(_closing, f, n), n, flat, top) for n in regions]
     full = (len(regions), *shape)
-    gap = np.array([row.gap for row in rows])
+    least, lam2, error, gap = (np.reshape([row[0][i] for row in rows], full) for i in range(4))
     return Thresholds(
         method="largest half trace",
-        error=np.reshape([row.error for row in rows], full),
+        error=error,
         error_norm="absolute, entrywise, of mu",
         checks={
             "critical damping there less K, over its error": Check(
@@ -298,105 +283,100 @@ def _least(f: PeriodicFunction, damping: ArrayLike, regions: tuple[int, ...]) ->
         },
         provenance=provenance(),
         damping=flat.reshape(shape),
-        mu=np.reshape([row.least for row in rows], full),
-        lam2=np.reshape([row.lam2 for row in rows], full),
-        absent=np.reshape([row.absent for row in rows], full).astype(bool),
+        mu=least,
+        lam2=lam2,
+        absent=np.isinf(least),
         regions=regions,
-        searched=np.array([row.searched for row in rows]),
+        searched=np.array([row[1] for row in rows]),
     )
 
 
-class _Opening:
-    """The least mu at which one region opens, entry by entry of K; absent before the search."""
+Solver = Callable[[Array], Closing]
 
-    def __init__(self, closing: Callable[[Array], Closing], n: int, damping: Array) -> None:
-        self.closing, self.n, self.damping = closing, n, damping
-        size = damping.size
-        self.least, self.lam2, self.error = (
-            np.full(size, np.inf),
-            np.full(size, np.nan),
-            np.zeros(size),
-        )
-        self.absent = np.ones(size, dtype=bool)
-        self.gap = np.full(size, np.nan)
-        self.searched = 0.0
 
-    def search(self, top: float) -> None:
-        """Bracket the first crossing of the critical damping up to ``top``, and refine it."""
-        damping, n = self.damping, self.n
-        drag = damping[damping > 0.0]
-        # Half traces grow with the first power of mu at most while mu f is small.
-        least = min(1.0, 0.125 * n * float(drag.min())) if drag.size else _SMALLEST
-        bottom = least * top / _FARTHEST / max(n, float(damping.max())) ** 2
-        count = int(np.ceil(_PER_DECADE * np.log10(top / bottom))) + 1
-        grid, highest = self._climb(np.geomspace(bottom, top, count))
-        self.searched = float(grid[-1])
-        # The first grid value above each K: the running maximum is in order.
-        first = np.searchsorted(highest, damping, side="right")
-        self.absent[:] = first >= grid.size
-        still = ~self.absent & (damping == 0.0)
-        self.least[still], self.lam2[still] = 0.0, 0.25 * n * n
-        there = np.flatnonzero(~self.absent & (damping > 0.0))
-        if there.size:
-            low = np.where(first[there] > 1, grid[np.maximum(first[there] - 2, 0)], 0.25 * bottom)
-            self._refine(there, np.log(low), np.log(grid[first[there]]))
+def _opening(closing: Solver, n: int, damping: Array, top: float) -> tuple[Array, float]:
+    """Return where region n opens at values of K, and the largest mu that was looked at.
 
-    def _sure(self, mu: Array) -> Array:
-        """Return the critical damping less its error."""
-        known = self.closing(mu)
-        return known.damping - known.error
+    The least mu, lam2, the error and what is left of K over its error, ``(4, n)``; infinite, NaN, 0
+    and NaN where there is no crossing of the critical damping up to ``top``.
+    """
+    out = np.tile([[np.inf], [np.nan], [0.0], [np.nan]], damping.size)
+    if not (damping.size and top):
+        return out, 0.0
+    drag = damping[damping > 0.0]
+    # Half traces grow with the first power of mu at most while mu f is small.
+    least = min(1.0, 0.125 * n * float(drag.min())) if drag.size else _SMALLEST
+    bottom = least * top / _FARTHEST / max(n, float(damping.max())) ** 2
+    count = int(np.ceil(_PER_DECADE * np.log10(top / bottom))) + 1
+    grid, highest = _climb(closing, np.geomspace(bottom, top, count), float(damping.max()))
+    # The first grid value above each K: the running maximum is in order.
+    first = np.searchsorted(highest, damping, side="right")
+    open_ = first < grid.size
+    out[:2, open_ & (damping == 0.0)] = [[0.0], [0.25 * n * n]]
+    there = np.flatnonzero(open_ & (damping > 0.0))
+    if there.size:
+        low = np.where(first[there] > 1, grid[np.maximum(first[there] - 2, 0)], 0.25 * bottom)
+        out[:, there] = _refined(closing, damping[there], np.log(low), np.log(grid[first[there]]))
+    return out, float(grid[-1])
 
-    def _climb(self, grid: Array) -> tuple[Array, Array]:
-        """Return the grid with the running maximum of the critical damping, as far as needed.
 
-        With the peaks between the values of the grid.  A decade at a time: small values of mu need
-        small matrices.
-        """
-        value = np.zeros(0)
-        for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
-            try:
-                value = np.concatenate([value, self._sure(part)])
-            except BadInput:
-                # Hill's matrix would be too large: the search ends here.
-                if not value.size:
-                    raise
-                break
-            if value.max() > self.damping.max():
-                break
-        grid = grid[: value.size]
-        peaks, tops = self._peaks(grid, value)
-        order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
-        grid, value = (np.concatenate(pair)[order] for pair in ((grid, peaks), (value, tops)))
-        return grid, np.maximum.accumulate(value)
+def _sure(closing: Solver, mu: Array) -> Array:
+    """Return the critical damping less its error."""
+    known = closing(mu)
+    return known.damping - known.error
 
-    def _peaks(self, grid: Array, value: Array) -> tuple[Array, Array]:
-        """Return the places of maxima near those on a grid, and the values there."""
-        inner = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] >= value[2:])) + 1
-        if not inner.size:
-            return np.zeros(0), np.zeros(0)
-        low, high = np.log(grid[inner - 1]), np.log(grid[inner + 1])
-        each = np.arange(inner.size)
-        for _ in range(3):
-            x = np.linspace(low, high, _ZOOM + 1)
-            tops = self._sure(np.exp(x.ravel())).reshape(x.shape)
-            best, step = tops.argmax(axis=0), (high - low) / _ZOOM
-            low, high = x[best, each] - step, x[best, each] + step
-        return np.exp(x[best, each]), tops[best, each]
 
-    def _refine(self, there: Index, low: Array, high: Array) -> None:
-        """Solve ``log K_crit(mu) = log K`` in log mu, and enter the solutions."""
-        wanted = self.damping[there]
+def _climb(closing: Solver, grid: Array, most: float) -> tuple[Array, Array]:
+    """Return the grid with the running maximum of the critical damping, as far as needed.
 
-        def excess(x: Array, which: Index) -> Array:
-            k = self.closing(np.exp(x)).damping
-            return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3)))
+    With the peaks between the values of the grid.  A decade at a time: small values of mu need
+    small matrices.
+    """
+    value = np.zeros(0)
+    for part in np.array_split(grid, -(-grid.size // _PER_DECADE)):
+        try:
+            value = np.concatenate([value, _sure(closing, part)])
+        except BadInput:
+            # Hill's matrix would be too large: the search ends here.
+            if not value.size:
+                raise
+            break
+        if value.max() > most:
+            break
+    grid = grid[: value.size]
+    peaks, tops = _peaks(closing, grid, value)
+    order = np.argsort(np.concatenate([grid, peaks]), kind="stable")
+    grid, value = (np.concatenate(pair)[order] for pair in ((grid, peaks), (value, tops)))
+    return grid, np.maximum.accumulate(value)
 
-        x = crossing(excess, low, high)
-        at, step = self.closing(np.exp(x)), 1e-4
-        with np.errstate(divide="ignore", invalid="ignore"):
-            up, down = (self.closing(np.exp(x + d)).damping for d in (step, -step))
-            slope = np.maximum((np.log(up) - np.log(down)) / (2.0 * step), 1e-3)
-        rounding = 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
-        self.least[there], self.lam2[there] = np.exp(x), at.lam2
-        self.error[there] = np.exp(x) * ((at.error + rounding) / (wanted * slope) + 4.0 * EPS)
-        self.gap[there] = np.abs(at.damping - wanted) / (at.error + rounding)
+
+def _peaks(closing: Solver, grid: Array, value: Array) -> tuple[Array, Array]:
+    """Return the places of maxima near those on a grid, and the values there."""
+    inner = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] >= value[2:])) + 1
+    if not inner.size:
+        return np.zeros(0), np.zeros(0)
+    low, high = np.log(grid[inner - 1]), np.log(grid[inner + 1])
+    each = np.arange(inner.size)
+    for _ in range(3):
+        x = np.linspace(low, high, _ZOOM + 1)
+        tops = _sure(closing, np.exp(x.ravel())).reshape(x.shape)
+        best, step = tops.argmax(axis=0), (high - low) / _ZOOM
+        low, high = x[best, each] - step, x[best, each] + step
+    return np.exp(x[best, each]), tops[best, each]
+
+
+def _refined(closing: Solver, wanted: Array, low: Array, high: Array) -> Array:
+    """Solve ``log K_crit(mu) = log K`` in log mu; the rows are those of :func:`_opening`."""
+
+    def excess(x: Array, which: Index) -> Array:
+        k = closing(np.exp(x)).damping
+        return np.asarray(np.log(np.maximum(k / wanted[which], 1e-3)))
+
+    x = crossing(excess, low, high)
+    at, step = closing(np.exp(x)), 1e-4
+    with np.errstate(divide="ignore", invalid="ignore"):
+        up, down = (closing(np.exp(x + d)).damping for d in (step, -step))
+        slope = np.maximum((np.log(up) - np.log(down)) / (2.0 * step), 1e-3)
+    noise = at.error + 8.0 * EPS * wanted * (1.0 + slope * np.abs(x))
+    error = np.exp(x) * (noise / (wanted * slope) + 4.0 * EPS)
+    return np.stack([np.exp(x), at.lam2, error, np.abs(at.damping - wanted) / noise])

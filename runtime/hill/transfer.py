@@ -29,6 +29,10 @@ Range = tuple[float, float]
 EPS = float(np.finfo(float).eps)
 _MOST_SEGMENTS = 2**16
 _NODE_COUNTS = np.arange(8, 25)
+# log (2q - 1)!! of them.
+_LOG_DOUBLE_FACTORIALS = np.array(
+    [lgamma(2 * q + 1) - q * log(2.0) - lgamma(q + 1) for q in _NODE_COUNTS]
+)
 # Neglected part of the interpolant; the end values see about its square (superconvergence).
 _NODE_TAIL = 1e-9
 # Largest sqrt(spread) * length and sqrt(size) * length of a segment: beyond these the Taylor
@@ -231,13 +235,7 @@ def normalised(m: Array, exponent: Exponents) -> tuple[Array, Exponents]:
 
 
 def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
-    """Expand the transfer matrices over a box ``(low, high)`` of each parameter.
-
-    Raises
-    ------
-    BadInput
-        If the box needs more than 65536 segments.
-    """
+    """Expand the transfer matrices over a box ``(low, high)`` of each parameter."""
     reach = max(abs(mu[0]), abs(mu[1]))
     short = f.truncated(0.02 * EPS / max(reach, 0.02))
     bound = float(np.sum(short.amplitudes))
@@ -270,12 +268,6 @@ def transfer(f: PeriodicFunction, lam2: Range, mu: Range) -> Transfer:
     )
 
 
-@lru_cache(maxsize=1)
-def _log_double_factorials() -> Array:
-    """Return log (2q - 1)!! of the node counts on offer."""
-    return np.array([lgamma(2 * q + 1) - q * log(2.0) - lgamma(q + 1) for q in _NODE_COUNTS])
-
-
 def _resolution(f: PeriodicFunction, spread: float, size: float, reach: float) -> tuple[int, int]:
     """Choose the number of segments and of nodes in each."""
     wanted = 2.0 * pi * max(sqrt(spread) / _SPREAD, sqrt(size) / _SIZE, 1.0)
@@ -295,7 +287,7 @@ def _resolution(f: PeriodicFunction, spread: float, size: float, reach: float) -
         # Legendre coefficient q of exp(i x t) is at most x^q / (2q - 1)!!.
         x = 0.5 * length * (waves + sqrt(size))
         with np.errstate(under="ignore", over="ignore", divide="ignore"):
-            logs = _NODE_COUNTS[:, None] * np.log(x) - _log_double_factorials()[:, None]
+            logs = _NODE_COUNTS[:, None] * np.log(x) - _LOG_DOUBLE_FACTORIALS[:, None]
             tails = np.minimum(1.0, np.exp(logs)) @ weights * (0.25 * length**2)
         enough = np.flatnonzero(tails <= _NODE_TAIL)
         if enough.size:

@@ -128,10 +128,7 @@ def _scales(
     values: Mapping[str, ArrayLike],
 ) -> Mapping[str, Array]:
     given = {name: np.asarray(values[name], dtype=float) for name in names}
-    result = function(**given, **fixed)
-    if len(returned) == 1:
-        result = (result,)
-    return {name: np.asarray(v) for name, v in zip(returned, result, strict=True)}
+    return _by_name(returned, function(**given, **fixed))
 
 
 def _modal_arrays(
@@ -140,23 +137,17 @@ def _modal_arrays(
     arrays: dict[str, Array | Callable[[Array], Array]] = {}
     if integrals is not None:
         arrays |= {name: partial(integrals, name) for name in integrals.names}
-    for kernel in ("modal_matrices", "modal_vectors"):
+    for kernel, dimension in (("modal_matrices", 2), ("modal_vectors", 1)):
         if kernel not in module.RETURNS:
             continue
         if modes is None or modes < 1:
             raise bad("modes", modes, "a number of modes, from 1", "set model.modes")
-        m = np.arange(1.0, modes + 1.0)
-        result = (
-            module.modal_matrices(m[:, None], m[None, :])
-            if kernel == "modal_matrices"
-            else module.modal_vectors(m)
-        )
-        names = module.RETURNS[kernel]
-        result = (result,) if len(names) == 1 else result
-        shape = (modes, modes) if kernel == "modal_matrices" else (modes,)
+        numbers = np.ix_(*[np.arange(1.0, modes + 1.0)] * dimension)
+        values = _by_name(module.RETURNS[kernel], getattr(module, kernel)(*numbers))
+        shape = (modes,) * dimension
         arrays |= {
             name: np.array(np.broadcast_to(value, shape), dtype=float)
-            for name, value in zip(names, result, strict=True)
+            for name, value in values.items()
         }
     for _, _, _, _, name in rows:
         if name not in arrays:
@@ -174,16 +165,35 @@ def _integrals(
         return None
     if basis is None:
         raise bad("basis", "none", "shapes for the module's integrals", "pass a basis")
-    wanted = list(inspect.signature(module.place).parameters)[1:]
-    missing = sorted(set(wanted) - set(geometry))
+    lengths = {name: geometry[name] for name in _arguments(module.place, geometry)}
+    return _Integrals(module, basis, lengths, {row[4] for row in rows})
+
+
+def _arguments(function: Callable[..., Any], given: Collection[str]) -> list[str]:
+    """Return the arguments behind the angle, refused where one is not given."""
+    wanted = list(inspect.signature(function).parameters)[1:]
+    missing = sorted(set(wanted) - set(given))
     if missing:
         raise bad("geometry", f"none for {missing}", "a value each", "supply them")
-    names = {row[4] for row in rows}
-    return _Integrals(module, basis, {name: geometry[name] for name in wanted}, names)
+    return wanted
+
+
+class _Remembered:
+    """A function of angle that keeps its last values: all terms share one evaluation."""
+
+    def __init__(self, function: Callable[[Array], dict[str, Array]]) -> None:
+        self._function = function
+        self._last: tuple[Array, dict[str, Array]] | None = None
+
+    def __call__(self, theta: Array) -> dict[str, Array]:
+        last = self._last
+        if last is None or not np.array_equal(last[0], theta):
+            last = self._last = (theta.copy(), self._function(theta))
+        return last[1]
 
 
 class _Integrals:
-    """Integrals over shapes that follow a support, computed once for all terms."""
+    """Integrals over shapes that follow a support, each computed once for all terms."""
 
     def __init__(
         self,
@@ -192,92 +202,80 @@ class _Integrals:
         geometry: Mapping[str, float],
         names: Collection[str],
     ) -> None:
-        self._place, self._basis, self._geometry = module.place, basis, geometry
+        self.names = names
+        self._arrays = _Remembered(partial(_at_place, module.place, geometry))
+        self._basis = basis
         self._products: tuple[str, ...] = module.RETURNS.get("basis_products", ())
         self._multiply: Callable[..., Any] = getattr(module, "basis_products", tuple)
-        self.names = names
-        self._last: tuple[Array, Array, dict[str, Array]] | None = None
 
     def __call__(self, name: str, theta: Array) -> Array:
-        last = self._last
-        if last is None or not np.array_equal(last[0], theta):
-            place = np.asarray(self._place(theta, **self._geometry))
-            # A support at the very end, beyond it by rounding.
-            place = np.where(place <= 1.0 + _ROUND, np.minimum(place, 1.0), place)
-            last = self._last = (theta.copy(), place, {})
-        _, place, arrays = last
-        if name in self._products:
-            return self._product(name, place, arrays)
+        arrays = self._arrays(theta)
         if name not in arrays:
-            arrays[name] = self._basis.array(name, place)
+            if name in self._products:
+                arrays |= self._multiply_vectors(theta)
+            else:
+                arrays[name] = self._basis.array(name, arrays["place"])
         return arrays[name]
 
-    def _product(self, name: str, place: Array, arrays: dict[str, Array]) -> Array:
-        """Return a matrix that is a product of vectors."""
-        if name not in arrays:
-            given = {}
-            for argument in inspect.signature(self._multiply).parameters:
-                vector, _, end = argument.rpartition("_")
-                if vector not in arrays:
-                    arrays[vector] = self._basis.array(vector, place)
-                value = arrays[vector]
-                given[argument] = value[..., None] if end == "row" else value[..., None, :]
-            products = self._multiply(**given)
-            products = (products,) if len(self._products) == 1 else products
-            arrays |= dict(zip(self._products, products, strict=True))
-        return arrays[name]
+    def _multiply_vectors(self, theta: Array) -> dict[str, Array]:
+        """Return the matrices that are products of vectors."""
+        given = {}
+        for argument in inspect.signature(self._multiply).parameters:
+            vector, _, end = argument.rpartition("_")
+            value = self(vector, theta)
+            given[argument] = value[..., None] if end == "row" else value[..., None, :]
+        return _by_name(self._products, self._multiply(**given))
 
 
-class _Shared:
-    """An emitted function of angle, evaluated once for all terms at one array of angles."""
+def _at_place(
+    function: Callable[..., Array], geometry: Mapping[str, float], theta: Array
+) -> dict[str, Array]:
+    """Return the support's place at each angle, where its integrals are to be kept beside it."""
+    place = np.asarray(function(theta, **geometry))
+    # A support at the very end, beyond it by rounding.
+    return {"place": np.where(place <= 1.0 + _ROUND, np.minimum(place, 1.0), place)}
 
-    def __init__(
-        self,
-        function: Callable[..., Any],
-        names: tuple[str, ...],
-        fixed: Mapping[str, float],
-        external: Mapping[str, Callable[[Array], Array]],
-    ) -> None:
-        self.names = names
-        self._function, self._fixed, self._external = function, fixed, external
-        self._last: tuple[Array, dict[str, Array]] | None = None
 
-    def __call__(self, theta: Array) -> dict[str, Array]:
-        last = self._last
-        if last is None or not np.array_equal(last[0], theta):
-            passed = {name: given(theta) for name, given in self._external.items()}
-            result = self._function(theta, **self._fixed, **passed)
-            values = (result,) if len(self.names) == 1 else result
-            table = {n: np.asarray(v) for n, v in zip(self.names, values, strict=True)}
-            last = self._last = (theta.copy(), table)
-        return last[1]
+def _by_name(names: tuple[str, ...], values: Any) -> dict[str, Array]:
+    """Return what an emitted function gave by name; a single value stands alone."""
+    values = (values,) if len(names) == 1 else values
+    return {name: np.asarray(value) for name, value in zip(names, values, strict=True)}
+
+
+def _kernel_values(
+    function: Callable[..., Any],
+    names: tuple[str, ...],
+    fixed: Mapping[str, float],
+    external: Mapping[str, Callable[[Array], Array]],
+    theta: Array,
+) -> dict[str, Array]:
+    passed = {name: given(theta) for name, given in external.items()}
+    return _by_name(names, function(theta, **fixed, **passed))
 
 
 def _angle_kernels(
     module: ModuleType,
     geometry: Mapping[str, float],
     external: Mapping[str, Callable[[Array], Array]],
-) -> dict[str, _Shared]:
+) -> dict[str, _Remembered]:
     """Return, for each function of angle, the emitted kernel that gives it."""
-    kernels: dict[str, _Shared] = {}
+    kernels: dict[str, _Remembered] = {}
     for kernel, names in module.RETURNS.items():
         if not kernel.endswith("_functions"):
             continue
         function = getattr(module, kernel)
-        wanted = list(inspect.signature(function).parameters)[1:]
-        missing = sorted(set(wanted) - set(geometry) - set(external))
-        if missing:
-            raise bad("geometry", f"none for {missing}", "a value each", "supply them")
+        wanted = _arguments(function, {*geometry, *external})
         fixed = {name: geometry[name] for name in wanted if name in geometry}
         passed = {name: external[name] for name in wanted if name in external}
-        kernels |= dict.fromkeys(names, _Shared(function, names, fixed, passed))
+        shared = _Remembered(partial(_kernel_values, function, names, fixed, passed))
+        kernels |= dict.fromkeys(names, shared)
     return kernels
 
 
 def _function(
     angle: str | None,
     modal: Array | Callable[[Array], Array],
-    shared: Mapping[str, _Shared],
+    shared: Mapping[str, _Remembered],
     external: Mapping[str, Callable[[Array], Array]],
 ) -> Array | Callable[[Array], Array]:
     """Return the modal array, or the function of angle that multiplies it."""
@@ -288,16 +286,13 @@ def _function(
     return partial(_multiplied, factor, modal)
 
 
-def _of_kernel(kernel: _Shared, name: str, theta: Array) -> Array:
+def _of_kernel(kernel: _Remembered, name: str, theta: Array) -> Array:
     return kernel(theta)[name]
 
 
 def _multiplied(
     factor: Callable[[Array], Array], modal: Array | Callable[[Array], Array], theta: Array
 ) -> Array:
-    return _each(factor(theta), modal(theta) if callable(modal) else modal[None])
-
-
-def _each(values: Array, arrays: Array) -> Array:
-    """Return each array times the value at its angle."""
+    """Return the array, or each array, times the value at its angle."""
+    values, arrays = factor(theta), modal(theta) if callable(modal) else modal[None]
     return values.reshape(*values.shape, *(1,) * (arrays.ndim - 1)) * arrays

@@ -27,15 +27,13 @@ from boundary_cases import (
 from boundary_truth import MP
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.hill import boundary_series, perturbation_boundaries
-from elastolink.runtime.hill.bloch import effective_operator
-from omitted_orders import FORMS, real
-from smith_chapter_8.exact import exact_operator
+from omitted_orders import real
 
 EPS = float(np.finfo(float).eps)
 POINTS = tuple(Fraction(1, 2**k) for k in (3, 4, 5, 6, 7, 8, 10, 12, 15, 20))
 
 
-def found_at(problem, form, order, points):
+def found_at(problem, order, points):
     """Return lower and upper ends of the run-time function on the curve."""
     parts = [doubles(f) for f in problem.functions]
     mu = [np.array([float(w * t) for t in points]) for w in problem.weights]
@@ -47,13 +45,12 @@ def found_at(problem, form, order, points):
         (problem.n,),
         order,
         drag,
-        form,
         outside="value",
     )
     return found.lower[0], found.upper[0]
 
 
-def floor(problem, form, t):
+def floor(problem, t):
     """Round-off of the level, of the shift and of the root, whose terms may cancel near the tip."""
     reach = sum(
         abs(w) * (abs(f.mean) + sum(map(abs, (*f.cosine, *f.sine))))
@@ -65,23 +62,20 @@ def floor(problem, form, t):
         _, root, square = problem.expansion(2)
         width = float(root[1] * t) * float(square) ** 0.5
         steep += size / width
-        if form == "series":
-            # Each coefficient of the root divides by the first once more.
-            steep *= 2.0 * size / width
     return EPS * (0.25 * problem.n**2 + 8.0 * size * steep)
 
 
 def all_orders(problem):
     """Compare the ends with the exact forms, whose orders ``test_boundary_orders`` proves."""
-    for form, order in product(FORMS, ORDERS):
-        ends = found_at(problem, form, order, POINTS)
+    for order in ORDERS:
+        ends = found_at(problem, order, POINTS)
         for side in (-1, 1) if problem.n else (1,):
             for t, value in zip(POINTS, ends[(side + 1) // 2], strict=True):
-                exact = problem.approximation(form, order, side, t)
+                exact = problem.approximation("uniform", order, side, t)
                 if exact is None:
                     assert np.isnan(value)
                 else:
-                    assert abs(MP.mpf(value) - exact) <= floor(problem, form, t)
+                    assert abs(MP.mpf(value) - exact) <= floor(problem, t)
 
 
 FAST = [
@@ -132,33 +126,11 @@ def test_the_coefficients_of_the_series(name):
             assert np.all(gap <= figure)
 
 
-@pytest.mark.parametrize(
-    ("name", "damped"),
-    [("even and odd", True), *slow([("two mixed", False), ("three", True)])],
-)
-def test_the_operator_coefficient_by_coefficient(name, damped):
-    """A and B of degree 1 to 8 beside the exact ones, relative to the largest of their degree."""
-    for n in (0, 1, 2, 5):
-        exact = exact_operator(PARTS[name], n, 8, damped)
-        found = effective_operator([doubles(f) for f in PARTS[name]], n, 8, damped)
-        for k in range(8):
-            assert [tuple(row) for row in found.exponents[k].tolist()] == list(exact.exponents[k])
-            scale = max(abs(complex(*map(float, pair))) for pair in exact.diagonal[k])
-            for ours, theirs in (
-                (found.diagonal[k], exact.diagonal[k]),
-                (found.coupling[k], exact.coupling[k]),
-            ):
-                expected = np.array([complex(*map(float, pair)) for pair in theirs])
-                scale = max(scale, np.abs(expected).max())
-                assert np.abs(ours - expected).max() <= 64 * EPS * scale
-
-
 @pytest.mark.parametrize("share", [1.02, 3.0])
 def test_beyond_critical_damping(share):
     problem = curve((function("mixed"),), 1, share)
     for order in ORDERS:
-        for form in FORMS:
-            low, high = found_at(problem, form, order, POINTS[6:])
-            assert np.all(np.isnan(low) & np.isnan(high))
+        low, high = found_at(problem, order, POINTS[6:])
+        assert np.all(np.isnan(low) & np.isnan(high))
     with pytest.raises(BadInput, match="damping"):
         boundary_series(doubles(function("mixed")), 1, 4, float(problem.drag[0]))

@@ -36,31 +36,6 @@ def conditions(lib, xi, beta):
     return rows
 
 
-def naive_modes(place, roots, x):
-    """Return the textbook's modes in doubles, of unit square by quadrature, shape (nx, n).
-
-    The null vector of the six equations, each divided by its largest entry.
-    """
-    found = []
-    nodes, weights = gauss(place, 160)
-    for beta in roots:
-        rows = np.array(conditions(np, place, beta))
-        rows /= np.max(np.abs(rows), axis=1, keepdims=True)
-        size = np.max(np.abs(rows), axis=0)
-        factors = np.linalg.svd(rows / size)[2][-1] / size
-
-        def mode(eta, factors=factors, beta=beta):
-            waves = _waves(np, beta * eta, 0)
-            before = factors[0] * waves[0] + factors[1] * waves[2]
-            beyond = sum(f * w for f, w in zip(factors[2:], waves, strict=True))
-            return np.where(eta <= place, before, beyond)
-
-        # Where no digit is left a mode may be zero, and not a number then.
-        with np.errstate(invalid="ignore"):
-            found.append(mode(x) / np.sqrt(np.sum(weights * mode(nodes) ** 2)))
-    return np.stack(found, axis=-1)
-
-
 def gauss(place, count):
     """Return nodes on both sides of the support, and weights."""
     s, w = np.polynomial.legendre.leggauss(count)

@@ -174,7 +174,8 @@ def foreshortening(entry):
     x, field = sp.symbols("x u")
     unit = {"i_hat": sp.Matrix([1, 0]), "j_hat": sp.Matrix([0, 1]), "x": x, "u": field}
     same(entry.printed.value(**{**NAMES, **unit}), R + x * ALONG + field * ACROSS)
-    inward, retreat = (float(part[0, 0]) for part in FreeFreeModes(1).shortening)
+    parts = FreeFreeModes(1).slope_integrals
+    inward, retreat = (float(parts[name][0, 0]) for name in ("inward", "retreat"))
     quoted([-2 * inward, retreat], "3.05", "12.37")
     pull = truth.integral(0, 1, 1, (1, 1)) / 8 - truth.integral(2, 1, 1, (1, 1)) / 2
     same(-2 * inward, float(pull), 1e-14)

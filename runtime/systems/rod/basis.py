@@ -8,15 +8,14 @@ of the shapes over the rod, functions of xi alone; the angle enters through xi(t
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from numbers import Real
 from reprlib import repr as short
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.errors import BadInput, Problem, bad
-from ...core.inputs import numbers, require_whole
+from ...core.inputs import is_finite, numbers, require_whole
 
 Array = NDArray[np.float64]
 
@@ -136,30 +135,15 @@ def require_numbers(
 ) -> None:
     """Refuse what is not a finite number above 0, all such at once.
 
-    Parameters
-    ----------
-    values : mapping
-        By name.
-    zero : collection of str
-        Names of those that may be 0.
-    signed : collection of str
-        Names of those that may have either sign, but not be 0.
+    Those of ``zero`` may be 0; those of ``signed`` may have either sign, but not be 0.
     """
     problems = []
     for name, value in values.items():
-        try:
-            number = float(value) if isinstance(value, Real) else np.nan
-        except OverflowError:
-            number = np.inf
-        if name in signed:
-            usable, expected = abs(number) > 0, "other than 0"
-        elif name in zero:
-            usable, expected = number >= 0, "from 0"
-        else:
-            usable, expected = number > 0, "above 0"
-        if not (usable and np.isfinite(number)):
-            expected = f"a finite number {expected}"
-            problems.append(Problem(name, short(value), expected, "correct it"))
+        allowed = "other than 0" if name in signed else "from 0" if name in zero else "above 0"
+        number: Any = value if is_finite(value) else np.nan
+        usable = {"other than 0": abs(number) > 0, "from 0": number >= 0, "above 0": number > 0}
+        if not usable[allowed]:
+            problems.append(Problem(name, short(value), f"a finite number {allowed}", "correct it"))
     if problems:
         raise BadInput(*problems)
 

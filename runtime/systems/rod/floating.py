@@ -129,10 +129,8 @@ class FreeFreeRod(Constrained):
             raise bad("q", f"shape {np.shape(q)}", f"(..., {self.size})", "give all coordinates")
         length = self.linkage.rod
         theta = self.speed * np.asarray(t, dtype=float)
-        linkage = self.linkage
-        line = np.arctan2(
-            linkage.crank * np.sin(theta), linkage.frame + linkage.crank * np.cos(theta)
-        )
+        crank, frame = self.linkage.crank, self.linkage.frame
+        line = np.arctan2(crank * np.sin(theta), frame + crank * np.cos(theta))
         lean = q[..., 2] - line
         centre = q[..., 1] * np.cos(line) - q[..., 0] * np.sin(line)
         bent = length * q[..., 3:] @ self.modes(eta)[0].T
@@ -203,26 +201,19 @@ def free_free_rod(
     Linearised about the undeformed rod this is :func:`rod_system` on :class:`FreeFreeBasis` with
     the same ``drop``.
     """
-    positive = {
-        "crank_ratio": crank_ratio,
+    numbers = {
         "frame": frame,
-        "length": length,
-        "bending_stiffness": bending_stiffness,
-        "mass_per_length": mass_per_length,
-    }
-    require_numbers({**positive, "speed": speed}, signed=("speed",))
-    dropped = require_drop(drop, DROPPED)
-    shapes = FreeFreeModes(modes)
-    linkage = QuickReturn(frame=frame, crank=crank_ratio * frame, rod=length)
-    linkage.require_full_turn()
-    parameters = {
-        "frame": frame,
-        "crank": linkage.crank,
         "length": length,
         "bending_stiffness": bending_stiffness,
         "mass_per_length": mass_per_length,
         "speed": speed,
     }
+    require_numbers({"crank_ratio": crank_ratio, **numbers}, signed=("speed",))
+    dropped = require_drop(drop, DROPPED)
+    shapes = FreeFreeModes(modes)
+    linkage = QuickReturn(frame=frame, crank=crank_ratio * frame, rod=length)
+    linkage.require_full_turn()
+    parameters = {**numbers, "crank": linkage.crank}
     system = _equations(shapes, linkage, parameters, dropped, provenance or {})
     rod = FreeFreeRod(
         **{f.name: getattr(system, f.name) for f in fields(Constrained)},
@@ -255,7 +246,6 @@ def _equations(
     """Return the equations of the emitted module for so many modes."""
     emitted = find_module(ModelSpec("quick_return", "free_free", ("rod",), modes.size, dropped))
     at_block = _AtBlock(modes, linkage, float(parameters["speed"]))
-    inward, retreat = modes.shortening
     return Constrained.from_module(
         emitted.module,
         parameters,
@@ -263,8 +253,8 @@ def _equations(
         modes={
             "left": modes.left_values,
             "stiffness": modes.roots**4,
-            "inward": inward,
-            "retreat": retreat,
+            "inward": modes.slope_integrals["inward"],
+            "retreat": modes.slope_integrals["retreat"],
         },
         drop=emitted.dropped,
         provenance={**origin, **emitted.provenance},

@@ -34,20 +34,14 @@ _slope_squares: _Function = emitted.slope_squares
 # pi to twice the digits of a double: the multiples that roots start from are rounded once.
 _PI = Fraction(pi) + Fraction(1.2246467991473532e-16)
 _NEWTON = 8
-_MOST = 1000
-_WHY = "the beam has long ceased to be slender for such modes"
-
-
-@dataclass(frozen=True)
-class _Roots:
-    """Roots ``start + offset`` of cos b cosh b = 1, and the parity of their modes."""
-
-    roots: Array
-    parity: Array
 
 
 @lru_cache(maxsize=32)
-def _solved(count: int) -> _Roots:
+def _solved(count: int) -> tuple[Array, Array]:
+    """Return the first roots of cos b cosh b = 1, and the parity of their modes.
+
+    A root is its start plus an offset: the sum is rounded correctly, or nearly so.
+    """
     exact = [_PI * (2 * i + 1) / 2 for i in range(1, count + 1)]
     start = np.array([float(value) for value in exact])
     rest = np.array([float(value - Fraction(float(value))) for value in exact])
@@ -59,28 +53,7 @@ def _solved(count: int) -> _Roots:
     roots = start + (offset + rest)
     for array in (roots, parity):
         array.flags.writeable = False
-    return _Roots(roots, parity)
-
-
-def free_free_roots(count: int) -> Array:
-    """Return the first positive roots of ``cos b cosh b = 1``, rounded correctly or nearly so.
-
-    Parameters
-    ----------
-    count : int
-        How many.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        Mode i of a free-free beam of length L has ``k_i = b_i / L`` (Beale & Scott (39)).
-
-    Raises
-    ------
-    BadInput
-        If the count is not a whole number from 1 to 1000.
-    """
-    return _solved(require_modes(count, _MOST, _WHY)).roots
+    return roots, parity
 
 
 @dataclass(frozen=True)
@@ -106,17 +79,18 @@ class FreeFreeModes:
 
     def __post_init__(self) -> None:
         """Refuse a size that is none."""
-        object.__setattr__(self, "size", require_modes(self.size, _MOST, _WHY))
+        why = "the beam has long ceased to be slender for such modes"
+        object.__setattr__(self, "size", require_modes(self.size, 1000, why))
 
     @cached_property
     def roots(self) -> Array:
-        """Roots b_i, shape ``(size,)``."""
-        return _solved(self.size).roots
+        """Roots b_i of ``cos b cosh b = 1``, Beale & Scott (39), shape ``(size,)``."""
+        return _solved(self.size)[0]
 
     @cached_property
     def parity(self) -> Array:
         """1 for modes that are even about the middle, -1 for odd ones, shape ``(size,)``."""
-        return _solved(self.size).parity
+        return _solved(self.size)[1]
 
     @cached_property
     def _constants(self) -> tuple[Array, Array, Array, Array]:
@@ -156,16 +130,15 @@ class FreeFreeModes:
         phase, amplitude, weight, _ = self._constants
         return _modes(eta, self.roots, phase, self.parity, amplitude, weight)  # type: ignore[return-value]
 
-    @property
-    def slope_integrals(self) -> tuple[Array, Array, Array]:
-        """``int s^k psi_i' psi_j' ds`` for k = 0, 1, 2, s from the middle; ``(size, size)`` each.
-
-        By Green's identity from the end values, no quadrature.
-        """
-        return self._of_slopes["plain"], self._of_slopes["first"], self._of_slopes["second"]
-
     @cached_property
-    def _of_slopes(self) -> dict[str, Array]:
+    def slope_integrals(self) -> dict[str, Array]:
+        """Integrals over products of slopes, by Green's identity; ``(size, size)`` each.
+
+        With s from the middle: ``plain``, ``first``, ``second`` are ``int s^k psi_i' psi_j' ds``
+        for k = 0, 1, 2; ``inward`` and ``retreat`` are what products of two modes add to the
+        foreshortening, ``int s alpha ds`` and alpha at the left end, where ``alpha' = -psi_i'
+        psi_j' / 2`` has no mean.
+        """
         b, p, ends = self.roots, self.parity, self.end_slopes
         rows, columns = np.triu_indices(self.size, 1)
         pairs = (array[pick] for array in (b, ends, p) for pick in (rows, columns))
@@ -179,27 +152,13 @@ class FreeFreeModes:
             integrals[name][rows, columns] = integrals[name][columns, rows] = values
         return integrals
 
-    @property
-    def shortening(self) -> tuple[Array, Array]:
-        """What products of two modes add to the foreshortening, ``(size, size)`` each.
-
-        ``int s alpha ds`` and alpha at the left end, where ``alpha' = -psi_i' psi_j' / 2`` has no
-        mean.
-        """
-        return self._of_slopes["inward"], self._of_slopes["retreat"]
-
     def tension(self) -> Array:
-        """Return ``int (1 - eta^2)/2 psi_i' psi_j'``, the tension of a rod that turns about a pin.
-
-        Returns
-        -------
-        ndarray, shape (size, size)
-            At ``eta = s + 1/2``, in the integrals over s.
-        """
-        plain, first, second = self.slope_integrals
-        return 0.375 * plain - 0.5 * first - 0.5 * second
+        """Return ``int (1 - eta^2)/2 psi_i' psi_j'``, the tension of a rod turning about a pin."""
+        parts = self.slope_integrals
+        return 0.375 * parts["plain"] - 0.5 * parts["first"] - 0.5 * parts["second"]
 
 
+@dataclass(frozen=True)
 class FreeFreeBasis:
     """Free-free modes bent through the pin and the block; see :class:`MovingBasis`.
 
@@ -208,19 +167,16 @@ class FreeFreeBasis:
     that Beale & Scott conjecture (section 3.1).
     """
 
-    def __init__(self, size: int) -> None:
-        """Choose how many modes."""
-        self._modes = FreeFreeModes(size)
+    size: int
 
-    @property
-    def size(self) -> int:
-        """Number of shapes."""
-        return self._modes.size
+    def __post_init__(self) -> None:
+        """Refuse a number of modes that is none."""
+        object.__setattr__(self, "size", self.modes.size)
 
-    @property
+    @cached_property
     def modes(self) -> FreeFreeModes:
         """The modes that the shapes are made of."""
-        return self._modes
+        return FreeFreeModes(self.size)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -228,21 +184,7 @@ class FreeFreeBasis:
         return tuple(f"free-free {i}" for i in range(1, self.size + 1))
 
     def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
-        """Return the shapes or a derivative by eta, to the third.
-
-        Parameters
-        ----------
-        x : ndarray
-            Places eta on the rod, from 0 to 1, shape ``(nx,)``.
-        place : ndarray
-            Places xi of the block, shape ``(nt,)``.
-        derivative : int
-            Which derivative by eta.
-
-        Returns
-        -------
-        ndarray
-            Shape ``(nt, nx, n)``.
+        """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
 
         Raises
         ------
@@ -253,9 +195,9 @@ class FreeFreeBasis:
         lean, _ = self._lean(place)
         points = require_points(x)
         eta = points[:, None]
-        of_mode = self._modes(points)[derivative]
+        of_mode = self.modes(points)[derivative]
         if derivative == 0:
-            return of_mode - self._modes.left_values - eta * lean[:, None, :]
+            return of_mode - self.modes.left_values - eta * lean[:, None, :]
         taken = lean[:, None, :] if derivative == 1 else 0.0
         return np.broadcast_to(of_mode - taken, (len(lean), *of_mode.shape)).copy()
 
@@ -272,7 +214,7 @@ class FreeFreeBasis:
         """
         require_array(name)
         lean, rate = self._lean(place)
-        left, none = np.broadcast_to(self._modes.left_values, lean.shape), np.zeros_like(lean)
+        left, none = np.broadcast_to(self.modes.left_values, lean.shape), np.zeros_like(lean)
         if name == "overlap":
             return np.eye(self.size) + _straight(left, lean, left, lean)
         if name == "drift":
@@ -280,7 +222,7 @@ class FreeFreeBasis:
         if name == "drift_drift":
             return _straight(none, rate, none, rate)
         if name == "bending":
-            elastic = np.diag(self._modes.roots**4)
+            elastic = np.diag(self.modes.roots**4)
             return np.broadcast_to(elastic, (len(lean), *elastic.shape)).copy()
         if name == "bending_drift":
             return np.zeros((*lean.shape, self.size))
@@ -288,14 +230,14 @@ class FreeFreeBasis:
             # int (1 - eta^2)/2 psi' = -psi(0)/2 by parts, int (1 - eta^2)/2 = 1/3
             cross = _outer(left / 2, lean)
             cross = cross + np.swapaxes(cross, -1, -2)
-            return self._modes.tension() + cross + _outer(lean, lean) / 3.0
+            return self.modes.tension() + cross + _outer(lean, lean) / 3.0
         return -left / 2 - lean / 3 if name == "moment" else -left - lean / 2
 
     def _lean(self, place: Array) -> tuple[Array, Array]:
         """Return the slope of the line through pin and block on each mode, and its rate by xi."""
         xi = require_places(place)
-        value, slope, _, _ = self._modes(xi)
-        lean = (value - self._modes.left_values) / xi[:, None]
+        value, slope, _, _ = self.modes(xi)
+        lean = (value - self.modes.left_values) / xi[:, None]
         return lean, (slope - lean) / xi[:, None]
 
 

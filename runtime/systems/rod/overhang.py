@@ -7,18 +7,16 @@ over the modes is closed: Green's identity leaves values at pin, block and tip.
 from __future__ import annotations
 
 import inspect
-from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import TYPE_CHECKING, ClassVar
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....generated import quick_return_overhang_modes as emitted
 from ...core.errors import bad
-from ...core.inputs import numbers
 from ...core.results import Check, DeferredChecks, Result, provenance
 from .basis import (
     Array,
@@ -47,10 +45,9 @@ _ROUND = float(np.finfo(float).eps)
 _TINY = float(np.finfo(float).tiny)
 _NEWTON_STEPS = 80  # halving alone needs fewer than that
 _LAST_STEP = 1e-10  # the next of Newton's corrections is its square, times a factor
-_LARGEST = 1e5  # value below which roots are counted
 # Errors of a frequency, in roundings: twice that of the root, one, and three of the factors.
 _FREQUENCY_ERROR = 5.0
-_KEPT = 8  # arrays of places whose modes a basis remembers
+_KEPT = 8  # arrays of places whose modes and integrals are remembered
 # Over two modes: name, and the sign that an exchange of the modes brings.
 _PAIRS = {
     "drift": -1,
@@ -59,7 +56,6 @@ _PAIRS = {
     "tension": 1,
     "drift_rate": -1,
 }
-_OWN_NAMES = {"moment": "moment_integral", "mean": "mean"}
 
 
 @lru_cache(maxsize=8)
@@ -150,31 +146,13 @@ def overhang_roots(place: ArrayLike, modes: int) -> Array:
     return roots.reshape(len(xi), modes)
 
 
-def root_count(place: ArrayLike, beta: ArrayLike) -> NDArray[np.int64]:
-    """Return how many roots lie below a value: Wittrick and Williams' count.
+def root_count(place: Array, beta: Array) -> NDArray[np.int64]:
+    """Return how many roots lie below values: Wittrick and Williams' count.
 
-    Parameters
-    ----------
-    place : array_like
-        Places xi of the block; broadcasts with ``beta``.
-    beta : array_like
-        Values, from 0 to 1e5.
-
-    Returns
-    -------
-    ndarray of int
-        Roots of the two bays held at the block, and one more where the stiffness against a slope
-        at the block is negative.
-
-    Raises
-    ------
-    BadInput
-        If the block is not on the rod, or a value is not from 0 to 1e5.
+    The roots of the two bays held at the block, and one more where the stiffness against a slope
+    at the block is negative; ``place`` and ``beta`` broadcast.
     """
-    places, values = numbers("place", place), numbers("beta", beta)
-    if not np.all((values >= 0.0) & (values <= _LARGEST)):
-        raise bad("beta", repr(beta), f"numbers from 0 to {_LARGEST:g}", "correct it")
-    xi, b = np.broadcast_arrays(require_places(places.ravel()).reshape(places.shape), values)
+    xi, b = np.broadcast_arrays(place, beta)
     most = max(1, int(np.max(b, initial=0.0) / np.pi) + 2)
     pinned, free = _held_bays(most)
     below = np.sum(pinned < (b * xi)[..., None], axis=-1)
@@ -225,95 +203,74 @@ class OverhangFrequencies(Result):
         return ax
 
 
-@dataclass(frozen=True)
-class _CountCheck:
-    """Counts the roots on both sides of each."""
-
-    place: Array
-    roots: Array
-
-    def __call__(self) -> dict[str, Check]:
-        """Return the largest difference from the number that each root should have."""
-        number = np.arange(1, self.roots.shape[1] + 1)
-        margin = 64 * _ROUND
-        above = root_count(self.place[:, None], self.roots * (1 + margin))
-        below = root_count(self.place[:, None], self.roots * (1 - margin))
-        worst = max(np.max(np.abs(above - number)), np.max(np.abs(below - number + 1)))
-        return {"roots counted": Check(float(worst), 0.0)}
+def _counted(place: Array, roots: Array) -> dict[str, Check]:
+    """Return the largest difference between a root's number and the count on both sides of it."""
+    number = np.arange(1, roots.shape[1] + 1)
+    margin = 64 * _ROUND
+    above = root_count(place[:, None], roots * (1 + margin))
+    below = root_count(place[:, None], roots * (1 - margin))
+    worst = max(np.max(np.abs(above - number)), np.max(np.abs(below - number + 1)))
+    return {"roots counted": Check(float(worst), 0.0)}
 
 
-@dataclass
-class _Modes:
-    """Roots and end values of the modes at an array of places, and integrals once made."""
+class _Modes(NamedTuple):
+    """Modes at places of the block: all arrays read-only."""
 
     place: Array
     roots: Array
     ends: dict[str, Array]
-    arrays: dict[str, Array] = field(default_factory=dict)
+    """What the emitted ``end_values`` gives, the places as a column and the roots as ``beta``."""
 
-    @classmethod
-    def at(cls, place: Array, size: int) -> _Modes:
-        roots = overhang_roots(place, size)
-        column = place[:, None]
-        values = _end_values(roots, column)
-        ends = dict(zip(emitted.RETURNS["end_values"], values, strict=True))
-        return cls(place, roots, {"place": column, "beta": roots, **ends})
 
-    def array(self, name: str) -> Array:
-        if name not in self.arrays:
-            if name in ("overlap", "bending"):
-                self._diagonal(name)
-            else:
-                self._integrals()
-        return self.arrays[name]
-
-    def _diagonal(self, name: str) -> None:
-        """Keep what is diagonal because the modes are orthogonal, and of unit square."""
-        nt, n = self.roots.shape
-        matrix: Array = np.zeros((nt, n, n))
-        index = np.arange(n)
-        matrix[:, index, index] = 1.0 if name == "overlap" else self.roots**4
-        self._keep(name, matrix)
-
-    def _integrals(self) -> None:
-        """Keep all other integrals, from the emitted closed forms."""
-        nt, n = self.roots.shape
-        own_values = _own_integrals(*(self.ends[name] for name in _OF_OWN))
-        own = dict(zip(emitted.RETURNS["own_integrals"], own_values, strict=True))
-        for name, emitted_name in _OWN_NAMES.items():
-            self._keep(name, own[emitted_name])
-        first, second = np.triu_indices(n, 1)
-        of_pair = {}
-        if len(first):
-            chosen = {"_1": first, "_2": second}
-            given = (
-                self.ends[name[:-2]][:, chosen[name[-2:]]] if name != "place" else self.ends[name]
-                for name in _OF_PAIR
-            )
-            values = _pair_integrals(*given)
-            of_pair = dict(zip(emitted.RETURNS["pair_integrals"], values, strict=True))
-        index = np.arange(n)
-        for name, sign in _PAIRS.items():
-            matrix: Array = np.zeros((nt, n, n))
-            if name in own:  # of the others, the modes' unit square leaves nothing
-                matrix[:, index, index] = own[name]
-            if of_pair:
-                matrix[:, first, second] = of_pair[f"{name}_12"]
-                matrix[:, second, first] = sign * of_pair[f"{name}_12"]
-            self._keep(name, matrix)
-
-    def _keep(self, name: str, array: Array) -> None:
+@lru_cache(maxsize=_KEPT)
+def _modes(size: int, places: bytes) -> _Modes:
+    place = np.frombuffer(places)
+    column, roots = place[:, None], overhang_roots(place, size)
+    values = _end_values(roots, column)
+    ends = dict(zip(emitted.RETURNS["end_values"], values, strict=True))
+    ends |= {"place": column, "beta": roots}
+    for array in ends.values():
         array.setflags(write=False)
-        self.arrays[name] = array
+    return _Modes(place, roots, ends)
 
 
+@lru_cache(maxsize=_KEPT)
+def _integrals(size: int, places: bytes) -> dict[str, Array]:
+    """Return the integrals that are not diagonal, from the emitted closed forms."""
+    ends = _modes(size, places).ends
+    own_values = _own_integrals(*(ends[name] for name in _OF_OWN))
+    own = dict(zip(emitted.RETURNS["own_integrals"], own_values, strict=True))
+    found = {"moment": own["moment_integral"], "mean": own["mean"]}
+    first, second = np.triu_indices(size, 1)
+    chosen = {"_1": first, "_2": second}
+    given = (
+        ends[name[:-2]][:, chosen[name[-2:]]] if name != "place" else ends[name]
+        for name in _OF_PAIR
+    )
+    of_pair = dict(zip(emitted.RETURNS["pair_integrals"], _pair_integrals(*given), strict=True))
+    for name, sign in _PAIRS.items():
+        # Of those not among the integrals of one mode its unit square leaves nothing.
+        found[name] = _diagonal(own.get(name, np.zeros_like(ends["beta"])))
+        found[name][:, first, second] = of_pair[f"{name}_12"]
+        found[name][:, second, first] = sign * of_pair[f"{name}_12"]
+    for array in found.values():
+        array.setflags(write=False)
+    return found
+
+
+def _diagonal(values: Array) -> Array:
+    """Return diagonal matrices ``(nt, n, n)`` from their diagonals."""
+    return np.asarray(values[:, :, None] * np.eye(values.shape[1]))
+
+
+@dataclass(frozen=True)
 class OverhangBasis:
     """Modes of the beam pinned at the pin, held at the block and free at the tip.
 
     Mode n has unit square and is positive at the tip; this sign is continuous as the block moves,
     for the tip of no mode is ever at rest.  The slope at the pin has the sign of ``(-1)^n``.
 
-    Parameters
+    Attributes
     ----------
     size : int
         Number n of modes, from 1 to 1000.
@@ -325,16 +282,14 @@ class OverhangBasis:
 
     Notes
     -----
-    The arrays are read-only: a basis remembers them for the last few arrays of places.
+    The arrays are read-only: they are remembered for the last few arrays of places.
     """
 
-    def __init__(self, size: int) -> None:
-        self.size = require_modes(size, _MOST, _WHY)
-        self._known: OrderedDict[bytes, _Modes] = OrderedDict()
+    size: int
 
-    def __repr__(self) -> str:
-        """Return how the basis is made."""
-        return f"OverhangBasis({self.size})"
+    def __post_init__(self) -> None:
+        """Refuse a size that is none."""
+        object.__setattr__(self, "size", require_modes(self.size, _MOST, _WHY))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -392,17 +347,12 @@ class OverhangBasis:
             method="Newton's method in brackets of the bays held at the block",
             error=_FREQUENCY_ERROR * _ROUND * frequencies,
             error_norm="each natural frequency, absolute [rad/s]",
-            checks=DeferredChecks(_CountCheck(xi, roots)),
+            checks=DeferredChecks(partial(_counted, xi, roots)),
             provenance=provenance({"module": "quick_return_overhang_modes"}),
             place=xi,
             roots=roots,
             frequencies=frequencies,
         )
-
-    def root_rates(self, place: Array) -> Array:
-        """Return dbeta/dxi of each mode at places xi of the block, shape ``(nt, n)``."""
-        modes = self._modes(place)
-        return modes.roots * modes.ends["rate"]
 
     def end_values(self, place: Array) -> dict[str, Array]:
         """Return amplitudes and values at pin, block and tip by name, each ``(nt, n)``.
@@ -467,14 +417,18 @@ class OverhangBasis:
             If there is no array of that name, or the block is not on the rod.
         """
         require_array(name)
-        return self._modes(place).array(name)
+        if name in ("overlap", "bending"):
+            # The modes are orthogonal, of unit square.
+            roots = self.roots(place)
+            return _diagonal(np.ones_like(roots) if name == "overlap" else roots**4)
+        return _integrals(self.size, require_places(place).tobytes())[name]
 
     def drift_rate(self, place: Array) -> Array:
         """Return the derivative of the array ``drift`` by xi, shape ``(nt, n, n)``.
 
         Less ``drift_drift`` it is ``int e_i d^2 e_j / dxi^2``, for Beale & Scott (10).
         """
-        return self._modes(place).array("drift_rate")
+        return _integrals(self.size, require_places(place).tobytes())["drift_rate"]
 
     def _on_rod(
         self,
@@ -501,12 +455,4 @@ class OverhangBasis:
         return np.asarray(np.where(eta <= xi, *sides))
 
     def _modes(self, place: Array) -> _Modes:
-        xi = require_places(place)
-        key = xi.tobytes()
-        modes = self._known.pop(key, None)
-        if modes is None:
-            modes = _Modes.at(xi.copy(), self.size)
-            while len(self._known) >= _KEPT:
-                self._known.popitem(last=False)
-        self._known[key] = modes
-        return modes
+        return _modes(self.size, require_places(place).tobytes())

@@ -9,12 +9,14 @@ spectrally, for the bending moment may jump in slope at the block, as the block'
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import comb, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
 from ....generated import quick_return_rod_polynomials as emitted
@@ -72,129 +74,41 @@ def nodes(degree: int) -> tuple[Array, Array]:
 
 
 def on_side(side: str, s: Array, place: Array) -> tuple[Array, Array, Array]:
-    """Return eta, eta - xi and the length of the side, without cancellation.
-
-    Parameters
-    ----------
-    side : str
-        ``left`` (pin to block) or ``right`` (block to tip).
-    s : ndarray
-        Local coordinate from 0 to 1, shape ``(nx,)``.
-    place : ndarray
-        Shape ``(nt, 1)``.
-    """
+    """Return eta, eta - xi and the length of a side, at ``s`` from 0 to 1, without cancellation."""
     if side == LEFT:
         return place * s, -place * (1 - s), place
     length = 1 - place
     return place + length * s, length * s, length
 
 
-def integrals(name: str, sampler: Sampler, place: Array, degree: int) -> Array:
-    """Return one array of a basis at places of the block.
-
-    Parameters
-    ----------
-    name : str
-        An array's name.
-    sampler : callable
-        The shapes at points of a side.
-    place : ndarray
-        Shape ``(nt,)``; its precision is that of the work.
-    degree : int
-        Largest degree in eta of the integrands.
-    """
-    require_array(name)
-    s, weights = (part.astype(place.dtype) for part in nodes(degree))
-    total = sum(
-        _one_side(name, sampler, side, s, weights, place[:, None]) for side in (LEFT, RIGHT)
-    )
-    return np.asarray(total)
-
-
-def _one_side(
-    name: str, sampler: Sampler, side: str, s: Array, weights: Array, place: Array
+def integrals(
+    name: str, sampler: Sampler, sides: tuple[str, ...], place: Array, degree: int
 ) -> Array:
-    """Return the integral from the pin to the block, or from the block to the tip."""
-    eta, _, length = on_side(side, s, place)
-    samples = sampler(side, s, place)
-    weight = weights * length
-    if name == "tension":
-        weight = weight * ((1 - eta) * (1 + eta) / 2)
-    elif name == "moment":
-        weight = weight * eta
-    return products(name, samples, weight)
+    """Return what sides of the block contribute to an array, in the precision of the places.
 
-
-def products(name: str, samples: Samples, weight: Array) -> Array:
-    """Return the weighted sums over the points that an array is made of.
-
-    Parameters
-    ----------
-    name : str
-        An array's name.
-    samples : Samples
-        Shapes at the points.
-    weight : ndarray
-        Shape ``(nt, nx)``.
-
-    Returns
-    -------
-    ndarray
-        Shape ``(nt, n, n)``, or ``(nt, n)`` of a vector.
+    At places ``(nt,)``, for integrands up to a degree in eta; shape ``(nt, n, n)`` or ``(nt, n)``.
     """
-    first, *second = (getattr(samples, factor) for factor in FACTORS[name])
-    weighted = first * weight[:, :, None]
-    if not second:
-        return np.asarray(weighted.sum(axis=1))
-    return np.asarray(np.swapaxes(weighted, 1, 2) @ second[0])
-
-
-def joined(x: Array, place: Array, sampler: Sampler, derivative: int) -> Array:
-    """Return the shapes, or a derivative by eta to the third, at places on the whole rod.
-
-    At the block itself the values are those of the side of the pin.
-
-    Parameters
-    ----------
-    x : ndarray
-        Places eta, shape ``(nx,)``.
-    place : ndarray
-        Places xi of the block, shape ``(nt,)``.
-    sampler : callable
-        The shapes at points of a side.
-    derivative : int
-        0 to 3.
-
-    Raises
-    ------
-    BadInput
-        If a point or the block is not on the rod, or for a higher derivative.
-    """
-    field = ("value", "slope", "curvature", "shear")[require_derivative(derivative)]
-    eta = require_points(x)[None, :]
-    xi = require_places(place)[:, None]
-    length = np.where(xi < 1, 1 - xi, 1.0)
-    left = getattr(sampler(LEFT, np.minimum(eta / xi, 1.0), xi), field)
-    right = getattr(sampler(RIGHT, np.maximum(eta - xi, 0.0) / length, xi), field)
-    return np.asarray(np.where((eta <= xi)[:, :, None], left, right))
+    s, weights = (part.astype(place.dtype) for part in nodes(degree))
+    total: Any = 0
+    for side in sides:
+        eta, _, length = on_side(side, s, place[:, None])
+        weight = weights * length
+        if name == "tension":
+            weight = weight * ((1 - eta) * (1 + eta) / 2)
+        elif name == "moment":
+            weight = weight * eta
+        samples = sampler(side, s, place[:, None])
+        first, *second = (getattr(samples, factor) for factor in FACTORS[name])
+        weighted = first * weight[:, :, None]
+        total += np.swapaxes(weighted, 1, 2) @ second[0] if second else weighted.sum(axis=1)
+    return np.asarray(total)
 
 
 def jacobi(size: int, x: Array, upper: int, lower: int) -> tuple[Array, Array, Array, Array]:
     """Return orthonormal Jacobi polynomials of weight ``(1 - x)^upper x^lower`` on [0, 1].
 
-    Parameters
-    ----------
-    size : int
-        Number of polynomials, degrees 0 to ``size - 1``.
-    x : ndarray
-        Shape ``(...)``; the work is done in its precision.
-    upper, lower : int
-        Exponents of the weight at 1 and at 0.
-
-    Returns
-    -------
-    tuple of ndarray
-        The polynomials and their first three derivatives, each of shape ``(..., size)``.
+    Degrees 0 to ``size - 1`` with three derivatives, each of shape ``(*x.shape, size)``, in the
+    precision of x.
     """
     a, b = upper, lower
     y = 2 * x - 1
@@ -230,10 +144,88 @@ def _inverse_norm(k: int, a: int, b: int) -> float:
     return sqrt(square)
 
 
-# One polynomial through the block -----------------------------------------------------------------
+class _TwoSided:
+    """A basis of polynomials on both sides of the block.
 
-_MOST_THROUGH = 400
-_WHY_THROUGH = "their exact integrals take minutes"
+    Each of its arrays is a sum of parts, which are a power of a length times a polynomial in xi.
+    """
+
+    size: int
+
+    def _degrees(self, name: str) -> tuple[int, int]:
+        """Return the degree of these polynomials in xi, and that of the integrands in eta."""
+        raise NotImplementedError
+
+    def _sampler(self, side: str, s: Array, place: Array) -> Samples:
+        """Return the shapes at points of one side."""
+        raise NotImplementedError
+
+    def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
+        """Return the sides that each part belongs to, and its power of a length."""
+        raise NotImplementedError
+
+    def _places(self, place: Array) -> Array:
+        return require_places(place)
+
+    def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
+        """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
+
+        At the block itself the values are those of the side of the pin.
+
+        Raises
+        ------
+        BadInput
+            If a point or the block is not on the rod, or for a higher derivative.
+        """
+        field = ("value", "slope", "curvature", "shear")[require_derivative(derivative)]
+        eta = require_points(x)[None, :]
+        xi = self._places(place)[:, None]
+        length = np.where(xi < 1, 1 - xi, 1.0)
+        left = getattr(self._sampler(LEFT, np.minimum(eta / xi, 1.0), xi), field)
+        right = getattr(self._sampler(RIGHT, np.maximum(eta - xi, 0.0) / length, xi), field)
+        return np.asarray(np.where((eta <= xi)[:, :, None], left, right))
+
+    def array(self, name: str, place: Array) -> Array:
+        """Return the integrals of one name at places xi; see :class:`MovingBasis`.
+
+        From tables that exact quadrature in long doubles gives once.
+
+        Raises
+        ------
+        BadInput
+            If there is no array of that name, or the block is not on the rod.
+        """
+        require_array(name)
+        xi = self._places(place)
+        table = _table(self, name)
+        polynomials = chebvander(2 * xi - 1, table.shape[1] - 1)
+        factors = np.stack([factor for _, factor in self._parts(name, xi)], axis=-1)
+        terms = (factors[:, :, None] * polynomials[:, None, :]).reshape(len(xi), -1)
+        values = terms @ table.reshape(terms.shape[1], -1)
+        return values.reshape(len(xi), *table.shape[2:])
+
+
+@lru_cache(maxsize=128)
+def _table(basis: _TwoSided, name: str) -> Array:
+    """Return the Chebyshev coefficients of an array's parts, ``(parts, degree + 1, n, n)``."""
+    degree, of_integrands = basis._degrees(name)
+    count = degree + 1
+    half = np.longdouble(0.5)
+    angle = (np.arange(count) + half) * (4 * np.arctan(2 * half) / count)
+    place = np.cos(angle / 2) ** 2
+    turns = np.cos(np.arange(count)[:, None] * angle) / (half * count)
+    turns[0] /= 2
+    parts = []
+    for sides, factor in basis._parts(name, place):
+        values = integrals(name, basis._sampler, sides, place, of_integrands)
+        values /= factor.reshape(-1, *[1] * (values.ndim - 1))
+        parts.append(np.tensordot(turns, values, axes=1))
+    table = np.stack(parts).astype(np.float64)
+    table.setflags(write=False)
+    return table
+
+
+# One polynomial through the block -----------------------------------------------------------------
 
 # Power of xi that divides an array: what is left is a polynomial that does not vanish at xi = 0.
 _POWER_OF_PLACE = {
@@ -248,14 +240,16 @@ _POWER_OF_PLACE = {
 }
 
 
-class PolynomialBasis:
+@dataclass(frozen=True)
+class PolynomialBasis(_TwoSided):
     """Beale & Scott's polynomial modes, as printed or on an orthogonal basis of their span.
 
     The shapes are ``e = eta P(eta) (eta - xi)`` between pin and block and ``e = xi P(eta)
     (eta - xi)`` beyond, with P of a degree below n.  Both sides share P: the bending moment cannot
-    jump in slope freely at the block, and the error falls only like 1/n.
+    jump in slope freely at the block, and the error falls only like 1/n.  The arrays are Beale &
+    Scott (19)-(27), corrected, and what else the canonical form needs.
 
-    Parameters
+    Attributes
     ----------
     size : int
         Number n of modes, from 1 to 400.
@@ -271,13 +265,13 @@ class PolynomialBasis:
         If the number is not a whole one from 1 to 400.
     """
 
-    def __init__(self, size: int, orthogonal: bool = True) -> None:
-        self.size = require_modes(size, _MOST_THROUGH, _WHY_THROUGH)
-        self.orthogonal = orthogonal
+    size: int
+    orthogonal: bool = True
 
-    def __repr__(self) -> str:
-        """Return how the basis is made."""
-        return f"PolynomialBasis({self.size}, orthogonal={self.orthogonal})"
+    def __post_init__(self) -> None:
+        """Refuse a size that is none."""
+        size = require_modes(self.size, 400, "their exact integrals take minutes")
+        object.__setattr__(self, "size", size)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -285,80 +279,31 @@ class PolynomialBasis:
         word = "Jacobi" if self.orthogonal else "power"
         return tuple(f"{word} {k}" for k in range(self.size))
 
-    def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
-        """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
+    def _degrees(self, name: str) -> tuple[int, int]:
+        return 2 * self.size + 4, 2 * self.size + 4
 
-        Beale & Scott (12)-(14).
-
-        Raises
-        ------
-        BadInput
-            If the block is not on the rod, or for a higher derivative.
-        """
-        return joined(x, place, self._sampler, derivative)
-
-    def array(self, name: str, place: Array) -> Array:
-        """Return the integrals of one name at places xi; see :class:`MovingBasis`.
-
-        Beale & Scott (19)-(27), corrected, and what else the canonical form needs.
-
-        Raises
-        ------
-        BadInput
-            If there is no array of that name, or the block is not on the rod.
-        """
-        require_array(name)
-        xi = require_places(place)
-        table = _through_table(self.size, self.orthogonal, name)
-        series = _chebyshev(2 * xi - 1, len(table)) @ table.reshape(len(table), -1)
-        series *= (xi ** _POWER_OF_PLACE[name])[:, None]
-        return series.reshape(len(xi), *table.shape[1:])
+    def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
+        return [((LEFT, RIGHT), xi ** _POWER_OF_PLACE[name])]
 
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:
         eta, gap, _ = on_side(side, s, place)
         eta, gap, xi = np.broadcast_arrays(eta, gap, place)
-        rows = _polynomials(self.size, self.orthogonal, eta)
+        rows = self._polynomials(eta)
         gap, xi = gap[..., None], xi[..., None]
         if side == LEFT:
             return Samples(*_through_bay(eta[..., None], gap, *rows))
         return Samples(*_through_tail(gap, xi, *rows))
 
-
-@lru_cache(maxsize=128)
-def _through_table(size: int, orthogonal: bool, name: str) -> Array:
-    """Return the Chebyshev coefficients of an array over a power of xi, from exact integrals."""
-    basis = PolynomialBasis(size, orthogonal)
-    degree = 2 * size + 4
-    half = np.longdouble(0.5)
-    angle = (np.arange(degree + 1) + half) * (4 * np.arctan(2 * half) / (degree + 1))
-    place = np.cos(angle / 2) ** 2
-    values = integrals(name, basis._sampler, place, degree)
-    values /= (place ** _POWER_OF_PLACE[name]).reshape(-1, *[1] * (values.ndim - 1))
-    turns = np.cos(np.arange(degree + 1)[:, None] * angle) / (half * (degree + 1))
-    turns[0] /= 2
-    table = np.tensordot(turns, values, axes=1).astype(np.float64)
-    table.setflags(write=False)
-    return table
-
-
-def _chebyshev(x: Array, count: int) -> Array:
-    """Return the first Chebyshev polynomials, shape ``(nt, count)``."""
-    terms = [np.ones_like(x), x]
-    for _ in range(count - 2):
-        terms.append(2 * x * terms[-1] - terms[-2])
-    return np.stack(terms[:count], axis=-1)
-
-
-def _polynomials(size: int, orthogonal: bool, eta: Array) -> tuple[Array, Array, Array, Array]:
-    """Return P_k and three derivatives, each of shape ``(*eta.shape, size)``."""
-    if orthogonal:
-        return jacobi(size, eta, 0, 1)
-    derivatives = [np.stack([eta**k for k in range(size)], axis=-1)]
-    for _ in range(3):
-        before = derivatives[-1]
-        derivatives.append(np.zeros_like(before))
-        derivatives[-1][..., 1:] = before[..., :-1] * np.arange(1, size)
-    return derivatives[0], derivatives[1], derivatives[2], derivatives[3]
+    def _polynomials(self, eta: Array) -> tuple[Array, ...]:
+        """Return P_k and three derivatives, each of shape ``(*eta.shape, size)``."""
+        if self.orthogonal:
+            return jacobi(self.size, eta, 0, 1)
+        derivatives = [np.stack([eta**k for k in range(self.size)], axis=-1)]
+        for _ in range(3):
+            before = derivatives[-1]
+            derivatives.append(np.zeros_like(before))
+            derivatives[-1][..., 1:] = before[..., :-1] * np.arange(1, self.size)
+        return tuple(derivatives)
 
 
 # Two polynomials with one slope -------------------------------------------------------------------
@@ -369,24 +314,22 @@ _KERNELS: Mapping[str, tuple[_Kernel, _Kernel]] = {
     RIGHT: (emitted.turn_tail, emitted.bubble_tail),
 }
 
-_MOST_SEGMENT = 40
-_WHY_SEGMENT = "round-off takes the low frequencies' digits, and 16 are converged"
-
 # Power of a side's length in an array: one from the integral, one from each factor, one back from
-# each derivative.
-_POWER_OF_SIDE = {
-    "overlap": 3,
-    "drift": 2,
-    "drift_drift": 1,
-    "bending": -1,
-    "bending_drift": -2,
-    "tension": 1,
-    "moment": 2,
-    "mean": 2,
+# each derivative; beyond the block the tension itself falls to zero.
+_POWERS_OF_SIDES = {
+    "overlap": (3, 3),
+    "drift": (2, 2),
+    "drift_drift": (1, 1),
+    "bending": (-1, -1),
+    "bending_drift": (-2, -2),
+    "tension": (1, 2),
+    "moment": (2, 2),
+    "mean": (2, 2),
 }
 
 
-class TwoSegmentBasis:
+@dataclass(frozen=True)
+class TwoSegmentBasis(_TwoSided):
     """Polynomials on both sides of the block, with one slope through it.
 
     The first shape turns about the block: ``xi s (s - 1) J`` between pin and block,
@@ -396,7 +339,7 @@ class TwoSegmentBasis:
     weights that make all shapes orthogonal, wherever the block is: ``overlap`` is diagonal.  So the
     first shape changes with the number of shapes; the span grows with it all the same.
 
-    Parameters
+    Attributes
     ----------
     size : int
         Number n of shapes, from 1 to 40.
@@ -404,7 +347,7 @@ class TwoSegmentBasis:
     Raises
     ------
     BadInput
-        If the number is not a whole one from 1 to 40.
+        If the number is not a whole one from 1 to 40, or the block is not between pin and tip.
 
     Notes
     -----
@@ -413,12 +356,12 @@ class TwoSegmentBasis:
     is at 0.9 of the rod, the worst of the places tried.
     """
 
-    def __init__(self, size: int) -> None:
-        self.size = require_modes(size, _MOST_SEGMENT, _WHY_SEGMENT)
+    size: int
 
-    def __repr__(self) -> str:
-        """Return how the basis is made."""
-        return f"TwoSegmentBasis({self.size})"
+    def __post_init__(self) -> None:
+        """Refuse a size that is none."""
+        why = "round-off takes the low frequencies' digits, and 16 are converged"
+        object.__setattr__(self, "size", require_modes(self.size, 40, why))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -426,105 +369,35 @@ class TwoSegmentBasis:
         sides = ("bay", "tail")
         return ("turn", *(f"{sides[k % 2]} {k // 2 + 1}" for k in range(self.size - 1)))
 
-    def shapes(self, x: Array, place: Array, derivative: int = 0) -> Array:
-        """Return the shapes or a derivative by eta, to the third; see :class:`MovingBasis`.
+    def _places(self, place: Array) -> Array:
+        xi = require_places(place)
+        if np.any(xi == 1.0):
+            fix = "lengthen the rod: it has to pass the block"
+            raise bad("place", 1.0, "places x1/L below 1", fix)
+        return xi
 
-        Raises
-        ------
-        BadInput
-            If a point or the block is not on the rod, or for a higher derivative.
-        """
-        return joined(x, _inside(place), self._sampler, derivative)
+    def _degrees(self, name: str) -> tuple[int, int]:
+        # In xi those of the weights alone.
+        return {"tension": 2, "moment": 1}.get(name, 0), 2 * self.size + 8
 
-    def array(self, name: str, place: Array) -> Array:
-        """Return the integrals of one name at places xi; see :class:`MovingBasis`.
-
-        Each is a sum of powers of xi and 1 - xi times constant arrays, which exact quadrature
-        gives once.
-
-        Raises
-        ------
-        BadInput
-            If there is no array of that name, or the block is not between pin and tip.
-        """
-        require_array(name)
-        xi = _inside(place)
-        table = _segment_table(self.size, name)
-        parts = [
-            length ** _POWER_OF_SIDE[name] * factor
-            for side, length in ((LEFT, xi), (RIGHT, 1 - xi))
-            for _, factor in _weights(name, side, xi, xi)
-        ]
-        values = np.stack(parts, axis=-1) @ table.reshape(len(table), -1)
-        return values.reshape(len(xi), *table.shape[1:])
+    def _parts(self, name: str, xi: Array) -> list[tuple[tuple[str, ...], Array]]:
+        left, right = _POWERS_OF_SIDES[name]
+        return [((LEFT,), xi**left), ((RIGHT,), (1 - xi) ** right)]
 
     def _sampler(self, side: str, s: Array, place: Array) -> Samples:
-        return _segment_samples(self.size, side, s, place)
-
-
-def _inside(place: Array) -> Array:
-    """Return the block's places, refused where one of the two sides has no length."""
-    xi = require_places(place)
-    if np.any(xi == 1.0):
-        raise bad(
-            "place",
-            1.0,
-            "places x1/L below 1",
-            "lengthen the rod: it has to pass the block",
-        )
-    return xi
-
-
-def _weights(name: str, side: str, s: Array, xi: Array) -> tuple[tuple[Array, Array], ...]:
-    """Return the weight of an integrand as a sum of products of functions of s and of xi.
-
-    All are positive: nothing cancels.
-    """
-    one, rest = np.ones_like(s), 1 - s
-    if name == "tension":
-        # (1 - eta^2)/2, with eta = xi s, or with 1 - eta = (1 - xi)(1 - s).
-        beyond = (1 - xi) * (1 + xi)
-        if side == LEFT:
-            return (rest * (1 + s) / 2, np.ones_like(xi)), (s * s / 2, beyond)
-        return (rest / 2, beyond), (rest * s / 2, (1 - xi) ** 2)
-    if name == "moment":
-        if side == LEFT:
-            return ((s, xi),)
-        return (one, xi), (s, 1 - xi)
-    return ((one, np.ones_like(xi)),)
-
-
-@lru_cache(maxsize=128)
-def _segment_table(size: int, name: str) -> Array:
-    """Return the constant arrays, those of the bay first, for sides of length 1."""
-    s, quadrature = nodes(2 * size + 8)
-    arrays = []
-    for side, place in ((LEFT, 1), (RIGHT, 0)):
-        samples = _segment_samples(size, side, s[None, :], np.array([[place]], s.dtype))
-        arrays += [
-            products(name, samples, (weight * quadrature)[None, :])[0]
-            for weight, _ in _weights(name, side, s, s)
-        ]
-    table = np.stack(arrays).astype(np.float64)
-    table.setflags(write=False)
-    return table
-
-
-def _segment_samples(size: int, side: str, s: Array, place: Array) -> Samples:
-    """Return the shapes at points of one side."""
-    s, length = np.broadcast_arrays(s, place if side == LEFT else 1 - place)
-    turn_kernel, bubble_kernel = _KERNELS[side]
-    bay = side == LEFT
-    bubbles = size // 2 if bay else (size - 1) // 2
-    weight = (3, 2) if bay else (0, 3)
-    end = jacobi(bubbles + 1, np.array(1 if bay else 0, s.dtype), *weight)[0][-1]
-    turn = [row[..., -1:] / end for row in jacobi(bubbles + 1, s, *weight)]
-    s, length = s[..., None], length[..., None]
-    shapes = [np.zeros((*s.shape[:-1], size), s.dtype) for _ in Samples._fields]
-    for into, value in zip(shapes, turn_kernel(s, length, *turn), strict=True):
-        into[..., :1] = value
-    if bubbles:
-        rows = jacobi(bubbles, s[..., 0], *((4, 2) if bay else (0, 4)))
-        for into, value in zip(shapes, bubble_kernel(s, length, *rows), strict=True):
-            into[..., 1 if bay else 2 :: 2] = value
-    return Samples(*shapes)
+        s, length = np.broadcast_arrays(s, place if side == LEFT else 1 - place)
+        turn_kernel, bubble_kernel = _KERNELS[side]
+        bay = side == LEFT
+        bubbles = self.size // 2 if bay else (self.size - 1) // 2
+        weight = (3, 2) if bay else (0, 3)
+        end = jacobi(bubbles + 1, np.array(1 if bay else 0, s.dtype), *weight)[0][-1]
+        turn = [row[..., -1:] / end for row in jacobi(bubbles + 1, s, *weight)]
+        s, length = s[..., None], length[..., None]
+        shapes = [np.zeros((*s.shape[:-1], self.size), s.dtype) for _ in Samples._fields]
+        for into, value in zip(shapes, turn_kernel(s, length, *turn), strict=True):
+            into[..., :1] = value
+        if bubbles:
+            rows = jacobi(bubbles, s[..., 0], *((4, 2) if bay else (0, 4)))
+            for into, value in zip(shapes, bubble_kernel(s, length, *rows), strict=True):
+                into[..., 1 if bay else 2 :: 2] = value
+        return Samples(*shapes)

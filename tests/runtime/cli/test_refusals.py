@@ -32,7 +32,6 @@ chart smith_1972_5152_sixteenth_inch --x speed | START:STOP:COUNT
 chart smith_1972_5152_sixteenth_inch --x speed=1:2 | START:STOP:COUNT
 chart smith_1972_5152_sixteenth_inch --y speed=100:900:20rpm | another parameter
 chart smith_1972_5152_sixteenth_inch --y follower_inertia=1:2:3m | [length]
-boundaries mathieu --form series | --order N
 boundaries mathieu --regions 1-3 | 1,3,5 or 1:6
 boundaries mathieu --speed 1:2 | a scene of a linkage
 boundaries smith_1972_101104_sixteenth_inch --mu 0.3 | a scene of Hill's equation

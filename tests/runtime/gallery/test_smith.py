@@ -7,7 +7,6 @@ import mpmath
 import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
-from elastolink.runtime.core.periodic_function import PeriodicFunction
 from elastolink.runtime.gallery import smith_charts, smith_responses
 from elastolink.runtime.gallery.free_bodies import free_bodies, round_force
 from elastolink.runtime.gallery.smith_balancing import (
@@ -77,19 +76,6 @@ def test_observations_agree_with_the_scenes():
         }
         for speed, n, inertia in zip(speeds, numbers, inertias, strict=True):
             assert (round(speed / RPM), n, round(inertia / LBF_IN_S2, 4)) in seen
-
-
-@pytest.mark.parametrize("n", [1, 2, 3, 4])
-def test_second_order_boundaries_miss_by_the_third_power(n):
-    f = PeriodicFunction([0.1, 1.0, 0.4, 0.15, 0.3], [0.0, 0.3, -0.2, 0.1, 0.2])
-    errors = []
-    for mu in (0.04, 0.02, 0.01):
-        exact = hill_boundaries(f, mu, (n,))
-        drawn = smith_charts._to_order(f, np.array(mu), (n,), 2)
-        gaps = np.abs([exact.lower - drawn.lower, exact.upper - drawn.upper])
-        errors.append(float(np.max(gaps)))
-    slopes = np.log2(np.divide(errors[:-1], errors[1:]))
-    np.testing.assert_allclose(slopes, 3.0, atol=0.15)
 
 
 def test_the_periodic_response_closes_and_is_what_marching_settles_to():

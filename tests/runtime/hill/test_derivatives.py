@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import boundary_derivatives, hill_boundaries
+from elastolink.runtime.hill import boundary_derivatives, critical_damping, hill_boundaries
 
 COSINE = PeriodicFunction([0.0, 1.0])
 GENERAL = PeriodicFunction([0.3, 1.0, -0.4, 0.2], [0.0, 0.5, 0.7, -0.1])
@@ -101,25 +101,19 @@ def test_the_sum_rule_of_the_mean():
     np.testing.assert_allclose(found.upper[0], expected, rtol=0, atol=1e-14)
 
 
-def test_euler_relation_ties_the_coefficients_to_mu():
-    """Lam2 depends on the products mu a_m, mu b_m alone: mu d/dmu = sum a_m d/da_m + b_m d/db_m."""
-    names = [f"{kind}{m}" for kind in "ab" for m in range(4) if (kind, m) != ("b", 0)]
-    found = boundary_derivatives(GENERAL, 0.8, REGIONS, ("mu", *names))
-    weights = np.concatenate([GENERAL.a, GENERAL.b[1:]])
-    for end in (found.lower, found.upper):
-        total = np.tensordot(weights, end[1:], axes=1)
-        assert np.all(np.abs(total - 0.8 * end[0]) <= 2 * found.error.sum(axis=0) + 1e-15)
-
-
 def test_closed_regions_give_nan():
     found = boundary_derivatives(COSINE, 0.1, REGIONS, ("mu", "K"), 0.3)
     assert np.isnan(found.lower).all() and np.isnan(found.error).all()
 
 
-@pytest.mark.parametrize("direction", ["c2", "b0", "a", "a-1", 3, None, "lam2"])
-def test_an_unknown_direction_is_refused(direction):
-    with pytest.raises(BadInput, match=r"directions\[0\]"):
+@pytest.mark.parametrize(
+    "direction",
+    ["c2", "b0", "a", "a-1", 3, None, "lam2", "a99999999999", "b5000", "a" + "9" * 5000, "a\u0663"],
+)
+def test_an_unknown_direction_is_refused_in_one_line(direction):
+    with pytest.raises(BadInput, match=r"directions\[0\]") as told:
         boundary_derivatives(COSINE, 1.0, (1,), (direction,))
+    assert "\n" not in str(told.value)
 
 
 def test_nothing_asked_nothing_given():
@@ -128,18 +122,9 @@ def test_nothing_asked_nothing_given():
     assert boundary_derivatives(COSINE, np.zeros(0), (1,)).lower.shape == (1, 1, 0)
 
 
-@pytest.mark.parametrize("name", ["a99999999999", "b5000", "a" + "9" * 5000, "a\u0663"])
-def test_coefficients_beyond_all_harmonics_are_refused(name):
-    with pytest.raises(BadInput, match=r"directions\[0\]") as told:
-        boundary_derivatives(COSINE, 0.3, (1,), (name,))
-    assert "\n" not in str(told.value)
-
-
 @pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-11])
 def test_estimates_next_to_the_tip(short):
     """The ends move as ``centre -+ c sqrt(K0 - K)``: both slopes times what is left are known."""
-    from elastolink.runtime.hill import critical_damping
-
     top = float(critical_damping(COSINE, 1.0, (1,)).damping[0])
     k = top * (1.0 - short)
     found = boundary_derivatives(COSINE, 1.0, (1,), ("K",), k)
@@ -157,8 +142,6 @@ def test_estimates_next_to_the_tip(short):
 
 
 def test_no_derivatives_where_doubles_see_no_two_ends():
-    from elastolink.runtime.hill import critical_damping
-
     top = float(critical_damping(COSINE, 1.0, (1,)).damping[0])
     for steps in range(-12, 13):
         found = boundary_derivatives(COSINE, 1.0, (1,), ("mu", "K"), top * (1.0 + steps * 2e-16))

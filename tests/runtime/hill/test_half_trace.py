@@ -19,21 +19,6 @@ extended = pytest.mark.skipif(
 )
 
 
-@pytest.mark.smoke
-@pytest.mark.parametrize("name", ["f3 (5,1,5,2)", "24 harmonics"])
-@extended
-def test_half_traces_against_a_taylor_series_in_extended_precision(name):
-    f = FUNCTIONS[name]
-    rng = np.random.default_rng(1)
-    lam2, mu = rng.uniform(0, 30, 6), rng.uniform(-2, 2, 6)
-    lam2[:3], mu[:3] = [0.0, 0.0, 30.0], [2.0, -2.0, 0.0]
-    found = discriminant(f, lam2, mu)
-    error = np.abs(found.value - half_traces(f, lam2, mu)).astype(float)
-    assert error.max() < 1e-11
-    assert np.all(error <= found.error)
-    assert found.passed
-
-
 @given(
     lam2=st.floats(-100, 1000),
     mean=st.floats(-2, 2),

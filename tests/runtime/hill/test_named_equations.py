@@ -18,22 +18,21 @@ from scipy.integrate import solve_ivp
 
 # Abramowitz & Stegun table 20.1 (DLMF 28.1 cites it), all digits printed there.
 TABLE = {
-    (0, "a", 5): -5.80004602,
-    (0, "a", 10): -13.93697996,
-    (0, "a", 25): -40.25677955,
-    (1, "b", 5): -5.79008060,
-    (1, "b", 25): -40.25677898,
-    (1, "a", 5): 1.85818754,
-    (2, "a", 5): 7.44910974,
-    (2, "b", 5): 2.09946045,
+    "a0": (-5.80004602, -13.93697996, -40.25677955),
+    "b1": (-5.79008060, -13.93655248, -40.25677898),
+    "a1": (1.85818754, -2.39914240, -21.31489969),
+    "b2": (2.09946045, -2.38215824, -21.31486062),
+    "a2": (7.44910974, 7.71736985, -3.52216473),
+    "b5": (25.51081605, 26.76642636, 28.06276590),
+    "a5": (25.54997175, 27.70376873, 40.05019099),
 }
 
 
 @pytest.mark.smoke
-@pytest.mark.parametrize(("m", "kind", "q"), TABLE)
-def test_the_printed_table(m, kind, q):
-    found = Mathieu.characteristic(m, q, kind)
-    assert float(found.value) == pytest.approx(TABLE[m, kind, q], abs=0.6e-8)
+@pytest.mark.parametrize("name", TABLE)
+def test_the_printed_table(name):
+    found = Mathieu.characteristic(int(name[1]), (5, 10, 25), name[0])
+    np.testing.assert_allclose(found.value, TABLE[name], rtol=0, atol=0.6e-8)
 
 
 def test_signs_of_q():
@@ -75,8 +74,6 @@ def test_mathieus_notation():
     case = Mathieu(a, q)
     ours = discriminant(case.function(), case.lam2, case.mu).value
     assert ours == pytest.approx(solved(lambda x: a - 2 * q * np.cos(2 * x), np.pi), abs=1e-8)
-    back = Mathieu.from_hill(case.lam2, case.mu)
-    assert (back.a, back.q) == (a, q)
 
 
 @pytest.mark.parametrize(
@@ -91,7 +88,6 @@ def test_mathieus_notation():
         (lambda: Meissner((1.0, np.inf)), "levels"),
         (lambda: Meissner((1.0, 0.0), (1.0, 2.0)), "lengths"),
         (lambda: Meissner((1.0, 0.0, 2.0)), "Meissner"),
-        (lambda: Meissner().function(0), "harmonics"),
         (lambda: Mathieu(np.nan, 1.0).lam2, "a"),
     ],
 )
@@ -174,23 +170,6 @@ def test_regions_vanish_where_both_intervals_hold_whole_half_waves(n, lengths):
         assert between.width[0] > 1e-3
 
 
-def square_wave(harmonics):
-    m = np.arange(harmonics + 1)
-    wave = np.where(m % 2 == 1, 4.0 / (np.pi * np.maximum(m, 1)) * np.where(m % 4 == 1, 1, -1), 0.0)
-    return PeriodicFunction(wave)
-
-
-def test_boundaries_of_the_truncated_square_wave_tend_to_them():
-    regions, mu = (0, 1, 2, 3, 4), np.array([0.3, 1.1])
-    exact = meissner_boundaries(mu, regions)
-    gaps = []
-    for harmonics in (15, 31, 63):
-        near = hill_boundaries(square_wave(harmonics), mu, regions)
-        gaps.append(np.max(np.abs(near.upper - exact.upper)))
-    # What is left out has coefficients 1/m, felt through 1/m^2: the third power of 1/m.
-    assert np.all(np.log2(np.divide(gaps[:-1], gaps[1:])) > 2.7)
-
-
 def test_a_region_that_damping_closed_is_stable_throughout():
     bare = meissner_boundaries(0.7, (3,))
     assert np.isnan(meissner_boundaries(0.7, (3,), damping=0.2).upper[0])
@@ -257,6 +236,3 @@ def test_half_traces_of_levels_over_grids_and_beyond_doubles():
     assert case.mean == pytest.approx((2.0 - 2.0 + 0.5 * (TURN - 3.0)) / TURN)
     steep = discriminant(case, -1e6, 1.0)
     assert np.isinf(steep.value) and not steep.passed
-    series = case.function(400)
-    theta = np.linspace(0.0, TURN, 2001)
-    assert np.abs(series(theta) - case(theta)).max() <= series.error

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from elastolink.runtime.core.errors import BadInput
 from elastolink.runtime.core.periodic_function import PeriodicFunction
-from elastolink.runtime.hill import boundary_series, perturbation_boundaries
-from elastolink.runtime.hill.bloch import effective_operator, wave_columns
-from elastolink.runtime.hill.series import HIGHEST_FORMULA, boundary_latex, solution_latex
+from elastolink.runtime.hill import boundary_series
+from elastolink.runtime.hill.bloch import effective_operator
+from elastolink.runtime.hill.series import boundary_latex
 from smith_chapter_8.exact import exact_operator, exact_series
 from smith_chapter_8.surd import ExactHarmonics
 from strained_truth import PUBLISHED, published
@@ -25,17 +25,15 @@ MATHIEU = el.PeriodicFunction(a=[0.0, 1.0])
 
 
 @pytest.mark.parametrize("n", [0, 1, 2, 3, 5])
-@pytest.mark.parametrize("ratio", [0.0, 0.005])
-def test_remainder_falls_with_the_next_power(n, ratio):
-    order = 3
+@pytest.mark.parametrize(("order", "ratio"), [(2, 0.0), (3, 0.0), (3, 0.005)])
+def test_remainder_falls_with_the_next_power(n, order, ratio):
     if n == 5 and ratio:
         return
     found = boundary_series(MIXED, n, order, ratio)
     gaps = []
     for mu in (0.02, 0.01):
         exact = el.hill_boundaries(MIXED, mu, (n,), damping=ratio * mu)
-        powers = mu ** np.arange(1, order + 1)
-        ends = 0.25 * n * n + np.array([found.lower @ powers, found.upper @ powers])
+        ends = np.array(found(mu))
         true = (exact.lower[0], exact.upper[0])
         gaps.append(abs(ends[1] - true[1]) if n == 0 else np.abs(ends - true).max())
     assert np.log2(gaps[0] / gaps[1]) == pytest.approx(order + 1, abs=0.25)
@@ -117,7 +115,7 @@ def lines(text):
 RULE = r"\text{in the sums: } c_{m-l}"
 
 
-def evaluate(sums, name, f, n, order, m=None):
+def evaluate(sums, name, f, n, order):
     """Read a sum as Python: indices as arguments, a space as a product.
 
     The coefficient between equal harmonics is the mean, unless the formula says that it is 0.
@@ -158,7 +156,7 @@ def evaluate(sums, name, f, n, order, m=None):
         inner = text[match.end() - 1 : end]
         text = f"{text[: match.start()]}total(lambda {match[1]}: {inner}){text[end:]}"
     names = {"c": harmonic, "b": lambda k: np.conj(harmonic(k)), "v": v, "total": total}
-    return eval(text, {**names, "n": n, "m": m, "i": 1j, "K": DRAG})
+    return eval(text, {**names, "n": n, "i": 1j, "K": DRAG})
 
 
 @pytest.mark.parametrize("letter", [True, False])
@@ -186,38 +184,6 @@ def test_high_orders_read_back(order):
         assert found == pytest.approx(value, abs=1e-13)
 
 
-@pytest.mark.parametrize("damped", [False, True])
-@pytest.mark.parametrize("n", [0, 1, 2])
-def test_formulas_of_the_solution_read_back(n, damped):
-    order = 3
-    columns = wave_columns(F, n, order, DRAG if damped else 0.0)
-    harmonics = np.arange(columns.shape[1]) - (columns.shape[1] - n - 1) // 2
-    found = lines(solution_latex(order, n or 0, damped))
-    for m, column in zip(harmonics.tolist(), columns.T, strict=True):
-        if m * (m - n):
-            for k in range(1, order + 1):
-                value = evaluate(found, f"v_{{{k},m}}", F, n, order, int(m))
-                assert value == pytest.approx(column[k], abs=1e-13)
-
-
-@pytest.mark.parametrize("text", [boundary_latex, solution_latex])
-@pytest.mark.parametrize("n", [None, 0, 1, 12])
-@pytest.mark.parametrize("damped", [False, True])
-def test_braces_and_environments_are_balanced(text, n, damped):
-    for order in range(1, HIGHEST_FORMULA):
-        found = text(order, n, damped)
-        depth = 0
-        for sign in found:
-            depth += {"{": 1, "}": -1}.get(sign, 0)
-            assert depth >= 0
-        assert depth == 0
-        assert found.count(r"\left") == found.count(r"\right")
-        assert found.startswith("\\begin{aligned}\n") and found.endswith("\n\\end{aligned}")
-        assert found.isascii()
-        assert not re.search(r"\+ -|- -|\(-1\)|--", found)
-        assert all(line.count("&") == 1 for line in found.splitlines()[1:-1])
-
-
 def test_the_first_orders_are_what_one_writes_by_hand():
     found = lines(boundary_latex(3))
     assert found["A_{1}"] == "-c_{0}"
@@ -227,16 +193,14 @@ def test_the_first_orders_are_what_one_writes_by_hand():
     assert lines(boundary_latex(1, 2, True))["A_{1}"] == "-c_{0} - i 2 K"
     assert r"\lambda^2 &= \frac{9}{4} + " in boundary_latex(1, 3)
     assert r"\lambda^2 &= 4 + " in boundary_latex(1, 4)
-    assert lines(solution_latex(1))["v_{1,m}"] == r"\frac{1}{m (m-n)} c_{m-n}"
 
 
 MISUSE = {
     "order 0": (lambda: boundary_latex(0), "order"),
     "order 7": (lambda: boundary_latex(7), "use perturbation_boundaries"),
-    "order 6": (lambda: solution_latex(6), "from 1 to 5"),
     "order as a truth": (lambda: boundary_latex(True), "order"),
     "region": (lambda: boundary_latex(1, -1), "region"),
-    "half region": (lambda: solution_latex(1, 0.5), "region"),
+    "half region": (lambda: boundary_latex(1, 0.5), "region"),
 }
 
 
@@ -267,71 +231,19 @@ def from_operator(name):
     return [4 * value for value in (found.upper if side > 0 else found.lower)]
 
 
-def product(one, other):
-    out = [Fraction(0)] * (ORDER + 1)
-    for i, x in enumerate(one):
-        for j, y in enumerate(other[: ORDER + 1 - i]):
-            out[i + j] += x * y
-    return out
-
-
-def inverse(series):
-    out = [1 / series[0]]
-    for k in range(1, ORDER + 1):
-        out.append(-sum(series[j] * out[k - j] for j in range(1, k + 1)) / series[0])
-    return out
-
-
-def from_continued_fraction(name):
-    """Expand DLMF 28.6.16-28.6.19 in q, each round of the iteration with an order more."""
-    m, side = parted(name)
-    square = [Fraction(int(k == 2)) for k in range(ORDER + 1)]
-
-    def level(k, a):
-        own = [Fraction(k * k if j == 0 else 0) - x for j, x in enumerate(a)]
-        if k == 1:
-            own[1] += side
-        return own
-
-    def less(one, other):
-        return [x - y for x, y in zip(one, other, strict=True)]
-
-    a = [Fraction(m * m)] + [Fraction(0)] * ORDER
-    for _ in range(ORDER + 1):
-        above = below = [Fraction(0)] * (ORDER + 1)
-        for k in range(m + 2 * ORDER, m, -2):
-            above = product(square, inverse(less(level(k, a), above)))
-        for k in range(m % 2 or (0 if side > 0 else 2), m, 2):
-            twice = [x * (2 if k == 0 else 1) for x in square]
-            below = product(twice, inverse(less(level(k, a), below)))
-        # 0 = m^2 [+ side q] - a - above - below; the constant meets cos 2 z twice from below too.
-        both = [x + y * (2 if m == 0 else 1) for x, y in zip(below, above, strict=True)]
-        a = [x - y for x, y in zip(level(m, [Fraction(0)] * (ORDER + 1)), both, strict=True)]
-    return a[1:]
-
-
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_published_coefficients(name):
     expected = published(name)
     assert len(expected) == {"0": 8, "1": 8, "2": 8, "3": 7}.get(name[1], 6)
     found = from_operator(name)
     assert found[: len(expected)] == expected and len(found) == ORDER
-    assert found == from_continued_fraction(name)
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_run_time_series(name):
-    """Both the coefficients of the run time and the steps between the orders of its boundaries."""
     m, side = parted(name)
     exact = np.array([float(x) for x in from_operator(name)])
     found = boundary_series(DOUBLE, m, ORDER)
     ours = 4 * (found.upper if side > 0 else found.lower)
     eps = np.finfo(float).eps
     np.testing.assert_allclose(ours, exact, rtol=4 * eps, atol=4 * eps * abs(exact).max() ** 2)
-    if m == 0 and side < 0:
-        return
-    values = [m * m]
-    for order in range(1, ORDER + 1):
-        ends = perturbation_boundaries(DOUBLE, 1.0, (m,), order, form="series", outside="value")
-        values.append(4 * (ends.upper if side > 0 else ends.lower)[0])
-    np.testing.assert_allclose(np.diff(values), exact, rtol=0, atol=8 * eps * max(1, m * m))

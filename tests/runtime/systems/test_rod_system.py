@@ -17,7 +17,6 @@ from elastolink.runtime.stability import resonances, tongue
 from elastolink.runtime.systems import rod_system
 from numpy.polynomial.legendre import leggauss
 from rod_newton import PlainBasis, Rod, linear_forces, second_order
-from scipy.integrate import solve_ivp
 
 PRINTED = ("frame", "tension")
 NUMBERS = {
@@ -72,31 +71,6 @@ def test_equations_are_newtons_law(numbers, theta, rates, drop):
         np.testing.assert_allclose(matrix, expected / unit, rtol=0, atol=1e-11 * size)
 
 
-def test_terms_of_damping_and_drift_matter_in_that_comparison():
-    """Each array is large enough at that place for its loss to be seen."""
-    system = rod_system(PlainBasis(2), **NUMBERS)
-    whole = second_order(system, 0.9, 5.0, 11.0)
-    for name in ("A", "B", "C", "D", "K", "f", "g"):
-        part = second_order(system.without(name), 0.9, 5.0, 11.0)
-        change = max(
-            np.max(np.abs(w - p)) / np.max(np.abs(w)) for w, p in zip(whole, part, strict=True)
-        )
-        assert change > 1e-4, name
-
-
-@pytest.mark.slow
-def test_steady_motion_where_the_rod_turns_round_does_not_depend_on_the_basis():
-    """The tip's motion on two bases; their truncations there are 5e-4 and 8e-4 of its size."""
-    numbers = {**FLEXIBLE, "crank_ratio": 4.0, "frame": 0.15, "damping": 300.0}
-    tips = []
-    for basis, modes in (("overhang", 4), ("two_segment", 7)):
-        found = el.steady_state(rod_system(basis, modes, **numbers), 120.0, rtol=1e-7, samples=64)
-        tip = found.deflection(1.0).ravel()
-        tips.append(tip[:: len(tip) // 64])
-    assert np.max(np.abs(tips[0] - tips[1])) < 2e-3 * np.max(np.abs(tips[0]))
-    assert np.max(np.abs(tips[0])) > 0.01
-
-
 # ---------------------------------------------------------------- tension and frame
 
 
@@ -139,64 +113,7 @@ def test_tension_is_that_from_the_frame_and_the_frames_own():
     assert np.max(np.abs(made[("tension",)] - made[PRINTED])) > 0.1 * size
 
 
-@pytest.mark.parametrize("drop", [(), ("tension",)])
-def test_a_rigid_turn_sees_the_frame_alone(drop):
-    """A shape that turns as a whole has tension work m phi'^2 L^3/3, all of it the frame's."""
-
-    class Line(PlainBasis):
-        def array(self, name, place):
-            one = np.ones(len(place))
-            values = {"overlap": 1 / 3, "tension": 1 / 3, "moment": 1 / 3, "mean": 1 / 2}
-            return values.get(name, 0.0) * (
-                one[:, None]
-                if name in values and name in ("moment", "mean")
-                else one[:, None, None]
-            )
-
-    theta = np.array([0.4, 2.0])
-    system = rod_system(Line(1), **NUMBERS, drop=drop)
-    np.testing.assert_allclose(system.array("B", theta), 0.0, atol=1e-16)
-
-
 # ---------------------------------------------------------------- damping through D
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("damping", 500.0), ("internal_damping", 1.0)],
-)
-@pytest.mark.slow
-def test_the_equation_with_d_is_the_second_order_form(name, value):
-    numbers = {**NUMBERS, "damping": 0.0, "internal_damping": 0.0, name: value}
-    system, speed = rod_system(PlainBasis(2), **numbers), 100.0
-    start = np.array([1e-3, -2e-3, 0.0, 0.0])
-
-    def rates(theta, state):
-        stiffness, damping, mass, force = second_order(system, theta, speed, 0.0)
-        q, slope = state[:2], state[2:]
-        push = force - damping @ (slope * speed) - stiffness @ q
-        return np.concatenate([slope, np.linalg.solve(mass, push) / speed**2])
-
-    span = (1.2, 1.7)  # where the block slides fast
-    truth = solve_ivp(rates, span, start, method="DOP853", rtol=1e-9, atol=1e-12).y[:2, -1]
-    equation = equation_of(system, speed, {}, forcing=True)
-
-    def canonical(theta, state):
-        return equation.generator(np.array([theta]))[0, 0] @ state
-
-    first = np.append(equation.state(span[0], start[:2], start[2:]), 1.0)
-    found = solve_ivp(canonical, span, first, method="DOP853", rtol=1e-9, atol=1e-12)
-    found = found.y[:2, -1] * equation.scale[0]
-    np.testing.assert_allclose(found, truth, rtol=1e-7)
-    without = equation_of(system.without("D"), speed, {}, forcing=True)
-    other = solve_ivp(
-        lambda theta, state: without.generator(np.array([theta]))[0, 0] @ state,
-        span,
-        first,
-        method="DOP853",
-        rtol=1e-6,
-    )
-    assert np.max(np.abs(other.y[:2, -1] * without.scale[0] - truth)) > 1e-4 * np.max(np.abs(truth))
 
 
 @pytest.mark.slow

@@ -14,9 +14,8 @@ from ..core.families import DAMPING, LinearPeriodic
 from ..core.inputs import numbers, speed_span
 from ..core.results import Check, Result, provenance
 from ..periodic import floquet_multipliers
-from ..periodic.decoupled.reduced import SlowSystem
-from ..periodic.equation import at_geometry
-from ..periodic.first_order import canonical_form
+from ..periodic.decoupled import SlowSystem
+from ..periodic.equation import at_geometry, equation_of
 from .boundary_speeds import SpeedBoundaries, speed_boundaries
 from .crossings import damped_regions, mended
 from .labels import (
@@ -195,15 +194,15 @@ def stability_edges(
     else:
         system, values = at_geometry(system, parameters)
         parameters = {name: float(numbers(name, value)) for name, value in values.items()}
-    damped = canonical_form(system, low, parameters).damped
     sharp = system.without(*DAMPING)
-    if not canonical_form(sharp, low, parameters).conservative:
+    if equation_of(sharp, low, parameters).damped:
         raise bad(
             "system",
             "stiffness or centrifugal terms that are not symmetric",
             "a system conservative but for damping",
             "use floquet_multipliers or stability_chart",
         )
+    damped = system.is_damped(**parameters)
     if damped:
         _check_damping(system, parameters)
     matrices = MatricesOverSpeed(sharp, span, parameters, rtol)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..core.families import LinearPeriodic
 from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of, sampled
 from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
 from .meetings import generator
@@ -64,9 +64,9 @@ def averaged_modes(
     n = system.size
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
-    form = canonical_form(system, speed, parameters)
-    mean = form.mean
-    rate = generator(mean)
+    equation = equation_of(system, speed, parameters)
+    mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
+    rate = generator(mass, gyro, push)
     values, vectors = np.linalg.eig(rate)
     values, vectors = values.astype(complex), vectors.astype(complex)
     sign = np.real(np.diagonal(form_matrix(vectors), axis1=-2, axis2=-1))
@@ -80,9 +80,10 @@ def averaged_modes(
         chosen = chosen[np.argsort(np.abs(values[row, chosen].imag), kind="stable")]
         turns[row] = values[row, chosen].imag * system.period / (2 * np.pi)
         own = vectors[row][:n, chosen].T
-        norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mean["M"][row], own)))
-        shapes[row] = own / norm[:, None]
-    return Modes(turns, shapes, mean["M"])
+        norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mass[row], own)))
+        shapes[row] = own / norm[:, None] * equation.scale[row]
+    unit = equation.scale
+    return Modes(turns, shapes, mass / unit[:, :, None] / unit[:, None, :])
 
 
 def meeting_labels(
@@ -352,33 +353,20 @@ def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[i
 
 def held_modes(system: LinearPeriodic, speed: Array) -> Modes:
     """Return the modes with the crank held: mean frequencies in turns, shapes at angle 0."""
-    n = system.size
+    n, known = system.size, sampled(system)
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
-    # Angles and speeds at which frequencies with the crank held are computed; they change little.
+    # Speeds at which frequencies with the crank held are computed; they change little.
     some = np.linspace(np.min(speed), np.max(speed), 65)
-    turns, _, _ = _held(system, some, even_angles(system.period, 64))
-    mean = np.mean(turns, axis=1) * some[:, None]
+    squares, _ = equation_of(known, some).frozen_modes(even_angles(system.period, 64))
+    mean = np.mean(np.sqrt(np.maximum(squares, 0.0)), axis=1) * some[:, None]
     frequency = np.stack([np.interp(speed, some, mean[:, j]) for j in range(n)], axis=1)
-    _, shapes, mass = _held(system, speed, np.zeros(1))
-    rows = np.swapaxes(shapes[:, 0], -1, -2).astype(complex)
+    equation, start = equation_of(known, speed), np.zeros(1)
+    shapes, unit = equation.frozen_modes(start)[1][:, 0], equation.scale
+    rows = np.swapaxes(unit[:, :, None] * shapes, -1, -2).astype(complex)
+    mass = equation.at("mass", start)[:, 0] / unit[:, :, None] / unit[:, None, :]
     whole = system.period / (2 * np.pi)
-    return Modes(frequency / speed[:, None] * whole, rows, mass[:, 0])
-
-
-def _held(system: LinearPeriodic, speed: Array, theta: Array) -> tuple[Array, Array, Array]:
-    """Return frequencies over the speed ``(k, nt, n)``, modes in columns, and the mass."""
-    form = canonical_form(system, speed, {})
-    shape = (len(speed), len(theta), system.size, system.size)
-    mass = np.broadcast_to(form.require_mass(form.assemble("M", theta)), shape)
-    held = np.zeros(shape)
-    for names, sign in ((("K", "Kg"), 1.0), ("B", -1.0)):
-        part = form.assemble(names, theta)
-        held = held if part is None else held + sign * part
-    inverse = np.linalg.inv(np.linalg.cholesky(mass))
-    moved = inverse @ held @ np.swapaxes(inverse, -1, -2)
-    square, vectors = np.linalg.eigh(0.5 * (moved + np.swapaxes(moved, -1, -2)))
-    return np.sqrt(np.maximum(square, 0.0)), np.swapaxes(inverse, -1, -2) @ vectors, mass
+    return Modes(frequency / speed[:, None] * whole, rows, np.broadcast_to(mass, rows.shape))
 
 
 def pair_shares(

@@ -13,8 +13,7 @@ from ..core.errors import bad
 from ..core.families import LinearPeriodic
 from ..core.inputs import is_whole, numbers
 from ..core.trigonometric import even_angles
-from ..periodic.equation import SPEED_POWER
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import SPEED_POWER, equation_of
 from ..periodic.signatures import form_matrix
 
 Array = NDArray[np.float64]
@@ -112,7 +111,7 @@ class MeanSystem:
             factor = 1.0 if term.scale is None else scales[term.scale]
             factor = factor * speed ** float(SPEED_POWER[term.array] + term.power)
             total["K" if term.array == "Kg" else term.array] += factor[:, None, None] * mean
-        return generator(total)
+        return generator(total["M"], total["A"], total["B"] - total["K"])
 
     def frequencies(self, at: Array) -> Array:
         """Return frequencies in radians per radian of crank angle, rising; ``(nb, n)``.
@@ -191,12 +190,11 @@ class MeanSystem:
         )
 
 
-def generator(mean: Mapping[str, Array]) -> Array:
-    """Return L of y' = L y, y = (q, p), of mean M, A, B and K; shape ``(nb, 2n, 2n)``."""
-    flexibility, gyro = np.linalg.inv(mean["M"]), mean["A"]
+def generator(mass: Array, gyro: Array, push: Array) -> Array:
+    """Return L of y' = L y, y = (q, p), of mean M, A and B - K; shape ``(nb, 2n, 2n)``."""
+    flexibility = np.linalg.inv(mass)
     back = np.swapaxes(gyro, -1, -2) @ flexibility
-    lower = mean["B"] - mean["K"] - back @ gyro
-    return np.block([[-flexibility @ gyro, flexibility], [lower, back]])
+    return np.block([[-flexibility @ gyro, flexibility], [push - back @ gyro, back]])
 
 
 def _turning(values: NDArray[np.complex128]) -> NDArray[np.bool_]:
@@ -258,7 +256,7 @@ def resonances(
         raise bad("kinds", wrong, "principal, sum or difference", "correct the name")
     varied = {} if detuning == "speed" else {detuning: span[0]}
     where = span[0] if detuning == "speed" else speed
-    canonical_form(system, where, {**parameters, **varied})
+    equation_of(system, where, {**parameters, **varied})
     mean = MeanSystem(system, parameters, detuning, speed)
     undamped = conservative(system, where, {**parameters, **varied})
     conditions: list[Condition] = [

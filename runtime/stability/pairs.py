@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import bad
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from ..periodic.multipliers import conditions
 from ..periodic.signatures import form_matrix, signatures_of
 from .over_speed import MatricesOverSpeed
@@ -91,9 +91,9 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
     """
     low, high = span
     system = matrices.system
-    ends = canonical_form(system, np.array([low, high]), matrices.parameters)
+    ends = equation_of(system, np.array([low, high]), matrices.parameters)
     # From one sample to the next the fastest mode turns by 0.3 rad.
-    fastest = float(np.max(ends.rate * ends.speed))
+    fastest = float(np.max(ends.rate() * ends.speed))
     count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / 0.3)) + 2
     if count > _MOST_SAMPLES:
         raise bad(

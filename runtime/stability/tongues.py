@@ -16,7 +16,7 @@ from ..core.inputs import numbers, require_whole
 from ..core.results import Check, DeferredChecks, Result, provenance
 from ..hill.bloch import BEYOND, HIGHEST
 from ..periodic import floquet_multipliers
-from ..periodic.first_order import canonical_form
+from ..periodic.equation import equation_of
 from .ends import UNBOUNDED, Ends, Several, expected, two_exponents
 from .meetings import MeanSystem, Resonance, conservative
 from .operators import Point, ResonantOperator, constant_at, resonant_operator
@@ -277,7 +277,7 @@ def _check_names(
         raise bad("resonance.modes", resonance.modes, expected_modes, "correct it")
     given = {} if name is None else {name: system.parameters.get(name, 0.0)}
     at = speed if varied else resonance.speed
-    canonical_form(system, at, {**parameters, **given, **varied})
+    equation_of(system, at, {**parameters, **given, **varied})
 
 
 class _Places(NamedTuple):

@@ -96,7 +96,7 @@ def multiplier_maxima(
     row, mode = _peaks(real)
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = real[row - 1, mode], real[row, mode], real[row + 1, mode]
-    at, best, width = _refined(value, mode, brackets, around)
+    at, best, width = refined_maxima(value, mode, brackets, around)
     # At the highest speed the modes left out matter most.
     whole = SlowModes(system).motions(high, wanted, rtol=_RTOL)
     known, noise = whole.multipliers()
@@ -139,21 +139,38 @@ def _peaks(values: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return row + 1, column
 
 
-def _refined(
+def refined_maxima(
     call: Callable[[Array, Whole], Array],
-    mode: Whole,
+    which: Whole,
     brackets: tuple[Array, Array, Array],
     values: tuple[Array, Array, Array],
+    *,
+    steps: int = 12,
+    rtol: float = 1e-7,
 ) -> tuple[Array, Array, Array]:
-    """Refine maxima between samples by parabolas, all at once; return places, values, errors.
+    """Refine maxima of many functions by parabolas, all at once.
 
-    ``brackets`` and ``values`` are first, middle and last, the middle value the largest.
+    Parameters
+    ----------
+    call : callable
+        From places and numbers of functions to values.
+    which : ndarray of int
+        Number of each maximum's function, ``(k,)``.
+    brackets, values : tuple of ndarray
+        Places and values before, at and after each maximum, ``(k,)`` each.
+    steps : int
+        Most steps.
+    rtol : float
+        Relative step from which a maximum has settled: beyond, the values say no more.
+
+    Returns
+    -------
+    places, values, errors : ndarray, shape (k,)
     """
     x, f = np.stack(brackets), np.stack(values)
     moved = np.max(np.abs(x - x[1]), axis=0)
-    for _ in range(12):
-        # Relative step at which a maximum is found: beyond, the values say no more.
-        wide = moved > 1e-7 * x[1]
+    for _ in range(steps):
+        wide = moved > rtol * x[1]
         if not np.any(wide):
             break
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -164,7 +181,7 @@ def _refined(
         usable = np.isfinite(vertex) & (vertex > low) & (vertex < high)
         trial = np.where(usable & (vertex != x[1]), vertex, 0.5 * (x[1] + x[2]))
         got = np.array(f[1])
-        got[wide] = call(trial[wide], mode[wide])
+        got[wide] = call(trial[wide], which[wide])
         moved = np.where(wide, np.abs(trial - x[1]), moved)
         better = wide & (got > f[1])
         beyond = (trial - x[1]) * (x[2] - x[1]) > 0
@@ -224,7 +241,7 @@ def _meissner_maxima(
     row, mode = _peaks(values[:, None])
     brackets = speed[row - 1], speed[row], speed[row + 1]
     around = values[row - 1], values[row], values[row + 1]
-    return _refined(half_trace, mode.astype(np.int64), brackets, around)
+    return refined_maxima(half_trace, mode.astype(np.int64), brackets, around)
 
 
 class FewModes(NamedTuple):

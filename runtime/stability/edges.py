@@ -362,8 +362,8 @@ def _described(
 ) -> tuple[Modes, Array | None]:
     """Return modes at speeds, and how much of the motion at multipliers each has."""
     if not held:
-        return averaged_modes(matrices.system, speed, matrices.parameters), None
-    modes = held_modes(matrices.system, speed)
+        return averaged_modes(matrices, speed), None
+    modes = held_modes(matrices, speed)
     return modes, pair_shares(matrices, modes, speed, met)
 
 
@@ -410,7 +410,7 @@ def _bounded(
 ) -> Regions:
     """Return the regions between pairs of boundaries with multiplier +-1."""
     system, parameters = matrices.system, matrices.parameters
-    modes = averaged_modes(system, boundaries.speed, parameters)
+    modes = averaged_modes(matrices, boundaries.speed)
     units = boundary_units(system, modes, boundaries, parameters)
     mode, number, off = unit_labels(modes, boundaries, units)
     ends, error = np.full((2, len(units)), np.nan), np.zeros(len(units))
@@ -450,7 +450,7 @@ def _endless(
         count[sign] = 0 if np.any(boundaries.multiplier == sign) else int(np.sum(real & beyond))
     turn = np.repeat(np.array([1, -1]), [count[1], count[-1]])
     k = len(turn)
-    turns = np.repeat(averaged_modes(system, middle, parameters).turns, k, axis=0)
+    turns = np.repeat(averaged_modes(matrices, middle).turns, k, axis=0)
     mode, number, off = principal_labels(turns, turn, np.zeros_like(turns))
     return Regions(
         np.full(k, np.nan),

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..core.families import LinearPeriodic
 from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
-from ..periodic.equation import equation_of, sampled
+from ..periodic.equation import equation_of
 from ..periodic.signatures import form_matrix
 from .boundary_speeds import SpeedBoundaries
 from .meetings import generator
@@ -57,14 +57,12 @@ class Modes:
     mass: Array
 
 
-def averaged_modes(
-    system: LinearPeriodic, speed: Array, parameters: Mapping[str, float | Array]
-) -> Modes:
+def averaged_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     """Return the modes of the averaged equation at speeds of shape ``(k,)``."""
-    n = system.size
+    n = matrices.system.size
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
-    equation = equation_of(system, speed, parameters)
+    equation = equation_of(matrices.known, speed, matrices.parameters)
     mass, gyro, push = (equation.mean(name) for name in ("mass", "gyroscopic", "stiffness"))
     rate = generator(mass, gyro, push)
     values, vectors = np.linalg.eig(rate)
@@ -78,7 +76,7 @@ def averaged_modes(
         if len(chosen) != n:
             continue
         chosen = chosen[np.argsort(np.abs(values[row, chosen].imag), kind="stable")]
-        turns[row] = values[row, chosen].imag * system.period / (2 * np.pi)
+        turns[row] = values[row, chosen].imag * equation.period / (2 * np.pi)
         own = vectors[row][:n, chosen].T
         norm = np.sqrt(np.real(np.einsum("ji,ik,jk->j", own.conj(), mass[row], own)))
         shapes[row] = own / norm[:, None] * equation.scale[row]
@@ -351,21 +349,21 @@ def _assigned(rows: int, options: Mapping[Label, Mapping[int, float]]) -> dict[i
 # ---------------------------------------------------------------- modes with the crank held
 
 
-def held_modes(system: LinearPeriodic, speed: Array) -> Modes:
+def held_modes(matrices: MatricesOverSpeed, speed: Array) -> Modes:
     """Return the modes with the crank held: mean frequencies in turns, shapes at angle 0."""
-    n, known = system.size, sampled(system)
+    known, n, period = matrices.known, matrices.system.size, matrices.system.period
     if not len(speed):
         return Modes(np.zeros((0, n)), np.zeros((0, n, n), dtype=complex), np.zeros((0, n, n)))
     # Speeds at which frequencies with the crank held are computed; they change little.
     some = np.linspace(np.min(speed), np.max(speed), 65)
-    squares, _ = equation_of(known, some).frozen_modes(even_angles(system.period, 64))
+    squares, _ = equation_of(known, some).frozen_modes(even_angles(period, 64))
     mean = np.mean(np.sqrt(np.maximum(squares, 0.0)), axis=1) * some[:, None]
     frequency = np.stack([np.interp(speed, some, mean[:, j]) for j in range(n)], axis=1)
     equation, start = equation_of(known, speed), np.zeros(1)
     shapes, unit = equation.frozen_modes(start)[1][:, 0], equation.scale
     rows = np.swapaxes(unit[:, :, None] * shapes, -1, -2).astype(complex)
     mass = equation.at("mass", start)[:, 0] / unit[:, :, None] / unit[:, None, :]
-    whole = system.period / (2 * np.pi)
+    whole = period / (2 * np.pi)
     return Modes(frequency / speed[:, None] * whole, rows, np.broadcast_to(mass, rows.shape))
 
 

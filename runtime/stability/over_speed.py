@@ -45,8 +45,8 @@ class MatricesOverSpeed:
         count = max(1, ceil(log(high / low) / log(1.5) - 1e-9))
         self._edges = low * (high / low) ** (np.arange(count + 1) / count)
         self._edges[[0, -1]] = low, high
-        known = sampled(system, forcing=False)
-        self._maker = TableMaker(known, (low * high) ** 0.5, parameters)
+        self.known = sampled(system, forcing=False)
+        self._maker = TableMaker(self.known, (low * high) ** 0.5, parameters)
         self._tables: dict[int, tuple[Table, float]] = {}
 
     @property

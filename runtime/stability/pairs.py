@@ -91,7 +91,7 @@ def phase_grid(matrices: MatricesOverSpeed, span: tuple[float, float], more: Arr
     """
     low, high = span
     system = matrices.system
-    ends = equation_of(system, np.array([low, high]), matrices.parameters)
+    ends = equation_of(matrices.known, np.array([low, high]), matrices.parameters)
     # From one sample to the next the fastest mode turns by 0.3 rad.
     fastest = float(np.max(ends.rate() * ends.speed))
     count = int(np.ceil(fastest * system.period * (1 / low - 1 / high) / 0.3)) + 2

@@ -262,11 +262,6 @@ def test_command_takes_the_order(tmp_path, capsys):
     assert '"order": 4' in capsys.readouterr().out
 
 
-def test_command_refuses_a_bad_order(capsys):
-    assert main([*LINE, "--order", "9"]) == 2
-    assert "order" in capsys.readouterr().err
-
-
 def test_command_lists_traced_combinations(capsys):
     line = [
         "chart",

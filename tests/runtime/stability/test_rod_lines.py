@@ -74,12 +74,6 @@ def test_damping_is_never_taken_for_a_mirror_image():
     assert not is_mirrored(equation_of(skew, 500.0))
 
 
-def test_other_segments_give_the_same():
-    (one, first), (other, second) = (line(rod(OverhangBasis(4)), f) for f in (1.0, 1.7))
-    assert one.segments != other.segments
-    assert np.allclose(first, second, rtol=0.0, atol=1e-11 * np.max(np.abs(first)))
-
-
 def test_too_many_segments_are_refused():
     with pytest.raises(el.BadInput, match=r"raise the (lowest )?speed"):
         el.stability_chart(rod(), ("speed", [1e-3, 1.0]), ("crank_ratio", [0.1, 0.2]))

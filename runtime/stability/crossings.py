@@ -73,17 +73,10 @@ class _Crossing:
 
 
 class Crossings:
-    """Crossings of the circle between the samples of a range.
+    """Crossings of the circle between rising samples of a range, its ends among them.
 
-    Parameters
-    ----------
-    matrices : MatricesOverSpeed
-        Of the system.
-    speed : ndarray
-        Samples, rising [rad/s]; the first and the last are the ends of the range.
-    sharp : bool
-        Whether multipliers rest on the circle, as without damping: a region then begins where
-        one is outside beyond its error.
+    Where ``sharp``, multipliers rest on the circle, as without damping: a region then begins where
+    one is outside beyond its error.
     """
 
     def __init__(self, matrices: MatricesOverSpeed, speed: Array, sharp: bool = False) -> None:

@@ -29,16 +29,9 @@ _ROUND_OFF = 4e-16
 
 @dataclass(frozen=True)
 class Wave:
-    """Fourier coefficients of one term, its parameter factor included.
+    """Fourier coefficients of the terms of one array that carry one power of the speed.
 
-    Attributes
-    ----------
-    array : str
-        The array that the term belongs to.
-    exponent : int
-        Power of the speed in the equation.
-    coefficients : ndarray of complex
-        Shape ``(2 r + 1, n, n)``, for harmonics -r to r of the period.
+    Of shape ``(2 r + 1, n, n)``, for harmonics -r to r of the period.
     """
 
     array: str

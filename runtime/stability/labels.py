@@ -41,15 +41,9 @@ _LACK = 4.0
 class Modes:
     """Modes of the averaged equation at k speeds.
 
-    Attributes
-    ----------
-    turns : ndarray, shape (k, n)
-        Turns in a period of each multiplier of positive signature; negative where the mode has
-        negative energy; NaN where the averaged equation is not stable.
-    shapes : ndarray of complex, shape (k, n, n)
-        Displacements in rows, of unit norm by the mean mass.
-    mass : ndarray, shape (k, n, n)
-        Mean mass.
+    ``turns`` ``(k, n)`` are those in a period of each multiplier of positive signature, negative
+    where the mode has negative energy, NaN where the averaged equation is not stable; ``shapes``
+    ``(k, n, n)`` the displacements in rows, of unit norm by the mean ``mass``.
     """
 
     turns: Array

@@ -47,20 +47,9 @@ _NOISE, _MOST_TAIL = 1e-14, 1e-10
 
 @dataclass(frozen=True)
 class Point:
-    """The constant system about which everything is expanded, and the variables.
+    """The constant system about which everything is expanded, at the speed of resonance [rad/s].
 
-    Attributes
-    ----------
-    system : LinearPeriodic
-        The system.
-    parameters : mapping of str to float
-        Values that replace the system's own.
-    speed : float
-        Crank speed at resonance [rad/s].
-    parameter : str or None
-        Name of the parameter p = radius eps; None where eps multiplies all that is periodic.
-    radius : float
-        As above.
+    ``parameter`` is the name of p = radius eps; None where eps multiplies all that is periodic.
     """
 
     system: LinearPeriodic

@@ -20,16 +20,7 @@ Array = NDArray[np.float64]
 class MatricesOverSpeed:
     """Scaled monodromy matrices of one system over the speed; tables are made where first needed.
 
-    Parameters
-    ----------
-    system : LinearPeriodic
-        The system.
-    span : pair of float
-        Speeds [rad/s] of the tables; beyond them each matrix is solved for itself.
-    parameters : mapping
-        Parameter values that replace the system's own; no geometry.
-    rtol : float
-        Wanted error of the matrices.
+    Beyond the span of the tables [rad/s] each matrix is solved for itself.
     """
 
     def __init__(

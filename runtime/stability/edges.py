@@ -409,9 +409,8 @@ def _bounded(
     matrices: MatricesOverSpeed, boundaries: SpeedBoundaries, span: tuple[float, float]
 ) -> Regions:
     """Return the regions between pairs of boundaries with multiplier +-1."""
-    system, parameters = matrices.system, matrices.parameters
     modes = averaged_modes(matrices, boundaries.speed)
-    units = boundary_units(system, modes, boundaries, parameters)
+    units = boundary_units(matrices, modes, boundaries)
     mode, number, off = unit_labels(modes, boundaries, units)
     ends, error = np.full((2, len(units)), np.nan), np.zeros(len(units))
     multiplier = np.zeros(len(units), dtype=complex)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.families import LinearPeriodic
 from ..core.trigonometric import even_angles
 from ..periodic import floquet_multipliers
 from ..periodic.equation import equation_of
@@ -145,143 +144,74 @@ def principal_labels(turns: Array, real: Array, lack: Array) -> tuple[Whole, Who
 Unit = tuple[int, int]
 
 
-def boundary_units(
-    system: LinearPeriodic,
-    modes: Modes,
-    found: SpeedBoundaries,
-    parameters: Mapping[str, float],
-) -> list[Unit]:
-    """Return the two boundaries of each principal region, lower first; -1 where one is missing.
-
-    Boundaries between which a real multiplier stays off the circle make a group.  A group of two
-    is a region; in a larger one, where regions lie within each other, those belong together whose
-    motion is mostly of one mode.  Boundaries that coincide within a region are one of their own.
-    """
+def boundary_units(matrices: MatricesOverSpeed, modes: Modes, found: SpeedBoundaries) -> list[Unit]:
+    """Return the two boundaries of each principal region, lower first; -1 where one is missing."""
     owner = np.argmax(_shares(modes, found), axis=-1) if len(found.speed) else np.zeros(0, int)
     units: list[Unit] = []
     for sign in (1, -1):
         own = np.flatnonzero(found.multiplier == sign)
-        if not len(own):
-            continue
-        speed = found.speed[own]
-        middle = np.concatenate(
-            [
-                [speed[0] * (1 - _BESIDE)],
-                0.5 * (speed[1:] + speed[:-1]),
-                [speed[-1] * (1 + _BESIDE)],
-            ]
-        )
-        values = floquet_multipliers(system, middle, **parameters)
-        real = np.abs(values.multipliers.imag) <= 4 * values.error
-        beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
-        count = np.sum(real & beyond, axis=-1)
-        off = count > 0
-        # Regions too narrow to show growth.
-        narrow = np.concatenate([[False], np.diff(speed) <= _BESIDE * speed[1:], [False]])
-        linked = (off | narrow)[1:-1]
-        touching = _touching(found, own, count, narrow)
-        mine: list[Unit] = [(int(own[i]), int(own[i + 1])) for i in touching]
-        alone = np.concatenate([own[touching], own[touching + 1]])
-        for members in np.split(own, np.flatnonzero(~linked) + 1):
-            first, last = members[0] == own[0], members[-1] == own[-1]
-            at_end = bool(first and off[0]), bool(last and off[-1])
-            group = members[~np.isin(members, alone)]
-            if not len(group):
-                continue
-            if np.all(np.isfinite(modes.turns[group])) or any(at_end):
-                mine.extend(_units(group, owner[group], at_end))
-            else:
-                # Without modes: one within the other.
-                pairs = (len(group) + 1) // 2
-                mine.extend((int(group[d]), int(group[-1 - d])) for d in range(pairs))
-        if not np.array_equal(_covering(mine, own)[~narrow], count[~narrow]):
-            mine = _nested(own, count, narrow) or mine
-        units.extend(mine)
+        if len(own):
+            units.extend(_paired(found, own, owner, _beyond(matrices, found.speed[own], sign)))
     return units
 
 
-def _touching(
-    found: SpeedBoundaries,
-    own: NDArray[np.intp],
-    count: NDArray[np.intp],
-    narrow: NDArray[np.bool_],
-) -> NDArray[np.intp]:
-    """Return the first of each two boundaries that coincide to their errors and change nothing.
-
-    At a double boundary two multipliers touch +-1 and go back: a closed region.  Its two motions
-    span a plane in which only rounding chooses, so that modes do not tell what belongs together.
-    """
-    apart = np.diff(found.speed[own])
-    same = apart <= found.error[own][1:] + found.error[own][:-1]
-    beside = ~narrow[:-2] & ~narrow[2:] & (count[:-2] == count[2:])
-    value: NDArray[np.intp] = np.flatnonzero(same & narrow[1:-1] & beside)
-    return value
+def _beyond(matrices: MatricesOverSpeed, speed: Array, sign: int) -> list[int]:
+    """Return how many real multipliers are off the circle before, between and behind boundaries."""
+    ends = speed[0] * (1 - _BESIDE), speed[-1] * (1 + _BESIDE)
+    middle = np.concatenate([ends[:1], 0.5 * (speed[1:] + speed[:-1]), ends[1:]])
+    values = floquet_multipliers(matrices.system, middle, **matrices.parameters)
+    real = np.abs(values.multipliers.imag) <= 4 * values.error
+    beyond = sign * values.multipliers.real > 1.0 + 4 * values.error
+    return [int(number) for number in np.sum(real & beyond, axis=-1)]
 
 
-def _covering(units: list[Unit], own: NDArray[np.intp]) -> Whole:
-    """Return how many regions cover each interval before, between and behind boundaries."""
-    place = {int(row): i for i, row in enumerate(own)}
-    change = np.zeros(len(own) + 2, dtype=np.int64)
-    for first, last in units:
-        change[place[first] + 1 if first >= 0 else 0] += 1
-        change[place[last] + 1 if last >= 0 else -1] -= 1
-    value: Whole = np.cumsum(change)[:-1]
-    return value
-
-
-def _nested(
-    own: NDArray[np.intp], count: NDArray[np.intp], narrow: NDArray[np.bool_]
-) -> list[Unit] | None:
+def _paired(
+    found: SpeedBoundaries, own: NDArray[np.intp], owner: NDArray[np.intp], count: list[int]
+) -> list[Unit]:
     """Pair boundaries so that as many regions cover each interval as multipliers are off there.
 
-    A boundary behind which one more is off begins a region, another ends the last one begun; two
-    that nearly coincide and change nothing are one of their own.  None where the numbers do not
-    follow from boundaries alone.
+    A boundary behind which one more is off begins a region, another ends the last one begun, rather
+    one whose motion is mostly of the same mode.  Two that nearly coincide and change nothing are a
+    region of their own, or the end of one and the beginning of the next.
     """
-    begun, found = [-1] * int(count[0]), list[Unit]()
+    begun, units = [-1] * count[0], list[Unit]()
+
+    def same(row: int) -> list[int]:
+        return [k for k, first in enumerate(begun) if first >= 0 and owner[first] == owner[row]]
+
+    def end(row: int) -> None:
+        alike = same(row)
+        first = begun.pop(alike[-1] if alike else -1) if begun else -1
+        units.append((first, row))
+
+    rows = own.tolist()
     i = 0
-    while i < len(own):
-        row = int(own[i])
-        step = int(count[i + 1] - count[i])
-        if narrow[i + 1]:
-            step = int(count[i + 2] - count[i])
-            other = int(own[i + 1])
-            i += 2
-            if step == 0:
-                found.append((row, other))
-            elif step == 2:
-                begun.extend((row, other))
-            elif step == -2 and len(begun) >= 2:
-                found.extend(((begun.pop(), row), (begun.pop(), other)))
+    while i < len(rows):
+        row, step = rows[i], count[i + 1] - count[i]
+        other = rows[i + 1] if i + 1 < len(rows) else row
+        apart = found.speed[other] - found.speed[row]
+        if other == row or apart > _BESIDE * found.speed[other]:
+            # Growth may be too small to be seen.
+            if step < 0 or (step == 0 and same(row)):
+                end(row)
             else:
-                return None
+                begun.append(row)
+            i += 1
             continue
-        i += 1
-        if step == 1:
-            begun.append(row)
-        elif step == -1 and begun:
-            found.append((begun.pop(), row))
+        step = count[i + 2] - count[i]
+        i += 2
+        if step > 1:
+            begun.extend((row, other))
+        elif step < -1:
+            end(row)
+            end(other)
+        # At a double boundary only rounding chooses the motions.
+        elif owner[row] != owner[other] and same(row) and apart > sum(found.error[[row, other]]):
+            end(row)
+            begun.append(other)
         else:
-            return None
-    found.extend((row, -1) for row in begun)
-    return None if (-1, -1) in found else found
-
-
-def _units(
-    group: NDArray[np.intp], owner: NDArray[np.intp], at_end: tuple[bool, bool]
-) -> list[Unit]:
-    """Pair the boundaries of one group; ``at_end`` tells whether growth goes on beyond its ends."""
-    members = [int(row) for row in group]
-    if len(members) == 2 and not any(at_end):
-        return [(members[0], members[1])]
-    found: list[Unit] = []
-    for mode in np.unique(owner):
-        own = [row for row, whose in zip(members, owner, strict=True) if whose == mode]
-        if len(own) % 2:
-            # The one that stands alone is at an end of the range.
-            found.append((-1, own.pop(0)) if at_end[0] else (own.pop(), -1))
-        found.extend((own[i], own[i + 1]) for i in range(0, len(own), 2))
-    return found
+            units.append((row, other))
+    return units + [(row, -1) for row in begun if row >= 0]
 
 
 def unit_labels(

@@ -269,7 +269,8 @@ class Equation:
             )
             for name in ("stiffness", "damping", "gyroscopic")
         )
-        return np.maximum(2 * np.pi / self.period, np.sqrt(stiffness) + damping + turning)
+        rate = np.sqrt(stiffness) + damping + turning
+        return np.asarray(np.maximum(2 * np.pi / self.period, rate))
 
     def cholesky_of_mass(self, angles: Array) -> Array:
         """Return the Cholesky factors of the scaled mass at angles, ``(nb, nt, n, n)``.

@@ -13,10 +13,11 @@ residual that is exponentially small in it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ...core.errors import bad
 from ...core.trigonometric import differentiated, even_angles
@@ -35,7 +36,7 @@ _KEPT = 3
 
 
 def plain_equation(
-    known: SampledSystem, speed: float, parameters: dict[str, ArrayLike] | None = None
+    known: SampledSystem, speed: float, parameters: Mapping[str, float] | None = None
 ) -> Equation:
     """Return the equation at one speed [rad/s], its coordinates in their own units."""
     found = equation_of(known, np.array([speed]), parameters)

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ...core.errors import BadInput, bad
 from ...core.families import DAMPING, LinearPeriodic, Term
-from ...core.inputs import require_whole, speed_span
+from ...core.inputs import numbers, require_whole, speed_span
 from ...core.trigonometric import interpolated
 from ..equation import Equation, SampledSystem, at_geometry, sampled
 from ..reduced import projections
@@ -102,7 +102,8 @@ def slow_system(
         polynomials in the speed squared.
     """
     low, high = speed_span(speed_range)
-    system, changed = at_geometry(system, parameters)
+    system, values = at_geometry(system, parameters)
+    changed = {name: float(numbers(name, value)) for name, value in values.items()}
     calm = sampled(system.without(*DAMPING))
     top = plain_equation(calm, high, changed)
     if top.damped:
@@ -215,7 +216,7 @@ def _fitted(
     known: SampledSystem,
     chosen: _Choice,
     span: tuple[float, float],
-    changed: dict[str, ArrayLike],
+    changed: Mapping[str, float],
 ) -> tuple[int, dict[str, list[Array]], float]:
     """Return the degree, the coefficients by powers of the speed squared, and the error."""
     low, high = (value**2 for value in span)

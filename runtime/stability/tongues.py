@@ -262,7 +262,7 @@ def _check_names(
     parameters: Mapping[str, float],
 ) -> None:
     """Raise where names clash or are unknown, or a resonance does not fit the system."""
-    if name in parameters:
+    if name is not None and name in parameters:
         raise bad("parameters", sorted([*parameters, name]), "each parameter once", "leave one out")
     if max(resonance.modes) > system.size or min(resonance.modes) < 1:
         expected_modes = f"modes from 1 to {system.size}"
